@@ -1,0 +1,1 @@
+//! The twins of the GPU passes in f64, and the brute-force truth they are all judged by.

@@ -1,0 +1,1 @@
+//! Readers and writers, one a format. An output file is complete or absent.

@@ -1,0 +1,72 @@
+use crate::{Error, Result};
+
+/// Radiance from infinity as an equirectangular (latitude-longitude) image, linear RGB.
+///
+/// Row 0 touches the zenith, the last row the nadir. Column 0 begins at azimuth π (west) and
+/// columns run *clockwise* seen from above, as the image is seen from inside: the middle of the
+/// image looks east (+x, azimuth 0), a quarter to its left looks north.
+/// Texel (row, col) of an image `width`×`height` covers azimuths π - 2π·[col, col+1]/width and
+/// zenith angles π·[row, row+1]/height.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    width: usize,
+    height: usize,
+    texels: Vec<[f32; 3]>,
+    rotation_rad: f64,
+}
+
+impl Environment {
+    /// An environment of `width`×`height` texels, turned counter-clockwise by `rotation_rad`.
+    ///
+    /// # Errors
+    /// Sizes that do not match, a texel that is negative or not finite (named by row and column).
+    pub fn new(
+        width: usize,
+        height: usize,
+        texels: Vec<[f32; 3]>,
+        rotation_rad: f64,
+    ) -> Result<Self> {
+        if width == 0 || height == 0 || width.checked_mul(height) != Some(texels.len()) {
+            return Err(Error::setting(
+                "environment",
+                format!("{} texels for {width} × {height}", texels.len()),
+                "width × height texels, at least one",
+            ));
+        }
+        if !rotation_rad.is_finite() {
+            return Err(Error::setting(
+                "environment rotation",
+                rotation_rad.to_string(),
+                "a finite angle",
+            ));
+        }
+        if let Some(i) = texels.iter().position(|t| !t.iter().all(|v| v.is_finite() && *v >= 0.0)) {
+            return Err(Error::setting(
+                format!("environment at row {}, column {}", i / width, i % width),
+                format!("{:?}", texels[i]),
+                "finite radiance, 0 or more",
+            ));
+        }
+        Ok(Self { width, height, texels, rotation_rad })
+    }
+
+    /// Texels around the full circle.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Texels from zenith to nadir.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Row-major radiance, linear RGB.
+    pub fn texels(&self) -> &[[f32; 3]] {
+        &self.texels
+    }
+
+    /// Counter-clockwise turn about the vertical, radians.
+    pub fn rotation_rad(&self) -> f64 {
+        self.rotation_rad
+    }
+}

@@ -1,0 +1,187 @@
+use crate::{Error, Result};
+
+/// The largest magnitude of a height that is accepted, in the field's length unit.
+///
+/// Products of a height difference and a distance stay far from the largest f32 below it.
+pub const HEIGHT_LIMIT: f64 = 1e15;
+
+/// A grid of heights: row-major, row 0 in the north, column 0 in the west.
+///
+/// Sample (r, c) stands at x = c·cell x, y = (rows-1-r)·cell y. Heights are kept as f32 offsets from
+/// a base subtracted in f64 (the median), so a centimetre survives on an 8 848 m summit. The
+/// surface between samples is two flat triangles a cell, split from (r, c) to (r+1, c+1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightField {
+    rows: usize,
+    cols: usize,
+    cell_m: [f64; 2],
+    base_m: f64,
+    heights_m: Vec<f32>,
+    voids: Option<Vec<bool>>,
+}
+
+impl HeightField {
+    /// A field of `rows`×`cols` heights in metres (or whatever unit `cell_m` is in).
+    ///
+    /// `cell_m` is the spacing of columns and of rows. `voids` marks samples that hold no data;
+    /// their value is ignored and filled from their neighbours.
+    ///
+    /// # Errors
+    /// Sizes that do not match or are 0, cells that are not positive and finite, a height outside
+    /// voids that is not finite or beyond ±1e15 (the message names row and column), only voids.
+    pub fn new(
+        rows: usize,
+        cols: usize,
+        heights_m: &[f64],
+        cell_m: [f64; 2],
+        voids: Option<Vec<bool>>,
+    ) -> Result<Self> {
+        if rows == 0 || cols == 0 || rows.checked_mul(cols) != Some(heights_m.len()) {
+            return Err(Error::setting(
+                "heights",
+                format!("{} values for {rows} rows and {cols} columns", heights_m.len()),
+                "rows × columns values, at least one",
+            ));
+        }
+        if !cell_m.iter().all(|c| c.is_finite() && *c >= 1e-12 && *c <= 1e12) {
+            return Err(Error::setting(
+                "cell size",
+                format!("{} × {}", cell_m[0], cell_m[1]),
+                "two lengths from 1e-12 to 1e12",
+            ));
+        }
+        if voids.as_ref().is_some_and(|v| v.len() != heights_m.len()) {
+            return Err(Error::setting(
+                "voids",
+                format!("{} marks", voids.map_or(0, |v| v.len())),
+                format!("{} marks, one a sample", heights_m.len()),
+            ));
+        }
+        let voids = voids.filter(|v| v.contains(&true));
+        let is_void = |i: usize| voids.as_ref().is_some_and(|v| v[i]);
+        let mut known = Vec::with_capacity(heights_m.len());
+        for (i, &h) in heights_m.iter().enumerate() {
+            if is_void(i) {
+                continue;
+            }
+            if !(h.abs() <= HEIGHT_LIMIT) {
+                return Err(Error::setting(
+                    format!("height at row {}, column {}", i / cols, i % cols),
+                    format!("{h}"),
+                    "a finite number within ±1e15, or a value marked as no-data",
+                ));
+            }
+            known.push(h);
+        }
+        if known.is_empty() {
+            return Err(Error::setting("heights", "nothing but no-data", "at least one height"));
+        }
+        let middle = known.len() / 2;
+        let base_m = *known.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let mut offsets: Vec<f32> = heights_m.iter().map(|h| (h - base_m) as f32).collect();
+        if let Some(voids) = &voids {
+            fill_voids(rows, cols, &mut offsets, voids);
+        }
+        Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids })
+    }
+
+    /// Number of rows (south to north extent).
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns (west to east extent).
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Spacing of columns and of rows, in metres.
+    pub fn cell_m(&self) -> [f64; 2] {
+        self.cell_m
+    }
+
+    /// The height that [`heights_m`](Self::heights_m) are offsets from: the median, in metres.
+    pub fn base_m(&self) -> f64 {
+        self.base_m
+    }
+
+    /// Heights above [`base_m`](Self::base_m), row-major from the north-west corner; voids filled.
+    pub fn heights_m(&self) -> &[f32] {
+        &self.heights_m
+    }
+
+    /// One mark a sample, true where the input held no data; `None` where it held data everywhere.
+    pub fn voids(&self) -> Option<&[bool]> {
+        self.voids.as_deref()
+    }
+}
+
+/// Fills voids layer by layer from their rim: a sample takes the mean of the neighbours (of eight)
+/// that are known, nearest layers first. Continuous at the rim and independent of scan order.
+fn fill_voids(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
+    let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
+    let neighbours = |i: usize| {
+        let (r, c) = (i / cols, i % cols);
+        let (r0, r1) = (r.saturating_sub(1), (r + 1).min(rows - 1));
+        let (c0, c1) = (c.saturating_sub(1), (c + 1).min(cols - 1));
+        (r0..=r1).flat_map(move |r| (c0..=c1).map(move |c| r * cols + c))
+    };
+    let mut rim: Vec<usize> =
+        (0..heights.len()).filter(|&i| !known[i] && neighbours(i).any(|n| known[n])).collect();
+    while !rim.is_empty() {
+        let layer: Vec<f32> = rim
+            .iter()
+            .map(|&i| {
+                let (sum, count) = neighbours(i)
+                    .filter(|&n| known[n])
+                    .fold((0.0_f64, 0_u32), |(s, k), n| (s + f64::from(heights[n]), k + 1));
+                (sum / f64::from(count)) as f32
+            })
+            .collect();
+        for (&i, &h) in rim.iter().zip(&layer) {
+            heights[i] = h;
+            known[i] = true;
+        }
+        let mut next: Vec<usize> =
+            rim.iter().flat_map(|&i| neighbours(i)).filter(|&n| !known[n]).collect();
+        next.sort_unstable();
+        next.dedup();
+        rim = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_a_centimetre_on_a_summit() {
+        let field = HeightField::new(1, 3, &[8848.00, 8848.01, 8848.02], [1.0, 1.0], None).unwrap();
+        assert_eq!(field.base_m(), 8848.01);
+        for (h, expected) in field.heights_m().iter().zip([-0.01, 0.0, 0.01]) {
+            // One rounding of 8848 in f64 (1.8e-12) and one of 0.01 in f32.
+            assert!((f64::from(*h) - expected).abs() < 2e-9);
+        }
+    }
+
+    #[test]
+    fn names_the_place_of_a_bad_height() {
+        let error =
+            HeightField::new(2, 2, &[0.0, 1.0, f64::NAN, 3.0], [1.0, 1.0], None).unwrap_err();
+        assert!(error.to_string().contains("row 1, column 0"), "{error}");
+        let voids = Some(vec![false, false, true, false]);
+        assert!(HeightField::new(2, 2, &[0.0, 1.0, f64::NAN, 3.0], [1.0, 1.0], voids).is_ok());
+    }
+
+    #[test]
+    fn fills_a_void_between_equal_neighbours_with_their_height() {
+        let mut heights = [5.0; 25];
+        let mut voids = vec![false; 25];
+        for i in [6, 7, 8, 11, 12, 13, 16, 17, 18] {
+            heights[i] = f64::INFINITY;
+            voids[i] = true;
+        }
+        let field = HeightField::new(5, 5, &heights, [1.0, 1.0], Some(voids)).unwrap();
+        assert!(field.heights_m().iter().all(|h| *h == 0.0));
+    }
+}

@@ -1,0 +1,22 @@
+//! What is lit and by what: plain data, range-checked when it is made.
+
+mod environment;
+mod field;
+mod lights;
+mod surface;
+
+pub use environment::Environment;
+pub use field::HeightField;
+pub use lights::{Lights, Sun};
+pub use surface::{Albedo, Border, Surface};
+
+/// A field, what it is made of, and the light that falls on it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The heights.
+    pub field: HeightField,
+    /// Reflectance and what lies beyond the field's edge.
+    pub surface: Surface,
+    /// Everything that shines.
+    pub lights: Lights,
+}
