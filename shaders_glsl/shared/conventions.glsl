@@ -1,0 +1,44 @@
+// World: right-handed, x east = increasing column, y north = decreasing row, z up.
+// Sample (row r, column c) stands at x = c * cell.x, y = (rows - 1 - r) * cell.y, z = height.
+// Surface: two flat triangles a cell, split from (r, c) to (r + 1, c + 1).
+// Azimuth phi: radians, counter-clockwise from east. Elevation omega: up from horizontal.
+// Slopes are tangents of elevations: rise over horizontal world distance.
+//
+// A sweep marches towards the receiver along the field's axis that its azimuth follows more closely
+// (the major axis); lines lie side by side along the other (the lane axis). Both axes are flipped
+// where needed, so that march steps count up away from the horizon's side and lanes count up with
+// the shear. At march step i, line l is at lane coordinate floor + rest / shear_den, with
+//   floor, rest = divmod(line_rest + i * shear_num, shear_den) + line_cell.
+// Between steps a line crosses one cell in the major axis; its samples lie on grid lines, where the
+// surface is exactly the linear interpolation of two neighbouring samples.
+
+const float PI = 3.14159265358979;
+const float HALF_PI = 1.57079632679490;
+
+// Below every slope that a field can have, and safe to square.
+const float NO_SLOPE = -1e9;
+
+const uint BORDER_PLANE = 0u;
+const uint BORDER_OPEN = 1u;
+const uint BORDER_PERIODIC = 2u;
+
+const uint AZIMUTH_MARCHES_ROWS = 1u;
+const uint AZIMUTH_FLIPS_MARCH = 2u;
+const uint AZIMUTH_FLIPS_LANES = 4u;
+
+// One direction of a sweep and what it weighs.
+struct Azimuth {
+    float cos_phi;    // direction of the wedge's centre
+    float sin_phi;
+    float wedge_cos;  // integral of cos over the wedge
+    float wedge_sin;  // integral of sin over the wedge
+    float wedge_rad;  // width of the wedge
+    float step_m;     // world length of one march step
+    uint shear_num;   // lane advance of a step, in shear_den-ths of a cell, 0 .. shear_den
+    uint shear_den;   // 32768, or the lines a cell where lines pass through every sample
+    uint flags;       // AZIMUTH_*
+    uint layer;       // where its result lies: layer of the lattice of its axis
+    float low_slope;  // sun only: the disc's chord in this azimuth
+    float high_slope;
+    float weight;     // sun only: radiance that makes the chords add up to irradiance 1
+};
