@@ -344,3 +344,37 @@ fn a_wall_casts_hard_and_soft_shadows() {
     assert_eq!(at(top - 0.011, 0.02), 0.0);
     assert!((at(top + 0.011, 0.02) / f64::sin(top + 0.011) - free / top.sin()).abs() < 1e-8);
 }
+
+/// Extremes stay numbers: light under a sky of radiance 1 lies within [0, 1] whatever the heights and
+/// cells accepted. Slopes below 1e-5 turn neither normal nor horizon by more than a few of them: 1.
+#[test]
+fn extremes_stay_numbers() {
+    for border in BORDERS {
+        for (height, cell) in
+            [(1e15, 1e-12), (-1e15, 1e-12), (1e6, 1.0), (1e-6, 1.0), (1e-15, 1e12)]
+        {
+            let field = field(5, 5, [cell; 2], |r, c| if (r, c) == (2, 2) { height } else { 0.0 });
+            for i in 0..25 {
+                let light = sky(&field, border, i / 5, i % 5, 64);
+                assert!((0.0..=1.0 + 1e-12).contains(&light), "{border:?} {height} {cell} {light}");
+                if height.abs() / cell < 1e-5 {
+                    assert!((light - 1.0).abs() < 10.0 * height.abs() / cell);
+                }
+                let [low, ..] = sun(&field, border, i / 5, i % 5, &sun_at(1.0, 0.1, 0.01), 16);
+                assert!((0.0..=1.0 + 1e-6).contains(&low));
+            }
+        }
+    }
+}
+
+/// Voids are lit as their filling: a hole in a level plain is level.
+#[test]
+fn a_void_is_lit_as_it_is_filled() {
+    let mut voids = vec![false; 25];
+    voids[12] = true;
+    let mut heights = vec![7.0; 25];
+    heights[12] = f64::NAN;
+    let holed = HeightField::new(5, 5, &heights, [1.0, 1.0], Some(voids)).unwrap();
+    assert!((sky(&holed, Border::Plane, 2, 2, 8) - 1.0).abs() < 1e-14);
+    assert!((sky(&holed, Border::Plane, 2, 1, 8) - 1.0).abs() < 1e-14);
+}

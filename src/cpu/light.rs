@@ -4,7 +4,7 @@
 //! (1/π) ∫ L(e) V(e) max(N·e, 0) de, so a flat, free sample under a sky of radiance 1 answers 1.
 //! Along an azimuth φ a direction is e(ω) = (cos ω cos φ, cos ω sin φ, sin ω), de = cos ω dω dφ and
 //! N·e = A cos ω + B sin ω with A = N_x cos φ + N_y sin φ, B = N_z. The integrand in ω is therefore
-//! A cos²ω + B sin ω cos ω: see [`slice`].
+//! A cos²ω + B sin ω cos ω: see [`slice()`].
 
 use super::oracle::Oracle;
 use crate::scene::{Border, Environment, HeightField, Sun};

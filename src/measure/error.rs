@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn horizons_are_compared_in_degrees() {
         let reference: Vec<f64> = (0..1000).map(|i| f64::from(i % 7) * 0.1).collect();
-        let off = |i: usize| (if i % 2 == 0 { 1.0 } else { -1.0 }) * i as f64 * 1e-3;
+        let off = |i: usize| [1.0, -1.0][i % 2] * i as f64 * 1e-3;
         let result: Vec<f64> =
             reference.iter().enumerate().map(|(i, r)| r + off(i).to_radians()).collect();
         let e = HorizonError::of(&result, &reference, 10, 50).unwrap();
