@@ -1,1 +1,5 @@
 //! Error metrics and statistics.
+
+pub mod error;
+pub mod fractal;
+pub mod statistics;

@@ -1,0 +1,250 @@
+//! Direct light at one sample, in f64, by deterministic quadrature over the oracle's horizons.
+//!
+//! Everything here is exit radiance of a diffuse surface of albedo 1:
+//! (1/π) ∫ L(e) V(e) max(N·e, 0) de, so a flat, free sample under a sky of radiance 1 answers 1.
+//! Along an azimuth φ a direction is e(ω) = (cos ω cos φ, cos ω sin φ, sin ω), de = cos ω dω dφ and
+//! N·e = A cos ω + B sin ω with A = N_x cos φ + N_y sin φ, B = N_z. The integrand in ω is therefore
+//! A cos²ω + B sin ω cos ω: see [`slice()`].
+
+use super::oracle::Oracle;
+use crate::scene::{Border, Environment, HeightField, Sun};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Azimuths that [`environment`] looks along, at least: narrow images have several a column.
+pub const ENVIRONMENT_STRIPS: usize = 512;
+
+/// The unit normal at a sample: the sum of the unnormalised normals of the adjoining quads.
+///
+/// A quad's normal is the cross product of its diagonals,
+/// (dx, dy, NE - SW) × (-dx, dy, NW - SE) = 2 dx dy (-g_x, -g_y, 1), where g is the mean of the
+/// gradients along its two opposite edges. All quads weigh the same, so the sum is the mean of
+/// their gradients. At the edge only the quads that exist count; under `periodic` all four do.
+/// A field one sample wide has no quads: the difference along the other axis (central inside,
+/// one-sided at the ends), 0 across.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn normal(field: &HeightField, border: Border, row: usize, col: usize) -> DVec3 {
+    let (rows, cols) = (field.rows(), field.cols());
+    assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
+    let [cell_x, cell_y] = field.cell_m();
+    let wrap = border == Border::Periodic;
+    // The samples before, at and after `i`: neighbours that do not exist are the sample itself.
+    let around = |i: usize, count: usize| {
+        if wrap {
+            [(i + count - 1) % count, i, (i + 1) % count]
+        } else {
+            [i.saturating_sub(1), i, (i + 1).min(count - 1)]
+        }
+    };
+    let (r, c) = (around(row, rows), around(col, cols));
+    let h = |r: usize, c: usize| f64::from(field.heights_m()[r * cols + c]);
+    let exists = |i: [usize; 3], side: usize| wrap || i[side] != i[side + 1];
+
+    let (mut east, mut north, mut quads) = (0.0, 0.0, 0.0);
+    for side_r in 0..2 {
+        for side_c in 0..2 {
+            if exists(r, side_r) && exists(c, side_c) {
+                let (n, s) = (r[side_r], r[side_r + 1]);
+                let (w, e) = (c[side_c], c[side_c + 1]);
+                east += 0.5 * ((h(n, e) - h(n, w)) + (h(s, e) - h(s, w)));
+                north += 0.5 * ((h(n, w) - h(s, w)) + (h(n, e) - h(s, e)));
+                quads += 1.0;
+            }
+        }
+    }
+    if quads > 0.0 {
+        return DVec3::new(-east / (quads * cell_x), -north / (quads * cell_y), 1.0).normalize();
+    }
+    let steps = |i: [usize; 3]| (i[2] - i[0]).max(1) as f64;
+    DVec3::new(
+        -(h(row, c[2]) - h(row, c[0])) / (steps(c) * cell_x),
+        -(h(r[0], col) - h(r[2], col)) / (steps(r) * cell_y),
+        1.0,
+    )
+    .normalize()
+}
+
+/// ∫ from `low` to `high` of (a cos²ω + b sin ω cos ω) dω, 0 when the interval is empty.
+///
+/// Antiderivative a/2 (ω + sin 2ω / 2) + b/2 sin²ω. With Δ = high - low and Σ = high + low,
+/// sin 2high - sin 2low = 2 cos Σ sin Δ and sin²high - sin²low = sin Σ sin Δ: no cancellation.
+pub fn slice(a: f64, b: f64, low: f64, high: f64) -> f64 {
+    if high <= low {
+        return 0.0;
+    }
+    let (width, sum) = (high - low, high + low);
+    0.5 * (a * (width + sum.cos() * width.sin()) + b * sum.sin() * width.sin())
+}
+
+/// One azimuth at one sample: N·e = a cos ω + b sin ω, and the elevation above which light arrives.
+#[derive(Clone, Copy)]
+struct Slice {
+    a: f64,
+    b: f64,
+    low: f64,
+}
+
+impl Slice {
+    /// Light arrives above the horizon and above the plane of the normal: N·e > 0 where
+    /// tan ω > -A/B (B > 0 on a height field), which for A > 0 lies below horizontal.
+    fn new(oracle: &Oracle, row: usize, col: usize, normal: DVec3, azimuth_rad: f64) -> Self {
+        let a = normal.x * azimuth_rad.cos() + normal.y * azimuth_rad.sin();
+        let b = normal.z;
+        let hemisphere = (-a).atan2(b);
+        Self { a, b, low: oracle.elevation_rad(row, col, azimuth_rad).max(hemisphere) }
+    }
+
+    fn light(&self, low: f64, high: f64) -> f64 {
+        slice(self.a, self.b, low.max(self.low), high)
+    }
+}
+
+/// Exit radiance under a uniform sky of radiance 1: (1/π)(2π/m) Σ of the slices to the zenith.
+///
+/// Azimuths are φ_k = 2πk/m. The sky goes on below horizontal where the border is `open`.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sky(field: &HeightField, border: Border, row: usize, col: usize, azimuths: usize) -> f64 {
+    sky_of(&Oracle::for_one_place(field, border), row, col, azimuths)
+}
+
+/// [`sky`] by an oracle that has seen the field already.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sky_of(oracle: &Oracle, row: usize, col: usize, azimuths: usize) -> f64 {
+    let normal = normal(oracle.field(), oracle.border(), row, col);
+    let m = azimuths.max(1);
+    let sum: f64 = (0..m)
+        .map(|k| {
+            let azimuth = TAU * k as f64 / m as f64;
+            Slice::new(oracle, row, col, normal, azimuth).light(-FRAC_PI_2, FRAC_PI_2)
+        })
+        .sum();
+    2.0 / m as f64 * sum
+}
+
+/// Exit radiance under an environment, linear RGB: a sum over all its texels.
+///
+/// Each column of texels is looked along at its centre (or, in images narrower than
+/// [`ENVIRONMENT_STRIPS`], at the centres of equal parts of it: the midpoint rule in azimuth); in
+/// elevation each texel is clipped at the horizon exactly and integrated in closed form.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn environment(
+    field: &HeightField,
+    border: Border,
+    row: usize,
+    col: usize,
+    env: &Environment,
+) -> [f64; 3] {
+    environment_of(&Oracle::for_one_place(field, border), row, col, env)
+}
+
+/// [`environment`] by an oracle that has seen the field already.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment) -> [f64; 3] {
+    let normal = normal(oracle.field(), oracle.border(), row, col);
+    let (width, height) = (env.width(), env.height());
+    let parts = ENVIRONMENT_STRIPS.div_ceil(width);
+    let strips = width * parts;
+    let mut sum = [0.0; 3];
+    for strip in 0..strips {
+        // Columns run clockwise from azimuth π; the rotation is counter-clockwise.
+        let azimuth = PI - TAU * (strip as f64 + 0.5) / strips as f64 + env.rotation_rad();
+        let lit = Slice::new(oracle, row, col, normal, azimuth);
+        for texel_row in 0..height {
+            let high = FRAC_PI_2 - PI * texel_row as f64 / height as f64;
+            let low = FRAC_PI_2 - PI * (texel_row + 1) as f64 / height as f64;
+            if high <= lit.low {
+                break;
+            }
+            let light = lit.light(low, high);
+            let texel = env.texels()[texel_row * width + strip / parts];
+            for (s, t) in sum.iter_mut().zip(texel) {
+                *s += f64::from(t) * light;
+            }
+        }
+    }
+    sum.map(|s| s * 2.0 / strips as f64)
+}
+
+/// Exit radiance under one sun, linear RGB.
+///
+/// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so
+/// L = irradiance / (π sin²a). `strips` azimuths across the disc, each with its chord of elevations
+/// clipped at the horizon exactly. Diameter 0: a point, dark where its elevation is not above the
+/// horizon.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sun(
+    field: &HeightField,
+    border: Border,
+    row: usize,
+    col: usize,
+    sun: &Sun,
+    strips: usize,
+) -> [f64; 3] {
+    sun_of(&Oracle::for_one_place(field, border), row, col, sun, strips)
+}
+
+/// [`sun`] by an oracle that has seen the field already.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sun_of(oracle: &Oracle, row: usize, col: usize, sun: &Sun, strips: usize) -> [f64; 3] {
+    let normal = normal(oracle.field(), oracle.border(), row, col);
+    let radius = 0.5 * sun.diameter_rad;
+    let share = if radius > 0.0 {
+        disc(oracle, row, col, normal, sun, strips.max(1)) / (PI * radius.sin().powi(2))
+    } else {
+        let lit = Slice::new(oracle, row, col, normal, sun.azimuth_rad);
+        let (sin, cos) = sun.elevation_rad.sin_cos();
+        if sun.elevation_rad > lit.low { (lit.a * cos + lit.b * sin).max(0.0) } else { 0.0 }
+    };
+    sun.irradiance.map(|e| f64::from(e) * share / PI)
+}
+
+/// ∫ V max(N·e, 0) de over the sun's disc.
+///
+/// At azimuth δ from the centre's, a direction of elevation ω is within a of the centre
+/// (elevation s) when sin ω sin s + cos ω cos s cos δ = R cos(ω - ω_m) ≥ cos a, with
+/// R² = sin²s + cos²s cos²δ and tan ω_m = sin s / (cos s cos δ). The half chord w has
+/// sin²w = 1 - cos²a/R² = (sin²a - cos²s sin²δ) / R². A disc that holds the zenith is met along every
+/// azimuth; another one up to sin δ = sin a / cos s, where δ = δ_max sin u makes the chord's square
+/// root smooth and the midpoint rule in u quick.
+fn disc(oracle: &Oracle, row: usize, col: usize, normal: DVec3, sun: &Sun, strips: usize) -> f64 {
+    let radius = 0.5 * sun.diameter_rad;
+    let (sin_s, cos_s) = sun.elevation_rad.sin_cos();
+    let sin_a = radius.sin();
+    let holds_zenith = sun.elevation_rad + radius >= FRAC_PI_2;
+    let widest = if holds_zenith { PI } else { (sin_a / cos_s).min(1.0).asin() };
+    let mut sum = 0.0;
+    for i in 0..strips {
+        let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
+        let (offset, weight) = if holds_zenith {
+            (widest * centre, 2.0 * widest / strips as f64)
+        } else {
+            let u = FRAC_PI_2 * centre;
+            (widest * u.sin(), widest * u.cos() * PI / strips as f64)
+        };
+        let (sin_d, cos_d) = offset.sin_cos();
+        let reach = sin_s.hypot(cos_s * cos_d);
+        let squared = sin_a.powi(2) - (cos_s * sin_d).powi(2);
+        if squared <= 0.0 {
+            continue;
+        }
+        let half = (squared.sqrt() / reach).min(1.0).asin();
+        let middle = sin_s.atan2(cos_s * cos_d);
+        let lit = Slice::new(oracle, row, col, normal, sun.azimuth_rad + offset);
+        sum += weight * lit.light(middle - half, (middle + half).min(FRAC_PI_2));
+    }
+    sum
+}
