@@ -45,7 +45,7 @@ impl Header {
             }
         };
         if !cell.iter().all(|c| *c > 0.0 && c.is_finite()) {
-            let found = format!("{} × {}", cell[0], cell[1]);
+            let found = format!("{:?} × {:?}", cell[0], cell[1]);
             return Err(Error::file(path, "header: cellsize", found, "positive lengths"));
         }
         let west_south =
@@ -86,7 +86,7 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     }
     let count = |name: &str, value: Option<f64>| match value {
         Some(v) if v.fract() == 0.0 && (0.0..1e15).contains(&v) => Ok(v as u64),
-        Some(v) => Err(Error::file(path, format!("header: {name}"), v.to_string(), "a count")),
+        Some(v) => Err(Error::file(path, format!("header: {name}"), format!("{v:?}"), "a count")),
         None => Err(Error::file(path, "header", format!("no {name}"), "ncols and nrows")),
     };
     let (rows, cols) = (count("nrows", header.nrows)?, count("ncols", header.ncols)?);

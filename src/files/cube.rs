@@ -187,7 +187,7 @@ mod tests {
     /// The value in the middle of a picture's texel that looks along a world direction.
     fn seen(picture: &Picture, [x, y, z]: [f64; 3]) -> [f32; 3] {
         let col = (PI - y.atan2(x)) / (2.0 * PI) * picture.cols as f64;
-        let row = z.clamp(-1.0, 1.0).acos() / PI * picture.rows as f64;
+        let row = x.hypot(y).atan2(z) / PI * picture.rows as f64;
         let row = (row as usize).min(picture.rows - 1);
         picture.texels[row * picture.cols + col as usize % picture.cols]
     }
@@ -322,11 +322,21 @@ mod tests {
         let got = irradiance(&from_angular(&map), [0.0, 0.0, 1.0]);
         assert!((got / expected - 1.0).abs() < 0.01, "{got} for {expected}");
         // Ahead is the centre, up the upper half, right (south, -y) the right half.
-        let mut map = flat(8, [0.0; 3]);
-        for (row, col, value) in [(3, 3, 1.0), (3, 4, 1.0), (4, 3, 1.0), (4, 4, 1.0)] {
-            map.texels[row * 8 + col] = [value; 3];
+        let n = 32;
+        let mut map = flat(n, [0.0; 3]);
+        for (i, texel) in map.texels.iter_mut().enumerate() {
+            let (row, col) = (i / n, i % n);
+            let centre = (12..20).contains(&row) && (12..20).contains(&col);
+            *texel = [f32::from(centre), f32::from(row < n / 2), f32::from(col >= n / 2)];
         }
-        assert!(seen(&from_angular(&map), [1.0, 0.01, 0.01])[0] > 0.9);
-        assert!(seen(&from_angular(&map), [-1.0, 0.01, 0.01])[0] == 0.0);
+        let picture = from_angular(&map);
+        for (direction, value) in [
+            ([1.0, -0.4, 0.4], [1.0, 1.0, 1.0]),
+            ([1.0, 0.4, -0.4], [1.0, 0.0, 0.0]),
+            ([0.0, -1.0, -0.3], [0.0, 0.0, 1.0]),
+            ([0.0, 0.3, 1.0], [0.0, 1.0, 0.0]),
+        ] {
+            assert_eq!(seen(&picture, direction), value, "{direction:?}");
+        }
     }
 }

@@ -133,7 +133,7 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
         return Err(Error::file(
             path,
             format!("tag {tag}"),
-            format!("cells of {} × {}", cell[0], cell[1]),
+            format!("cells of {:?} × {:?}", cell[0], cell[1]),
             "positive sizes, north up",
         ));
     }

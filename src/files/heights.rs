@@ -114,7 +114,7 @@ fn check(options: &HeightOptions) -> Result<()> {
     if let Some(cell) = options.cell_m
         && !cell.iter().all(|c| (1e-12..=1e12).contains(c))
     {
-        let found = format!("{} × {}", cell[0], cell[1]);
+        let found = format!("{:?} × {:?}", cell[0], cell[1]);
         return Err(Error::setting("cell_m", found, "two lengths from 1e-12 to 1e12"));
     }
     if !options.z_scale.is_finite() {
@@ -139,7 +139,7 @@ fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<Height
         (None, Cell::Unknown) => [1.0, 1.0],
         (None, Cell::Degrees { cell, latitude }) => {
             if !(-90.0..=90.0).contains(&latitude) {
-                let found = format!("latitude {latitude} in the field's middle");
+                let found = format!("latitude {latitude:?} in the field's middle");
                 return Err(Error::file(path, "georeference", found, "a latitude within ±90°"));
             }
             let [east, north] = metres_a_degree(latitude);

@@ -54,7 +54,12 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let (Some(dx), Some(dy)) = (scalar("dx")?, scalar("dy")?) else { return Ok(raster) };
     let cell = [dx.abs(), dy.abs()];
     if !cell.iter().all(|c| c.is_finite() && *c > 0.0) {
-        return Err(Error::file(path, "dx, dy", format!("{dx} and {dy}"), "lengths other than 0"));
+        return Err(Error::file(
+            path,
+            "dx, dy",
+            format!("{dx:?} and {dy:?}"),
+            "lengths other than 0",
+        ));
     }
     let mut edges = [0.0; 4];
     let mut all = true;

@@ -63,6 +63,7 @@ fn decode(path: &Path, bytes: &[u8], expand: bool) -> Result<Samples> {
         .map_err(|_| Error::io(path, std::io::ErrorKind::OutOfMemory.into()))?;
     buffer.resize(size, 0);
     reader.next_frame(&mut buffer).map_err(|e| wrong("image data", e))?;
+    reader.finish().map_err(|e| wrong("end", e))?;
     let values = if white == 255 {
         buffer.into_iter().map(u16::from).collect()
     } else {
