@@ -7,12 +7,33 @@ use exr::prelude::FlatSamples;
 use ridgelight::Error;
 use ridgelight::files::*;
 use ridgelight::scene::HeightField;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tiff::encoder::{Compression, DeflateLevel, colortype};
 use tiff::tags::Predictor;
 
 fn parse(name: &str, bytes: &[u8]) -> Result<HeightField, Error> {
     parse_heights(Path::new(name), bytes, &HeightOptions::default())
+}
+
+/// Asserts that a message is one sentence about a file: its name, no line break, found and
+/// expected where the file is to blame.
+fn one_sentence(message: &str, name: &str) {
+    assert!(message.contains(name), "{message:?} does not name {name}");
+    assert!(!message.contains(['\n', '\r']), "{message:?} has several lines");
+    assert!(!message.trim_end_matches('.').contains(". "), "{message:?} is several sentences");
+    assert!(message.contains(": found ") && message.contains(", expected "), "{message:?}");
+    assert!(message.len() < 400, "{message:?} is long");
+}
+
+/// A folder of development data beside the clone, if this checkout has one.
+fn shared(file: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
+    path.exists().then_some(path)
+}
+
+/// A file of this project's own assets.
+fn asset(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(file)
 }
 
 /// Absolute heights; exact for the small integers used here.
@@ -684,22 +705,23 @@ fn peak(environment: &ridgelight::scene::Environment) -> (f32, usize) {
 #[test]
 fn real_files_beside_the_clone() {
     let mut skipped = 0;
-    let heights: [(&str, (usize, usize), (f64, f64), usize, [f64; 2]); 6] = [
-        ("N44W072.hgt", (1201, 1201), (115.0, 1908.0), 0, [66.0, 92.6]),
-        ("mt_rainier_90m.tif", (1201, 1201), (263.0, 4371.0), 9033, [64.0, 92.6]),
-        ("jacksboro_fault_dem.npz", (344, 403), (236.0, 1076.0), 0, [74.0, 92.5]),
-        ("Moss001_1K_Displacement.png", (1024, 1024), (1392.0, 65535.0), 0, [1.0, 1.0]),
-        ("mt_washington_256.png", (256, 256), (287.0, 1908.0), 0, [1.0, 1.0]),
-        ("west_bijou_escarpment_snippet.asc", (67, 129), (1690.0, 1807.0), 0, [23.8, 30.9]),
+    // Name, rows, columns, lowest, highest, voids, cell.
+    let heights = [
+        ("N44W072.hgt", 1201, 1201, 115.0, 1908.0, 0, [66.0, 92.6]),
+        ("mt_rainier_90m.tif", 1201, 1201, 263.0, 4371.0, 9033, [64.0, 92.6]),
+        ("jacksboro_fault_dem.npz", 344, 403, 236.0, 1076.0, 0, [74.0, 92.5]),
+        ("Moss001_1K_Displacement.png", 1024, 1024, 1392.0, 65535.0, 0, [1.0, 1.0]),
+        ("mt_washington_256.png", 256, 256, 287.0, 1908.0, 0, [1.0, 1.0]),
+        ("west_bijou_escarpment_snippet.asc", 67, 129, 1690.0, 1807.0, 0, [23.8, 30.9]),
     ];
-    for (name, size, expected, voids, cell) in heights {
+    for (name, rows, cols, lowest, highest, voids, cell) in heights {
         let Some(path) = shared(&format!("height/{name}")) else {
             skipped += 1;
             continue;
         };
         let field = read_heights(&path, &HeightOptions::default()).unwrap();
-        assert_eq!((field.rows(), field.cols()), size, "{name}");
-        assert_eq!(range(&field), expected, "{name}");
+        assert_eq!((field.rows(), field.cols()), (rows, cols), "{name}");
+        assert_eq!(range(&field), (lowest, highest), "{name}");
         let found = field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
         assert_eq!(found, voids, "{name}");
         for (got, expected) in field.cell_m().iter().zip(cell) {

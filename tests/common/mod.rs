@@ -1,7 +1,6 @@
 //! Small valid files of every format, built in memory.
 
 use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
 
 /// The heights that every sample file holds: 3 rows of 4, none special.
 pub const HEIGHTS: [i16; 12] = [0, 1, 2, 3, 10, 11, 12, 13, 100, 101, 102, 120];
@@ -155,25 +154,4 @@ pub fn height_files() -> Vec<(&'static str, Vec<u8>)> {
             zip(&[("elevation.npy", array), ("dx.npy", number(30.0)), ("dy.npy", number(20.0))]),
         ),
     ]
-}
-
-/// Asserts that a message is one sentence about a file: its name, no line break, found and
-/// expected where the file is to blame.
-pub fn one_sentence(message: &str, name: &str) {
-    assert!(message.contains(name), "{message:?} does not name {name}");
-    assert!(!message.contains(['\n', '\r']), "{message:?} has several lines");
-    assert!(!message.trim_end_matches('.').contains(". "), "{message:?} is several sentences");
-    assert!(message.contains(": found ") && message.contains(", expected "), "{message:?}");
-    assert!(message.len() < 400, "{message:?} is long");
-}
-
-/// A folder of development data beside the clone, if this checkout has one.
-pub fn shared(file: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
-    path.exists().then_some(path)
-}
-
-/// A file of this project's own assets.
-pub fn asset(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(file)
 }
