@@ -1,1 +1,33 @@
-//! Readers and writers, one a format. An output file is complete or absent.
+//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY and text out.
+//!
+//! A wrong input is one sentence that names the file, the place in it, what was found and what
+//! was expected ([`Error::File`](crate::Error::File)). An output is complete or absent: it is
+//! written beside its destination under a temporary name and renamed when it is whole.
+//!
+//! What a header claims is held against the size of the file before memory is asked for, so a
+//! small file cannot make the program ask for a large buffer that the file could never fill.
+
+mod asc;
+mod atomic;
+mod cube;
+mod environment;
+mod exr;
+mod geo;
+mod geotiff;
+mod hdr;
+mod heights;
+mod hgt;
+mod npy;
+mod npz;
+mod open;
+mod planes;
+mod png;
+mod tif;
+
+pub use atomic::write_text;
+pub use environment::{parse_environment, read_albedo, read_environment};
+pub use exr::{Channels, Layer, write_exr};
+pub use heights::{HeightOptions, parse_heights, read_heights};
+pub use npy::{NpyWriter, write_npy_f32};
+pub use planes::{Planes, parse_planes, read_planes};
+pub use png::{Tone, write_png};

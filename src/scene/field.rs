@@ -64,10 +64,10 @@ impl HeightField {
             if is_void(i) {
                 continue;
             }
-            if !(h.abs() <= HEIGHT_LIMIT) {
+            if !h.is_finite() || h.abs() > HEIGHT_LIMIT {
                 return Err(Error::setting(
                     format!("height at row {}, column {}", i / cols, i % cols),
-                    format!("{h}"),
+                    format!("{h:?}"),
                     "a finite number within ±1e15, or a value marked as no-data",
                 ));
             }

@@ -1,0 +1,78 @@
+//! Results read back as plain planes, to be compared.
+
+use super::npy::Array;
+use super::open::{self, Format};
+use super::{exr, png};
+use crate::{Error, Result};
+use std::path::Path;
+
+/// Named channels of one size, row-major. Anything may stand in them, NaN included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planes {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub cols: usize,
+    /// One name a plane.
+    pub names: Vec<String>,
+    /// One value a pixel.
+    pub planes: Vec<Vec<f32>>,
+}
+
+/// Reads every plane of a result.
+///
+/// `.exr`: all channels under their names ("direct.sky.R"), at full resolution. `.npy`: a 2-D array
+/// as the plane "0", a 3-D one [k, rows, cols] as "0" to "k-1". `.png`: "R", "G", "B" or "Y" decoded
+/// from sRGB to linear light, and "A" (0 to 1) where there is alpha.
+///
+/// # Errors
+/// A file that cannot be read or decoded; other dimensions; sizes beyond 65 536 a side or 2³⁰
+/// samples a plane.
+pub fn read_planes(path: &Path) -> Result<Planes> {
+    parse_planes(path, &open::read(path)?)
+}
+
+/// [`read_planes`] from bytes in memory; `name` gives the format and stands in error messages.
+///
+/// # Errors
+/// As [`read_planes`], but for those of reading.
+pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
+    match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png])? {
+        Format::Exr => {
+            let file = exr::ExrFile::open(name, bytes)?;
+            let names: Vec<String> = file.names().into_iter().map(str::to_owned).collect();
+            let all: Vec<usize> = (0..names.len()).collect();
+            let (rows, cols, planes) = file.planes(&all, |v| v as f32)?;
+            Ok(Planes { rows, cols, names, planes })
+        }
+        Format::Npy => from_npy(name, bytes),
+        _ => {
+            let png = png::linear(name, bytes)?;
+            let channels: &[&str] = if png.grey { &["Y"] } else { &["R", "G", "B"] };
+            let mut names: Vec<String> = channels.iter().map(|n| (*n).to_owned()).collect();
+            let mut planes: Vec<Vec<f32>> =
+                (0..names.len()).map(|i| png.rgb.iter().map(|t| t[i]).collect()).collect();
+            if let Some(alpha) = png.alpha {
+                names.push("A".to_owned());
+                planes.push(alpha);
+            }
+            Ok(Planes { rows: png.rows, cols: png.cols, names, planes })
+        }
+    }
+}
+
+fn from_npy(path: &Path, bytes: &[u8]) -> Result<Planes> {
+    let array = Array::parse(path, "", bytes)?;
+    let (count, rows, cols) = match *array.shape.as_slice() {
+        [rows, cols] => (1, rows, cols),
+        [count, rows, cols] => (count, rows, cols),
+        _ => {
+            let found = format!("{} dimensions", array.shape.len());
+            return Err(Error::file(path, "header: shape", found, "two or three"));
+        }
+    };
+    let (rows, cols) = open::size(path, "header: shape", rows as u64, cols as u64)?;
+    let mut values = array.values().map(|v| v as f32);
+    let planes = (0..count).map(|_| values.by_ref().take(rows * cols).collect()).collect();
+    Ok(Planes { rows, cols, names: (0..count).map(|i| i.to_string()).collect(), planes })
+}

@@ -1,0 +1,157 @@
+//! Small valid files of every format, built in memory.
+
+use std::io::{Cursor, Write};
+
+/// The heights that every sample file holds: 3 rows of 4, none special.
+pub const HEIGHTS: [i16; 12] = [0, 1, 2, 3, 10, 11, 12, 13, 100, 101, 102, 120];
+pub const ROWS: usize = 3;
+pub const COLS: usize = 4;
+
+/// An NPY array of version 1.
+pub fn npy(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
+    let fortran = if fortran { "True" } else { "False" };
+    let header =
+        format!("{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}\n");
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// A ZIP of members, deflated.
+pub fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in members {
+        let options = zip::write::SimpleFileOptions::default()
+            .compression_method(zip::CompressionMethod::Deflated);
+        zip.start_file(*name, options).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+/// A PNG of raw samples.
+pub fn png(
+    cols: u32,
+    rows: u32,
+    colour: png::ColorType,
+    depth: png::BitDepth,
+    samples: &[u8],
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, cols, rows);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    if colour == png::ColorType::Indexed {
+        encoder.set_palette(vec![0, 0, 0, 255, 255, 255]);
+    }
+    encoder.write_header().unwrap().write_image_data(samples).unwrap();
+    bytes
+}
+
+/// A GeoTIFF tag's value.
+pub enum Tag<'a> {
+    Doubles(&'a [f64]),
+    Shorts(&'a [u16]),
+    Text(&'a str),
+}
+
+/// A TIFF of one band with tags.
+pub fn tiff<C>(
+    cols: u32,
+    rows: u32,
+    samples: &[C::Inner],
+    compression: tiff::encoder::Compression,
+    predictor: tiff::tags::Predictor,
+    tags: &[(u16, Tag)],
+) -> Vec<u8>
+where
+    C: tiff::encoder::colortype::ColorType,
+    [C::Inner]: tiff::encoder::TiffValue,
+{
+    let mut bytes = Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut bytes)
+        .unwrap()
+        .with_compression(compression)
+        .with_predictor(predictor);
+    let mut image = encoder.new_image::<C>(cols, rows).unwrap();
+    for (tag, value) in tags {
+        let tag = tiff::tags::Tag::from_u16_exhaustive(*tag);
+        let directory = image.encoder();
+        match value {
+            Tag::Doubles(v) => directory.write_tag(tag, *v),
+            Tag::Shorts(v) => directory.write_tag(tag, *v),
+            Tag::Text(v) => directory.write_tag(tag, *v),
+        }
+        .unwrap();
+    }
+    image.write_data(samples).unwrap();
+    bytes.into_inner()
+}
+
+/// A plain GeoTIFF of [`HEIGHTS`] in degrees.
+pub fn geotiff() -> Vec<u8> {
+    tiff::<tiff::encoder::colortype::GrayI16>(
+        COLS as u32,
+        ROWS as u32,
+        &HEIGHTS,
+        tiff::encoder::Compression::Deflate(tiff::encoder::DeflateLevel::Fast),
+        tiff::tags::Predictor::Horizontal,
+        &[
+            (33550, Tag::Doubles(&[0.01, 0.02, 0.0])),
+            (33922, Tag::Doubles(&[0.0, 0.0, 0.0, -72.0, 45.0, 0.0])),
+            (34735, Tag::Shorts(&[1, 1, 0, 2, 1024, 0, 1, 2, 1025, 0, 1, 1])),
+            (42113, Tag::Text("-32768")),
+        ],
+    )
+}
+
+/// An EXR of named f32 channels.
+pub fn exr(cols: usize, rows: usize, channels: &[(&str, exr::prelude::FlatSamples)]) -> Vec<u8> {
+    use exr::prelude::*;
+    let list = channels.iter().map(|(name, samples)| AnyChannel::new(*name, samples.clone()));
+    let layer = Layer::new(
+        (cols, rows),
+        LayerAttributes::default(),
+        Encoding { compression: Compression::ZIP16, ..Encoding::UNCOMPRESSED },
+        AnyChannels::sort(list.collect()),
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// A Radiance picture, uncoded, with extra header lines.
+pub fn hdr(cols: usize, rows: usize, lines: &str, texels: &[[u8; 4]]) -> Vec<u8> {
+    let mut bytes =
+        format!("#?RADIANCE\n{lines}FORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {cols}\n").into_bytes();
+    bytes.extend(texels.iter().flatten());
+    bytes
+}
+
+/// One valid height field of every format, by name.
+pub fn height_files() -> Vec<(&'static str, Vec<u8>)> {
+    let be: Vec<u8> = HEIGHTS.iter().flat_map(|h| h.to_be_bytes()).collect();
+    let le: Vec<u8> = HEIGHTS.iter().flat_map(|h| h.to_le_bytes()).collect();
+    let text: Vec<String> = HEIGHTS.iter().map(|h| h.to_string()).collect();
+    let asc = format!(
+        "ncols 4\nnrows 3\nxllcorner 1000\nyllcorner 2000\ncellsize 30\nNODATA_value -9999\n{}\n",
+        text.join(" ")
+    );
+    let array = npy("<i2", false, "(3, 4)", &le);
+    let floats: Vec<f32> = HEIGHTS.iter().map(|h| f32::from(*h)).collect();
+    let number = |v: f64| npy("<f8", false, "()", &v.to_le_bytes());
+    vec![
+        ("a.png", png(4, 3, png::ColorType::Grayscale, png::BitDepth::Sixteen, &be)),
+        ("a.exr", exr(4, 3, &[("Z", exr::prelude::FlatSamples::F32(floats))])),
+        ("a.tif", geotiff()),
+        ("N44W072.hgt", be[..18].to_vec()),
+        ("a.asc", asc.into_bytes()),
+        ("a.npy", array.clone()),
+        (
+            "a.npz",
+            zip(&[("elevation.npy", array), ("dx.npy", number(30.0)), ("dy.npy", number(20.0))]),
+        ),
+    ]
+}
