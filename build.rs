@@ -28,7 +28,8 @@ fn main() {
     let mut layouts: BTreeMap<String, BTreeMap<String, u32>> = BTreeMap::new();
     let mut names = Vec::new();
     for path in &sources {
-        let name = path.file_stem().expect("a listed file has a name").to_string_lossy().into_owned();
+        let name =
+            path.file_stem().expect("a listed file has a name").to_string_lossy().into_owned();
         let (text, files) = include(path);
         let words = compile(&text, &files);
         let module = rspirv::dr::load_words(&words)
@@ -47,8 +48,12 @@ fn main() {
     for (structure, members) in &layouts {
         writeln!(table, "    /// `{structure}`.\n    pub mod {} {{", snake(structure)).unwrap();
         for (member, offset) in members {
-            writeln!(table, "        /// Bytes.\n        pub const {}: usize = {offset};", member.to_uppercase())
-                .unwrap();
+            writeln!(
+                table,
+                "        /// Bytes.\n        pub const {}: usize = {offset};",
+                member.to_uppercase()
+            )
+            .unwrap();
         }
         writeln!(table, "    }}").unwrap();
     }
@@ -73,7 +78,8 @@ fn include(path: &Path) -> (String, Vec<PathBuf>) {
 
 fn splice(path: &Path, files: &mut Vec<PathBuf>, text: &mut String) {
     println!("cargo:rerun-if-changed={}", path.display());
-    let source = fs::read_to_string(path).unwrap_or_else(|e| fail(&format!("{}: {e}", path.display())));
+    let source =
+        fs::read_to_string(path).unwrap_or_else(|e| fail(&format!("{}: {e}", path.display())));
     let number = files.len();
     files.push(path.to_owned());
     if number > 0 {
@@ -121,7 +127,7 @@ fn compile(text: &str, files: &[PathBuf]) -> Vec<u32> {
         source_language: glslang::SourceLanguage::GLSL,
         target: glslang::Target::Vulkan {
             version: glslang::VulkanVersion::Vulkan1_3,
-            spirv_version: glslang::SpirvVersion::SPIRV1_6,
+            spirv_version: glslang::SpirvVersion::SPIRV1_5,
         },
         ..CompilerOptions::default()
     };
@@ -134,10 +140,12 @@ fn compile(text: &str, files: &[PathBuf]) -> Vec<u32> {
 
 #[cfg(feature = "shaderc")]
 fn compile(text: &str, files: &[PathBuf]) -> Vec<u32> {
-    let compiler = shaderc::Compiler::new().unwrap_or_else(|e| fail(&format!("shaderc did not start: {e}")));
-    let mut options = shaderc::CompileOptions::new().unwrap_or_else(|e| fail(&format!("shaderc: {e}")));
+    let compiler =
+        shaderc::Compiler::new().unwrap_or_else(|e| fail(&format!("shaderc did not start: {e}")));
+    let mut options =
+        shaderc::CompileOptions::new().unwrap_or_else(|e| fail(&format!("shaderc: {e}")));
     options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_3 as u32);
-    options.set_target_spirv(shaderc::SpirvVersion::V1_6);
+    options.set_target_spirv(shaderc::SpirvVersion::V1_5);
     let name = files[0].to_string_lossy();
     compiler
         .compile_into_spirv(text, shaderc::ShaderKind::Compute, &name, "main", Some(&options))
@@ -265,8 +273,8 @@ fn describe(
             Op::TypeStruct => {
                 let structure = pointee.result_id.expect("a struct has an id");
                 let members = pointee.operands.len() as u32;
-                let frozen =
-                    (0..members).all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
+                let frozen = (0..members)
+                    .all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
                 ("StorageBuffer", !frozen)
             }
             Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
@@ -276,7 +284,9 @@ fn describe(
                 ("StorageImage", d.of(target, Decoration::NonWritable).is_none())
             }
             Op::TypeImage => ("SampledImage", false),
-            other => fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses")),
+            other => {
+                fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
+            }
         };
         bindings.insert(binding, (d.name(target), kind, written));
     }
@@ -292,15 +302,19 @@ fn describe(
         for m in 0..structure.operands.len() as u32 {
             let Some(offset) = d.of_member(target, m, Decoration::Offset) else { continue };
             let member = d.member_name(target, m);
-            let known = layouts.entry(type_name.clone()).or_default().insert(member.clone(), offset);
+            let known =
+                layouts.entry(type_name.clone()).or_default().insert(member.clone(), offset);
             if known.is_some_and(|k| k != offset) {
-                fail(&format!("{name}: {type_name}.{member} has another offset than in an earlier shader"));
+                fail(&format!(
+                    "{name}: {type_name}.{member} has another offset than in an earlier shader"
+                ));
             }
         }
     }
     writeln!(table, "/// `shaders_glsl/{name}.comp`.").unwrap();
     writeln!(table, "pub const {}: Shader = Shader {{", name.to_uppercase()).unwrap();
-    writeln!(table, "    name: {name:?},\n    push_bytes: {push_bytes},\n    bindings: &[").unwrap();
+    writeln!(table, "    name: {name:?},\n    push_bytes: {push_bytes},\n    bindings: &[")
+        .unwrap();
     for (binding, (variable, kind, written)) in &bindings {
         writeln!(
             table,

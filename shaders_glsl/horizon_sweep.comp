@@ -18,20 +18,20 @@ layout(constant_id = 1) const uint HULL_PLACE = 0u;
 // Entries a line keeps, a power of two. A deeper hull goes on in the occluders already written.
 layout(constant_id = 2) const int HULL_DEPTH = 1;
 layout(constant_id = 3) const int PRIVATE_ENTRIES = 1;
-layout(constant_id = 4) const int SHARED_ENTRIES = 1;
+layout(constant_id = 4) const int PRIVATE_WORDS = 1;
+layout(constant_id = 5) const int SHARED_WORDS = 1;
 // True where HULL_DEPTH holds every sample of a line: nothing can spill.
-layout(constant_id = 5) const bool HULL_HOLDS_LINE = true;
+layout(constant_id = 6) const bool HULL_HOLDS_LINE = true;
 // An entry as f16 height and u16 step in one word (the paper's) instead of two f32.
-layout(constant_id = 6) const bool HULL_PACKED = false;
-layout(constant_id = 7) const bool WRITES_OCCLUDERS = true;
+layout(constant_id = 7) const bool HULL_PACKED = false;
+layout(constant_id = 8) const bool WRITES_OCCLUDERS = true;
 const uint SLOPES_F32 = 1u;
 const uint SLOPES_F16 = 2u;
-layout(constant_id = 8) const uint SLOPE_FORMAT = 0u;
-layout(constant_id = 9) const bool HEIGHTS_IN_IMAGE = false;
-layout(constant_id = 10) const bool PERIODIC = false;
-// 1, 2 or 4. Above 1 only samples next to a vertex are written: to layer 2n those just past it, to
-// layer 2n + 1 those just before it.
-layout(constant_id = 11) const int LINES_PER_CELL = 1;
+layout(constant_id = 9) const uint SLOPE_FORMAT = 0u;
+layout(constant_id = 10) const bool HEIGHTS_IN_IMAGE = false;
+layout(constant_id = 11) const bool PERIODIC = false;
+// Lines are 2^LINE_SHIFT / 32768 cells apart.
+layout(constant_id = 12) const int LINE_SHIFT = CELL_SHIFT;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) readonly buffer LaneHeights { float lane_heights[]; };
@@ -47,14 +47,9 @@ layout(push_constant) uniform HorizonSweepPush {
     float height_scale;  // packed entries: brings the largest |height| to 1
 };
 
-shared uint shared_hull[SHARED_ENTRIES];
+shared uint shared_hull[SHARED_WORDS];
 
 Azimuth azimuth;
-
-int wrapped(int i, int n) {
-    int r = i % n;
-    return r < 0 ? r + n : r;
-}
 
 float height_at(int lane, int march) {
     int column = lane_position(azimuth, lane, lanes);
@@ -65,34 +60,25 @@ float height_at(int lane, int march) {
     return lane_heights[march * lanes + column];
 }
 
-float line_height(LinePoint at, int step) {
-    int march = march_position(azimuth, PERIODIC ? wrapped(step, steps) : step, steps);
-    int lane = PERIODIC ? wrapped(at.cell, lanes) : clamp(at.cell, 0, lanes - 1);
-    int next = PERIODIC ? wrapped(at.cell + 1, lanes) : min(lane + 1, lanes - 1);
-    float t = float(at.rest) / float(azimuth.shear_den);
+float line_height(int y, int step) {
+    int march = march_position(azimuth, PERIODIC ? step % steps : step, steps);
+    int cell = y >> CELL_SHIFT;
+    int lane = PERIODIC ? wrapped(cell, lanes) : clamp(cell, 0, lanes - 1);
+    int next = PERIODIC ? wrapped(cell + 1, lanes) : min(lane + 1, lanes - 1);
+    float t = float(y & (CELL - 1)) * (1.0 / float(CELL));
     float h = height_at(lane, march);
     return h + t * (height_at(next, march) - h);
 }
 
-ivec3 lattice_texel(LinePoint at, int step) {
-    int layer = int(azimuth.layer);
-    int cell = at.cell;
-    if (LINES_PER_CELL > 1) {
-        bool just_past = at.rest * uint(LINES_PER_CELL) < azimuth.shear_den;
-        layer = 2 * layer + (just_past ? 0 : 1);
-        cell += just_past ? 0 : 1;
-    }
-    return ivec3(PERIODIC ? wrapped(cell, lanes) : cell, march_position(azimuth, PERIODIC ? step % steps : step, steps), layer);
+ivec3 lattice_texel(int y, int step) {
+    int line_cell = y >> LINE_SHIFT;
+    int slots = (lanes * CELL) >> LINE_SHIFT;
+    return ivec3(PERIODIC ? wrapped(line_cell, slots) : line_cell,
+                 march_position(azimuth, PERIODIC ? step % steps : step, steps), azimuth.layer);
 }
 
-void write_result(LinePoint at, int step, int back, float slope) {
-    if (LINES_PER_CELL > 1) {
-        uint q = uint(LINES_PER_CELL);
-        if (at.rest * q >= azimuth.shear_den && at.rest * q < azimuth.shear_den * (q - 1u)) {
-            return;
-        }
-    }
-    ivec3 texel = lattice_texel(at, step);
+void write_result(int y, int step, int back, float slope) {
+    ivec3 texel = lattice_texel(y, step);
     if (WRITES_OCCLUDERS) {
         imageStore(occluders, texel, uvec4(back));
     }
@@ -138,31 +124,32 @@ void keep_shared(int slot, vec2 entry) {
 
 void main() {
     azimuth = azimuths[first_azimuth + gl_GlobalInvocationID.z];
-    vec2 private_hull[HULL_PACKED ? 1 : PRIVATE_ENTRIES];
-    uint private_packed[HULL_PACKED ? PRIVATE_ENTRIES : 1];
+    vec2 private_hull[PRIVATE_ENTRIES];
+    uint private_packed[PRIVATE_WORDS];
 
     // All lines of the group march together, over the steps at which any of them is on the field.
+    int total = warm_up + steps;
+    int shear = azimuth.shear;
+    int spacing = 1 << LINE_SHIFT;
+    int lead = PERIODIC ? 0 : ((total - 1) * shear + spacing - 1) >> LINE_SHIFT;
+    int width = PERIODIC ? lanes * CELL - 1 : (lanes - 1) * CELL;
+    int line_count = (width >> LINE_SHIFT) + 1 + lead;
     int group_lines = int(gl_WorkGroupSize.x);
     int first_line = int(gl_WorkGroupID.x) * group_lines;
-    int total = warm_up + steps;
-    int reach = int((azimuth.shear_num * uint(total - 1) + azimuth.shear_den - 1u) / azimuth.shear_den);
-    int line_count = (lanes + (PERIODIC ? 0 : reach)) * LINES_PER_CELL;
     if (first_line >= line_count) {
         return;
     }
     int begin = 0;
     int end = total;
-    if (!PERIODIC) {
-        LinePoint last = line_point(azimuth, first_line + group_lines - 1, LINES_PER_CELL, total, 0);
-        LinePoint first = line_point(azimuth, first_line, LINES_PER_CELL, total, 0);
-        if (azimuth.shear_num > 0u) {
-            begin = max(0, (-last.cell - 1) * int(azimuth.shear_den) / int(azimuth.shear_num));
-            end = min(total, (lanes - first.cell) * int(azimuth.shear_den) / int(azimuth.shear_num) + 1);
-        }
+    if (!PERIODIC && shear > 0) {
+        int lowest = (first_line - lead) * spacing;
+        int highest = lowest + (group_lines - 1) * spacing;
+        begin = max(0, -highest / shear);
+        end = min(total, (width - lowest) / shear + 1);
     }
     int line = first_line + int(gl_LocalInvocationID.x);
-    LinePoint at = line_point(azimuth, line, LINES_PER_CELL, total, begin);
     bool exists = line < line_count;
+    int y = (line - lead) * spacing + begin * shear;
 
     // The newest two hull vertices, (height, step): in registers. The rest, `depth` - 1 of them
     // counting the second, in the hull's memory from entry `kept` on.
@@ -171,8 +158,8 @@ void main() {
     int depth = 0;
     int kept = 0;
     for (int step = begin; step < end; step++) {
-        if (exists && (PERIODIC || line_inside(at, lanes))) {
-            float h = line_height(at, step);
+        if (exists && (PERIODIC || on_field(y, lanes))) {
+            float h = line_height(y, step);
             float x = float(step);
             // Pop while the deeper vertex looks at least as high as the newer one.
             while (true) {
@@ -194,15 +181,14 @@ void main() {
                 } else if (i >= 0) {
                     // What met `top` then is what lies under it now.
                     int top_step = int(top.y);
-                    LinePoint place = line_retreat(azimuth, at, step - top_step);
-                    uint back = imageLoad(occluders, lattice_texel(place, top_step)).x;
-                    LinePoint deeper_place = line_retreat(azimuth, place, int(back));
-                    under = stored(vec2(line_height(deeper_place, top_step - int(back)), float(top_step - int(back))));
+                    int back = int(imageLoad(occluders, lattice_texel(y - (step - top_step) * shear, top_step)).x);
+                    int under_step = top_step - back;
+                    under = stored(vec2(line_height(y - (step - under_step) * shear, under_step), float(under_step)));
                 }
             }
             kept = min(kept, depth);
             if (step >= warm_up) {
-                write_result(at, step, depth > 0 ? step - int(top.y) : 0, (top.x - h) / (x - top.y));
+                write_result(y, step, depth > 0 ? step - int(top.y) : 0, (top.x - h) / (x - top.y));
             }
             // Push: what was on top goes to memory, the new sample on top.
             if (depth > 0 && HULL_PLACE != HULL_IN_OCCLUDERS) {
@@ -220,6 +206,6 @@ void main() {
             top = stored(vec2(h, x));
             depth++;
         }
-        at = line_advance(azimuth, at);
+        y += shear;
     }
 }

@@ -7,6 +7,7 @@ pub mod cpu;
 mod error;
 pub mod files;
 pub mod measure;
+pub mod plan;
 pub mod scene;
 
 pub use error::Error;

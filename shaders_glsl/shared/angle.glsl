@@ -28,3 +28,14 @@ vec2 elevation_moments(float slope) {
     float cos2 = 1.0 / (1.0 + slope * slope);
     return vec2(0.25 * PI - 0.5 * arc_tangent(slope) - 0.5 * slope * cos2, 0.5 * cos2);
 }
+
+// Sine on [-pi/2, pi/2] to 6e-8: Taylor to the 11th power. The built-in may be off by 2^-11.
+float sine(float x) {
+    float s = x * x;
+    return x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * (1.0 / 362880.0 - s / 39916800.0)))));
+}
+
+// Cosine on [-pi/2, pi/2].
+float cosine(float x) {
+    return sine(HALF_PI - abs(x));
+}

@@ -5,18 +5,21 @@
 // Slopes are tangents of elevations: rise over horizontal world distance.
 //
 // A sweep marches towards the receiver along the field's axis that its azimuth follows more closely
-// (the major axis); lines lie side by side along the other (the lane axis). Both axes are flipped
-// where needed, so that march steps count up away from the horizon's side and lanes count up with
-// the shear. At march step i, line l is at lane coordinate floor + rest / shear_den, with
-//   floor, rest = divmod(line_rest + i * shear_num, shear_den) + line_cell.
-// Between steps a line crosses one cell in the major axis; its samples lie on grid lines, where the
-// surface is exactly the linear interpolation of two neighbouring samples.
+// (the march axis); lines lie side by side along the other (the lane axis). Both axes are flipped
+// where needed, so that march steps count up away from the horizon's side and lane positions grow
+// with the shear. Lane positions are integers in 1/32768 of a cell, so that a line is exactly
+// straight however long: line l is at  y = (l - lead) * spacing + step * shear  at a march step.
+// Its samples lie on grid lines, where the surface is exactly the linear interpolation of two
+// neighbouring samples.
 
 const float PI = 3.14159265358979;
 const float HALF_PI = 1.57079632679490;
 
 // Below every slope that a field can have, and safe to square.
 const float NO_SLOPE = -1e9;
+
+const int CELL_SHIFT = 15;
+const int CELL = 1 << CELL_SHIFT;
 
 const uint BORDER_PLANE = 0u;
 const uint BORDER_OPEN = 1u;
@@ -33,9 +36,11 @@ struct Azimuth {
     float wedge_cos;  // integral of cos over the wedge
     float wedge_sin;  // integral of sin over the wedge
     float wedge_rad;  // width of the wedge
+    float centre_rad; // azimuth of the wedge's centre, -pi .. pi
     float step_m;     // world length of one march step
-    uint shear_num;   // lane advance of a step, in shear_den-ths of a cell, 0 .. shear_den
-    uint shear_den;   // 32768, or the lines a cell where lines pass through every sample
+    int shear;        // lane advance of a step, in 1/32768 of a cell, 0 .. 32768
+    int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
+    int vector_lane;
     uint flags;       // AZIMUTH_*
     uint layer;       // where its result lies: layer of the lattice of its axis
     float low_slope;  // sun only: the disc's chord in this azimuth

@@ -1,0 +1,53 @@
+// Computes: the environment summed over each azimuth's wedge, row by row: three azimuthal moments.
+// Reads: environment (equirectangular, row 0 at the zenith), azimuths. Writes: wedge_rows, as
+// [azimuth][row][moment]: integrals over the wedge of L cos, L sin and L.
+// One invocation is one row of the environment in one azimuth.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared/angle.glsl"
+
+layout(local_size_x = 8) in;
+
+layout(binding = 0) uniform texture2D environment;
+layout(binding = 1) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 2) writeonly buffer WedgeRows { vec4 wedge_rows[]; };
+
+layout(push_constant) uniform EnvWedgesPush {
+    int width;
+    int height;
+    float rotation_rad;
+};
+
+void main() {
+    int row = int(gl_GlobalInvocationID.x);
+    uint k = gl_GlobalInvocationID.y;
+    if (row >= height) {
+        return;
+    }
+    Azimuth azimuth = azimuths[k];
+    // Columns run clockwise from west: column x begins at azimuth pi + rotation - 2 pi x / width.
+    float per_rad = float(width) / (2.0 * PI);
+    float middle = (PI + rotation_rad - azimuth.centre_rad) * per_rad;
+    float half_wedge = 0.5 * azimuth.wedge_rad * per_rad;
+    float first = middle - half_wedge;
+    float last = middle + half_wedge;
+    vec3 along = vec3(0.0);
+    vec3 across = vec3(0.0);
+    vec3 plain = vec3(0.0);
+    for (int x = int(floor(first)); x < int(ceil(last)); x++) {
+        float low = max(float(x), first);
+        float high = min(float(x + 1), last);
+        vec3 radiance = texelFetch(environment, ivec2(((x % width) + width) % width, row), 0).rgb;
+        // Counter-clockwise from the wedge's centre, at the middle of what lies in it.
+        float turn = (middle - 0.5 * (low + high)) / per_rad;
+        float width_rad = (high - low) / per_rad;
+        along += radiance * (cosine(turn) * width_rad);
+        across += radiance * (sine(turn) * width_rad);
+        plain += radiance * width_rad;
+    }
+    uint place = (k * uint(height) + uint(row)) * 3u;
+    wedge_rows[place] = vec4(azimuth.cos_phi * along - azimuth.sin_phi * across, 0.0);
+    wedge_rows[place + 1u] = vec4(azimuth.sin_phi * along + azimuth.cos_phi * across, 0.0);
+    wedge_rows[place + 2u] = vec4(plain, 0.0);
+}

@@ -1,0 +1,3 @@
+//! Scene and quality to passes: pure, without a Vulkan call.
+
+pub mod azimuths;
