@@ -43,6 +43,25 @@ fn malformed_heights_are_one_sentence() {
         bytes[29..33].copy_from_slice(&crc.to_be_bytes());
         refused(name, &bytes, &format!("it claims {rows} × {cols}"));
     }
+    // ImageLength is tag 257 of the TIFF's directory; dataWindow ends with the EXR's last row.
+    let (name, tiff) = &files[2];
+    let directory = u32::from_le_bytes(tiff[4..8].try_into().unwrap()) as usize;
+    let entry = (0..).map(|i| directory + 2 + 12 * i).find(|e| tiff[*e..e + 2] == [1, 1]).unwrap();
+    for rows in [0_u32, 4, 60_000, 70_000, u32::MAX] {
+        let mut bytes = tiff.clone();
+        bytes[entry + 2..entry + 12].copy_from_slice(
+            &[&4_u16.to_le_bytes()[..], &1_u32.to_le_bytes(), &rows.to_le_bytes()].concat(),
+        );
+        refused(name, &bytes, &format!("it claims {rows} rows"));
+    }
+    let (name, exr) = &files[1];
+    let key = b"dataWindow\0box2i\0";
+    let at = exr.windows(key.len()).position(|w| w == key).unwrap() + key.len() + 4 + 12;
+    for last_row in [-1_i32, 1, 3, 60_000, 70_000, i32::MAX, i32::MIN] {
+        let mut bytes = exr.clone();
+        bytes[at..at + 4].copy_from_slice(&last_row.to_le_bytes());
+        refused(name, &bytes, &format!("it claims row {last_row} to be its last"));
+    }
     let le: Vec<u8> = HEIGHTS.iter().flat_map(|h| h.to_le_bytes()).collect();
     for (descr, shape) in [
         ("<i2", "(3, 5)"),
