@@ -43,7 +43,8 @@ impl Temporary {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(directory).map_err(|e| {
-            let reason = e.get_ref().map_or_else(|| complaint(&e), complaint);
+            // The system's reason without the temporary name, which would only puzzle.
+            let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
             Error::io(path, std::io::Error::new(e.kind(), reason))
         })?;
         Ok(Self { path: path.to_owned(), destination, file: BufWriter::new(file) })

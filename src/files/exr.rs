@@ -167,7 +167,9 @@ fn check_claims(path: &Path, header: &Header, held: usize) -> Result<()> {
         Compression::Uncompressed => 1,
         // Runs of 128 in two bytes.
         Compression::RLE => 64,
-        Compression::ZIP1 | Compression::ZIP16 | Compression::PXR24 => open::DEFLATE_RATIO,
+        // PXR24 keeps three bytes of four, then deflates.
+        Compression::PXR24 => open::DEFLATE_RATIO * 4 / 3,
+        Compression::ZIP1 | Compression::ZIP16 => open::DEFLATE_RATIO,
         // Wavelets of a constant are nearly nothing: blocks of up to 2 MiB in some 30 bytes.
         _ => 1 << 16,
     };

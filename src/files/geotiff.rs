@@ -5,7 +5,7 @@ use super::open;
 use super::tif::Tiff;
 use crate::{Error, Result};
 use std::path::Path;
-use tiff::tags::Tag;
+use tiff::{decoder::ifd::Value, tags::Tag};
 
 const PIXEL_SCALE: u16 = 33550;
 const TIEPOINT: u16 = 33922;
@@ -87,13 +87,26 @@ pub(super) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Re
     Ok(Geo { cell, unit_m, nodata })
 }
 
+/// A tag's value, `None` where it is absent. Its count is held against the file's size before the
+/// decoder makes room for it.
+fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
+    let wrong = |found: String| Error::file(path, format!("tag {tag}"), found, expected);
+    let held = tiff.inner().get_ref().len() as u64;
+    let tag = Tag::from_u16_exhaustive(tag);
+    match tiff.image_ifd().directory().get(tag) {
+        Some(entry) if entry.count() > held => {
+            Err(wrong(format!("a claim of {} values in {held} bytes", entry.count())))
+        }
+        Some(_) => tiff.find_tag(tag).map_err(|e| wrong(open::complaint(e))),
+        None => Ok(None),
+    }
+}
+
 /// The numbers of a tag, `None` where it is absent.
 fn doubles(path: &Path, tiff: &mut Tiff, tag: u16) -> Result<Option<Vec<f64>>> {
     let wrong = |e| Error::file(path, format!("tag {tag}"), open::complaint(e), "numbers");
-    match tiff.find_tag(Tag::from_u16_exhaustive(tag)).map_err(wrong)? {
-        Some(value) => value.into_f64_vec().map(Some).map_err(wrong),
-        None => Ok(None),
-    }
+    let value = find(path, tiff, tag, "numbers")?;
+    value.map(|v| v.into_f64_vec().map_err(wrong)).transpose()
 }
 
 /// The grid from the transformation or from scale and tie point; `None` where there is neither.
@@ -141,12 +154,9 @@ fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
 }
 
 fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
-    let wrong =
-        |found: String| Error::file(path, format!("tag {GDAL_NODATA}"), found, "a number, or nan");
-    let tag = Tag::from_u16_exhaustive(GDAL_NODATA);
-    let Some(value) = tiff.find_tag(tag).map_err(|e| wrong(open::complaint(e)))? else {
-        return Ok(None);
-    };
+    let expected = "a number, or nan";
+    let wrong = |found: String| Error::file(path, format!("tag {GDAL_NODATA}"), found, expected);
+    let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };
     let text = value.into_string().map_err(|e| wrong(open::complaint(e)))?;
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
     let short: String = text.chars().filter(|c| !c.is_control()).take(24).collect();
@@ -161,13 +171,12 @@ struct Keys {
 
 impl Keys {
     fn read(path: &Path, tiff: &mut Tiff) -> Result<Self> {
-        let wrong = |e| {
-            let place = format!("tag {KEY_DIRECTORY}");
-            Error::file(path, place, open::complaint(e), "GeoKeys: four shorts each")
-        };
-        let tag = Tag::from_u16_exhaustive(KEY_DIRECTORY);
-        let shorts = match tiff.find_tag(tag).map_err(wrong)? {
-            Some(value) => value.into_u16_vec().map_err(wrong)?,
+        let expected = "GeoKeys: four shorts each";
+        let shorts = match find(path, tiff, KEY_DIRECTORY, expected)? {
+            Some(value) => value.into_u16_vec().map_err(|e| {
+                let place = format!("tag {KEY_DIRECTORY}");
+                Error::file(path, place, open::complaint(e), expected)
+            })?,
             None => Vec::new(),
         };
         // The first four are version and count.

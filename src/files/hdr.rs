@@ -55,11 +55,11 @@ pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
         Error::file(path, place, shortened(line), "-Y rows +X columns (top row first)")
     })?;
     let (rows, cols) = open::size(path, place, rows, cols)?;
-    // A row takes at least one texel, or a 4-byte mark.
     if rows as u64 * cols as u64 > TEXEL_LIMIT {
         let found = format!("{rows} × {cols}");
         return Err(Error::file(path, place, found, format!("at most {TEXEL_LIMIT} texels")));
     }
+    // A row takes at least one texel, or a 4-byte mark.
     open::plausible(path, place, 4 * rows as u64, bytes.len(), 1)?;
 
     let mut texels = Vec::new();

@@ -54,6 +54,8 @@ fn decode(path: &Path, bytes: &[u8], expand: bool) -> Result<Samples> {
     let info = reader.info();
     let transparent = match (info.color_type, info.trns.as_deref()) {
         (ColorType::Grayscale, Some(&[high, low])) => Some(u16::from_be_bytes([high, low])),
+        // The decoder drops the upper byte where samples have 8 bits.
+        (ColorType::Grayscale, Some(&[grey])) => Some(grey.into()),
         _ => None,
     };
     let size = reader.output_buffer_size().unwrap_or(usize::MAX);

@@ -24,7 +24,11 @@ pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
             return Err(Error::file(path, "header", found, "one band of heights"));
         }
     };
-    let image_bytes = rows as u64 * cols as u64 * u64::from(bits).div_ceil(8);
+    if ![8, 16, 32, 64].contains(&bits) {
+        let found = format!("{bits} bits a sample");
+        return Err(Error::file(path, "header", found, "8, 16, 32 or 64 bits"));
+    }
+    let image_bytes = rows as u64 * cols as u64 * u64::from(bits / 8);
     let method = tiff.find_tag_unsigned::<u16>(Tag::Compression).map_err(header)?.unwrap_or(1);
     open::plausible(path, "header", image_bytes, bytes.len(), ratio(method))?;
 

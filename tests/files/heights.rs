@@ -1,0 +1,265 @@
+//! Each format, built here byte by byte, gives the heights and cells that were put in.
+
+use crate::common::*;
+use crate::{absolute, expected, one_sentence, parse};
+use exr::prelude::FlatSamples;
+use ridgelight::Error;
+use ridgelight::files::*;
+use std::path::Path;
+use tiff::encoder::{Compression, DeflateLevel, colortype};
+use tiff::tags::Predictor;
+
+#[test]
+fn every_format_gives_the_same_heights() {
+    for (name, bytes) in height_files() {
+        let field = parse(name, &bytes).unwrap();
+        if name.ends_with(".hgt") {
+            assert_eq!((field.rows(), field.cols()), (3, 3));
+            assert_eq!(absolute(&field), expected()[..9]);
+        } else {
+            assert_eq!((field.rows(), field.cols()), (ROWS, COLS), "{name}");
+            assert_eq!(absolute(&field), expected(), "{name}");
+        }
+        assert!(field.voids().is_none());
+        let cell = match name {
+            "a.asc" => [30.0, 30.0],
+            "a.npz" => [30.0, 20.0],
+            // Middle of three rows of 0.02° south of 45°, and of the tile at 44°: radii of the
+            // ellipsoid as in the test beside the series, to 0.1 m a degree.
+            "a.tif" => [0.01 * 78_888.0, 0.02 * 111_131.0],
+            "N44W072.hgt" => [0.5 * 79_527.0, 0.5 * 111_122.0],
+            _ => [1.0, 1.0],
+        };
+        for (got, expected) in field.cell_m().iter().zip(cell) {
+            assert!((got / expected - 1.0).abs() < 1e-3, "{name}: {got} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn options_overrule_the_file() {
+    let options = HeightOptions { cell_m: Some([2.0, 3.0]), z_scale: 0.5, nodata: Some(100.0) };
+    for (name, bytes) in height_files() {
+        let field = parse_heights(Path::new(name), &bytes, &options).unwrap();
+        assert_eq!(field.cell_m(), [2.0, 3.0], "{name}");
+        let voids = field.voids().unwrap();
+        assert_eq!(voids.iter().filter(|v| **v).count(), 1);
+        assert!(voids[8], "{name}");
+        assert_eq!(absolute(&field)[5], f64::from(HEIGHTS[5]) / 2.0, "{name}");
+    }
+    for options in [
+        HeightOptions { cell_m: Some([0.0, 1.0]), ..Default::default() },
+        HeightOptions { cell_m: Some([f64::NAN, 1.0]), ..Default::default() },
+        HeightOptions { z_scale: f64::INFINITY, ..Default::default() },
+    ] {
+        let (name, bytes) = &height_files()[0];
+        let error = parse_heights(Path::new(name), bytes, &options).unwrap_err();
+        assert!(matches!(error, Error::Setting { .. }), "{error}");
+    }
+}
+
+#[test]
+fn npy_of_every_type_order_and_endianness() {
+    let signed = |size: usize, big: bool| -> Vec<u8> {
+        let each = |h: &i16| {
+            let le = i64::from(*h).to_le_bytes()[..size].to_vec();
+            if big { le.into_iter().rev().collect::<Vec<_>>() } else { le }
+        };
+        HEIGHTS.iter().flat_map(each).collect()
+    };
+    for size in [1, 2, 4, 8] {
+        for kind in ["i", "u"] {
+            for (order, big) in [("<", false), (">", true)] {
+                let descr = format!("{order}{kind}{size}");
+                let field =
+                    parse("a.npy", &npy(&descr, false, "(3, 4)", &signed(size, big))).unwrap();
+                assert_eq!(absolute(&field), expected(), "{descr}");
+            }
+        }
+    }
+    let f2: Vec<u8> =
+        HEIGHTS.iter().flat_map(|h| half::f16::from_f32(f32::from(*h)).to_le_bytes()).collect();
+    let f4: Vec<u8> = HEIGHTS.iter().flat_map(|h| f32::from(*h).to_be_bytes()).collect();
+    let f8: Vec<u8> = HEIGHTS.iter().flat_map(|h| f64::from(*h).to_le_bytes()).collect();
+    for (descr, data) in [("<f2", &f2), (">f4", &f4), ("<f8", &f8)] {
+        let field = parse("a.npy", &npy(descr, false, "(3, 4)", data)).unwrap();
+        assert_eq!(absolute(&field), expected(), "{descr}");
+    }
+    // Sign: -1 in one byte.
+    assert_eq!(absolute(&parse("a.npy", &npy("|i1", false, "(1, 1)", &[255])).unwrap()), [-1.0]);
+    // Fortran: columns first.
+    let columns: Vec<u8> = (0..12).flat_map(|i| HEIGHTS[i % 3 * 4 + i / 3].to_le_bytes()).collect();
+    let field = parse("a.npy", &npy("<i2", true, "(3, 4)", &columns)).unwrap();
+    assert_eq!(absolute(&field), expected());
+    // Version 2 has a longer length.
+    let mut two = npy("<i2", false, "(1, 1)", &[7, 0]);
+    two[6] = 2;
+    two.splice(10..10, [0, 0]);
+    assert_eq!(absolute(&parse("a.npy", &two).unwrap()), [7.0]);
+}
+
+#[test]
+fn npz_by_name_or_the_only_plane() {
+    let le: Vec<u8> = HEIGHTS.iter().flat_map(|h| h.to_le_bytes()).collect();
+    let array = npy("<i2", false, "(3, 4)", &le);
+    let number = |v: f64| npy("<f8", false, "()", &v.to_le_bytes());
+    let degrees = |y0: f64, y1: f64| {
+        zip(&[
+            ("whatever.npy", array.clone()),
+            ("dx.npy", number(0.001)),
+            ("dy.npy", number(0.002)),
+            ("xmin.npy", number(-84.0)),
+            ("xmax.npy", number(-83.9)),
+            ("ymin.npy", number(y0)),
+            ("ymax.npy", number(y1)),
+        ])
+    };
+    let field = parse("a.npz", &degrees(36.0, 36.5)).unwrap();
+    assert_eq!(absolute(&field), expected());
+    // A degree of latitude near 36.25° is 110 967 m.
+    assert!((field.cell_m()[1] - 221.93).abs() < 0.1, "{:?}", field.cell_m());
+    assert_eq!(parse("a.npz", &degrees(36.5, 36.0)).unwrap().cell_m(), field.cell_m());
+    let two = zip(&[("a.npy", array.clone()), ("b.npy", array.clone())]);
+    let error = parse("a.npz", &two).unwrap_err().to_string();
+    assert!(error.contains("several 2-D arrays"), "{error}");
+    assert!(parse("a.npz", &zip(&[("a.npy", number(1.0))])).is_err());
+}
+
+#[test]
+fn png_depths_and_masks() {
+    use png::{BitDepth, ColorType};
+    let field = parse(
+        "a.png",
+        &png(2, 2, ColorType::GrayscaleAlpha, BitDepth::Eight, &[9, 255, 8, 0, 7, 1, 6, 255]),
+    )
+    .unwrap();
+    assert_eq!(field.voids().unwrap(), [false, true, false, false]);
+    assert_eq!(absolute(&field)[2], 7.0);
+    // The grey that a tRNS chunk makes transparent.
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_trns(vec![0, 9]);
+    encoder.write_header().unwrap().write_image_data(&[8, 9]).unwrap();
+    assert_eq!(parse("a.png", &bytes).unwrap().voids().unwrap(), [false, true]);
+    for (colour, bytes) in [(ColorType::Rgb, 3), (ColorType::Rgba, 4), (ColorType::Indexed, 1)] {
+        let error = parse("a.png", &png(1, 1, colour, BitDepth::Eight, &vec![0; bytes]));
+        one_sentence(&error.unwrap_err().to_string(), "a.png");
+    }
+    let error = parse("a.png", &png(8, 1, ColorType::Grayscale, BitDepth::One, &[3]));
+    assert!(error.unwrap_err().to_string().contains("1 bits"));
+}
+
+#[test]
+fn exr_channels_and_sample_types() {
+    let f16 = FlatSamples::F16(HEIGHTS.map(|h| half::f16::from_f32(f32::from(h))).to_vec());
+    let f32 = FlatSamples::F32(HEIGHTS.map(f32::from).to_vec());
+    let u32 = FlatSamples::U32(HEIGHTS.map(|h| h as u32).to_vec());
+    let zero = FlatSamples::F32(vec![0.0; 12]);
+    for samples in [f16, f32.clone(), u32] {
+        for name in ["Y", "Z", "R", "height", "anything"] {
+            let field = parse("a.exr", &exr(4, 3, &[(name, samples.clone())])).unwrap();
+            assert_eq!(absolute(&field), expected(), "{name}");
+        }
+    }
+    let field = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("Y", f32), ("Z", zero.clone())]));
+    assert_eq!(absolute(&field.unwrap()), expected());
+    let error = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("G", zero)])).unwrap_err();
+    assert!(error.to_string().contains("the channels B, G"), "{error}");
+}
+
+#[test]
+fn tiff_sample_types_compressions_and_predictors() {
+    fn check(bytes: Vec<u8>) {
+        assert_eq!(absolute(&parse("a.tiff", &bytes).unwrap()), expected());
+    }
+    macro_rules! all {
+        ($($colour:ident $kind:ty),*) => { $(
+            let samples = HEIGHTS.map(|h| h as $kind);
+            for compression in [
+                Compression::Uncompressed,
+                Compression::Lzw,
+                Compression::Deflate(DeflateLevel::Balanced),
+                Compression::Packbits,
+            ] {
+                check(tiff::<colortype::$colour>(4, 3, &samples, compression, Predictor::None, &[]));
+            }
+        )* };
+    }
+    all!(Gray8 u8, GrayI8 i8, Gray16 u16, GrayI16 i16, Gray32 u32, GrayI32 i32, Gray32Float f32,
+         Gray64 u64, GrayI64 i64, Gray64Float f64);
+    let (lzw, none) = (Compression::Lzw, Predictor::Horizontal);
+    check(tiff::<colortype::GrayI32>(4, 3, &HEIGHTS.map(i32::from), lzw, none, &[]));
+}
+
+#[test]
+fn geotiff_places_and_units() {
+    let with = |tags: &[(u16, Tag)]| {
+        let (none, plain) = (Predictor::None, Compression::Uncompressed);
+        tiff::<colortype::Gray32Float>(4, 3, &HEIGHTS.map(f32::from), plain, none, tags)
+    };
+    let cell = |tags: &[(u16, Tag)]| parse("a.tif", &with(tags)).map(|f| f.cell_m());
+    let scale = || (33550, Tag::Doubles(&[30.0, 20.0, 0.0]));
+    let tie = || (33922, Tag::Doubles(&[0.0, 0.0, 0.0, 500_000.0, 4_900_000.0, 0.0]));
+    assert_eq!(cell(&[]).unwrap(), [1.0, 1.0]);
+    assert_eq!(cell(&[scale(), tie()]).unwrap(), [30.0, 20.0]);
+    let projected = |unit: u16| [1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, unit];
+    assert_eq!(
+        cell(&[scale(), tie(), (34735, Tag::Shorts(&projected(9001)))]).unwrap(),
+        [30.0, 20.0]
+    );
+    let feet = cell(&[scale(), tie(), (34735, Tag::Shorts(&projected(9002)))]).unwrap();
+    assert!((feet[0] - 9.144).abs() < 1e-9 && (feet[1] - 6.096).abs() < 1e-9, "{feet:?}");
+    let user = [1, 1, 0, 3, 1024, 0, 1, 1, 3076, 0, 1, 32767, 3077, 34736, 1, 0];
+    let own = cell(&[scale(), tie(), (34735, Tag::Shorts(&user)), (34736, Tag::Doubles(&[2.0]))]);
+    assert_eq!(own.unwrap(), [60.0, 40.0]);
+    // Heights in feet.
+    let vertical = [1, 1, 0, 2, 1024, 0, 1, 1, 4099, 0, 1, 9002];
+    let field = parse("a.tif", &with(&[scale(), tie(), (34735, Tag::Shorts(&vertical))])).unwrap();
+    assert!((absolute(&field)[8] - 30.48).abs() < 1e-5);
+    // Without keys, small numbers are degrees: the middle of 3 rows of 0.01° from 60.015° is 60°,
+    // where a degree of longitude is 55 800 m.
+    let small = [
+        (33550, Tag::Doubles(&[0.01, 0.01, 0.0])),
+        (33922, Tag::Doubles(&[0.0, 0.0, 0.0, 10.0, 60.015, 0.0])),
+    ];
+    assert!((cell(&small).unwrap()[0] - 558.0).abs() < 0.1);
+    let matrix = |shear: f64| {
+        let mut m = [0.0; 16];
+        (m[0], m[1], m[3], m[5], m[7], m[15]) = (30.0, shear, 500_000.0, -20.0, 4.9e6, 1.0);
+        m
+    };
+    assert_eq!(cell(&[(34264, Tag::Doubles(&matrix(0.0)))]).unwrap(), [30.0, 20.0]);
+    for (tags, said) in [
+        (vec![(34264, Tag::Doubles(&matrix(1.0)))], "rotated"),
+        (vec![(34264, Tag::Doubles(&[1.0, 2.0]))], "2 numbers"),
+        (vec![(33550, Tag::Doubles(&[30.0, -20.0, 0.0]))], "north up"),
+        (vec![(33550, Tag::Doubles(&[f64::NAN, 1.0, 0.0]))], "positive sizes"),
+        (vec![scale(), tie(), (34735, Tag::Shorts(&projected(1)))], "unit 1"),
+        (vec![scale(), (34735, Tag::Shorts(&[1, 1, 0, 1, 1024, 0, 1, 2]))], "latitude"),
+        (
+            vec![scale(), tie(), (34735, Tag::Shorts(&[1, 1, 0, 1, 1024, 0, 1, 2]))],
+            "latitude 48999",
+        ),
+        (vec![scale(), tie(), (34735, Tag::Shorts(&[1, 1, 0, 1, 1024, 0, 1, 3]))], "model type 3"),
+        (vec![(42113, Tag::Text("none"))], "tag 42113"),
+    ] {
+        let error = cell(&tags).unwrap_err().to_string();
+        one_sentence(&error, "a.tif");
+        assert!(error.contains(said), "{error}");
+    }
+    // No data: printed in decimal, compared as the f32 it was; and NaN.
+    let mut heights = HEIGHTS.map(f32::from);
+    (heights[3], heights[7]) = (-f32::MAX, f32::NAN);
+    let field = |nodata: &str, heights: &[f32]| {
+        let (none, plain) = (Predictor::None, Compression::Uncompressed);
+        let tags = [(42113, Tag::Text(nodata))];
+        parse("a.tif", &tiff::<colortype::Gray32Float>(4, 3, heights, plain, none, &tags))
+    };
+    let error = field("-3.40282346639e+38", &heights).unwrap_err().to_string();
+    assert!(error.contains("row 1, column 3: found NaN"), "{error}");
+    heights[7] = 1.0;
+    assert!(field("-3.40282346639e+38", &heights).unwrap().voids().unwrap()[3]);
+    heights[3] = f32::NAN;
+    assert!(field("nan", &heights).unwrap().voids().unwrap()[3]);
+}
