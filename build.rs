@@ -275,15 +275,27 @@ fn describe(
                 let members = pointee.operands.len() as u32;
                 let frozen = (0..members)
                     .all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
-                ("StorageBuffer", !frozen)
+                ("StorageBuffer".to_owned(), !frozen)
             }
             Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
                 fail(&format!("{name}: texel buffers are not used"))
             }
-            Op::TypeImage if literal(&pointee.operands[5]) == 2 => {
-                ("StorageImage", d.of(target, Decoration::NonWritable).is_none())
+            Op::TypeImage => {
+                let uint = d.ty(id(&pointee.operands[0])).class.opcode == Op::TypeInt;
+                let layered = literal(&pointee.operands[3]) == 1;
+                if literal(&pointee.operands[5]) == 2 {
+                    let Operand::ImageFormat(format) = pointee.operands[6] else {
+                        fail(&format!("{name}: a storage image without a format field"))
+                    };
+                    let kind = format!(
+                        "StorageImage {{ format: {:?}, uint: {uint}, layered: {layered} }}",
+                        format!("{format:?}")
+                    );
+                    (kind, d.of(target, Decoration::NonWritable).is_none())
+                } else {
+                    (format!("SampledImage {{ uint: {uint}, layered: {layered} }}"), false)
+                }
             }
-            Op::TypeImage => ("SampledImage", false),
             other => {
                 fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
             }

@@ -17,6 +17,8 @@ const float HALF_PI = 1.57079632679490;
 
 // Below every slope that a field can have, and safe to square.
 const float NO_SLOPE = -1e9;
+// What lies at or under it stands for nothing met.
+const float LOWEST_MET = -1e8;
 
 const int CELL_SHIFT = 15;
 const int CELL = 1 << CELL_SHIFT;
