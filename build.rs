@@ -278,7 +278,7 @@ fn describe(
                 ("StorageBuffer".to_owned(), !frozen)
             }
             Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
-                fail(&format!("{name}: texel buffers are not used"))
+                ("TexelBuffer".to_owned(), false)
             }
             Op::TypeImage => {
                 let uint = d.ty(id(&pointee.operands[0])).class.opcode == Op::TypeInt;
@@ -300,7 +300,10 @@ fn describe(
                 fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
             }
         };
-        bindings.insert(binding, (d.name(target), kind, written));
+        // A block without an instance is known by its own name.
+        let block = snake(&d.name(pointee.result_id.expect("a type has an id")));
+        let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
+        bindings.insert(binding, (name, kind, written));
     }
     for structure in &module.types_global_values {
         if structure.class.opcode != Op::TypeStruct {

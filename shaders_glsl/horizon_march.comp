@@ -18,7 +18,7 @@ layout(constant_id = 1) const bool PERIODIC = false;
 layout(constant_id = 2) const bool WRITES_DISTANCES = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
 layout(push_constant) uniform HorizonMarchPush {
@@ -38,7 +38,7 @@ float height_at(int lane, int step) {
 }
 
 void main() {
-    azimuth = azimuths[first_azimuth + gl_GlobalInvocationID.z];
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     int lane = int(gl_GlobalInvocationID.x);
     int step = int(gl_GlobalInvocationID.y);
     bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);

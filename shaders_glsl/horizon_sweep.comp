@@ -39,7 +39,7 @@ layout(constant_id = 12) const bool REDOES_LOST = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform texture2D lane_heights;
-layout(binding = 2) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rg32ui) uniform uimage2DArray occluders;
 layout(binding = 4) uniform writeonly uimage2DArray slopes;
 // One word for four lines, in the lattice's order.
@@ -127,7 +127,7 @@ float kept_height(float h) {
 }
 
 void main() {
-    azimuth = azimuths[first_azimuth + gl_GlobalInvocationID.z];
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     vec2 private_hull[4 * PRIVATE_ENTRIES];
     uint private_packed[4 * PRIVATE_WORDS];
 

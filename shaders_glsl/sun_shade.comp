@@ -22,7 +22,7 @@ layout(binding = 1) uniform utexture2DArray lattice;
 #include "shared/angle.glsl"
 #include "shared/field.glsl"
 
-layout(binding = 2) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sun_sum;
 
 layout(push_constant) uniform SunShadePush {

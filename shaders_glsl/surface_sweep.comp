@@ -18,7 +18,7 @@ layout(constant_id = 2) const bool PERIODIC = false;
 layout(constant_id = 3) const bool WRITES_DISTANCES = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
 layout(push_constant) uniform SurfaceSweepPush {
@@ -53,7 +53,7 @@ float rise_over(float own, int y, int step, float u) {
 }
 
 void main() {
-    azimuth = azimuths[first_azimuth + gl_GlobalInvocationID.z];
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     int march = azimuth.vector_march;
     int shear = azimuth.vector_lane;
     int total = warm_up + steps;

@@ -20,7 +20,7 @@ layout(binding = 1) uniform utexture2DArray lattice;
 #include "shared/angle.glsl"
 #include "shared/fuse.glsl"
 
-layout(binding = 2) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform writeonly image2DArray horizon_angles;
 layout(binding = 4, r32f) uniform writeonly image2DArray horizon_distances;
 
@@ -37,7 +37,7 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
-    Azimuth azimuth = azimuths[first_azimuth + at.z];
+    Azimuth azimuth = azimuth_at(azimuths, first_azimuth + at.z);
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     int lanes = by_row ? cols : rows;
     int steps = by_row ? rows : cols;

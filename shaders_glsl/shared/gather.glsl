@@ -10,7 +10,7 @@ void add_all(ivec2 at, ivec2 size, float own, vec2 plane, vec3 normal) {
         if (k >= ends[octant]) {
             continue;
         }
-        Azimuth azimuth = azimuths[first_azimuth + k];
+        Azimuth azimuth = azimuth_at(azimuths, first_azimuth + k);
         bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
         int lanes = by_row ? size.x : size.y;
         int steps = by_row ? size.y : size.x;
@@ -18,7 +18,7 @@ void add_all(ivec2 at, ivec2 size, float own, vec2 plane, vec3 normal) {
         int step = march_position(azimuth, by_row ? at.y : at.x, steps);
         Octant around = octant_around(azimuth, lane, step, lanes, steps, own);
         for (; k < ends[octant]; k++) {
-            azimuth = azimuths[first_azimuth + k];
+            azimuth = azimuth_at(azimuths, first_azimuth + k);
             float horizon = fused(azimuth, lane, step, lanes, steps, warm_up, around).x;
             // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
             float lowest = max(horizon, dot(plane, vec2(azimuth.cos_phi, azimuth.sin_phi)));

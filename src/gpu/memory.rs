@@ -13,6 +13,7 @@ pub(crate) struct Backed {
     pub image: vk::Image,
     pub view: vk::ImageView,
     pub buffer: vk::Buffer,
+    pub texels: vk::BufferView,
     pub allocation: Option<Allocation>,
     pub layers: u32,
 }
@@ -68,9 +69,30 @@ impl Memory {
             Kind::Image { format, width, height, layers, layered } => {
                 self.image(name, format, [width, height, layers], layered)
             }
-            Kind::Buffer { bytes } => {
-                let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-                self.buffer(name, bytes.max(16), usage, MemoryLocation::CpuToGpu)
+            Kind::Buffer { bytes, texels } => {
+                let usage = if texels {
+                    vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
+                } else {
+                    vk::BufferUsageFlags::STORAGE_BUFFER
+                };
+                let mut backed =
+                    self.buffer(name, bytes.max(16), usage, MemoryLocation::CpuToGpu)?;
+                if texels {
+                    let info = vk::BufferViewCreateInfo::default()
+                        .buffer(backed.buffer)
+                        .format(vk::Format::R32G32B32A32_SFLOAT)
+                        .range(vk::WHOLE_SIZE);
+                    // SAFETY: the buffer was made above for this use.
+                    let view = unsafe { self.host.device.create_buffer_view(&info, None) };
+                    match view {
+                        Ok(view) => backed.texels = view,
+                        Err(result) => {
+                            self.free(&mut backed);
+                            return Err(failed(format!("viewing buffer {name}"))(result));
+                        }
+                    }
+                }
+                Ok(backed)
             }
         }
     }
@@ -104,6 +126,7 @@ impl Memory {
             image,
             view: vk::ImageView::null(),
             buffer: vk::Buffer::null(),
+            texels: vk::BufferView::null(),
             allocation: None,
             layers,
         };
@@ -159,6 +182,7 @@ impl Memory {
             image: vk::Image::null(),
             view: vk::ImageView::null(),
             buffer,
+            texels: vk::BufferView::null(),
             allocation: None,
             layers: 0,
         };
@@ -208,9 +232,11 @@ impl Memory {
         unsafe {
             device.destroy_image_view(backed.view, None);
             device.destroy_image(backed.image, None);
+            device.destroy_buffer_view(backed.texels, None);
             device.destroy_buffer(backed.buffer, None);
         }
-        (backed.view, backed.image, backed.buffer) = Default::default();
+        (backed.view, backed.image) = Default::default();
+        (backed.texels, backed.buffer) = Default::default();
         if let (Some(allocation), Some(allocator)) =
             (backed.allocation.take(), self.allocator.as_mut())
         {

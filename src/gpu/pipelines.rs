@@ -24,6 +24,7 @@ pub(crate) struct Pipelines {
 pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::TexelBuffer => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
         BindingKind::SampledImage { .. } => vk::DescriptorType::SAMPLED_IMAGE,
         BindingKind::StorageImage { .. } => vk::DescriptorType::STORAGE_IMAGE,
     }

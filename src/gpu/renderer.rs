@@ -387,6 +387,7 @@ impl Renderer {
         for (pass, set) in self.plan.passes.iter().zip(&self.slots[slot].sets) {
             let mut images = Vec::new();
             let mut buffers = Vec::new();
+            let mut texels = Vec::new();
             for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
                 let backed = match id {
                     Some(id) => self.resources[id.0].as_ref(),
@@ -408,6 +409,7 @@ impl Renderer {
                         vk::ImageLayout::GENERAL
                     },
                 }]);
+                texels.push([backed.map_or_else(Default::default, |b| b.texels)]);
                 buffers.push([vk::DescriptorBufferInfo {
                     buffer: backed.map_or_else(Default::default, |b| b.buffer),
                     offset: 0,
@@ -426,6 +428,7 @@ impl Renderer {
                         .descriptor_type(descriptor_type(binding.kind));
                     match binding.kind {
                         BindingKind::StorageBuffer => write.buffer_info(&buffers[i]),
+                        BindingKind::TexelBuffer => write.texel_buffer_view(&texels[i]),
                         _ => write.image_info(&images[i]),
                     }
                 })
@@ -501,7 +504,8 @@ impl Drop for Renderer {
 fn smallest(kind: BindingKind) -> Kind {
     let image = |format, layered| Kind::Image { format, width: 1, height: 1, layers: 1, layered };
     match kind {
-        BindingKind::StorageBuffer => Kind::Buffer { bytes: 16 },
+        BindingKind::StorageBuffer => Kind::Buffer { bytes: 16, texels: false },
+        BindingKind::TexelBuffer => Kind::Buffer { bytes: 16, texels: true },
         BindingKind::SampledImage { uint: true, layered } => image(Format::R32Uint, layered),
         BindingKind::SampledImage { uint: false, layered } => image(Format::R32Float, layered),
         BindingKind::StorageImage { format, uint, layered } => {

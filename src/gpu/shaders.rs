@@ -5,6 +5,8 @@
 pub enum BindingKind {
     /// A buffer of structs or words.
     StorageBuffer,
+    /// A buffer of texels, fetched from.
+    TexelBuffer,
     /// An image that is fetched from.
     SampledImage {
         /// Unsigned integers, else floats.

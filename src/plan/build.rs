@@ -45,10 +45,10 @@ impl Builder {
         ResourceId(self.resources.len() - 1)
     }
 
-    fn buffer(&mut self, name: &str, bytes: u64) -> ResourceId {
+    fn buffer(&mut self, name: &str, bytes: u64, texels: bool) -> ResourceId {
         self.resources.push(Resource {
             name: name.into(),
-            kind: Kind::Buffer { bytes },
+            kind: Kind::Buffer { bytes, texels },
             owner: Owner::Internal,
         });
         ResourceId(self.resources.len() - 1)
@@ -71,7 +71,7 @@ impl Builder {
         let push = bytemuck::bytes_of(push).to_vec();
         assert_eq!(push.len(), shader.push_bytes as usize, "{}: push constants", shader.name);
         for (name, id) in bound {
-            let binding = shader.bindings.iter().find(|b| b.name == *name || b.name == camel(name));
+            let binding = shader.bindings.iter().find(|b| b.name == *name);
             let binding = binding.unwrap_or_else(|| panic!("{} binds no {name}", shader.name));
             let resource = &self.resources[id.0];
             assert!(
@@ -85,12 +85,7 @@ impl Builder {
         let bindings = shader
             .bindings
             .iter()
-            .map(|b| {
-                bound
-                    .iter()
-                    .find(|(name, _)| b.name == *name || b.name == camel(name))
-                    .map(|(_, id)| *id)
-            })
+            .map(|b| bound.iter().find(|(name, _)| b.name == *name).map(|(_, id)| *id))
             .collect();
         self.passes.push(Pass {
             shader,
@@ -109,11 +104,6 @@ impl Builder {
     fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
     }
-}
-
-/// Reflection names a buffer by its block: `azimuths` is `Azimuths`.
-fn camel(name: &str) -> String {
-    name.split('_').map(|w| w[..1].to_uppercase() + &w[1..]).collect()
 }
 
 /// What every sweep of a plan shares.
@@ -173,7 +163,7 @@ fn prepare(
 ) -> Result<(Sweeping, Lists)> {
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
-    let azimuths = builder.buffer("azimuths", (count * size_of::<Azimuth>()) as u64);
+    let azimuths = builder.buffer("azimuths", (count * size_of::<Azimuth>()) as u64, true);
     let axes = [false, true].map(|marches_rows| {
         let used = lists.iter().flatten().any(|a| a.marches_rows() == marches_rows);
         used.then(|| Axis::of(marches_rows, size, border))
@@ -225,7 +215,7 @@ fn prepare(
     let lattice = slopes.or(occluders).expect("a sweep stores something");
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullPlace::Occluders);
-    let lost_lines = can_lose.then(|| builder.buffer("lost_lines", u64::from(layers) * 32));
+    let lost_lines = can_lose.then(|| builder.buffer("lost_lines", u64::from(layers) * 32, false));
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
             passes::height_transpose::plan(builder, *axis, heights, lanes);
@@ -429,7 +419,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let env_tables = match environment {
         Some(e) => {
             let rows_bytes = u64::from(quality.azimuths) * e.height() as u64 * 48;
-            let wedge_rows = builder.buffer("wedge_rows", rows_bytes);
+            let wedge_rows = builder.buffer("wedge_rows", rows_bytes, false);
             let extent = [quality.table_elevations, 3, quality.azimuths];
             let tables =
                 builder.image("env_tables", Owner::Internal, Format::Rgba32Float, extent, true);

@@ -18,28 +18,6 @@ pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use resource::{Format, Kind, Owner, Resource};
 
-use crate::gpu::shaders::same_layout;
-
-same_layout!(
-    Azimuth,
-    azimuth,
-    cos_phi = COS_PHI,
-    sin_phi = SIN_PHI,
-    wedge_cos = WEDGE_COS,
-    wedge_sin = WEDGE_SIN,
-    wedge_rad = WEDGE_RAD,
-    centre_rad = CENTRE_RAD,
-    step_m = STEP_M,
-    shear = SHEAR,
-    vector_march = VECTOR_MARCH,
-    vector_lane = VECTOR_LANE,
-    flags = FLAGS,
-    layer = LAYER,
-    low_slope = LOW_SLOPE,
-    high_slope = HIGH_SLOPE,
-    weight = WEIGHT,
-);
-
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]
 pub struct Plan {

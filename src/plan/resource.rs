@@ -58,10 +58,12 @@ pub enum Kind {
         /// Seen as an array.
         layered: bool,
     },
-    /// A storage buffer.
+    /// A buffer of words; with four f32 a texel where `texels`.
     Buffer {
         /// Size.
         bytes: u64,
+        /// Whether shaders fetch texels from it.
+        texels: bool,
     },
 }
 
@@ -94,14 +96,15 @@ impl Resource {
             Kind::Image { format, width, height, layers, .. } => {
                 format.bytes() * u64::from(width) * u64::from(height) * u64::from(layers)
             }
-            Kind::Buffer { bytes } => bytes,
+            Kind::Buffer { bytes, .. } => bytes,
         }
     }
 
     /// Whether a shader's binding of this kind can be this resource.
     pub fn fits(&self, binding: BindingKind) -> bool {
         match (self.kind, binding) {
-            (Kind::Buffer { .. }, BindingKind::StorageBuffer) => true,
+            (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,
+            (Kind::Buffer { texels, .. }, BindingKind::TexelBuffer) => texels,
             (
                 Kind::Image { format, layered, .. },
                 BindingKind::SampledImage { uint, layered: wants },
