@@ -5,7 +5,7 @@ use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Format, Kind, Limits, Owner, Pass, Plan, Resource, ResourceId};
 use crate::gpu::shaders::Shader;
 use crate::passes;
-use crate::scene::{Albedo, Border, HeightField, Lines, Quality, Scene};
+use crate::scene::{Albedo, Border, HeightField, Lines, Method, Quality, Scene};
 use crate::{Error, Result};
 
 /// What a picture should hold.
@@ -289,6 +289,19 @@ fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Vec<Azimuth> {
     match sweep {
         Sweep::Surface { .. } => azimuths::along_grid_vectors(quality.azimuths, cell_m),
         _ => azimuths::even(quality.azimuths, cell_m),
+    }
+}
+
+/// The azimuths that [`horizons`] sweeps for a quality, radians counter-clockwise from east: 2πk/M,
+/// or in exact mode the grid vectors' own.
+pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Vec<f64> {
+    let count = quality.azimuths;
+    match (quality.method, quality.lines) {
+        (Method::Auto | Method::Sweep, Lines::Exact) => azimuths::along_grid_vectors(count, cell_m)
+            .iter()
+            .map(|a| a.swept_rad(cell_m).rem_euclid(std::f64::consts::TAU))
+            .collect(),
+        _ => (0..count).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(count)).collect(),
     }
 }
 

@@ -13,7 +13,7 @@ pub mod sweep;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use build::Builder;
-pub use build::{Picture, horizons, picture};
+pub use build::{Picture, circle_rad, horizons, picture};
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use resource::{Format, Kind, Owner, Resource};
