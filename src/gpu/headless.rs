@@ -57,6 +57,13 @@ fn load() -> Result<ash::Entry> {
     })
 }
 
+fn no_driver() -> Error {
+    Error::Device {
+        doing: "choosing a device".into(),
+        reason: "no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into(),
+    }
+}
+
 fn instance(
     entry: &ash::Entry,
     layers: &[*const i8],
@@ -74,7 +81,10 @@ fn instance(
         info = info.push_next(next);
     }
     // SAFETY: names are nul-terminated and live across the call.
-    unsafe { entry.create_instance(&info, None) }.map_err(failed("making a Vulkan instance"))
+    unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
+        vk::Result::ERROR_INCOMPATIBLE_DRIVER => no_driver(),
+        other => failed("making a Vulkan instance")(other),
+    })
 }
 
 /// All devices of the system.
@@ -565,7 +575,12 @@ impl Owned {
     }
 }
 
-fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
+/// Which of the `reports` of [`devices`] would be used: the one `wanted`, by number or by a part of
+/// its name, else the first GPU that will do, else any that will.
+///
+/// # Errors
+/// No such device, none at all, or one that lacks what is needed (named).
+pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
     let listed = || reports.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
     let no = |reason: String| Error::Device { doing: "choosing a device".into(), reason };
     let index = match wanted {
@@ -581,9 +596,7 @@ fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
             let fit = |r: &DeviceReport| r.missing.is_empty();
             let gpu = reports.iter().position(|r| fit(r) && !r.limits.is_cpu);
             let any = || reports.iter().position(fit);
-            gpu.or_else(any).or((!reports.is_empty()).then_some(0)).ok_or_else(|| {
-                no("no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into())
-            })?
+            gpu.or_else(any).or((!reports.is_empty()).then_some(0)).ok_or_else(no_driver)?
         }
     };
     let report = &reports[index];
