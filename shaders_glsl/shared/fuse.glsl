@@ -30,7 +30,9 @@ struct Octant {
 
 float lattice_slope(int line, uvec4 texel) {
     if (LATTICE == LATTICE_SLOPES_F16) {
-        return unpackHalf2x16(lattice_u16(texel.xy, line)).x;
+        // The lowest f16 stands for nothing met.
+        float slope = unpackHalf2x16(lattice_u16(texel.xy, line)).x;
+        return slope <= -65504.0 ? NO_SLOPE : slope;
     }
     uvec2 pair = (line & 2) == 0 ? texel.xy : texel.zw;
     return uintBitsToFloat((line & 1) == 0 ? pair.x : pair.y);
