@@ -188,7 +188,7 @@ void main() {
             }
             kept = min(kept, depth);
             if (step >= warm_up) {
-                write_result(y, step, depth > 0 ? step - int(top.y) : 0, (top.x - h) / (x - top.y));
+                write_result(y, step, depth > 0 ? step - int(top.y) : 0, (top.x - h) / ((x - top.y) * azimuth.step_m));
             }
             // Push: what was on top goes to memory, the new sample on top.
             if (depth > 0 && HULL_PLACE != HULL_IN_OCCLUDERS) {

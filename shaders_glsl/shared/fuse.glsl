@@ -29,7 +29,9 @@ struct Octant {
 };
 
 float lattice_slope(uint word) {
-    return LATTICE == LATTICE_SLOPES_F16 ? unpackHalf2x16(word).x : uintBitsToFloat(word);
+    float slope = LATTICE == LATTICE_SLOPES_F16 ? unpackHalf2x16(word).x : uintBitsToFloat(word);
+    // What f16 clamped is nothing, too.
+    return slope <= -65504.0 ? NO_SLOPE : slope;
 }
 
 // The height of the surface at a lane position and a march step; false outside the field.

@@ -3,11 +3,13 @@
 mod environment;
 mod field;
 mod lights;
+mod quality;
 mod surface;
 
 pub use environment::Environment;
 pub use field::HeightField;
 pub use lights::{Lights, Sun};
+pub use quality::Fuse;
 pub use surface::{Albedo, Border, Surface};
 
 /// A field, what it is made of, and the light that falls on it.
