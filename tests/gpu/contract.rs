@@ -44,6 +44,26 @@ fn a_field_that_changes_gives_what_a_new_field_gives() {
     assert_eq!(again, fresh);
 }
 
+/// Validation that says nothing may be deaf: a plan without its barriers must be heard.
+#[test]
+fn missing_barriers_are_heard() {
+    let mut device = Device::new();
+    let scene = under_sky(field(16, 16, [1.0, 1.0], |_, c| c as f64), Border::Plane);
+    let mut plan = plan::picture(&scene, &Quality::default(), &device.limits(), Picture::default())
+        .expect("a plan");
+    for pass in &mut plan.passes {
+        pass.barrier_before = false;
+    }
+    assert!(!missing_barriers(&plan.passes).is_empty(), "the audit of the plan sees them");
+    if !device.validates {
+        println!("not validated: RIDGELIGHT_VALIDATION is not 1");
+        return;
+    }
+    device.draw(plan, &[scene.field.heights_m()]);
+    let messages = device.gpu.as_ref().expect("alive").take_messages();
+    assert!(messages.iter().any(|m| m.contains("HAZARD")), "validation is deaf: {messages:?}");
+}
+
 #[test]
 fn timings_name_every_pass() {
     let mut device = Device::new();

@@ -19,6 +19,7 @@ static ONE: Mutex<()> = Mutex::new(());
 /// A device whose validation messages fail the test that made it.
 struct Device {
     gpu: Option<Headless>,
+    validates: bool,
     _one: MutexGuard<'static, ()>,
 }
 
@@ -29,7 +30,7 @@ impl Device {
         let options = HeadlessOptions { device: None, validation };
         let gpu =
             Headless::new(&options).expect("a Vulkan device that will do: run tools/setup --tests");
-        Self { gpu: Some(gpu), _one: one }
+        Self { gpu: Some(gpu), validates: validation, _one: one }
     }
 
     fn limits(&self) -> Limits {
