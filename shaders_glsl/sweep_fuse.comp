@@ -51,7 +51,7 @@ void main() {
     float angle = nothing ? -HALF_PI : arc_tangent(found.x);
     imageStore(horizon_angles, to, vec4(BORDER == BORDER_OPEN ? angle : max(angle, 0.0)));
     if (WRITES_DISTANCES) {
-        bool ground = nothing || (BORDER == BORDER_PLANE && found.x <= 0.0);
+        bool ground = nothing || (BORDER != BORDER_OPEN && found.x <= 0.0);
         imageStore(horizon_distances, to, vec4(ground ? 0.0 : found.y * azimuth.step_m));
     }
 }

@@ -28,12 +28,13 @@ struct Octant {
     bool split_crosses;  // the cell's diagonal runs between `ahead` and `low`
 };
 
-float lattice_slope(int line, uvec4 texel) {
-    if (LATTICE == LATTICE_SLOPES_F16) {
-        return unpackHalf2x16(lattice_u16(texel.xy, line)).x;
-    }
+// The slope that a line found.
+float line_slope(int line, uvec4 texel) {
     uvec2 pair = (line & 2) == 0 ? texel.xy : texel.zw;
-    return uintBitsToFloat((line & 1) == 0 ? pair.x : pair.y);
+    float slope = LATTICE == LATTICE_SLOPES_F16 ? unpackHalf2x16(lattice_u16(texel.xy, line)).x
+                                                : uintBitsToFloat((line & 1) == 0 ? pair.x : pair.y);
+    // What f16 clamped is nothing, too.
+    return slope <= -65504.0 ? NO_SLOPE : slope;
 }
 
 // The height of the surface at a lane position and a march step; false outside the field.
@@ -141,7 +142,7 @@ vec2 fused(Azimuth azimuth, int lane, int step, int lanes, int steps, int warm_u
         int line = takes_after ? after_line : before_line;
         uvec4 texel = texelFetch(lattice, lattice_texel(azimuth, line, step + warm_up), 0);
         if (FUSE == FUSE_NEAREST) {
-            return vec2(takes_one ? lattice_slope(line, texel) / azimuth.step_m : NO_SLOPE, 0.0);
+            return vec2(takes_one ? line_slope(line, texel) : NO_SLOPE, 0.0);
         }
         vec2 found = first_crossings(azimuth, o);
         uint back = takes_one ? lattice_u16(texel.xy, line) : 0u;
@@ -163,8 +164,8 @@ vec2 fused(Azimuth azimuth, int lane, int step, int lanes, int steps, int warm_u
         b = seen(azimuth, before, before_back, step, lanes, steps, o.own);
         a = seen(azimuth, after, after_back, step, lanes, steps, o.own);
     } else {
-        b = vec2(has_before ? lattice_slope(before_line, before_texel) / azimuth.step_m : NO_SLOPE, 0.0);
-        a = vec2(has_after ? lattice_slope(after_line, after_texel) / azimuth.step_m : NO_SLOPE, 0.0);
+        b = vec2(has_before ? line_slope(before_line, before_texel) : NO_SLOPE, 0.0);
+        a = vec2(has_after ? line_slope(after_line, after_texel) : NO_SLOPE, 0.0);
     }
     // Where only one line met anything, it speaks for the sample.
     if (b.x <= LOWEST_MET || a.x <= LOWEST_MET) {

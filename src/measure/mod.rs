@@ -3,3 +3,4 @@
 pub mod error;
 pub mod fractal;
 pub mod statistics;
+pub mod tolerance;
