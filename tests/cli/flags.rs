@@ -313,5 +313,5 @@ fn help_says_units_and_defaults() {
         let run = folder.run_without_driver(args);
         assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
     }
-    assert_eq!(folder.run_without_driver(&["--help"]).out.contains("reference"), false);
+    assert!(!folder.run_without_driver(&["--help"]).out.contains("reference"));
 }

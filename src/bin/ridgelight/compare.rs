@@ -16,7 +16,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         &[("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())],
         &[&args.result, &args.reference],
     )?;
-    if args.max_rmse.is_some_and(|x| !(x >= 0.0)) {
+    if args.max_rmse.is_some_and(|x| x.is_nan() || x < 0.0) {
         return Err(Error::setting(
             "--max-rmse",
             args.max_rmse.unwrap_or_default().to_string(),

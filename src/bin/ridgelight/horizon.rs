@@ -10,6 +10,10 @@ use crate::setup::{self, Outcome};
 /// Azimuths computed and read back at a time: their angles stay within this many bytes.
 const OUTPUT_BYTES: u64 = 256 << 20;
 
+/// Takes an azimuth's number, its elevations, and its distances or nothing.
+pub type Each<'a> = dyn FnMut(u32, &[f32], &[f32]) -> Result<()> + 'a;
+
+/// Azimuths whose outputs take at most [`OUTPUT_BYTES`] and a quarter of the budget.
 fn at_once(field: &HeightField, limits: &Limits) -> u32 {
     let plane = 4 * (field.rows() * field.cols()) as u64;
     (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
@@ -24,7 +28,7 @@ pub fn for_each(
     quality: &Quality,
     limits: &Limits,
     distances: bool,
-    each: &mut dyn FnMut(u32, &[f32], &[f32]) -> Result<()>,
+    each: &mut Each<'_>,
 ) -> Result<(Vec<Timing>, Plan)> {
     let plane = field.rows() * field.cols();
     let at_once = at_once(field, limits);
