@@ -5,7 +5,7 @@ use crate::plan::azimuths::{Azimuth, CELL};
 use crate::scene::Border;
 
 /// The lattice of one march axis, as the images `occluders` and `slopes` hold it:
-/// [layer][march position][slot], where slot is the line's lane position in line spacings, flipped as
+/// `[layer][march position][slot]`, where slot is the line's lane position in line spacings, flipped as
 /// its azimuth flips lanes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
