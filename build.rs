@@ -275,20 +275,35 @@ fn describe(
                 let members = pointee.operands.len() as u32;
                 let frozen = (0..members)
                     .all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
-                ("StorageBuffer", !frozen)
+                ("StorageBuffer".to_owned(), !frozen)
             }
             Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
-                fail(&format!("{name}: texel buffers are not used"))
+                ("TexelBuffer".to_owned(), false)
             }
-            Op::TypeImage if literal(&pointee.operands[5]) == 2 => {
-                ("StorageImage", d.of(target, Decoration::NonWritable).is_none())
+            Op::TypeImage => {
+                let uint = d.ty(id(&pointee.operands[0])).class.opcode == Op::TypeInt;
+                let layered = literal(&pointee.operands[3]) == 1;
+                if literal(&pointee.operands[5]) == 2 {
+                    let Operand::ImageFormat(format) = pointee.operands[6] else {
+                        fail(&format!("{name}: a storage image without a format field"))
+                    };
+                    let kind = format!(
+                        "StorageImage {{ format: {:?}, uint: {uint}, layered: {layered} }}",
+                        format!("{format:?}")
+                    );
+                    (kind, d.of(target, Decoration::NonWritable).is_none())
+                } else {
+                    (format!("SampledImage {{ uint: {uint}, layered: {layered} }}"), false)
+                }
             }
-            Op::TypeImage => ("SampledImage", false),
             other => {
                 fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
             }
         };
-        bindings.insert(binding, (d.name(target), kind, written));
+        // A block without an instance is known by its own name.
+        let block = snake(&d.name(pointee.result_id.expect("a type has an id")));
+        let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
+        bindings.insert(binding, (name, kind, written));
     }
     for structure in &module.types_global_values {
         if structure.class.opcode != Op::TypeStruct {

@@ -10,7 +10,7 @@
 layout(local_size_x = 8) in;
 
 layout(binding = 0) uniform texture2D environment;
-layout(binding = 1) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) writeonly buffer WedgeRows { vec4 wedge_rows[]; };
 
 layout(push_constant) uniform EnvWedgesPush {
@@ -25,7 +25,7 @@ void main() {
     if (row >= height) {
         return;
     }
-    Azimuth azimuth = azimuths[k];
+    Azimuth azimuth = azimuth_at(azimuths, k);
     // Columns run clockwise from west: column x begins at azimuth pi + rotation - 2 pi x / width.
     float per_rad = float(width) / (2.0 * PI);
     float middle = (PI + rotation_rad - azimuth.centre_rad) * per_rad;

@@ -1,31 +1,32 @@
-// Computes: the heights laid out for sweeps, one copy a march axis, lanes contiguous.
-// Reads: heights (one texel a sample). Writes: heights_by_col (marches along columns: [col][row]),
-// heights_by_row (marches along rows: [row][col]); those that the plan asks for.
-// One invocation is one sample.
+// Computes: the heights laid out for sweeps, four neighbouring lanes a texel.
+// Reads: heights (one texel a sample). Writes: lane_heights at [march position][lane / 4], held at
+// the last lane beyond it.
+// One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const bool WRITES_BY_COL = true;
-layout(constant_id = 1) const bool WRITES_BY_ROW = true;
+layout(constant_id = 0) const bool MARCHES_ROWS = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) writeonly buffer HeightsByCol { float heights_by_col[]; };
-layout(binding = 2) writeonly buffer HeightsByRow { float heights_by_row[]; };
+layout(binding = 1, rgba32f) uniform writeonly image2D lane_heights;
 
-layout(push_constant) uniform HeightTransposePush { int cols; int rows; };
+layout(push_constant) uniform HeightTransposePush {
+    int lanes;
+    int steps;
+};
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= cols || at.y >= rows) {
+    int group = int(gl_GlobalInvocationID.x);
+    int march = int(gl_GlobalInvocationID.y);
+    if (4 * group >= lanes || march >= steps) {
         return;
     }
-    float h = texelFetch(heights, at, 0).x;
-    if (WRITES_BY_COL) {
-        heights_by_col[at.x * rows + at.y] = h;
+    vec4 four;
+    for (int k = 0; k < 4; k++) {
+        int lane = min(4 * group + k, lanes - 1);
+        four[k] = texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
     }
-    if (WRITES_BY_ROW) {
-        heights_by_row[at.y * cols + at.x] = h;
-    }
+    imageStore(lane_heights, ivec2(group, march), four);
 }

@@ -1,10 +1,12 @@
 // Computes: horizons by testing everything a sample's own line meets: the baseline of every speed
 // claim and, with all crossings, the truth on the device. Cost grows with the side of the field.
-// Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][march position][lane], and in the
+// Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][step][lane], and in the
 // next layer, where asked, the march steps to what is met (f32 bits).
 // One invocation is one sample in one azimuth.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_vote : require
 
 #include "shared/sweep.glsl"
 #include "shared/surface.glsl"
@@ -16,7 +18,7 @@ layout(constant_id = 1) const bool PERIODIC = false;
 layout(constant_id = 2) const bool WRITES_DISTANCES = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) readonly buffer Azimuths { Azimuth azimuths[]; };
+layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
 layout(push_constant) uniform HorizonMarchPush {
@@ -36,57 +38,55 @@ float height_at(int lane, int step) {
 }
 
 void main() {
-    azimuth = azimuths[first_azimuth + gl_GlobalInvocationID.z];
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     int lane = int(gl_GlobalInvocationID.x);
     int step = int(gl_GlobalInvocationID.y);
-    if (lane >= lanes || step >= steps) {
-        return;
-    }
     bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
     float own = height_at(lane, step);
     float slope = NO_SLOPE;
     float met = 0.0;
     int reach = step + warm_up;
-    for (int back = 1; back <= reach; back++) {
+    for (int back = 1; back < steps + warm_up; back++) {
         int y = lane * CELL - back * azimuth.shear;
-        if (!PERIODIC && y + azimuth.shear <= 0 && azimuth.shear > 0) {
+        // Some of the segment that begins here lies on the field.
+        bool on = lane < lanes && step < steps && back <= reach
+               && (PERIODIC || azimuth.shear == 0 || y + azimuth.shear > 0);
+        // Left by all lanes together, as in horizon_sweep.
+        if (!subgroupAny(on)) {
             break;
         }
         int cell = y >> CELL_SHIFT;
         float f0 = float(y & (CELL - 1)) * (1.0 / float(CELL));
         int at = step - back;
-        if (PERIODIC || y >= 0) {
-            float h = height_at(cell, at);
-            float rise = (h - own) + (f0 > 0.0 ? f0 * (height_at(cell + 1, at) - h) : 0.0);
-            float found = rise / (float(back) * azimuth.step_m);
-            met = found > slope ? float(back) : met;
-            slope = max(slope, found);
-        }
+        float h = height_at(cell, at);
+        float rise = (h - own) + (f0 > 0.0 ? f0 * (height_at(cell + 1, at) - h) : 0.0);
+        float found = rise / (float(back) * azimuth.step_m);
+        bool better = on && (PERIODIC || y >= 0) && found > slope;
+        met = better ? float(back) : met;
+        slope = better ? found : slope;
         if (ALL_CROSSINGS) {
             vec3 places = segment_crossings(f0, advance, split_along);
-            for (int c = 0; c < 3; c++) {
+            [[unroll]] for (int c = 0; c < 3; c++) {
                 float u = places[c];
                 float f = f0 + u * advance;
-                int low = cell;
-                if (u > 1.0 || (!PERIODIC && float(y) + u * float(azimuth.shear) < -0.5)) {
-                    continue;
-                }
-                if (f > 1.0) {
-                    f -= 1.0;
-                    low++;
-                }
-                float rise = surface_rise(height_at(low, at), height_at(low, at + 1), height_at(low + 1, at),
-                                          height_at(low + 1, at + 1), own, u, f, split_along);
+                int low = f > 1.0 ? cell + 1 : cell;
+                f = f > 1.0 ? f - 1.0 : f;
+                rise = surface_rise(height_at(low, at), height_at(low, at + 1), height_at(low + 1, at),
+                                    height_at(low + 1, at + 1), own, u, f, split_along);
                 float distance_steps = float(back) - u;
-                float found = rise / (distance_steps * azimuth.step_m);
-                met = found > slope ? distance_steps : met;
-                slope = max(slope, found);
+                found = rise / (distance_steps * azimuth.step_m);
+                better = on && u < 1.0 && (PERIODIC || float(y) + u * float(azimuth.shear) >= -0.5) && found > slope;
+                met = better ? distance_steps : met;
+                slope = better ? found : slope;
             }
         }
     }
-    ivec2 texel = ivec2(lane, march_position(azimuth, step, steps));
-    int layer = int(azimuth.layer) * (WRITES_DISTANCES ? 2 : 1);
+    if (lane >= lanes || step >= steps) {
+        return;
+    }
+    ivec2 texel = ivec2(lane, step);
+    int layer = int(azimuth.layer);
     imageStore(slopes, ivec3(texel, layer), uvec4(floatBitsToUint(slope)));
     if (WRITES_DISTANCES) {
         imageStore(slopes, ivec3(texel, layer + 1), uvec4(floatBitsToUint(met)));

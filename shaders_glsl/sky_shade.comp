@@ -1,6 +1,6 @@
 // Computes: what a uniform sky and an environment give to every sample through its horizons in the
 // azimuths of a batch, added to what earlier batches gave.
-// Reads: heights, azimuths, lattice_cols, lattice_rows, env_tables. Reads and writes: sky_sum (exit
+// Reads: heights, azimuths, lattice, env_tables. Reads and writes: sky_sum (exit
 // radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
 // One invocation is one sample.
 #version 460
@@ -17,31 +17,27 @@ layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform utexture2DArray lattice_cols;
-layout(binding = 2) uniform utexture2DArray lattice_rows;
+layout(binding = 1) uniform utexture2DArray lattice;
 
 #include "shared/angle.glsl"
 #include "shared/field.glsl"
 
-layout(binding = 3) readonly buffer Azimuths { Azimuth azimuths[]; };
-layout(binding = 4, r32f) uniform image2D sky_sum;
-layout(binding = 5, rgba32f) uniform image2D env_sum;
+layout(binding = 2) uniform textureBuffer azimuths;
+layout(binding = 3, r32f) uniform image2D sky_sum;
+layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
-layout(binding = 6) uniform texture2DArray env_tables;
+layout(binding = 5) uniform texture2DArray env_tables;
 
 layout(push_constant) uniform SkyShadePush {
     int cols;
     int rows;
     float cell_x_m;
     float cell_y_m;
-    int warm_up_cols;
-    int warm_up_rows;
+    int warm_up;
     uint first_azimuth;  // of the batch
     uint clears;         // 1 in the first batch
-    // Where each octant's azimuths end, counted from `first_azimuth`: four that march along columns,
-    // four that march along rows.
-    uvec4 ends_cols;
-    uvec4 ends_rows;
+    uint pad;
+    uvec4 ends;          // where each of its four octants ends, counted from first_azimuth
 };
 
 float sky;
@@ -93,7 +89,7 @@ void main() {
             environment = imageLoad(env_sum, at).rgb;
         }
     }
-    add_all(at, ivec2(cols, rows), ivec2(warm_up_cols, warm_up_rows), own, slope, normal);
+    add_all(at, ivec2(cols, rows), own, slope, normal);
     if (HAS_SKY) {
         imageStore(sky_sum, at, vec4(sky));
     }

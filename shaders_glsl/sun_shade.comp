@@ -1,6 +1,6 @@
 // Computes: what a sun gives to every sample through its horizons in the azimuths that its disc
 // covers, added to what earlier batches gave.
-// Reads: heights, azimuths, lattice_cols, lattice_rows. Reads and writes: sun_sum (exit radiance for
+// Reads: heights, azimuths, lattice. Reads and writes: sun_sum (exit radiance for
 // irradiance 1 and albedo 1).
 // One invocation is one sample.
 #version 460
@@ -17,28 +17,24 @@ const bool LATTICE_HAS_DISTANCES = false;
 layout(constant_id = 4) const bool POINT = false;
 
 layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform utexture2DArray lattice_cols;
-layout(binding = 2) uniform utexture2DArray lattice_rows;
+layout(binding = 1) uniform utexture2DArray lattice;
 
 #include "shared/angle.glsl"
 #include "shared/field.glsl"
 
-layout(binding = 3) readonly buffer Azimuths { Azimuth azimuths[]; };
-layout(binding = 4, r32f) uniform image2D sun_sum;
+layout(binding = 2) uniform textureBuffer azimuths;
+layout(binding = 3, r32f) uniform image2D sun_sum;
 
 layout(push_constant) uniform SunShadePush {
     int cols;
     int rows;
     float cell_x_m;
     float cell_y_m;
-    int warm_up_cols;
-    int warm_up_rows;
+    int warm_up;
     uint first_azimuth;  // of the batch
     uint clears;         // 1 in the first batch
-    // Where each octant's azimuths end, counted from `first_azimuth`: four that march along columns,
-    // four that march along rows.
-    uvec4 ends_cols;
-    uvec4 ends_rows;
+    uint pad;
+    uvec4 ends;          // where each of its four octants ends, counted from first_azimuth
 };
 
 float sun;
@@ -69,6 +65,6 @@ void main() {
     float steepness = dot(slope, slope);
     vec3 normal = vec3(-slope, 1.0) * inversesqrt(1.0 + steepness);
     sun = clears == 0u ? imageLoad(sun_sum, at).x : 0.0;
-    add_all(at, ivec2(cols, rows), ivec2(warm_up_cols, warm_up_rows), own, slope, normal);
+    add_all(at, ivec2(cols, rows), own, slope, normal);
     imageStore(sun_sum, at, vec4(sun));
 }

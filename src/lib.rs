@@ -6,7 +6,9 @@
 pub mod cpu;
 mod error;
 pub mod files;
+pub mod gpu;
 pub mod measure;
+mod passes;
 pub mod plan;
 pub mod scene;
 

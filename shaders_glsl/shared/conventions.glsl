@@ -1,3 +1,5 @@
+#extension GL_EXT_samplerless_texture_functions : require
+
 // World: right-handed, x east = increasing column, y north = decreasing row, z up.
 // Sample (row r, column c) stands at x = c * cell.x, y = (rows - 1 - r) * cell.y, z = height.
 // Surface: two flat triangles a cell, split from (r, c) to (r + 1, c + 1).
@@ -17,6 +19,8 @@ const float HALF_PI = 1.57079632679490;
 
 // Below every slope that a field can have, and safe to square.
 const float NO_SLOPE = -1e9;
+// What lies at or under it stands for nothing met.
+const float LOWEST_MET = -1e8;
 
 const int CELL_SHIFT = 15;
 const int CELL = 1 << CELL_SHIFT;
@@ -36,14 +40,24 @@ struct Azimuth {
     float wedge_cos;  // integral of cos over the wedge
     float wedge_sin;  // integral of sin over the wedge
     float wedge_rad;  // width of the wedge
-    float centre_rad; // azimuth of the wedge's centre, -pi .. pi
     float step_m;     // world length of one march step
     int shear;        // lane advance of a step, in 1/32768 of a cell, 0 .. 32768
-    int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
-    int vector_lane;
+    uint layer;       // first layer of its result in the lattice
     uint flags;       // AZIMUTH_*
-    uint layer;       // where its result lies: layer of the lattice of its axis
+    float centre_rad; // azimuth of the wedge's centre, -pi .. pi
     float low_slope;  // sun only: the disc's chord in this azimuth
     float high_slope;
     float weight;     // sun only: radiance that makes the chords add up to irradiance 1
+    int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
+    int vector_lane;
 };
+
+// Entry k of a list of azimuths: four texels each, in the order above.
+Azimuth azimuth_at(textureBuffer azimuths, uint k) {
+    vec4 a = texelFetch(azimuths, int(4u * k));
+    vec4 b = texelFetch(azimuths, int(4u * k + 1u));
+    vec4 c = texelFetch(azimuths, int(4u * k + 2u));
+    vec4 d = texelFetch(azimuths, int(4u * k + 3u));
+    return Azimuth(a.x, a.y, a.z, a.w, b.x, b.y, floatBitsToInt(b.z), floatBitsToUint(b.w), floatBitsToUint(c.x),
+                   c.y, c.z, c.w, d.x, floatBitsToInt(d.y), floatBitsToInt(d.z));
+}

@@ -1,7 +1,7 @@
-#include "shared/sweep.glsl"
+#include "shared/lattice.glsl"
 
 // Brings the lattice of a sweep back to the field's samples. The including shader declares
-// `heights`, `lattice_cols`, `lattice_rows` and the constants FUSE, LATTICE,
+// `heights`, `lattice` and the constants FUSE, LATTICE,
 // LATTICE_HAS_DISTANCES, LINE_SHIFT and BORDER.
 
 const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample
@@ -28,8 +28,11 @@ struct Octant {
     bool split_crosses;  // the cell's diagonal runs between `ahead` and `low`
 };
 
-float lattice_slope(uint word) {
-    float slope = LATTICE == LATTICE_SLOPES_F16 ? unpackHalf2x16(word).x : uintBitsToFloat(word);
+// The slope that a line found.
+float line_slope(int line, uvec4 texel) {
+    uvec2 pair = (line & 2) == 0 ? texel.xy : texel.zw;
+    float slope = LATTICE == LATTICE_SLOPES_F16 ? unpackHalf2x16(lattice_u16(texel.xy, line)).x
+                                                : uintBitsToFloat((line & 1) == 0 ? pair.x : pair.y);
     // What f16 clamped is nothing, too.
     return slope <= -65504.0 ? NO_SLOPE : slope;
 }
@@ -108,59 +111,64 @@ vec2 seen(Azimuth azimuth, int y, uint back, int step, int lanes, int steps, flo
 }
 
 // Slope of the horizon at a sample (lane, step) and how many march steps away it stands.
-vec2 fused(utexture2DArray lattice, Azimuth azimuth, int lane, int step, int lanes, int steps, int warm_up, Octant o) {
-    int march = march_position(azimuth, step, steps);
-    int y = lane * CELL;
+vec2 fused(Azimuth azimuth, int lane, int step, int lanes, int steps, int warm_up, Octant o) {
     if (FUSE == FUSE_DIRECT) {
-        ivec3 texel = ivec3(lane, march, int(azimuth.layer) * (LATTICE_HAS_DISTANCES ? 2 : 1));
-        float slope = lattice_slope(texelFetch(lattice, texel, 0).x);
+        ivec3 texel = ivec3(lane, step, azimuth.layer);
+        float slope = uintBitsToFloat(texelFetch(lattice, texel, 0).x);
         texel.z++;
         return vec2(slope, LATTICE_HAS_DISTANCES ? uintBitsToFloat(texelFetch(lattice, texel, 0).x) : 0.0);
     }
     // The lines around the sample, before it (or through it) and after it.
     bool wraps = BORDER == BORDER_PERIODIC;
+    int y = lane * CELL;
     int spacing = 1 << LINE_SHIFT;
-    int slots = (lanes * CELL) >> LINE_SHIFT;
-    int phase = ((step + warm_up) * azimuth.shear) & (spacing - 1);
-    int slot = (y - phase) >> LINE_SHIFT;
-    int before = slot * spacing + phase;
+    int total = warm_up + steps;
+    int lead = lattice_lead(azimuth.shear, total, LINE_SHIFT, wraps);
+    int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
+    // Of line 0, and which line lies before the sample.
+    int origin = (step + warm_up) * azimuth.shear - lead * spacing;
+    int before_line = (y - origin) >> LINE_SHIFT;
+    int before = origin + before_line * spacing;
     int after = before + spacing;
     bool has_before = wraps || before >= 0;
     bool has_after = before < y && (wraps || after <= (lanes - 1) * CELL);
-    ivec3 before_texel = ivec3(wraps ? wrapped(slot, slots) : max(slot, 0), march, azimuth.layer);
-    ivec3 after_texel = ivec3(wraps ? wrapped(slot + 1, slots) : slot + 1, march, azimuth.layer);
+    int after_line = wraps ? wrapped(before_line + 1, lines) : min(before_line + 1, lines - 1);
+    before_line = wraps ? wrapped(before_line, lines) : before_line;
     float t = float(y - before) / float(spacing);
     bool takes_after = has_after && (t > 0.5 || !has_before);
     bool takes_one = has_after || has_before;
 
     if (FUSE == FUSE_NEAREST || FUSE == FUSE_AIMED_NEAREST) {
-        uint word = texelFetch(lattice, takes_after ? after_texel : before_texel, 0).x;
+        int line = takes_after ? after_line : before_line;
+        uvec4 texel = texelFetch(lattice, lattice_texel(azimuth, line, step + warm_up), 0);
         if (FUSE == FUSE_NEAREST) {
-            return vec2(takes_one ? lattice_slope(word) : NO_SLOPE, 0.0);
+            return vec2(takes_one ? line_slope(line, texel) : NO_SLOPE, 0.0);
         }
         vec2 found = first_crossings(azimuth, o);
+        uint back = takes_one ? lattice_u16(texel.xy, line) : 0u;
         // A proposal one step back is the first crossing itself.
-        return takes_one && word > 1u ? higher(found, seen(azimuth, y, word, step, lanes, steps, o.own)) : found;
+        return higher(found, seen(azimuth, y, back > 1u ? back : 0u, step, lanes, steps, o.own));
     }
-    uint after_word = has_after ? texelFetch(lattice, after_texel, 0).x : 0u;
-    uint before_word = has_before ? texelFetch(lattice, before_texel, 0).x : 0u;
+    uvec4 before_texel = texelFetch(lattice, lattice_texel(azimuth, before_line, step + warm_up), 0);
+    uvec4 after_texel = texelFetch(lattice, lattice_texel(azimuth, after_line, step + warm_up), 0);
+    uint before_back = has_before ? lattice_u16(before_texel.xy, before_line) : 0u;
+    uint after_back = has_after ? lattice_u16(after_texel.xy, after_line) : 0u;
     if (FUSE == FUSE_AIMED) {
         vec2 found = first_crossings(azimuth, o);
-        vec2 a = seen(azimuth, y, after_word > 1u ? after_word : 0u, step, lanes, steps, o.own);
-        vec2 b = seen(azimuth, y, before_word > 1u ? before_word : 0u, step, lanes, steps, o.own);
-        return higher(found, higher(a, b));
+        found = higher(found, seen(azimuth, y, before_back > 1u ? before_back : 0u, step, lanes, steps, o.own));
+        return higher(found, seen(azimuth, y, after_back > 1u ? after_back : 0u, step, lanes, steps, o.own));
     }
-    vec2 a = vec2(NO_SLOPE, 0.0);
-    vec2 b = vec2(NO_SLOPE, 0.0);
+    vec2 b;
+    vec2 a;
     if (FUSE == FUSE_OWN) {
-        a = has_after ? seen(azimuth, after, after_word, step, lanes, steps, o.own) : a;
-        b = has_before ? seen(azimuth, before, before_word, step, lanes, steps, o.own) : b;
+        b = seen(azimuth, before, before_back, step, lanes, steps, o.own);
+        a = seen(azimuth, after, after_back, step, lanes, steps, o.own);
     } else {
-        a.x = has_after ? lattice_slope(after_word) : NO_SLOPE;
-        b.x = has_before ? lattice_slope(before_word) : NO_SLOPE;
+        b = vec2(has_before ? line_slope(before_line, before_texel) : NO_SLOPE, 0.0);
+        a = vec2(has_after ? line_slope(after_line, after_texel) : NO_SLOPE, 0.0);
     }
     // Where only one line met anything, it speaks for the sample.
-    if (b.x <= NO_SLOPE || a.x <= NO_SLOPE) {
+    if (b.x <= LOWEST_MET || a.x <= LOWEST_MET) {
         return higher(a, b);
     }
     return vec2(mix(b.x, a.x, t), takes_after ? a.y : b.y);

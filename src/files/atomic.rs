@@ -78,3 +78,12 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
     file.write(text.as_bytes())?;
     file.finish()
 }
+
+/// Writes JSON, indented and with a line feed at its end, whole or not at all.
+///
+/// # Errors
+/// A destination that cannot be written to, or that is a directory or a device.
+pub fn write_json(path: &Path, value: &serde_json::Value) -> Result<()> {
+    // The alternate form of a value's Display is its pretty-printed text.
+    write_text(path, &format!("{value:#}\n"))
+}

@@ -1,152 +1,105 @@
-//! Radiance HDR: shared-exponent texels, plain or run-length coded.
+//! Radiance HDR: the `image` crate decodes texels; what the header says of them is applied here.
 
 use super::open;
 use crate::{Error, Result};
+use image::{ImageDecoder, ImageError, codecs::hdr::HdrDecoder};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// The most texels an environment may have: 16384 × 8192.
 pub(super) const TEXEL_LIMIT: u64 = 1 << 27;
+/// The longest header that is looked through; the decoder keeps every line of it.
+const HEADER_LIMIT: usize = 1 << 16;
 
 /// Rows, columns and radiance. A texel (r, g, b, e) is (r, g, b)·2^(e-136), over the product of
 /// the header's EXPOSURE lines (which say by what the values were multiplied) and of its COLORCORR
 /// lines. GAMMA and PRIMARIES lines mean nothing here and are passed over.
+///
+/// The decoder wants lines that end in a line feed alone and the top row first (-Y +X); it refuses
+/// other orientations. It takes a row that begins with a texel (2, 2, below 128) for one of new runs
+/// at any width, where only widths from 8 to 32767 have them: no encoder writes such a texel, as
+/// one of its parts is always 128 or more.
 pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f32; 3]>)> {
-    let mut rest = bytes;
-    let mut scale = [1.0_f64; 3];
-    for number in 1.. {
-        let place = || format!("header line {number}");
-        let line = next_line(&mut rest).ok_or_else(|| {
-            Error::file(path, place(), "the end of the file", "an empty line after the header")
-        })?;
-        let numbers = |text: &str, expected: &str| {
-            let values: Vec<f64> = text.split_whitespace().filter_map(|w| w.parse().ok()).collect();
-            if values.is_empty() || values.iter().any(|v| !v.is_normal() || *v < 0.0) {
-                return Err(Error::file(path, place(), shortened(line), expected));
-            }
-            Ok(values)
-        };
-        if line.is_empty() {
-            break;
-        } else if let Some(text) = line.strip_prefix("EXPOSURE=") {
-            let exposure = numbers(text, "EXPOSURE= and a positive number")?[0];
-            scale = scale.map(|s| s / exposure);
-        } else if let Some(text) = line.strip_prefix("COLORCORR=") {
-            match numbers(text, "COLORCORR= and three positive numbers")?[..] {
-                [r, g, b] => scale = [scale[0] / r, scale[1] / g, scale[2] / b],
-                _ => {
-                    let found = shortened(line);
-                    return Err(Error::file(path, place(), found, "three positive numbers"));
-                }
-            }
-        } else if let Some(format) = line.strip_prefix("FORMAT=")
-            && format.trim() != "32-bit_rle_rgbe"
-        {
-            return Err(Error::file(path, place(), shortened(line), "FORMAT=32-bit_rle_rgbe"));
-        }
+    let start = &bytes[..bytes.len().min(HEADER_LIMIT)];
+    if !start.windows(2).any(|pair| pair == b"\n\n") {
+        let found = format!("no empty line in the first {} bytes", start.len());
+        return Err(Error::file(path, "header", found, "one after the header, without \\r"));
     }
-    let line = next_line(&mut rest).unwrap_or("");
-    let words: Vec<&str> = line.split_whitespace().collect();
-    let sides = match words[..] {
-        ["-Y", rows, "+X", cols] => rows.parse::<u64>().ok().zip(cols.parse::<u64>().ok()),
-        _ => None,
+    let wrong = |place: &str, expected: &str, e: ImageError| {
+        Error::file(path, place, open::reason(e), expected)
     };
+    // Strictness would only refuse "#?RGBE" as the first line, and every malformed EXPOSURE with
+    // another sentence than ours.
+    let decoder = HdrDecoder::new_nonstrict(Guarded { rest: bytes, marks: 0 })
+        .map_err(|e| wrong("header", "FORMAT=32-bit_rle_rgbe and then -Y rows +X columns", e))?;
+    let about = decoder.metadata();
+    let scale = scale(path, &about.custom_attributes)?;
+
     let place = "resolution line";
-    let (rows, cols) = sides.ok_or_else(|| {
-        Error::file(path, place, shortened(line), "-Y rows +X columns (top row first)")
-    })?;
-    let (rows, cols) = open::size(path, place, rows, cols)?;
+    let (rows, cols) = open::size(path, place, about.height.into(), about.width.into())?;
     if rows as u64 * cols as u64 > TEXEL_LIMIT {
         let found = format!("{rows} × {cols}");
         return Err(Error::file(path, place, found, format!("at most {TEXEL_LIMIT} texels")));
     }
-    // A row takes at least one texel, or a 4-byte mark.
-    open::plausible(path, place, 4 * rows as u64, bytes.len(), 1)?;
+    // A row is at least a texel and a mark of 4 bytes for each base-256 digit of its run.
+    let row_bytes = 4 * (1 + [1, 256].iter().filter(|n| cols > **n).count());
+    open::plausible(path, place, (row_bytes * rows) as u64, bytes.len(), 1)?;
 
-    let mut texels = Vec::new();
-    let mut scanline = Vec::with_capacity(cols);
-    for row in 0..rows {
-        scanline.clear();
-        read_row(&mut rest, cols, &mut scanline).ok_or_else(|| {
-            let expected = "a scanline as long as the picture is wide";
-            Error::file(path, format!("row {row}"), "truncated or broken run lengths", expected)
-        })?;
-        texels.extend(scanline.iter().map(|&[r, g, b, e]| {
-            let unit = 2.0_f64.powi(i32::from(e) - 136);
-            let value = |m: u8, s: f64| if e == 0 { 0.0 } else { (f64::from(m) * unit * s) as f32 };
-            [value(r, scale[0]), value(g, scale[1]), value(b, scale[2])]
-        }));
+    let mut texels = open::zeros::<[f32; 3]>(path, rows * cols)?;
+    decoder
+        .read_image(bytemuck::cast_slice_mut(&mut texels))
+        .map_err(|e| wrong("image data", "scanlines as long as the picture is wide", e))?;
+    if scale != [1.0; 3] {
+        for texel in &mut texels {
+            *texel = [0, 1, 2].map(|i| (f64::from(texel[i]) * scale[i]) as f32);
+        }
     }
     Ok((rows, cols, texels))
 }
 
-/// The text up to a line feed, which is consumed; `None` at the end or where it is no text.
-fn next_line<'a>(rest: &mut &'a [u8]) -> Option<&'a str> {
-    let end = rest.iter().position(|b| *b == b'\n')?;
-    let line = std::str::from_utf8(&rest[..end]).ok()?;
-    *rest = &rest[end + 1..];
-    Some(line.trim_end_matches('\r'))
-}
-
-fn shortened(line: &str) -> String {
-    format!("\"{}\"", line.chars().take(40).filter(|c| !c.is_control()).collect::<String>())
-}
-
-/// Cuts `n` bytes off the front.
-fn take<'a>(rest: &mut &'a [u8], n: usize) -> Option<&'a [u8]> {
-    let (front, back) = rest.split_at_checked(n)?;
-    *rest = back;
-    Some(front)
-}
-
-/// One scanline of RGBE in either coding; `None` where the bytes end or a run passes the row's end.
-fn read_row(rest: &mut &[u8], cols: usize, row: &mut Vec<[u8; 4]>) -> Option<()> {
-    if (8..0x8000).contains(&cols)
-        && let [2, 2, high, low, ..] = **rest
-        && usize::from(u16::from_be_bytes([high, low])) == cols
-    {
-        take(rest, 4)?;
-        row.resize(cols, [0; 4]);
-        return (0..4).try_for_each(|channel| read_channel(rest, row, channel));
-    }
-    // The older coding: texels, and (1, 1, 1, n) for n more of the last; marks in a row are the
-    // digits of one count, lowest first.
-    let mut shift = 0;
-    while row.len() < cols {
-        let texel = take(rest, 4)?;
-        if let [1, 1, 1, n] = *texel {
-            let run = usize::from(n).checked_shl(shift)?;
-            let last = *row.last()?;
-            if run > cols - row.len() {
-                return None;
-            }
-            row.resize(row.len() + run, last);
-            shift += 8;
-        } else {
-            row.push([texel[0], texel[1], texel[2], texel[3]]);
-            shift = 0;
+/// What the header asks to multiply by. The decoder collects EXPOSURE and COLORCORR, too, but
+/// skips what it cannot read as f32 without a word.
+fn scale(path: &Path, lines: &[(String, String)]) -> Result<[f64; 3]> {
+    let mut scale = [1.0_f64; 3];
+    for (key, value) in lines {
+        // A line without a value is kept whole under no key.
+        let (key, value) = match key.as_str() {
+            "" => value.split_once('=').unwrap_or_default(),
+            key => (key, value.as_str()),
+        };
+        let (count, expected) = match key {
+            "EXPOSURE" => (1, "a positive number"),
+            "COLORCORR" => (3, "three positive numbers"),
+            _ => continue,
+        };
+        let numbers: Vec<f64> =
+            value.split_whitespace().map(|w| w.parse().unwrap_or(f64::NAN)).collect();
+        if numbers.len() != count || numbers.iter().any(|v| !v.is_normal() || *v < 0.0) {
+            let found: String = value.chars().take(40).filter(|c| !c.is_control()).collect();
+            let place = format!("header: {key}");
+            return Err(Error::file(path, place, format!("\"{found}\""), expected));
         }
+        scale = [0, 1, 2].map(|i| scale[i] / numbers[i % count]);
     }
-    Some(())
+    Ok(scale)
 }
 
-/// One channel of a scanline: a count above 128 repeats the next byte count-128 times, else count
-/// bytes follow as they are.
-fn read_channel(rest: &mut &[u8], row: &mut [[u8; 4]], channel: usize) -> Option<()> {
-    let mut texels = row.iter_mut();
-    while texels.len() > 0 {
-        let count = usize::from(take(rest, 1)?[0]);
-        if count == 0 || count > 128 && count - 128 > texels.len() {
-            return None;
+/// The file's bytes, up to a fifth old run mark in a row: two are enough for the widest row, and
+/// the decoder multiplies its count by 256 for each without a check, which panics in debug builds
+/// (image-rs/image#2714, merged, not in 0.25.10).
+struct Guarded<'a> {
+    rest: &'a [u8],
+    /// Marks read since the last thing that was none; the decoder reads texels and marks whole.
+    marks: u8,
+}
+
+impl Read for Guarded<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.rest.read(buffer)?;
+        self.marks = if matches!(buffer, [1, 1, 1, _]) { self.marks + 1 } else { 0 };
+        if self.marks > 4 {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "five run lengths in a row"));
         }
-        if count > 128 {
-            let value = take(rest, 1)?[0];
-            texels.by_ref().take(count - 128).for_each(|t| t[channel] = value);
-        } else if count <= texels.len() {
-            let values = take(rest, count)?;
-            texels.by_ref().zip(values).for_each(|(t, v)| t[channel] = *v);
-        } else {
-            return None;
-        }
+        Ok(count)
     }
-    Some(())
 }

@@ -1,4 +1,4 @@
-//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY and text out.
+//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY, JSON and text out.
 //!
 //! A wrong input is one sentence that names the file, the place in it, what was found and what
 //! was expected ([`Error::File`](crate::Error::File)). An output is complete or absent: it is
@@ -24,7 +24,7 @@ mod planes;
 mod png;
 mod tif;
 
-pub use atomic::write_text;
+pub use atomic::{write_json, write_text};
 pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};

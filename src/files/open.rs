@@ -156,11 +156,31 @@ pub(super) fn plausible(
     Ok(())
 }
 
+/// Memory for `count` values, all zero, or the system's refusal.
+pub(super) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| Error::io(path, std::io::ErrorKind::OutOfMemory.into()))?;
+    values.resize(count, T::default());
+    Ok(values)
+}
+
 /// A decoder's complaint as the `found` of one sentence: one line, no full stop.
 pub(super) fn complaint(error: impl std::fmt::Display) -> String {
-    let text = error.to_string();
+    let text = error.to_string().replace(|c: char| c.is_control(), " ");
     let words: Vec<_> = text.split_whitespace().collect();
     words.join(" ").trim_end_matches('.').to_owned()
+}
+
+/// [`complaint`] of the `image` crate, whose word for a short file is the reader's.
+pub(super) fn reason(error: image::ImageError) -> String {
+    match error {
+        image::ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
+            "the end of the file".to_owned()
+        }
+        other => complaint(other),
+    }
 }
 
 #[cfg(test)]

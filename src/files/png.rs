@@ -4,96 +4,84 @@ use super::atomic::Temporary;
 use super::heights::Raster;
 use super::open;
 use crate::{Error, Result};
-use ::png::{
-    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Limits,
-    SrgbRenderingIntent, Transformations,
-};
+use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
+use image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, Limits};
 use std::{io::Cursor, path::Path};
 
-/// A decoded picture: samples of 8 or 16 bits, as they are in the file.
+/// A decoded picture: samples of 8 or 16 bits; palettes and smaller depths are expanded, and the
+/// grey or colour of a `tRNS` chunk has become alpha.
 struct Samples {
     rows: usize,
     cols: usize,
     colour: ColorType,
+    /// Bits a sample in the file.
+    depth: u8,
     /// 255 or 65 535.
     white: u16,
     /// Interleaved channels.
     values: Vec<u16>,
-    /// The transparent grey of a `tRNS` chunk.
-    transparent: Option<u16>,
 }
 
-/// Decodes the first image. `expand` turns palettes and small depths into 8 bits a channel.
-fn decode(path: &Path, bytes: &[u8], expand: bool) -> Result<Samples> {
-    let wrong = |place: &str, e: DecodingError| {
-        Error::file(path, place, open::complaint(e), "a whole and valid PNG")
+/// Decodes the first image.
+fn decode(path: &Path, bytes: &[u8]) -> Result<Samples> {
+    let wrong = |place: &str, e: ImageError| {
+        Error::file(path, place, open::reason(e), "a whole and valid PNG")
     };
-    let mut decoder = Decoder::new(Cursor::new(bytes));
-    decoder.set_ignore_text_chunk(true);
-    decoder.set_ignore_iccp_chunk(true);
-    if expand {
-        decoder.set_transformations(Transformations::EXPAND);
-    }
-    let header = decoder.read_header_info().map_err(|e| wrong("header", e))?;
-    let (rows, cols) = open::size(path, "header", header.height.into(), header.width.into())?;
-    let line = header.raw_row_length() as u64;
+    // What the decoder may take beside the picture: rows of up to SIDE_LIMIT pixels of 8 bytes,
+    // and texts and profiles, which it keeps (a chunk's buffer doubles as it grows, and is copied).
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(4 * bytes.len() as u64 + (4 << 20));
+    let decoder =
+        PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(|e| wrong("header", e))?;
+    let (cols, rows) = decoder.dimensions();
+    let (rows, cols) = open::size(path, "header", rows.into(), cols.into())?;
+    // The decoder tells only what it expands to. IHDR, always first and with its CRC now checked,
+    // has the depth at byte 24 and the colour type at 25.
+    let depth = bytes[24];
+    let channels = [1, 0, 3, 1, 2, 0, 4][usize::from(bytes[25])];
+    let line = (cols as u64 * channels * u64::from(depth)).div_ceil(8);
     open::plausible(path, "header", line * rows as u64, bytes.len(), open::DEFLATE_RATIO)?;
-    let limit = usize::try_from(line * rows as u64 + (1 << 20)).unwrap_or(usize::MAX);
-    decoder.set_limits(Limits { bytes: limit });
 
-    let mut reader = decoder.read_info().map_err(|e| wrong("header", e))?;
-    let (colour, depth) = reader.output_color_type();
-    let white = match depth {
-        BitDepth::Eight => 255,
-        BitDepth::Sixteen => 65535,
-        other => {
-            let found = format!("{} bits a sample", other as u8);
-            return Err(Error::file(path, "header", found, "8 or 16 bits"));
-        }
-    };
-    let info = reader.info();
-    let transparent = match (info.color_type, info.trns.as_deref()) {
-        (ColorType::Grayscale, Some(&[high, low])) => Some(u16::from_be_bytes([high, low])),
-        // The decoder drops the upper byte where samples have 8 bits.
-        (ColorType::Grayscale, Some(&[grey])) => Some(grey.into()),
-        _ => None,
-    };
-    let size = reader.output_buffer_size().unwrap_or(usize::MAX);
-    let mut buffer = Vec::new();
-    buffer
-        .try_reserve_exact(size)
-        .map_err(|_| Error::io(path, std::io::ErrorKind::OutOfMemory.into()))?;
-    buffer.resize(size, 0);
-    reader.next_frame(&mut buffer).map_err(|e| wrong("image data", e))?;
-    reader.finish().map_err(|e| wrong("end", e))?;
-    let values = if white == 255 {
-        buffer.into_iter().map(u16::from).collect()
+    let colour = decoder.color_type();
+    let count = rows * cols * usize::from(colour.channel_count());
+    let wide = depth == 16;
+    let values = if wide {
+        let mut values = open::zeros::<u16>(path, count)?;
+        let bytes = bytemuck::cast_slice_mut(&mut values);
+        decoder.read_image(bytes).map_err(|e| wrong("image data", e))?;
+        values
     } else {
-        buffer.as_chunks::<2>().0.iter().map(|b| u16::from_be_bytes(*b)).collect()
+        let mut values = open::zeros::<u8>(path, count)?;
+        decoder.read_image(&mut values).map_err(|e| wrong("image data", e))?;
+        values.into_iter().map(u16::from).collect()
     };
-    Ok(Samples { rows, cols, colour, white, values, transparent })
+    // The decoder stops with the last row. A file that goes no further was cut.
+    if !bytes.windows(END.len()).rev().any(|w| w == END) {
+        return Err(Error::file(path, "end", "no IEND chunk", "a whole and valid PNG"));
+    }
+    Ok(Samples { rows, cols, colour, depth, white: if wide { 65535 } else { 255 }, values })
 }
+
+/// The chunk that ends every PNG: no bytes, its name, the CRC of that.
+const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 
 /// Grey of 8 or 16 bits as heights, one count one metre; transparent samples are voids.
 pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
-    let png = decode(path, bytes, false)?;
-    let (values, voids) = match png.colour {
-        ColorType::Grayscale => {
-            let voids = png.transparent.map(|t| png.values.iter().map(|v| *v == t).collect());
-            (png.values.iter().map(|v| f64::from(*v)).collect(), voids)
-        }
-        ColorType::GrayscaleAlpha => {
-            let pixels = png.values.as_chunks::<2>().0;
-            let voids = pixels.iter().map(|[_, alpha]| *alpha == 0).collect();
-            (pixels.iter().map(|[grey, _]| f64::from(*grey)).collect(), Some(voids))
-        }
-        other => {
-            let found = match other {
-                ColorType::Indexed => "a palette",
-                _ => "red, green and blue",
-            };
-            return Err(Error::file(path, "header", found, "grey: heights have one channel"));
-        }
+    let png = decode(path, bytes)?;
+    if png.colour.has_color() {
+        let found = "a palette, or red, green and blue";
+        return Err(Error::file(path, "header", found, "grey: heights have one channel"));
+    }
+    if png.depth < 8 {
+        let found = format!("{} bits a sample", png.depth);
+        return Err(Error::file(path, "header", found, "8 or 16 bits"));
+    }
+    let (values, voids) = if png.colour.has_alpha() {
+        let pixels = png.values.as_chunks::<2>().0;
+        let voids = pixels.iter().map(|[_, alpha]| *alpha == 0).collect();
+        (pixels.iter().map(|[grey, _]| f64::from(*grey)).collect(), Some(voids))
+    } else {
+        (png.values.into_iter().map(f64::from).collect(), None)
     };
     Ok(Raster { voids, ..Raster::bare(png.rows, png.cols, values) })
 }
@@ -112,18 +100,13 @@ pub(super) struct Linear {
 /// Any PNG in linear light: samples are sRGB-encoded, at 8 bits and at 16, whatever a `gAMA` chunk
 /// or profile says.
 pub(super) fn linear(path: &Path, bytes: &[u8]) -> Result<Linear> {
-    let png = decode(path, bytes, true)?;
+    let png = decode(path, bytes)?;
     let curve: Vec<f32> =
         (0..=png.white).map(|v| decoded(f64::from(v) / f64::from(png.white)) as f32).collect();
     let light = |v: u16| curve[usize::from(v)];
     let opacity = |v: u16| f32::from(v) / f32::from(png.white);
-    let (grey, has_alpha) = match png.colour {
-        ColorType::Grayscale => (true, false),
-        ColorType::GrayscaleAlpha => (true, true),
-        ColorType::Rgba => (false, true),
-        _ => (false, false),
-    };
-    let width = if grey { 1 } else { 3 } + usize::from(has_alpha);
+    let (grey, has_alpha) = (!png.colour.has_color(), png.colour.has_alpha());
+    let width = usize::from(png.colour.channel_count());
     let pixels = png.values.chunks_exact(width);
     let rgb = pixels
         .clone()
@@ -200,31 +183,23 @@ pub fn write_png(
     };
     let (width, height) = (side(cols)?, side(rows)?);
 
-    let mut file = Temporary::create(path)?;
-    let wrong = |e: EncodingError| match e {
-        EncodingError::IoError(e) => Error::io(path, e),
-        other => Error::file(path, "PNG encoder", open::complaint(other), "a picture it can write"),
-    };
-    let mut encoder = Encoder::new(file.stream(), width, height);
-    encoder.set_color(if transparent.is_some() { ColorType::Rgba } else { ColorType::Rgb });
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    let mut writer = encoder.write_header().map_err(wrong)?;
-    let mut stream = writer.stream_writer().map_err(wrong)?;
-    let mut line = Vec::new();
-    for row in 0..rows {
-        line.clear();
-        for (col, texel) in rgb[row * cols..(row + 1) * cols].iter().enumerate() {
-            let hidden = hidden(row * cols + col);
-            line.extend(if hidden { [0; 3] } else { texel.map(|v| tone.code(v)) });
-            if transparent.is_some() {
-                line.push(if hidden { 0 } else { 255 });
-            }
+    let mut samples = Vec::with_capacity(rgb.len() * if transparent.is_some() { 4 } else { 3 });
+    for (i, texel) in rgb.iter().enumerate() {
+        let hidden = hidden(i);
+        samples.extend(if hidden { [0; 3] } else { texel.map(|v| tone.code(v)) });
+        if transparent.is_some() {
+            samples.push(if hidden { 0 } else { 255 });
         }
-        std::io::Write::write_all(&mut stream, &line).map_err(|e| Error::io(path, e))?;
     }
-    stream.finish().map_err(wrong)?;
-    writer.finish().map_err(wrong)?;
+    let colour =
+        if transparent.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    // By way of memory: the encoder loses the error of writing its last chunk.
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&samples, width, height, colour)
+        .map_err(|e| Error::file(path, "PNG encoder", open::reason(e), "a picture it can write"))?;
+    let mut file = Temporary::create(path)?;
+    file.write(&png)?;
     file.finish()
 }
 

@@ -14,7 +14,8 @@ pub(crate) const MARCHES_ROWS: u32 = 1;
 pub(crate) const FLIPS_MARCH: u32 = 2;
 pub(crate) const FLIPS_LANES: u32 = 4;
 
-/// One direction and what it weighs, as the shaders read it (`Azimuth` in `conventions.glsl`).
+/// One direction and what it weighs, as the shaders read it: four texels, `Azimuth` and
+/// `azimuth_at` in `conventions.glsl`, in this order.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Azimuth {
@@ -28,26 +29,28 @@ pub struct Azimuth {
     pub wedge_sin: f32,
     /// Width of the wedge, radians.
     pub wedge_rad: f32,
-    /// Azimuth of the wedge's centre, radians, (-π..π].
-    pub centre_rad: f32,
     /// World length of one march step.
     pub step_m: f32,
     /// Lane advance of a march step in 1/32768 of a cell, [0..32768].
     pub shear: i32,
-    /// Exact azimuths only: march component of the grid vector.
-    pub vector_march: i32,
-    /// Exact azimuths only: lane component of the grid vector.
-    pub vector_lane: i32,
+    /// First layer of its result in the lattice; set by the plan.
+    pub layer: u32,
     /// Which axis is marched, and which axes are flipped.
     pub flags: u32,
-    /// Layer of the lattice of its march axis; set by the plan.
-    pub layer: u32,
+    /// Azimuth of the wedge's centre, radians, (-π..π].
+    pub centre_rad: f32,
     /// Sun only: slope of the lower end of the disc's chord.
     pub low_slope: f32,
     /// Sun only: slope of the upper end.
     pub high_slope: f32,
     /// Sun only: radiance of the disc (times the chord's width) for irradiance 1.
     pub weight: f32,
+    /// Exact azimuths only: march component of the grid vector.
+    pub vector_march: i32,
+    /// Exact azimuths only: lane component of the grid vector.
+    pub vector_lane: i32,
+    /// Fills the fourth texel.
+    pub pad: u32,
 }
 
 impl Azimuth {

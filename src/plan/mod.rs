@@ -1,3 +1,70 @@
-//! Scene and quality to passes: pure, without a Vulkan call.
+//! Scene and quality to passes: pure, without a Vulkan call. What is decided here is all that is
+//! ever recorded; [`Plan`] prints it.
 
 pub mod azimuths;
+mod batch;
+mod build;
+mod limits;
+mod pass;
+mod print;
+mod resource;
+pub mod sweep;
+
+pub use azimuths::Azimuth;
+pub use batch::{Axis, Batch};
+pub(crate) use build::Builder;
+pub use build::{Picture, circle_rad, horizons, picture};
+pub use limits::Limits;
+pub use pass::{Pass, ResourceId, missing_barriers};
+pub use resource::{Format, Kind, Owner, Resource};
+
+/// The passes that light one scene, in order, and everything that they touch.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Columns and rows of the field.
+    pub size: [u32; 2],
+    /// Images and buffers.
+    pub resources: Vec<Resource>,
+    /// Dispatches, in order.
+    pub passes: Vec<Pass>,
+    /// Contents of the buffer "azimuths".
+    pub azimuths: Vec<Azimuth>,
+    /// For horizons: which azimuth k of the circle each layer of the outputs is.
+    pub layer_azimuths: Vec<u32>,
+    /// What was left out or changed, and why.
+    pub notes: Vec<String>,
+    /// The settings really used, as (name, value).
+    pub settings: Vec<(String, String)>,
+}
+
+impl Plan {
+    /// Bytes of all internal images and buffers.
+    pub fn internal_bytes(&self) -> u64 {
+        self.resources.iter().filter(|r| r.owner == Owner::Internal).map(Resource::bytes).sum()
+    }
+
+    /// Bytes of everything, inputs and outputs too: what counts against the memory budget.
+    pub fn bytes(&self) -> u64 {
+        self.resources.iter().map(Resource::bytes).sum()
+    }
+
+    /// The resource of this name.
+    pub fn find(&self, name: &str) -> Option<ResourceId> {
+        self.resources.iter().position(|r| r.name == name).map(ResourceId)
+    }
+
+    /// Names of the images that a caller hands in, in the order of the inputs.
+    pub fn inputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
+        self.owned(Owner::Input)
+    }
+
+    /// The images that a caller has written to, in the order of the outputs.
+    pub fn outputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
+        self.owned(Owner::Output)
+    }
+
+    fn owned(&self, owner: Owner) -> impl Iterator<Item = (ResourceId, &Resource)> {
+        let all = self.resources.iter().enumerate();
+        all.filter(move |(_, r)| r.owner == owner).map(|(i, r)| (ResourceId(i), r))
+    }
+}

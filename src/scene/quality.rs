@@ -1,22 +1,177 @@
-/// How a sample's horizon is made of what the two sweep lines beside it found.
-///
-/// The number is the shaders' constant. Mean error on a DEM with lines a cell apart, per azimuth, and
-/// what is read per sample: the further down, the more true and the more is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Fuse {
-    /// The slope that the nearer line found: 0.23°; one word of the lattice.
-    Nearest = 1,
-    /// Both lines' slopes, interpolated: 0.17°, steps smoothed; two words.
-    Slopes = 2,
-    /// Both lines' occluders seen from the sample's own height, interpolated: 0.18°; two words, four
-    /// heights.
-    Own = 3,
-    /// The surface on the sample's own line where the nearer line's occluder stands, and the first
-    /// crossings of its own line: 0.036°, never above the true horizon; one word, two heights.
-    AimedNearest = 4,
-    /// The same with both lines' proposals, the higher one: 0.023°, never above the true horizon; two
-    /// words, four heights.
+use crate::{Error, Result};
+
+/// What speed is traded against accuracy with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// How horizons are found.
+    pub method: Method,
+    /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp
+    /// silhouettes. Time and memory grow in proportion.
+    pub azimuths: u32,
+    /// Slices across a sun's disc, [1..256], default 8. Fewer: faster, steps in soft shadows.
+    pub sun_azimuths: u32,
+    /// Distance between the lines of a sweep. Wider: faster, small occluders missed between lines.
+    pub lines: Lines,
+    /// How the lines' results come back to the samples between them.
+    pub fuse: Fuse,
+    /// Bits of what the sweep keeps.
+    pub precision: Precision,
+    /// Where the sweep's hull lives: never changes the result.
+    pub hull: Hull,
+    /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, the light of
+    /// small bright places smeared over elevation.
+    pub table_elevations: u32,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            method: Method::Auto,
+            azimuths: 64,
+            sun_azimuths: 8,
+            lines: Lines::Cell,
+            fuse: Fuse::AimedNearest,
+            precision: Precision::F32,
+            hull: Hull::Auto,
+            table_elevations: 256,
+        }
+    }
+}
+
+impl Quality {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first setting out of range, by its name on the command line.
+    pub fn check(&self) -> Result<()> {
+        let within = |name: &str, value: u32, low: u32, high: u32| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(Error::setting(
+                    name,
+                    value.to_string(),
+                    format!("a whole number from {low} to {high}"),
+                ))
+            }
+        };
+        within("--azimuths", self.azimuths, 4, 1024)?;
+        within("--sun-azimuths", self.sun_azimuths, 1, 256)?;
+        within("--table-elevations", self.table_elevations, 8, 4096)?;
+        Ok(())
+    }
+}
+
+/// How horizons are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The planner's choice: sweeps.
     #[default]
-    Aimed = 5,
+    Auto,
+    /// Hull sweeps along lines (Timonen & Westerholm 2010): time in proportion to the samples.
+    Sweep,
+    /// Every crossing of every sample's own line: exact, and slower in proportion to the side.
+    Brute,
+}
+
+/// Distance between the lines of a sweep, across the march.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lines {
+    /// Every sample on a line and every crossing on its hull: the triangulated surface's own
+    /// horizons, in azimuths along grid vectors near the even ones.
+    Exact,
+    /// Four lines a cell.
+    QuarterCell,
+    /// Two lines a cell.
+    HalfCell,
+    /// One line a cell.
+    #[default]
+    Cell,
+    /// A line every two cells.
+    TwoCells,
+    /// A line every four cells.
+    FourCells,
+}
+
+impl Lines {
+    /// log2 of the spacing in 1/32768 of a cell; none where lines go through every sample.
+    pub fn shift(self) -> Option<u32> {
+        match self {
+            Lines::Exact => None,
+            Lines::QuarterCell => Some(13),
+            Lines::HalfCell => Some(14),
+            Lines::Cell => Some(15),
+            Lines::TwoCells => Some(16),
+            Lines::FourCells => Some(17),
+        }
+    }
+}
+
+/// How the lines' results come back to the samples between them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fuse {
+    /// The slope that the nearer line found.
+    Nearest,
+    /// Both neighbouring lines' slopes, interpolated.
+    Slopes,
+    /// Both lines' occluders seen from the sample's own height, interpolated.
+    Own,
+    /// Where the nearer line's occluder stands, the surface on the sample's *own* line; and the
+    /// first crossings of that line. Never above the true horizon.
+    #[default]
+    AimedNearest,
+    /// The same with both lines' proposals: the higher one.
+    Aimed,
+}
+
+/// Bits of what a sweep keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// f32 throughout.
+    #[default]
+    F32,
+    /// Stored slopes as f16: 0.014° at most. Only where slopes are stored (fuse nearest, slopes).
+    F16,
+    /// Hull entries as f16 height and u16 step in one word (the paper's): heights rounded to 1/2048
+    /// of the largest.
+    Packed,
+}
+
+/// Where a sweep's hull lives. Every place gives the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hull {
+    /// The planner's choice for the device.
+    #[default]
+    Auto,
+    /// Private memory of the invocation: fastest on processors.
+    Private,
+    /// Shared memory of the workgroup (the paper's), going on in the stored occluders where a hull
+    /// is deeper.
+    Shared,
+    /// Nowhere: the stored occluders are a linked list of hull vertices.
+    List,
+}
+
+impl Fuse {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Fuse::Nearest => "nearest",
+            Fuse::Slopes => "slopes",
+            Fuse::Own => "own",
+            Fuse::AimedNearest => "aimed-nearest",
+            Fuse::Aimed => "aimed",
+        }
+    }
+}
+
+impl Precision {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Precision::F32 => "f32",
+            Precision::F16 => "f16",
+            Precision::Packed => "packed",
+        }
+    }
 }

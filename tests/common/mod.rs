@@ -31,23 +31,65 @@ pub fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// A PNG of raw samples.
+/// The colour types of PNG's IHDR.
+#[allow(dead_code, reason = "no test crate needs all of them")]
+pub mod colour {
+    pub const GREY: u8 = 0;
+    pub const RGB: u8 = 2;
+    pub const PALETTE: u8 = 3;
+    pub const GREY_ALPHA: u8 = 4;
+    pub const RGBA: u8 = 6;
+}
+
+/// A PNG of raw rows, stored, with chunks before them; a palette is black and white.
 pub fn png(
     cols: u32,
     rows: u32,
-    colour: png::ColorType,
-    depth: png::BitDepth,
+    colour: u8,
+    depth: u8,
+    chunks: &[(&[u8; 4], &[u8])],
     samples: &[u8],
 ) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, cols, rows);
-    encoder.set_color(colour);
-    encoder.set_depth(depth);
-    if colour == png::ColorType::Indexed {
-        encoder.set_palette(vec![0, 0, 0, 255, 255, 255]);
+    let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
+    let mut chunk = |name: &[u8; 4], data: &[u8]| {
+        let named = [name, data].concat();
+        bytes.extend((data.len() as u32).to_be_bytes());
+        bytes.extend(&named);
+        bytes.extend(crc32(&named).to_be_bytes());
+    };
+    let sizes = [cols.to_be_bytes(), rows.to_be_bytes()].concat();
+    chunk(b"IHDR", &[&sizes[..], &[depth, colour, 0, 0, 0]].concat());
+    if colour == colour::PALETTE {
+        chunk(b"PLTE", &[0, 0, 0, 255, 255, 255]);
     }
-    encoder.write_header().unwrap().write_image_data(samples).unwrap();
+    chunks.iter().for_each(|(name, data)| chunk(name, data));
+    // Each row behind the number of its filter, none; all in one stored DEFLATE block.
+    let rows: Vec<u8> = samples
+        .chunks(samples.len() / rows as usize)
+        .flat_map(|row| [&[0], row].concat())
+        .collect();
+    let length = u16::try_from(rows.len()).unwrap();
+    let (a, b) = rows.iter().fold((1, 0), |(a, b), v| {
+        let a = (a + u32::from(*v)) % 65_521;
+        (a, (a + b) % 65_521)
+    });
+    let mut data = vec![0x78, 0x01, 1];
+    data.extend([length.to_le_bytes(), (!length).to_le_bytes()].concat());
+    data.extend(&rows);
+    data.extend((b << 16 | a).to_be_bytes());
+    chunk(b"IDAT", &data);
+    chunk(b"IEND", &[]);
     bytes
+}
+
+/// The PNG checksum (ISO 3309), bit by bit.
+pub fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |crc, b| {
+        (0..8).fold(
+            crc ^ u32::from(*b),
+            |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 },
+        )
+    })
 }
 
 /// A GeoTIFF tag's value.
@@ -143,7 +185,7 @@ pub fn height_files() -> Vec<(&'static str, Vec<u8>)> {
     let floats: Vec<f32> = HEIGHTS.iter().map(|h| f32::from(*h)).collect();
     let number = |v: f64| npy("<f8", false, "()", &v.to_le_bytes());
     vec![
-        ("a.png", png(4, 3, png::ColorType::Grayscale, png::BitDepth::Sixteen, &be)),
+        ("a.png", png(4, 3, colour::GREY, 16, &[], &be)),
         ("a.exr", exr(4, 3, &[("Z", exr::prelude::FlatSamples::F32(floats))])),
         ("a.tif", geotiff()),
         ("N44W072.hgt", be[..18].to_vec()),

@@ -127,26 +127,31 @@ fn npz_by_name_or_the_only_plane() {
 
 #[test]
 fn png_depths_and_masks() {
-    use png::{BitDepth, ColorType};
-    let field = parse(
-        "a.png",
-        &png(2, 2, ColorType::GrayscaleAlpha, BitDepth::Eight, &[9, 255, 8, 0, 7, 1, 6, 255]),
-    )
-    .unwrap();
+    use colour::*;
+    let masked = png(2, 2, GREY_ALPHA, 8, &[], &[9, 255, 8, 0, 7, 1, 6, 255]);
+    let field = parse("a.png", &masked).unwrap();
     assert_eq!(field.voids().unwrap(), [false, true, false, false]);
     assert_eq!(absolute(&field)[2], 7.0);
-    // The grey that a tRNS chunk makes transparent.
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_trns(vec![0, 9]);
-    encoder.write_header().unwrap().write_image_data(&[8, 9]).unwrap();
+    // The grey that a tRNS chunk makes transparent, at either depth.
+    let bytes = png(2, 1, GREY, 8, &[(b"tRNS", &[0, 9])], &[8, 9]);
     assert_eq!(parse("a.png", &bytes).unwrap().voids().unwrap(), [false, true]);
-    for (colour, bytes) in [(ColorType::Rgb, 3), (ColorType::Rgba, 4), (ColorType::Indexed, 1)] {
-        let error = parse("a.png", &png(1, 1, colour, BitDepth::Eight, &vec![0; bytes]));
+    let bytes = png(2, 1, GREY, 16, &[(b"tRNS", &[1, 9])], &[0, 9, 1, 9]);
+    let field = parse("a.png", &bytes).unwrap();
+    assert_eq!(field.voids().unwrap(), [false, true]);
+    assert_eq!(absolute(&field)[0], 9.0);
+    // What stands beside the samples changes nothing, even where it is broken or long.
+    let note = [b"Comment\0".to_vec(), vec![b'x'; 1 << 20]].concat();
+    let chunks: [(&[u8; 4], &[u8]); 3] =
+        [(b"gAMA", &[0, 0, 0, 1]), (b"iCCP", b"p\0\0junk"), (b"tEXt", &note)];
+    assert_eq!(
+        absolute(&parse("a.png", &png(2, 1, GREY, 8, &chunks, &[8, 9])).unwrap()),
+        [8.0, 9.0]
+    );
+    for (colour, bytes) in [(RGB, 3), (RGBA, 4), (PALETTE, 1)] {
+        let error = parse("a.png", &png(1, 1, colour, 8, &[], &vec![0; bytes]));
         one_sentence(&error.unwrap_err().to_string(), "a.png");
     }
-    let error = parse("a.png", &png(8, 1, ColorType::Grayscale, BitDepth::One, &[3]));
+    let error = parse("a.png", &png(8, 1, GREY, 1, &[], &[3]));
     assert!(error.unwrap_err().to_string().contains("1 bits"));
 }
 

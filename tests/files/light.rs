@@ -11,6 +11,13 @@ fn environment(name: &str, bytes: &[u8]) -> Result<ridgelight::scene::Environmen
     parse_environment(Path::new(name), bytes, 0.25)
 }
 
+/// Bytes with one string replaced by another.
+fn with(mut bytes: Vec<u8>, from: &str, to: &str) -> Vec<u8> {
+    let at = bytes.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();
+    bytes.splice(at..at + from.len(), to.bytes());
+    bytes
+}
+
 #[test]
 fn hdr_headers_and_codings() {
     // 128·2^(129-136) = 1.
@@ -23,9 +30,19 @@ fn hdr_headers_and_codings() {
     let lines = "EXPOSURE=2\nEXPOSURE= 4.0\nCOLORCORR=1 0.5 1\n";
     let picture = environment("a.hdr", &hdr(4, 2, lines, &one)).unwrap();
     assert!(picture.texels().iter().all(|t| *t == [0.125, 0.125, 0.03125]));
+    // The other first line there is, and the ends of the exponent: 128·2^(1-136), 255·2^(255-136).
+    let ends = hdr(4, 2, "", &[one[0], [128, 0, 0, 1], [255, 128, 0, 255], [9, 9, 9, 0]].repeat(2));
+    let picture = environment("a.hdr", &with(ends, "RADIANCE", "RGBE")).unwrap();
+    let smallest = f32::from_bits(1 << 21);
+    let largest = [255.0 * 2_f32.powi(119), 2_f32.powi(126), 0.0];
+    assert_eq!(picture.texels()[1..4], [[smallest, 0.0, 0.0], largest, [0.0; 3]]);
     // Old runs: one texel, then seven more of it; rows do not share runs.
     let old = hdr(4, 2, "", &[[128, 64, 32, 129], [1, 1, 1, 3], [128, 0, 0, 129], [1, 1, 1, 3]]);
     assert_eq!(environment("a.hdr", &old).unwrap().texels()[7], [1.0, 0.0, 0.0]);
+    // Marks in a row are the digits of one count, lowest first: 1 + 255 + 256·1 = 512.
+    let long = hdr(512, 256, "", &[[128, 64, 32, 129], [1, 1, 1, 255], [1, 1, 1, 1]].repeat(256));
+    let picture = environment("a.hdr", &long).unwrap();
+    assert!(picture.texels().iter().all(|t| *t == [1.0, 0.5, 0.25]));
     // New runs, 16 wide: each channel as a run of 10 and 6 values as they are.
     let mut bytes = hdr(16, 8, "", &[]);
     for _ in 0..8 {
@@ -46,12 +63,21 @@ fn hdr_headers_and_codings() {
         (hdr(4, 2, "EXPOSURE=\n", &one), "EXPOSURE"),
         (hdr(4, 2, "COLORCORR=1\n", &one), "COLORCORR"),
         (hdr(4, 2, "FORMAT=32-bit_rle_xyze\n", &one), "xyze"),
-        (hdr(5, 2, "", &one), "row 1"),
+        (hdr(4, 2, "EXPOSURE=2 3\n", &one), "EXPOSURE"),
+        (hdr(4, 2, "COLORCORR=1 2 x\n", &one), "COLORCORR"),
+        (hdr(5, 2, "", &one), "image data: found the end of the file"),
         (hdr(3, 2, "", &one), "3 × 2"),
         (hdr(20_000, 10_000, "", &one), "134217728"),
         (hdr(100_000, 1, "", &one), "100000 columns"),
         (hdr(4, 2, "EXPOSURE=1e-300\n", &one), "row 0, column 0"),
-        (hdr(4, 2, "", &[[1, 1, 1, 200], one[0]]), "row 0"),
+        (hdr(4, 2, "", &[[1, 1, 1, 200], one[0]]), "run length"),
+        (hdr(4, 2, "", &[one[0], [1, 1, 1, 200]]), "scanline"),
+        (hdr(4, 2, "", &[&one[..1], &[[1, 1, 1, 0]; 9]].concat()), "five run lengths"),
+        (with(hdr(4, 2, "", &one), "\n\n", "\r\n\r\n"), "no empty line"),
+        (with(hdr(4, 2, "", &one), "-Y 2 +X 4", "+Y 2 +X 4"), "Orientation +Y +X"),
+        (with(hdr(4, 2, "", &one), "-Y 2 +X 4", "-Y 2 +X -4"), "width"),
+        // A row of 257 takes at least a texel and two marks, 12 bytes.
+        (hdr(300, 20_000, "", &[one[0]; 20_000]), "no more than the file can hold"),
     ] {
         let error = environment("a.hdr", &bytes).unwrap_err().to_string();
         one_sentence(&error, "a.hdr");
@@ -85,7 +111,7 @@ fn exr_environments_of_every_shape() {
 fn six_files_make_a_cube() {
     let folder = tempfile::tempdir().unwrap();
     let face = |name: &str, code: u8, side: usize| {
-        let bytes = hdr(side, side, "", &vec![[code, code, 7, 136]; side * side]);
+        let bytes = hdr(side, side, "", &vec![[16 * code, 16 * code, 7, 132]; side * side]);
         std::fs::write(folder.path().join(name), bytes).unwrap();
     };
     for (name, code) in ["px", "nx", "py", "ny", "pz", "nz"].iter().zip(1..) {
@@ -113,7 +139,7 @@ fn six_files_make_a_cube() {
 
 #[test]
 fn albedo_is_linear_and_fits_the_field() {
-    use png::{BitDepth, ColorType};
+    use colour::*;
     use ridgelight::scene::Albedo;
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, bytes: Vec<u8>| {
@@ -126,15 +152,16 @@ fn albedo_is_linear_and_fits_the_field() {
         Albedo::Constant(c) => panic!("a map, not {c:?}"),
     };
     // sRGB 0.5 is 0.214 041 in linear light (IEC 61966-2-1); 188/255 is 0.502 886.
-    let grey =
-        write("g.png", png(2, 1, ColorType::Grayscale, BitDepth::Sixteen, &[0x80, 0, 0xff, 0xff]));
+    let grey = write("g.png", png(2, 1, GREY, 16, &[], &[0x80, 0, 0xff, 0xff]));
     assert!((texels(&grey)[0][1] - 0.214_046).abs() < 1e-5);
     assert_eq!(texels(&grey)[1], [1.0; 3]);
-    let rgb = write("c.png", png(2, 1, ColorType::Rgb, BitDepth::Eight, &[188, 0, 255, 0, 0, 0]));
+    let rgb = write("c.png", png(2, 1, RGB, 8, &[], &[188, 0, 255, 0, 0, 0]));
     assert!((texels(&rgb)[0][0] - 0.502_886).abs() < 1e-5);
     assert_eq!(texels(&rgb)[0][1..], [0.0, 1.0]);
-    let palette = write("p.png", png(2, 1, ColorType::Indexed, BitDepth::Eight, &[1, 0]));
+    let palette = write("p.png", png(2, 1, PALETTE, 8, &[], &[1, 0]));
     assert_eq!(texels(&palette), [[1.0; 3], [0.0; 3]]);
+    let bits = write("b.png", png(2, 1, PALETTE, 1, &[], &[0x40]));
+    assert_eq!(texels(&bits), [[0.0; 3], [1.0; 3]]);
     let exr = |v: f32| write("a.exr", exr(2, 1, &[("Y", FlatSamples::F32(vec![0.5, v]))]));
     assert_eq!(texels(&exr(1.0)), [[0.5; 3], [1.0; 3]]);
     for bad in [1.01, -0.1, f32::NAN] {

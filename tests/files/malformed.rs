@@ -108,16 +108,6 @@ fn malformed_heights_are_one_sentence() {
     println!("{count} malformed files refused");
 }
 
-/// The PNG checksum (ISO 3309), bit by bit.
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |crc, b| {
-        (0..8).fold(
-            crc ^ u32::from(*b),
-            |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 },
-        )
-    })
-}
-
 #[test]
 fn paths_that_are_no_files() {
     let folder = tempfile::Builder::new().suffix(".png").tempdir().unwrap();
@@ -131,6 +121,7 @@ fn paths_that_are_no_files() {
     assert!(read_planes(&absent).is_err());
     assert!(read_albedo(&absent, 1, 1).is_err());
     assert!(write_text(folder.path(), "x").is_err());
+    assert!(write_json(folder.path(), &serde_json::Value::Null).is_err());
     assert!(write_text(&folder.path().join("no/such/folder.txt"), "x").is_err());
     #[cfg(unix)]
     assert!(write_text(Path::new("/dev/null"), "x").is_err());

@@ -46,6 +46,17 @@ fn exr_layers_round_trip() {
     let attributes = &meta.headers[0].own_attributes.other;
     assert!(attributes.iter().any(|(k, v)| k.eq("device")
         && matches!(v, exr::prelude::AttributeValue::Text(t) if t.bytes() == "Größe".as_bytes())));
+    // Other readers: the exr crate's own, and the image crate's, which takes the main layer.
+    let all = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
+    let channel = |name: &str| {
+        let found = all.layer_data.channel_data.list.iter().find(|c| c.name.eq(name)).unwrap();
+        found.sample_data.values_as_f32().collect::<Vec<_>>()
+    };
+    assert_eq!(channel("direct.sky.G"), rgb.iter().map(|t| t[1]).collect::<Vec<_>>());
+    assert_eq!(channel("horizon")[6], scalar[6]);
+    let picture = image::open(&path).unwrap().into_rgb32f();
+    assert_eq!(picture.dimensions(), (cols as u32, rows as u32));
+    assert!(picture.pixels().zip(&rgb).all(|(p, t)| p.0 == *t));
 
     // What cannot be written leaves the old file and nothing else.
     let before = std::fs::read(&path).unwrap();
@@ -83,12 +94,25 @@ fn png_round_trips_to_the_step_of_eight_bits() {
     assert!(error.to_string().contains("row 0, column 7"), "{error}");
     let transparent: Vec<bool> = (0..255).map(|i| i == 7).collect();
     write_png(&path, rows, cols, &rgb, Some(&transparent), Tone::default()).unwrap();
+    assert_eq!(image::open(&path).unwrap().color(), image::ColorType::Rgba8);
     let planes = read_planes(&path).unwrap();
     assert_eq!(planes.names.join(""), "RGBA");
     assert!((0..255).all(|i| planes.planes[3][i] == if i == 7 { 0.0 } else { 1.0 }));
     assert!(write_png(&path, 5, 5, &rgb, None, Tone::default()).is_err());
     assert!(write_png(&path, rows, cols, &rgb, None, Tone { exposure: f32::NAN }).is_err());
     assert_eq!(listing(folder.path()), ["out.png"]);
+}
+
+#[test]
+fn json_is_whole_and_indented() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.json");
+    let value = serde_json::json!({ "rmse": 0.1, "names": ["sky", "Größe"], "none": null });
+    write_json(&path, &value).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("\n  \"rmse\": 0.1") && text.ends_with("}\n"), "{text}");
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), value);
+    assert_eq!(listing(folder.path()), ["a.json"]);
 }
 
 #[test]

@@ -1,0 +1,24 @@
+#include "shared/sweep.glsl"
+
+// What a sweep leaves behind: one value a line and step. Lines are stored 32 together, step after
+// step, four lines a texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines
+// writes one contiguous stretch of memory, whatever the azimuth.
+
+// Lines before lane 0 at step 0 that the shear brings onto the field later.
+int lattice_lead(int shear, int total_steps, int line_shift, bool periodic) {
+    return periodic ? 0 : ((total_steps - 1) * shear + (1 << line_shift) - 1) >> line_shift;
+}
+
+int lattice_lines(int lanes, int lead, int line_shift, bool periodic) {
+    return periodic ? (lanes * CELL) >> line_shift : (((lanes - 1) * CELL) >> line_shift) + 1 + lead;
+}
+
+ivec3 lattice_texel(Azimuth azimuth, int line, int step) {
+    return ivec3((line & 31) >> 2, step, int(azimuth.layer) + (line >> 5));
+}
+
+// Halfword `line` & 3 of a texel of four.
+uint lattice_u16(uvec2 texel, int line) {
+    uint word = (line & 2) == 0 ? texel.x : texel.y;
+    return (line & 1) == 0 ? word & 0xffffu : word >> 16;
+}

@@ -1,0 +1,142 @@
+use ridgelight::files::{self, Channels, Layer, NpyWriter};
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::plan::{self, Limits, Plan};
+use ridgelight::scene::{Border, HeightField, Lines, Quality};
+use ridgelight::{Error, Result};
+
+use crate::args::HorizonArgs;
+use crate::setup::{self, Outcome};
+
+/// Azimuths computed and read back at a time: their angles stay within this many bytes.
+const OUTPUT_BYTES: u64 = 256 << 20;
+
+/// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
+/// of all passes and the last plan.
+pub fn for_each(
+    gpu: &mut Headless,
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    distances: bool,
+    each: &mut dyn FnMut(u32, &[f32], &[f32]) -> Result<()>,
+) -> Result<(Vec<Timing>, Plan)> {
+    let plane = field.rows() * field.cols();
+    let room = OUTPUT_BYTES.min(limits.memory_budget / 4);
+    let at_once = (room / (4 * plane as u64)).clamp(1, 256) as u32;
+    let mut times = Vec::new();
+    let mut first = 0;
+    loop {
+        let count = at_once.min(quality.azimuths - first);
+        let plan = plan::horizons(field, border, quality, limits, (first, count), distances)?;
+        let order = plan.layer_azimuths.clone();
+        let kept = plan.clone();
+        let mut frame = gpu.frame(plan, &[field.heights_m()])?;
+        times.extend(gpu.draw(&mut frame)?);
+        let angles = gpu.pixels(&frame, 0)?.values;
+        let far = if distances { gpu.pixels(&frame, 1)?.values } else { Vec::new() };
+        gpu.end(frame);
+        for k in first..first + count {
+            let layer = order.iter().position(|o| *o == k).expect("every azimuth has its layer");
+            let range = layer * plane..(layer + 1) * plane;
+            each(k, &angles[range.clone()], far.get(range).unwrap_or_default())?;
+        }
+        first += count;
+        if first == quality.azimuths {
+            return Ok((times, kept));
+        }
+    }
+}
+
+pub fn run(args: &HorizonArgs) -> Result<Outcome> {
+    args.later.check()?;
+    setup::check_output("-o", &args.output, &["npy", "exr"])?;
+    if let Some(path) = &args.distances {
+        setup::check_output("--distances", path, &["npy"])?;
+    }
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let quality = setup::quality(&args.quality)?;
+    let is_npy = setup::extension(&args.output) == "npy";
+    if quality.lines == Lines::Exact && is_npy && args.global.json.is_none() {
+        return Err(Error::setting(
+            "--lines exact",
+            "an .npy output alone",
+            "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
+        ));
+    }
+    let field = setup::field(&args.input.path, &args.surface)?;
+    let border = setup::border(&args.surface);
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let shape = [quality.azimuths as usize, field.rows(), field.cols()];
+    let mut angles_file =
+        if is_npy { Some(NpyWriter::create(&args.output, &shape)?) } else { None };
+    let mut distances_file =
+        args.distances.as_ref().map(|p| NpyWriter::create(p, &shape)).transpose()?;
+    let mut planes: Vec<Vec<f32>> = Vec::new();
+    let bar = crate::render::progress(args.global.quiet, "horizons");
+    let (times, plan) = for_each(
+        &mut gpu,
+        &field,
+        border,
+        &quality,
+        &limits,
+        args.distances.is_some(),
+        &mut |k, angles, distances| {
+            bar.set_message(format!("horizons: azimuth {} of {}", k + 1, shape[0]));
+            let mut angles = angles.to_vec();
+            setup::mask_voids(&field, &mut angles, 1);
+            match &mut angles_file {
+                Some(file) => file.write(&angles)?,
+                None => planes.push(angles),
+            }
+            if let Some(file) = &mut distances_file {
+                let mut distances = distances.to_vec();
+                setup::mask_voids(&field, &mut distances, 1);
+                file.write(&distances)?;
+            }
+            Ok(())
+        },
+    )?;
+    bar.finish_and_clear();
+    let azimuths = plan::circle_rad(&quality, field.cell_m());
+    let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
+    metadata.push(("azimuths".into(), quality.azimuths.to_string()));
+    if let Some(file) = angles_file {
+        file.finish()?;
+    } else {
+        let names: Vec<String> = (0..planes.len())
+            .map(|k| format!("horizon.{:07.3}", azimuths[k].to_degrees()))
+            .collect();
+        let layers: Vec<Layer> = planes
+            .iter()
+            .zip(&names)
+            .map(|(plane, name)| Layer {
+                name: String::new(),
+                channels: Channels::Scalar(name, plane),
+            })
+            .collect();
+        files::write_exr(&args.output, field.rows(), field.cols(), &layers, &metadata)?;
+    }
+    if let Some(file) = distances_file {
+        file.finish()?;
+    }
+    if let Some(json) = &args.global.json {
+        let mut value = setup::as_json(&metadata, &times);
+        value["azimuths_rad"] = azimuths.clone().into();
+        files::write_json(json, &value)?;
+    }
+    if !args.global.quiet {
+        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        println!(
+            "{}: {} azimuths of {} × {}, {ms:.1} ms on {}",
+            args.output.display(),
+            quality.azimuths,
+            field.cols(),
+            field.rows(),
+            gpu.report().name
+        );
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,89 @@
+use ridgelight::Result;
+use ridgelight::gpu;
+use ridgelight::plan::{self, Limits, Picture, Plan};
+
+use crate::args::{PlanArgs, PlanFormat};
+use crate::setup::{self, Outcome};
+
+pub fn run(args: &PlanArgs) -> Result<Outcome> {
+    args.later.check()?;
+    let quality = setup::quality(&args.quality)?;
+    let field = setup::field(&args.input.path, &args.surface)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    // Planned for the device that would run it; without one, for the software driver everyone has.
+    let devices = gpu::devices().unwrap_or_default();
+    let usable = devices.iter().filter(|d| d.missing.is_empty());
+    let named = |d: &&gpu::DeviceReport| {
+        args.global
+            .device
+            .as_ref()
+            .is_none_or(|n| d.name.to_lowercase().contains(&n.to_lowercase()))
+    };
+    let report = usable
+        .clone()
+        .filter(named)
+        .find(|d| !d.limits.is_cpu)
+        .or_else(|| usable.clone().find(named));
+    let mut limits = report.map_or_else(Limits::lavapipe, |r| r.limits);
+    if let Some(budget) = args.global.memory_budget {
+        limits.memory_budget = budget;
+    }
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+    match args.format {
+        PlanFormat::Text => {
+            println!("for {}", report.map_or("lavapipe (no device here)", |r| r.name.as_str()));
+            print!("{plan}");
+        }
+        PlanFormat::Json => println!("{:#}", json(&plan)),
+        PlanFormat::Dot => print!("{}", dot(&plan)),
+    }
+    if let Some(path) = &args.global.json {
+        ridgelight::files::write_json(path, &json(&plan))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn json(plan: &Plan) -> serde_json::Value {
+    let name = |id: &plan::ResourceId| plan.resources[id.0].name.clone();
+    let passes: Vec<_> = plan
+        .passes
+        .iter()
+        .map(|p| {
+            serde_json::json!({
+                "pass": p.name(), "part": p.part, "why": p.why, "groups": p.groups, "bytes": p.bytes,
+                "samples": p.samples, "barrier_before": p.barrier_before,
+                "reads": p.reads().map(|r| name(&r)).collect::<Vec<_>>(),
+                "writes": p.writes().map(|r| name(&r)).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let resources: Vec<_> = plan
+        .resources
+        .iter()
+        .map(|r| serde_json::json!({ "name": r.name, "owner": format!("{:?}", r.owner).to_lowercase(), "bytes": r.bytes() }))
+        .collect();
+    let settings: serde_json::Map<_, _> =
+        plan.settings.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
+    serde_json::json!({
+        "size": plan.size, "settings": settings, "passes": passes, "resources": resources,
+        "bytes": plan.bytes(), "notes": plan.notes,
+    })
+}
+
+fn dot(plan: &Plan) -> String {
+    let mut text =
+        String::from("digraph plan {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
+    for (i, resource) in plan.resources.iter().enumerate() {
+        text += &format!("  r{i} [label=\"{}\", shape=box];\n", resource.name);
+    }
+    for (i, pass) in plan.passes.iter().enumerate() {
+        text += &format!("  p{i} [label=\"{}\", shape=ellipse, style=filled];\n", pass.label());
+        for r in pass.reads() {
+            text += &format!("  r{} -> p{i};\n", r.0);
+        }
+        for w in pass.writes() {
+            text += &format!("  p{i} -> r{};\n", w.0);
+        }
+    }
+    text + "}\n"
+}

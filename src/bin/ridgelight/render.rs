@@ -1,0 +1,160 @@
+use ridgelight::Result;
+use ridgelight::files::{self, Channels, Layer as FileLayer, Tone};
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::HeightField;
+
+use crate::args::{Layer, RenderArgs};
+use crate::setup::{self, Outcome};
+
+pub fn run(args: &RenderArgs) -> Result<Outcome> {
+    args.later.check()?;
+    setup::check_output("-o", &args.output, &["exr", "png"])?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(ridgelight::Error::setting(
+            "--exposure",
+            args.exposure.to_string(),
+            "a number above 0",
+        ));
+    }
+    let is_exr = setup::extension(&args.output) == "exr";
+    if !is_exr && !args.layers.is_empty() {
+        return Err(ridgelight::Error::setting(
+            "--layers",
+            "a .png output",
+            "an .exr output: a .png has no layers",
+        ));
+    }
+    let quality = setup::quality(&args.quality)?;
+    let field = setup::field(&args.input.path, &args.surface)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let wanted = Picture {
+        light_layers: args.layers.contains(&Layer::Lights),
+        sky_view: args.layers.contains(&Layer::SkyView),
+    };
+    let plan = plan::picture(&scene, &quality, &limits, wanted)?;
+    let contents = setup::contents(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let outputs = plan.outputs().count();
+    let progress = progress(args.global.quiet, "lighting");
+    let mut frame = gpu.frame(plan, &contents)?;
+    let times = gpu.draw(&mut frame)?;
+    let mut pixels = Vec::new();
+    for output in 0..outputs {
+        pixels.push(gpu.pixels(&frame, output)?);
+    }
+    let metadata = setup::metadata(&gpu, &scene.field, frame.plan(), &times);
+    gpu.end(frame);
+    let horizon = args.layers.contains(&Layer::Horizon);
+    let mean_horizon =
+        if horizon { Some(mean_horizon(&mut gpu, &scene.field, args, &limits)?) } else { None };
+    progress.finish_and_clear();
+    let (rows, cols) = (scene.field.rows(), scene.field.cols());
+    if is_exr {
+        write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
+    } else {
+        let picture = rgb(&pixels[0]);
+        let tone = Tone { exposure: args.exposure };
+        files::write_png(&args.output, rows, cols, &picture, scene.field.voids(), tone)?;
+    }
+    if let Some(json) = &args.global.json {
+        files::write_json(json, &setup::as_json(&metadata, &times))?;
+    }
+    if !args.global.quiet {
+        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        println!("{}: {cols} × {rows}, {ms:.1} ms on {}", args.output.display(), gpu.report().name);
+    }
+    Ok(Outcome::Done)
+}
+
+/// A spinner, on a terminal.
+pub fn progress(quiet: bool, what: &str) -> indicatif::ProgressBar {
+    let bar = if quiet {
+        indicatif::ProgressBar::hidden()
+    } else {
+        indicatif::ProgressBar::new_spinner()
+    };
+    bar.set_message(what.to_owned());
+    bar.enable_steady_tick(std::time::Duration::from_millis(200));
+    bar
+}
+
+fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
+    match pixels.channels {
+        1 => pixels.values.iter().map(|v| [*v; 3]).collect(),
+        _ => pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),
+    }
+}
+
+/// Mean elevation of the horizon over the azimuths, radians.
+fn mean_horizon(
+    gpu: &mut Headless,
+    field: &HeightField,
+    args: &RenderArgs,
+    limits: &plan::Limits,
+) -> Result<Vec<f32>> {
+    let quality = setup::quality(&args.quality)?;
+    let mut sum = vec![0.0_f64; field.rows() * field.cols()];
+    crate::horizon::for_each(
+        gpu,
+        field,
+        setup::border(&args.surface),
+        &quality,
+        limits,
+        false,
+        &mut |_, angles, _| {
+            for (s, a) in sum.iter_mut().zip(angles) {
+                *s += f64::from(*a);
+            }
+            Ok(())
+        },
+    )?;
+    Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
+}
+
+fn write_exr(
+    args: &RenderArgs,
+    field: &HeightField,
+    pixels: &[Pixels],
+    horizon: Option<&[f32]>,
+    metadata: &[(String, String)],
+) -> Result<()> {
+    let masked: Vec<(String, Vec<[f32; 3]>, bool)> = pixels
+        .iter()
+        .map(|p| {
+            let mut texels = rgb(p);
+            if let Some(voids) = field.voids() {
+                for (texel, _) in texels.iter_mut().zip(voids).filter(|(_, v)| **v) {
+                    *texel = [f32::NAN; 3];
+                }
+            }
+            (p.name.clone(), texels, p.name == "sky_view")
+        })
+        .collect();
+    let scalars: Vec<Option<Vec<f32>>> =
+        masked.iter().map(|m| m.2.then(|| m.1.iter().map(|t| t[0]).collect())).collect();
+    let mut layers: Vec<FileLayer> = masked
+        .iter()
+        .zip(&scalars)
+        .map(|((name, texels, _), scalar)| FileLayer {
+            name: if name == "radiance" || scalar.is_some() { String::new() } else { name.clone() },
+            channels: match scalar {
+                Some(values) => Channels::Scalar("sky_view", values),
+                None => Channels::Rgb(texels),
+            },
+        })
+        .collect();
+    let mut masked_horizon = horizon.map(<[f32]>::to_vec).unwrap_or_default();
+    setup::mask_voids(field, &mut masked_horizon, 1);
+    if horizon.is_some() {
+        layers.push(FileLayer {
+            name: String::new(),
+            channels: Channels::Scalar("horizon_mean", &masked_horizon),
+        });
+    }
+    files::write_exr(&args.output, field.rows(), field.cols(), &layers, metadata)
+}

@@ -1,0 +1,50 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Builder, ResourceId};
+use crate::scene::Border;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct EnvTablesPush {
+    height: i32,
+    nodes: i32,
+    azimuth_count: i32,
+    bottom_rad: f32,
+}
+
+same_layout!(
+    EnvTablesPush,
+    env_tables_push,
+    height = HEIGHT,
+    nodes = NODES,
+    azimuth_count = AZIMUTH_COUNT,
+    bottom_rad = BOTTOM_RAD,
+);
+
+/// What each azimuth's wedge gives above each elevation.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    border: Border,
+    height: u32,
+    nodes: u32,
+    azimuths: u32,
+    [rows, tables]: [ResourceId; 2],
+) {
+    let bottom_rad = if border == Border::Open { -std::f32::consts::FRAC_PI_2 } else { 0.0 };
+    let words = u64::from(azimuths) * 3 * u64::from(height + nodes);
+    builder.pass(
+        &shaders::ENV_TABLES,
+        "",
+        format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
+        [1, azimuths.div_ceil(4), 1],
+        &[],
+        &EnvTablesPush {
+            height: height as i32,
+            nodes: nodes as i32,
+            azimuth_count: azimuths as i32,
+            bottom_rad,
+        },
+        &[("wedge_rows", rows), ("env_tables", tables)],
+        words * 16,
+        u64::from(azimuths) * u64::from(nodes),
+    );
+}

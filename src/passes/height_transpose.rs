@@ -1,0 +1,32 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Axis, Builder, ResourceId};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HeightTransposePush {
+    lanes: i32,
+    steps: i32,
+}
+
+same_layout!(HeightTransposePush, height_transpose_push, lanes = LANES, steps = STEPS);
+
+/// Heights laid out for the sweeps of one axis, four lanes a texel.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    axis: Axis,
+    heights: ResourceId,
+    lane_heights: ResourceId,
+) {
+    let quads = axis.lanes.div_ceil(4);
+    builder.pass(
+        &shaders::HEIGHT_TRANSPOSE,
+        axis.name(),
+        "sweeps read four neighbouring lanes at once",
+        [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
+        &[(0, u32::from(axis.marches_rows))],
+        &HeightTransposePush { lanes: axis.lanes as i32, steps: axis.steps as i32 },
+        &[("heights", heights), ("lane_heights", lane_heights)],
+        8 * axis.samples(),
+        axis.samples(),
+    );
+}

@@ -1,0 +1,124 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::sweep::{HullPlace, LineSweep};
+use crate::plan::{Batch, Builder, ResourceId};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HorizonSweepPush {
+    lanes: i32,
+    steps: i32,
+    warm_up: i32,
+    first_azimuth: u32,
+    height_scale: f32,
+}
+
+same_layout!(
+    HorizonSweepPush,
+    horizon_sweep_push,
+    lanes = LANES,
+    steps = STEPS,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    height_scale = HEIGHT_SCALE,
+);
+
+/// What a sweep reads and writes.
+pub(crate) struct Images {
+    pub heights: ResourceId,
+    pub lane_heights: Option<ResourceId>,
+    pub azimuths: ResourceId,
+    pub occluders: Option<ResourceId>,
+    pub slopes: Option<ResourceId>,
+    /// Where lines are marked whose hull was deeper than what it is kept in.
+    pub lost_lines: Option<ResourceId>,
+}
+
+/// Hull sweeps along all lines of a batch of azimuths; and again along those whose hull was deeper
+/// than the memory that it is kept in.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    run(builder, sweep, batch, part, images, false);
+    if images.lost_lines.is_some() {
+        let again = LineSweep { hull: HullPlace::Occluders, hull_depth: 1, ..*sweep };
+        run(builder, &again, batch, format!("{part} again").trim(), images, true);
+    }
+}
+
+fn run(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+    again: bool,
+) {
+    let axis = batch.axis;
+    let depth = sweep.hull_depth;
+    let private = sweep.hull == HullPlace::Private;
+    let shared_words = 4 * depth * sweep.group_size * if sweep.packed { 1 } else { 2 };
+    let mut bound = vec![("azimuths", images.azimuths)];
+    // Lines a cell apart share texels of four lanes; all others fetch sample by sample.
+    match images.lane_heights {
+        Some(lanes) => bound.push(("lane_heights", lanes)),
+        None => bound.push(("heights", images.heights)),
+    }
+    if sweep.hull == HullPlace::Occluders && images.lane_heights.is_some() {
+        bound.push(("heights", images.heights));
+    }
+    bound.extend(images.occluders.map(|o| ("occluders", o)));
+    bound.extend(images.slopes.map(|s| ("slopes", s)));
+    bound.extend(images.lost_lines.map(|l| ("lost_lines", l)));
+    let lines = batch.most_lines;
+    let value_bytes = if images.occluders.is_some() { 2 } else { 0 }
+        + if images.slopes.is_some() { u64::from(sweep.slope_format) * 4 % 6 } else { 0 };
+    builder.pass(
+        &shaders::HORIZON_SWEEP,
+        part,
+        if again {
+            "lines whose hull was deeper than its memory; ends at once where there are none"
+                .to_owned()
+        } else {
+            format!(
+                "horizons of {} azimuths along {}, hull in {}",
+                batch.count,
+                axis.name(),
+                match sweep.hull {
+                    HullPlace::Private => "private memory",
+                    HullPlace::Shared => "shared memory",
+                    HullPlace::Occluders => "the occluders themselves",
+                }
+            )
+        },
+        [lines.div_ceil(4 * sweep.group_size), 1, batch.count],
+        &[
+            (0, sweep.group_size),
+            (1, sweep.hull as u32),
+            (2, depth),
+            (3, if private && !sweep.packed { depth } else { 1 }),
+            (4, if private && sweep.packed { depth } else { 1 }),
+            (5, if sweep.hull == HullPlace::Shared { shared_words } else { 1 }),
+            (6, u32::from(sweep.holds_line)),
+            (7, u32::from(sweep.packed)),
+            (8, u32::from(images.occluders.is_some())),
+            (9, if images.slopes.is_some() { sweep.slope_format } else { 0 }),
+            (10, u32::from(axis.warm_up > 0)),
+            (11, sweep.line_shift),
+            (12, u32::from(again)),
+        ],
+        &HorizonSweepPush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            height_scale: sweep.height_scale,
+        },
+        &bound,
+        if again { u64::from(batch.layers) * 32 } else { batch.line_samples * (4 + value_bytes) },
+        if again { 0 } else { batch.line_samples },
+    );
+}

@@ -1,0 +1,71 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Builder, ResourceId};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LightResolvePush {
+    cols: i32,
+    rows: i32,
+    clears: u32,
+    pad: f32,
+    colour: [f32; 4],
+}
+
+same_layout!(
+    LightResolvePush,
+    light_resolve_push,
+    cols = COLS,
+    rows = ROWS,
+    clears = CLEARS,
+    colour = COLOUR,
+);
+
+/// One light's sum on its way into the picture.
+pub(crate) struct Light {
+    pub sum: ResourceId,
+    /// Whether the sum has colour; else it is one channel.
+    pub has_colour: bool,
+    /// Of the light, times a constant albedo.
+    pub colour: [f32; 3],
+    pub albedo_map: Option<ResourceId>,
+    /// The picture, and whether this light is its first.
+    pub radiance: Option<(ResourceId, bool)>,
+    pub layer: Option<ResourceId>,
+    pub grey: bool,
+}
+
+/// Adds one light to the picture, and writes its own layer where asked.
+pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, light: &Light) {
+    let mut bound = vec![(if light.has_colour { "colour_sum" } else { "scalar_sum" }, light.sum)];
+    bound.extend(light.albedo_map.map(|a| ("albedo_map", a)));
+    bound.extend(
+        light.radiance.map(|r| (if light.grey { "radiance_grey" } else { "radiance" }, r.0)),
+    );
+    bound.extend(light.layer.map(|l| (if light.grey { "layer_grey" } else { "layer" }, l)));
+    let samples = u64::from(cols) * u64::from(rows);
+    let texel = if light.grey { 4 } else { 16 };
+    let written = u64::from(light.radiance.is_some()) * 2 + u64::from(light.layer.is_some());
+    builder.pass(
+        &shaders::LIGHT_RESOLVE,
+        part,
+        "the light's sum, coloured, into the picture",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[
+            (0, u32::from(light.has_colour)),
+            (1, u32::from(light.albedo_map.is_some())),
+            (2, u32::from(light.radiance.is_some())),
+            (3, u32::from(light.layer.is_some())),
+            (4, u32::from(light.grey)),
+        ],
+        &LightResolvePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            clears: u32::from(light.radiance.is_some_and(|r| r.1)),
+            pad: 0.0,
+            colour: [light.colour[0], light.colour[1], light.colour[2], 1.0],
+        },
+        &bound,
+        samples * (if light.has_colour { 16 } else { 4 } + written * texel),
+        samples,
+    );
+}

@@ -1,0 +1,12 @@
+//! One file a pass: what it binds, how large it is, and why it is there.
+
+pub(crate) mod env_tables;
+pub(crate) mod env_wedges;
+pub(crate) mod height_transpose;
+pub(crate) mod horizon_march;
+pub(crate) mod horizon_sweep;
+pub(crate) mod light_resolve;
+pub(crate) mod sky_shade;
+pub(crate) mod sun_shade;
+pub(crate) mod surface_sweep;
+pub(crate) mod sweep_fuse;

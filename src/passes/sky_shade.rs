@@ -1,0 +1,98 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::sweep::Sweep;
+use crate::plan::{Batch, Builder, ResourceId};
+use crate::scene::Border;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SkyShadePush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    warm_up: i32,
+    first_azimuth: u32,
+    clears: u32,
+    pad: u32,
+    ends: [u32; 4],
+}
+
+same_layout!(
+    SkyShadePush,
+    sky_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    clears = CLEARS,
+    ends = ENDS,
+);
+
+/// What the shading of a batch reads and writes.
+pub(crate) struct Images {
+    pub heights: ResourceId,
+    pub lattice: ResourceId,
+    pub azimuths: ResourceId,
+    pub sky_sum: Option<ResourceId>,
+    /// The sum, and the tables it is made of.
+    pub environment: Option<[ResourceId; 2]>,
+}
+
+/// Light of a uniform sky and of an environment through the horizons of a batch.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    border: Border,
+    cell_m: [f64; 2],
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    let axis = batch.axis;
+    let [cols, rows] = axis.size();
+    let mut bound = vec![
+        ("heights", images.heights),
+        ("lattice", images.lattice),
+        ("azimuths", images.azimuths),
+    ];
+    bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
+    if let Some([sum, tables]) = images.environment {
+        bound.extend([("env_sum", sum), ("env_tables", tables)]);
+    }
+    let sums = if images.sky_sum.is_some() { 8 } else { 0 }
+        + if images.environment.is_some() { 32 } else { 0 };
+    builder.pass(
+        &shaders::SKY_SHADE,
+        part,
+        match (images.sky_sum, images.environment) {
+            (Some(_), Some(_)) => "uniform sky in closed form; environment from its tables",
+            (Some(_), None) => "uniform sky in closed form: no table",
+            _ => "environment from its tables",
+        },
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[
+            (0, sweep.fuse_mode()),
+            (1, sweep.lattice_content()),
+            (2, sweep.line_shift()),
+            (3, border as u32),
+            (4, u32::from(images.sky_sum.is_some())),
+            (5, u32::from(images.environment.is_some())),
+        ],
+        &SkyShadePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: cell_m[0] as f32,
+            cell_y_m: cell_m[1] as f32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            clears: u32::from(batch.is_first),
+            pad: 0,
+            ends: batch.octant_ends,
+        },
+        &bound,
+        axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.samples() * u64::from(batch.count),
+    );
+}

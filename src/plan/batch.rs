@@ -1,0 +1,141 @@
+use super::azimuths::Azimuth;
+use super::sweep::Sweep;
+use super::{Limits, sweep::WARM_UP_PERIODS};
+use crate::scene::Border;
+use crate::{Error, Result};
+
+/// A field seen along one of its axes: lanes side by side, steps along the march.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// Whether marches run along rows' direction (from row to row); else from column to column.
+    pub marches_rows: bool,
+    /// Samples across the march.
+    pub lanes: u32,
+    /// Samples along it.
+    pub steps: u32,
+    /// Steps marched before the first that is kept: whole periods of a periodic field.
+    pub warm_up: u32,
+}
+
+impl Axis {
+    /// The axis of an azimuth in a field of `cols` × `rows`.
+    pub fn of(marches_rows: bool, [cols, rows]: [u32; 2], border: Border) -> Self {
+        let (lanes, steps) = if marches_rows { (cols, rows) } else { (rows, cols) };
+        let warm_up = if border == Border::Periodic { WARM_UP_PERIODS * steps } else { 0 };
+        Self { marches_rows, lanes, steps, warm_up }
+    }
+
+    /// Samples of the field.
+    pub fn samples(self) -> u64 {
+        u64::from(self.lanes) * u64::from(self.steps)
+    }
+
+    /// Columns and rows.
+    pub fn size(self) -> [u32; 2] {
+        if self.marches_rows { [self.lanes, self.steps] } else { [self.steps, self.lanes] }
+    }
+
+    /// For labels.
+    pub fn name(self) -> &'static str {
+        if self.marches_rows { "rows" } else { "cols" }
+    }
+}
+
+/// Azimuths that are swept together: one axis, consecutive in the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Batch {
+    /// Their axis.
+    pub axis: Axis,
+    /// Position of the first in the buffer "azimuths".
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+    /// Where each of the axis' four octants ends, counted from `first`.
+    pub octant_ends: [u32; 4],
+    /// Lines of the azimuth that has most.
+    pub most_lines: u32,
+    /// Samples on all lines.
+    pub line_samples: u64,
+    /// Layers of the lattice.
+    pub layers: u32,
+    /// Whether it is the first of its light: sums begin here.
+    pub is_first: bool,
+}
+
+/// Sorts azimuths by octant: one axis after the other, directions that share neighbours together.
+/// Returns the order, as positions in the list given.
+pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..azimuths.len() as u32).collect();
+    order.sort_by_key(|&k| azimuths[k as usize].octant());
+    *azimuths = order.iter().map(|&k| azimuths[k as usize]).collect();
+    order
+}
+
+/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattice takes at
+/// most `lattice_bytes` at `layer_bytes` a layer, and gives each azimuth its layer.
+///
+/// # Errors
+/// One azimuth that does not fit alone.
+pub(crate) fn cut(
+    azimuths: &mut [Azimuth],
+    first: u32,
+    size: [u32; 2],
+    border: Border,
+    sweep: &Sweep,
+    limits: &Limits,
+    (lattice_bytes, layer_bytes): (u64, u64),
+) -> Result<Vec<Batch>> {
+    let most_layers = u64::from(limits.image_layers)
+        .min(lattice_bytes.min(limits.allocation_bytes) / layer_bytes.max(1))
+        as u32;
+    let mut batches: Vec<Batch> = Vec::new();
+    for (i, azimuth) in azimuths.iter_mut().enumerate() {
+        let axis = Axis::of(azimuth.marches_rows(), size, border);
+        let layers = sweep.layers(azimuth, axis);
+        if layers > most_layers {
+            return Err(Error::Limit {
+                what: format!("horizons of one azimuth of a {} × {} field", size[0], size[1]),
+                needs: bytes_text(u64::from(layers) * layer_bytes),
+                limit: if layers > limits.image_layers {
+                    format!("{} layers of an image on this device", limits.image_layers)
+                } else {
+                    format!("{} of the memory budget beside all else", bytes_text(lattice_bytes))
+                },
+            });
+        }
+        let fits =
+            batches.last().is_some_and(|b| b.axis == axis && b.layers + layers <= most_layers);
+        if !fits {
+            batches.push(Batch {
+                axis,
+                first: first + i as u32,
+                count: 0,
+                octant_ends: [0; 4],
+                most_lines: 0,
+                line_samples: 0,
+                layers: 0,
+                is_first: i == 0,
+            });
+        }
+        let batch = batches.last_mut().expect("one was pushed if there was none");
+        azimuth.layer = batch.layers;
+        batch.layers += layers;
+        batch.count += 1;
+        batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
+        batch.line_samples += sweep.line_samples(azimuth, axis);
+        for end in &mut batch.octant_ends[azimuth.octant() % 4..] {
+            *end = batch.count;
+        }
+    }
+    Ok(batches)
+}
+
+/// Bytes as people read them.
+pub(crate) fn bytes_text(bytes: u64) -> String {
+    match bytes {
+        0..10_240 => format!("{bytes} bytes"),
+        10_240..10_485_760 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        10_485_760..10_737_418_240 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
+    }
+}

@@ -1,0 +1,33 @@
+/// What a plan may count on: a device's limits and the memory that it may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Largest side of a 2D image.
+    pub image_side: u32,
+    /// Most layers of an image.
+    pub image_layers: u32,
+    /// Largest range of a storage buffer, bytes.
+    pub buffer_bytes: u64,
+    /// Largest single allocation, bytes.
+    pub allocation_bytes: u64,
+    /// Shared memory of a workgroup, bytes.
+    pub shared_bytes: u32,
+    /// Whether the device is a processor: narrow groups, hulls in private memory.
+    pub is_cpu: bool,
+    /// Memory that all images and buffers of a plan may take together, bytes.
+    pub memory_budget: u64,
+}
+
+impl Limits {
+    /// Lavapipe as Debian 12 has it (Mesa 22.3.6), with 2 GiB to spend: for plans without a device.
+    pub fn lavapipe() -> Self {
+        Self {
+            image_side: 16384,
+            image_layers: 2048,
+            buffer_bytes: 128 << 20,
+            allocation_bytes: 2 << 30,
+            shared_bytes: 32 << 10,
+            is_cpu: true,
+            memory_budget: 2 << 30,
+        }
+    }
+}

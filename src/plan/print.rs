@@ -1,0 +1,55 @@
+use std::fmt;
+
+use super::batch::bytes_text;
+use super::{Kind, Owner, Plan};
+
+/// A table of passes, a table of resources, and what was left out.
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "field {} × {}", self.size[0], self.size[1])?;
+        for (name, value) in &self.settings {
+            writeln!(f, "  {name} {value}")?;
+        }
+        writeln!(f, "\n{:<34} {:>18} {:>11}  why", "pass", "groups", "traffic")?;
+        for pass in &self.passes {
+            let groups = format!("{} × {} × {}", pass.groups[0], pass.groups[1], pass.groups[2]);
+            let mark = if pass.barrier_before { "| " } else { "  " };
+            writeln!(
+                f,
+                "{mark}{:<32} {groups:>18} {:>11}  {}",
+                pass.label(),
+                bytes_text(pass.bytes),
+                pass.why
+            )?;
+        }
+        writeln!(f, "(| a barrier stands before the pass)\n")?;
+        writeln!(f, "{:<24} {:>9} {:>26} {:>12}", "image or buffer", "whose", "extent", "memory")?;
+        for resource in &self.resources {
+            let extent = match resource.kind {
+                Kind::Image { format, width, height, layers, .. } => {
+                    format!("{width} × {height} × {layers} {}", format.spirv())
+                }
+                Kind::Buffer { .. } => String::new(),
+            };
+            let whose = match resource.owner {
+                Owner::Internal => "ours",
+                Owner::Input => "input",
+                Owner::Output => "output",
+            };
+            writeln!(
+                f,
+                "{:<24} {whose:>9} {extent:>26} {:>12}",
+                resource.name,
+                bytes_text(resource.bytes())
+            )?;
+        }
+        writeln!(f, "{:<24} {:>9} {:>26} {:>12}", "all", "", "", bytes_text(self.bytes()))?;
+        if !self.notes.is_empty() {
+            writeln!(f)?;
+        }
+        for note in &self.notes {
+            writeln!(f, "note: {note}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,126 @@
+use crate::gpu::shaders::BindingKind;
+
+/// Pixel formats of images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// One f32.
+    R32Float,
+    /// Four f32.
+    Rgba32Float,
+    /// One u32.
+    R32Uint,
+    /// Two u32: four lines' u16 or f16.
+    Rg32Uint,
+    /// Four u32: four lines' f32 bits.
+    Rgba32Uint,
+}
+
+impl Format {
+    /// Bytes a texel.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Format::R32Float | Format::R32Uint => 4,
+            Format::Rg32Uint => 8,
+            Format::Rgba32Float | Format::Rgba32Uint => 16,
+        }
+    }
+
+    /// Whether texels are unsigned integers.
+    pub fn is_uint(self) -> bool {
+        matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
+    }
+
+    /// SPIR-V's name.
+    pub fn spirv(self) -> &'static str {
+        match self {
+            Format::R32Float => "R32f",
+            Format::Rgba32Float => "Rgba32f",
+            Format::R32Uint => "R32ui",
+            Format::Rg32Uint => "Rg32ui",
+            Format::Rgba32Uint => "Rgba32ui",
+        }
+    }
+}
+
+/// What a resource is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A 2D image; `layered` where shaders see an array, even of one layer.
+    Image {
+        /// Texels.
+        format: Format,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Layers.
+        layers: u32,
+        /// Seen as an array.
+        layered: bool,
+    },
+    /// A buffer of words; with four f32 a texel where `texels`.
+    Buffer {
+        /// Size.
+        bytes: u64,
+        /// Whether shaders fetch texels from it.
+        texels: bool,
+    },
+}
+
+/// Whose a resource is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// Made and kept by the renderer.
+    Internal,
+    /// Handed in with each frame, left as it came.
+    Input,
+    /// Handed in with each frame, written.
+    Output,
+}
+
+/// An image or a buffer of a plan.
+#[derive(Clone, Debug)]
+pub struct Resource {
+    /// By content: "lane_heights_cols".
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Whose it is.
+    pub owner: Owner,
+}
+
+impl Resource {
+    /// Bytes it takes on the device.
+    pub fn bytes(&self) -> u64 {
+        match self.kind {
+            Kind::Image { format, width, height, layers, .. } => {
+                format.bytes() * u64::from(width) * u64::from(height) * u64::from(layers)
+            }
+            Kind::Buffer { bytes, .. } => bytes,
+        }
+    }
+
+    /// Whether a shader's binding of this kind can be this resource.
+    pub fn fits(&self, binding: BindingKind) -> bool {
+        match (self.kind, binding) {
+            (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,
+            (Kind::Buffer { texels, .. }, BindingKind::TexelBuffer) => texels,
+            (
+                Kind::Image { format, layered, .. },
+                BindingKind::SampledImage { uint, layered: wants },
+            ) => format.is_uint() == uint && layered == wants,
+            (
+                Kind::Image { format, layered, .. },
+                BindingKind::StorageImage { format: wanted, uint, layered: wants },
+            ) => {
+                layered == wants
+                    && if wanted == "Unknown" {
+                        format.is_uint() == uint
+                    } else {
+                        format.spirv() == wanted
+                    }
+            }
+            _ => false,
+        }
+    }
+}

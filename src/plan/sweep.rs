@@ -1,0 +1,279 @@
+//! How horizons of a field are found: which form of sweep, what it stores, how much it takes.
+
+use super::azimuths::{Azimuth, CELL};
+use super::{Axis, Limits};
+use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
+use crate::{Error, Result};
+
+/// Where a line's hull lives; the numbers are the shader's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HullPlace {
+    /// Private memory of the invocation.
+    Private = 0,
+    /// Shared memory of the workgroup.
+    Shared = 1,
+    /// The occluders written so far.
+    Occluders = 2,
+}
+
+/// A hull sweep along lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineSweep {
+    /// Where the hull lives.
+    pub hull: HullPlace,
+    /// Entries a line keeps there; a power of two.
+    pub hull_depth: u32,
+    /// Whether that is enough for every sample of the longest line.
+    pub holds_line: bool,
+    /// f16 + u16 entries.
+    pub packed: bool,
+    /// What scales heights to [-1..1] for packed entries.
+    pub height_scale: f32,
+    /// Lines are 2^shift / 32768 cells apart.
+    pub line_shift: u32,
+    /// Invocations a workgroup, each four lines.
+    pub group_size: u32,
+    /// Slopes stored: 0 none, 1 f32, 2 f16.
+    pub slope_format: u32,
+    /// Whether occluders are stored.
+    pub writes_occluders: bool,
+    /// How they come back to the samples.
+    pub fuse: Fuse,
+}
+
+/// How horizons are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// Hull sweeps along lines of even azimuths.
+    Lines(LineSweep),
+    /// Exact hull sweeps along grid vectors; entries that a hull can hold.
+    Surface {
+        /// Entries a line keeps.
+        hull_depth: u32,
+        /// Whether distances are stored beside slopes.
+        distances: bool,
+    },
+    /// Brute force, all crossings.
+    March {
+        /// Whether distances are stored beside slopes.
+        distances: bool,
+    },
+}
+
+/// Periods of a periodic field that are marched before the one whose horizons are kept.
+///
+/// What lies farther is not seen: an error of at most atan(relief / (2 · side)).
+pub const WARM_UP_PERIODS: u32 = 2;
+
+// Entries kept in private memory. Real terrain needs about 30, smooth hills a thousand; what is
+// deeper is done again with the hull in the occluders. Measured on lavapipe: 128 compile in 0.1 s,
+// 1024 in up to 3 s, 4096 in over 5 s, and run no faster.
+const PRIVATE_DEPTH: u32 = 128;
+// Crossings are up to four a step; llvmpipe ends any loop after 65 535 turns.
+const SURFACE_STEPS_LIMIT: u32 = 4096;
+const MARCH_STEPS_LIMIT: u32 = 65_000;
+
+impl Sweep {
+    /// The form that a quality asks for, or that suits the device.
+    ///
+    /// # Errors
+    /// Combinations that cannot hold what they promise: said in a sentence.
+    pub fn choose(
+        field: &HeightField,
+        border: Border,
+        quality: &Quality,
+        limits: &Limits,
+        distances: bool,
+        notes: &mut Vec<String>,
+    ) -> Result<Self> {
+        let longest = field.cols().max(field.rows()) as u32;
+        let total =
+            if border == Border::Periodic { longest * (1 + WARM_UP_PERIODS) } else { longest };
+        if quality.method == Method::Brute {
+            if total > MARCH_STEPS_LIMIT {
+                return Err(Error::Limit {
+                    what: "--method brute".into(),
+                    needs: format!("{total} steps a sample"),
+                    limit: format!("{MARCH_STEPS_LIMIT} steps"),
+                });
+            }
+            return Ok(Sweep::March { distances });
+        }
+        let Some(shift) = quality.lines.shift() else {
+            if total > SURFACE_STEPS_LIMIT {
+                return Err(Error::Limit {
+                    what: "--lines exact".into(),
+                    needs: format!(
+                        "{total} steps a line (periodic fields are marched three times)"
+                    ),
+                    limit: format!("{SURFACE_STEPS_LIMIT} steps"),
+                });
+            }
+            return Ok(Sweep::Surface { hull_depth: (4 * total).next_power_of_two(), distances });
+        };
+        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
+        let slope_format = match (stores_slopes, quality.precision) {
+            (false, Precision::F16) => {
+                notes.push(
+                    "f16 changes nothing here: this fuse stores u16 steps, not slopes".into(),
+                );
+                0
+            }
+            (false, _) => 0,
+            (true, Precision::F16) => 2,
+            (true, _) => 1,
+        };
+        let packed = quality.precision == Precision::Packed;
+        let place = match quality.hull {
+            // Measured: see the table in README. Processors keep private arrays in their cache;
+            // elsewhere the paper's form, until a device has been measured.
+            Hull::Auto if limits.is_cpu => HullPlace::Private,
+            Hull::Auto | Hull::Shared => HullPlace::Shared,
+            Hull::Private => HullPlace::Private,
+            Hull::List => HullPlace::Occluders,
+        };
+        let group_size: u32 = if limits.is_cpu { 8 } else { 32 };
+        let periodic = border == Border::Periodic;
+        let wanted = total.next_power_of_two();
+        let hull_depth = match place {
+            HullPlace::Private => wanted.min(PRIVATE_DEPTH),
+            HullPlace::Shared => {
+                // Half of what there is, so that two groups fit.
+                let entries =
+                    limits.shared_bytes / 2 / (4 * group_size * if packed { 4 } else { 8 });
+                wanted.min(1 << entries.max(1).ilog2())
+            }
+            HullPlace::Occluders => 1,
+        };
+        let holds_line = place != HullPlace::Occluders && hull_depth >= total;
+        if total > limits.image_side {
+            return Err(Error::Limit {
+                what: "--border periodic".into(),
+                needs: format!("{total} steps a line (three periods)"),
+                limit: format!("{} on this device", limits.image_side),
+            });
+        }
+        let spacing = 1_i64 << shift;
+        let divides = |side: usize| (side as i64 * i64::from(CELL)) % spacing == 0;
+        let line_shift = if periodic && !(divides(field.cols()) && divides(field.rows())) {
+            notes.push("lines a cell apart: wider ones do not divide this periodic field".into());
+            15
+        } else {
+            shift
+        };
+        let highest = field.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
+        Ok(Sweep::Lines(LineSweep {
+            hull: place,
+            hull_depth,
+            holds_line,
+            packed,
+            height_scale: if highest > 0.0 { 1.0 / highest } else { 1.0 },
+            line_shift,
+            group_size,
+            slope_format,
+            writes_occluders: !stores_slopes || !holds_line,
+            fuse: quality.fuse,
+        }))
+    }
+
+    /// The shaders' FUSE.
+    pub(crate) fn fuse_mode(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => 1 + lines.fuse as u32,
+            _ => 0,
+        }
+    }
+
+    /// The shaders' LATTICE: 0 occluders, 1 f32 slopes, 2 f16 slopes.
+    pub(crate) fn lattice_content(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => lines.slope_format,
+            _ => 1,
+        }
+    }
+
+    /// Bytes that a sample reads from the lattice and the field around what it proposes.
+    pub(crate) fn lattice_bytes(&self) -> u64 {
+        match self {
+            Sweep::Lines(lines) => match lines.fuse {
+                Fuse::Nearest => 4,
+                Fuse::Slopes => 8,
+                Fuse::AimedNearest => 2 + 8,
+                Fuse::Own | Fuse::Aimed => 4 + 16,
+            },
+            _ => 4,
+        }
+    }
+
+    pub(crate) fn lattice_has_distances(&self) -> bool {
+        match self {
+            Sweep::Lines(_) => false,
+            Sweep::Surface { distances, .. } | Sweep::March { distances } => *distances,
+        }
+    }
+
+    /// The shaders' LINE_SHIFT.
+    pub(crate) fn line_shift(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => lines.line_shift,
+            _ => 15,
+        }
+    }
+
+    /// Lines of one azimuth.
+    pub(crate) fn lines(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
+        let periodic = axis.warm_up > 0;
+        let total = u64::from(axis.steps + axis.warm_up);
+        let (unit, shear) = match self {
+            Sweep::Lines(lines) => (1_u64 << lines.line_shift, azimuth.shear as u64),
+            Sweep::Surface { .. } => (1, azimuth.vector_lane as u64),
+            Sweep::March { .. } => return axis.lanes,
+        };
+        let cell = match self {
+            Sweep::Lines(_) => CELL as u64,
+            _ => azimuth.vector_march as u64,
+        };
+        let lanes = u64::from(axis.lanes);
+        let lines = if periodic {
+            lanes * cell / unit
+        } else {
+            (lanes - 1) * cell / unit + 1 + ((total - 1) * shear).div_ceil(unit)
+        };
+        lines as u32
+    }
+
+    /// Samples that the lines of one azimuth touch: those on the field.
+    pub(crate) fn line_samples(&self, azimuth: &Azimuth, axis: Axis) -> u64 {
+        match self {
+            Sweep::Lines(lines) => {
+                ((axis.samples() << 15) >> lines.line_shift)
+                    * u64::from(1 + axis.warm_up / axis.steps)
+            }
+            Sweep::Surface { .. } => axis.samples() * azimuth.vector_march as u64,
+            Sweep::March { .. } => axis.samples(),
+        }
+    }
+
+    /// Layers of the lattice that one azimuth takes.
+    pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
+        match self {
+            Sweep::Lines(_) => self.lines(azimuth, axis).div_ceil(32),
+            _ => 1 + u32::from(self.lattice_has_distances()),
+        }
+    }
+}
+
+/// Names of settings in messages and metadata.
+impl Lines {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Lines::Exact => "exact",
+            Lines::QuarterCell => "1/4",
+            Lines::HalfCell => "1/2",
+            Lines::Cell => "1",
+            Lines::TwoCells => "2",
+            Lines::FourCells => "4",
+        }
+    }
+}
