@@ -2,7 +2,7 @@
 
 use super::shared::fuse::Found;
 use super::shared::gather::Swept;
-use super::shared::sweep::NO_SLOPE;
+use super::shared::sweep::LOWEST_MET;
 use crate::plan::azimuths::Azimuth;
 use crate::scene::Border;
 use std::f64::consts::FRAC_PI_2;
@@ -25,7 +25,7 @@ pub struct FusedHorizon {
 pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> FusedHorizon {
     let found = swept.found(azimuth, col, row);
     let open = swept.heights.border == Border::Open;
-    let nothing = found.slope <= NO_SLOPE;
+    let nothing = found.slope <= LOWEST_MET;
     let angle = if nothing { -FRAC_PI_2 } else { f64::from(found.slope).atan() };
     let ground = nothing || (!open && found.slope <= 0.0);
     FusedHorizon {
