@@ -5,7 +5,7 @@ use crate::scene::Border;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// `env_tables` as [azimuth][moment][node], divided by π.
+/// `env_tables` as `[azimuth][moment][node]`, divided by π.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvTables {
     /// Elevations, from `bottom_rad` to the zenith: 2 or more.

@@ -37,7 +37,7 @@ pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3]
     [centre.x * along - centre.y * across, centre.y * along + centre.x * across, plain]
 }
 
-/// `wedge_rows` as [azimuth][row][moment].
+/// `wedge_rows` as `[azimuth][row][moment]`.
 pub fn env_wedges(env: &Environment, azimuths: &[Azimuth]) -> Vec<[DVec3; 3]> {
     let rows = |a| (0..env.height()).map(move |row| wedge_row(env, a, row));
     azimuths.iter().flat_map(rows).collect()

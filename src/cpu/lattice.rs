@@ -1,12 +1,15 @@
 //! What a sweep leaves behind: one value a line and march step.
 
-use super::shared::sweep::{CELL_SHIFT, NO_SLOPE};
+use super::shared::sweep::{CELL_SHIFT, NO_SLOPE, wrapped};
 use crate::plan::azimuths::{Azimuth, CELL};
 use crate::scene::Border;
 
-/// The lattice of one march axis, as the images `occluders` and `slopes` hold it:
-/// [layer][march position][slot], where slot is the line's lane position in line spacings, flipped as
-/// its azimuth flips lanes.
+/// The lattice of one march axis: `[layer][march position][slot]`, where slot is the line's lane
+/// position in line spacings, flipped as its azimuth flips lanes.
+///
+/// The shaders store the same values by line and step, where a line's writes lie together
+/// (`lattice.glsl`): [`line_number`] says which. Passes that find one value a sample store it by lane
+/// and step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
     /// Azimuths.
@@ -115,6 +118,24 @@ pub fn number_layers(azimuths: &mut [Azimuth]) {
 pub fn line_position(slot: i32, step: i32, shear: i32, line_shift: u32) -> i32 {
     let spacing = 1 << line_shift;
     slot * spacing + ((step * shear) & (spacing - 1))
+}
+
+/// The line that is in `slot` at a step counted from the first of the march, of `total` steps: what
+/// the shaders number lines by. `slots` as [`slots`] gives it.
+pub fn line_number(
+    (slot, slots): (i32, i32),
+    (step, total): (i32, i32),
+    shear: i32,
+    line_shift: u32,
+    border: Border,
+) -> i32 {
+    let advanced = (step * shear) >> line_shift;
+    match border {
+        Border::Periodic => wrapped(slot - advanced, slots),
+        Border::Plane | Border::Open => {
+            slot - advanced + (((total - 1) * shear + (1 << line_shift) - 1) >> line_shift)
+        }
+    }
 }
 
 const _: () = assert!(CELL == 1 << CELL_SHIFT);

@@ -2,7 +2,7 @@
 
 use super::shared::fuse::Found;
 use super::shared::gather::Swept;
-use super::shared::sweep::NO_SLOPE;
+use super::shared::sweep::LOWEST_MET;
 use crate::plan::azimuths::Azimuth;
 use crate::scene::Border;
 use std::f64::consts::FRAC_PI_2;
@@ -25,7 +25,7 @@ pub struct FusedHorizon {
 pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> FusedHorizon {
     let found = swept.found(azimuth, col, row);
     let open = swept.heights.border == Border::Open;
-    let nothing = found.slope <= NO_SLOPE;
+    let nothing = found.slope <= LOWEST_MET;
     let angle = if nothing { -FRAC_PI_2 } else { f64::from(found.slope).atan() };
     let ground = nothing || (!open && found.slope <= 0.0);
     FusedHorizon {
@@ -35,7 +35,7 @@ pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> Fu
     }
 }
 
-/// All samples in all azimuths, as [azimuth][row][column].
+/// All samples in all azimuths, as `[azimuth][row][column]`.
 pub fn sweep_fuse(swept: &Swept) -> Vec<FusedHorizon> {
     let one = |a| swept.per_sample(|col, row| fused_horizon(swept, a, col, row));
     swept.azimuths.iter().flat_map(one).collect()

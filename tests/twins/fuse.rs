@@ -1,9 +1,10 @@
 //! `sweep_fuse`: every mode against the oracle and against marches along the samples' own lines.
 
 use crate::*;
+use ridgelight::cpu::lattice::line_position;
 use ridgelight::cpu::shared::fuse::Found;
 use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::{March, NO_SLOPE};
+use ridgelight::cpu::shared::sweep::{March, NO_SLOPE, on_field};
 use ridgelight::cpu::surface_sweep::surface_sweep;
 use ridgelight::cpu::sweep_fuse::{fused_horizon, sweep_fuse};
 use ridgelight::measure::fractal::fractal;
@@ -53,9 +54,8 @@ fn aimed_modes_are_lower_bounds() {
     for (i, (rows, cols)) in SIZES.into_iter().enumerate() {
         for border in BORDERS {
             for line_shift in [14, 15, 16, 17] {
-                // A period of a periodic field is a whole number of spacings.
-                let whole = (rows * cols << 15) % (1 << line_shift) == 0;
-                if border == Border::Periodic && (line_shift > 15 || !whole) {
+                // A period has to be a whole number of spacings.
+                if border == Border::Periodic && line_shift > 15 {
                     continue;
                 }
                 let rough = field(rows, cols, [3.0, 2.0], |r, c| 9.0 * noise(i as u64, r, c));
@@ -163,6 +163,75 @@ fn errors_fall_from_mode_to_mode() {
     let [nearest, slopes, own, aimed_nearest, aimed] = errors[..] else { unreachable!() };
     assert!(slopes < nearest && own < nearest);
     assert!(aimed < aimed_nearest && aimed_nearest < 0.5 * slopes.min(own));
+}
+
+/// Which lines stand beside a sample, found by looking at all of them: the lower within a spacing or
+/// through the sample, the upper within one; the nearer, or the lower of two equally near; where one
+/// is off the field the other alone.
+#[test]
+fn the_lines_beside_a_sample_are_the_nearest_there_are() {
+    for border in BORDERS {
+        let rough = field(8, 6, [1.0, 2.0], |r, c| 9.0 * noise(7, r, c));
+        for line_shift in 13..=16 {
+            let options = SweepOptions { line_shift, ..SweepOptions::default() };
+            let mut azimuths = even(20, rough.cell_m());
+            each_mode(&rough, border, &mut azimuths, options, |swept, fuse| {
+                for (azimuth, (col, row)) in
+                    swept.azimuths.iter().flat_map(|a| samples(&rough).map(move |s| (a, s)))
+                {
+                    let march = March::new(swept.heights, azimuth);
+                    let (lane, step) = march.of_sample(col, row);
+                    let lattice = swept.lattices.of(azimuth);
+                    let total = step + warm_up_of(swept.warm_up, azimuth);
+                    let (y, spacing, period) = (lane * CELL, 1 << line_shift, march.lanes * CELL);
+                    // (how far before or after, slope) of every line that exists at this step.
+                    let (mut before, mut after) = (None, None);
+                    for slot in 0..lattice.width as i32 {
+                        let line = line_position(slot, total, azimuth.shear, line_shift);
+                        let texel = lattice.texel(slot, march.march_position(step), azimuth.layer);
+                        let slope = Some(lattice.slopes[texel]).filter(|s| *s > NO_SLOPE);
+                        let repeats: &[i32] = if march.periodic() { &[-1, 0, 1] } else { &[0] };
+                        for line in repeats.iter().map(|n| line + n * period) {
+                            if !march.periodic() && !on_field(line, march.lanes) {
+                                continue;
+                            }
+                            if line <= y && y - line < spacing {
+                                before = Some((y - line, slope));
+                            }
+                            if line > y && line - y < spacing {
+                                after = Some((line - y, slope));
+                            }
+                        }
+                    }
+                    let through = before.is_some_and(|(d, _)| d == 0);
+                    let after = after.filter(|_| !through);
+                    let expected = match fuse {
+                        Fuse::Nearest => match (before, after) {
+                            (Some((b, _)), Some((a, slope))) if a < b => slope,
+                            (Some((_, slope)), _) | (None, Some((_, slope))) => slope,
+                            (None, None) => None,
+                        },
+                        Fuse::Slopes => match (before, after) {
+                            (Some((b, Some(low))), Some((_, Some(high)))) => {
+                                let t = b as f32 / spacing as f32;
+                                Some(low * (1.0 - t) + high * t)
+                            }
+                            (Some((_, Some(one))), _) | (_, Some((_, Some(one)))) => Some(one),
+                            _ => None,
+                        },
+                        _ => continue,
+                    };
+                    let found = swept.found(azimuth, col, row).slope;
+                    let place = (row, col);
+                    assert_eq!(
+                        found,
+                        expected.unwrap_or(NO_SLOPE),
+                        "{fuse:?} {place:?} {azimuth:?}"
+                    );
+                }
+            });
+        }
+    }
 }
 
 /// Flat ground: slope exactly 0 wherever anything is met, in every mode.

@@ -3,7 +3,7 @@
 use crate::*;
 use proptest::prelude::*;
 use ridgelight::cpu::horizon_sweep::{height_scale, line_height};
-use ridgelight::cpu::lattice::line_position;
+use ridgelight::cpu::lattice::{self, line_number, line_position};
 use ridgelight::cpu::shared::sweep::{March, NO_SLOPE, on_field};
 use ridgelight::measure::tolerance::{EPSILON, sweep_slope};
 use ridgelight::plan::azimuths::even;
@@ -218,5 +218,31 @@ fn slopes_in_f16_are_rounded_once() {
         let (w, h) = (f64::from(*w), f64::from(*h));
         let bound = w.abs() * EPSILON * 8192.0 + EPSILON / 2.0;
         assert!((w - h).abs() <= bound || (w == -1e9 && h == -65504.0), "{w} {h}");
+    }
+}
+
+/// A line keeps its number from step to step, and no two lines of a step share one.
+#[test]
+fn lines_are_numbered_as_the_shaders_number_them() {
+    let (lanes, total) = (6, 9);
+    for border in BORDERS {
+        for line_shift in 13..=16 {
+            for shear in [0, 1, 4390, 16384, 20000, CELL] {
+                let spacing = 1 << line_shift;
+                let slots = lattice::slots(lanes as usize, line_shift, border) as i32;
+                for (step, slot) in (0..total).flat_map(|t| (0..slots).map(move |s| (t, s))) {
+                    let y = line_position(slot, step, shear, line_shift);
+                    let line = line_number((slot, slots), (step, total), shear, line_shift, border);
+                    let lead = ((total - 1) * shear + spacing - 1) >> line_shift;
+                    if border == Border::Periodic {
+                        assert_eq!((line * spacing + step * shear - y) % (lanes * CELL), 0);
+                        assert!((0..slots).contains(&line));
+                    } else {
+                        assert_eq!((line - lead) * spacing + step * shear, y);
+                        assert!(line >= 0 && line < slots + lead);
+                    }
+                }
+            }
+        }
     }
 }

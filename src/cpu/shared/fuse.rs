@@ -1,6 +1,6 @@
 //! `fuse.glsl`: brings the lattice of a sweep back to the field's samples.
 
-use super::sweep::{CELL_SHIFT, March, NO_SLOPE, PER_CELL, on_field, wrapped};
+use super::sweep::{CELL_SHIFT, LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
 use crate::cpu::lattice::Lattice;
 use crate::plan::azimuths::CELL;
 use crate::scene::Fuse;
@@ -164,8 +164,8 @@ pub fn fused(
         Fuse::Nearest => return slope(nearest),
         Fuse::AimedNearest => return higher(first_crossings(march, o), aimed(nearest)),
         Fuse::Aimed => {
-            let found = first_crossings(march, o);
-            return higher(found, higher(aimed(after_texel), aimed(before_texel)));
+            let found = higher(first_crossings(march, o), aimed(before_texel));
+            return higher(found, aimed(after_texel));
         }
         Fuse::Own => (
             seen(march, after, back(after_texel), step, o.own),
@@ -174,7 +174,7 @@ pub fn fused(
         Fuse::Slopes => (slope(after_texel), slope(before_texel)),
     };
     // Where only one line met anything, it speaks for the sample.
-    if b.slope <= NO_SLOPE || a.slope <= NO_SLOPE {
+    if b.slope <= LOWEST_MET || a.slope <= LOWEST_MET {
         return higher(a, b);
     }
     Found {

@@ -6,6 +6,9 @@ use crate::scene::{Border, HeightField};
 /// Below every slope that a field can have, and safe to square.
 pub const NO_SLOPE: f32 = -1e9;
 
+/// What lies at or under it stands for nothing met.
+pub const LOWEST_MET: f32 = -1e8;
+
 /// log2 of [`CELL`].
 pub const CELL_SHIFT: u32 = CELL.trailing_zeros();
 
