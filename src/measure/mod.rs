@@ -2,4 +2,5 @@
 
 pub mod error;
 pub mod fractal;
+pub mod scalar_sweep;
 pub mod statistics;

@@ -31,11 +31,11 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     match args.format {
         PlanFormat::Text => {
-            println!("for {}", report.map_or("lavapipe (no device here)", |r| r.name.as_str()));
-            print!("{plan}");
+            crate::say!("for {}", report.map_or("lavapipe (no device here)", |r| r.name.as_str()));
+            crate::say!("{}", plan.to_string().trim_end());
         }
-        PlanFormat::Json => println!("{:#}", json(&plan)),
-        PlanFormat::Dot => print!("{}", dot(&plan)),
+        PlanFormat::Json => crate::say!("{:#}", json(&plan)),
+        PlanFormat::Dot => crate::say!("{}", dot(&plan).trim_end()),
     }
     if let Some(path) = &args.global.json {
         ridgelight::files::write_json(path, &json(&plan))?;
