@@ -2,5 +2,6 @@
 
 pub mod error;
 pub mod fractal;
+pub mod scalar_sweep;
 pub mod statistics;
 pub mod tolerance;

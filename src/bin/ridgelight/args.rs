@@ -133,6 +133,12 @@ pub struct BenchArgs {
     /// Beside the frame, every form of the sweep, brute force and a scalar sweep on the processor
     #[arg(long)]
     pub forms: bool,
+    /// Instead: whole frames of fractal fields of these sides
+    #[arg(long, value_delimiter = ',', value_name = "N,N,…", conflicts_with_all = ["input", "forms", "trace", "passes"])]
+    pub sizes: Vec<usize>,
+    /// With --sizes: each with these numbers of azimuths
+    #[arg(long, value_delimiter = ',', value_name = "M,M,…", requires = "sizes")]
+    pub azimuth_list: Vec<u32>,
     /// A Chrome / Perfetto trace of one frame
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,

@@ -49,7 +49,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         )?;
         beyond |= e.mismatched > 0;
         if !args.quiet {
-            println!(
+            crate::say!(
                 "horizons: mean {:.5}°  median {:.5}°  99 % {:.4}°  99.9 % {:.4}°  worst {:.4}° at azimuth {}, row {}, column {}; {} compared, {} masked, {} masked in one only",
                 e.mean,
                 e.median,
@@ -73,7 +73,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
             let e = ImageError::of(a, b, result.cols)?;
             beyond |= e.mismatched > 0 || args.max_rmse.is_some_and(|x| !e.within(x));
             if !args.quiet {
-                println!(
+                crate::say!(
                     "{name}: RMSE {:.6} ({:.4} % of the mean)  mean shift {:+.4} %  99 % {:.6}  worst {:.6} at row {}, column {}; {} compared, {} masked, {} masked in one only",
                     e.rmse,
                     100.0 * e.relative_rmse,
@@ -101,7 +101,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         files::write_json(path, &serde_json::json!({ "rows": rows, "beyond": beyond }))?;
     }
     if beyond && !args.quiet {
-        println!("beyond the bound");
+        crate::say!("beyond the bound");
     }
     Ok(if beyond { Outcome::Beyond } else { Outcome::Done })
 }

@@ -10,15 +10,18 @@ pub fn run(args: &DevicesArgs) -> Result<Outcome> {
     }
     let all = gpu::devices()?;
     if all.is_empty() {
-        println!("no device: the Vulkan loader is there, but no driver answers");
+        crate::say!("no device: the Vulkan loader is there, but no driver answers");
     }
     for (i, device) in all.iter().enumerate() {
-        println!(
+        crate::say!(
             "{i}  {}  ({}, Vulkan {}, {})",
-            device.name, device.kind, device.api, device.driver
+            device.name,
+            device.kind,
+            device.api,
+            device.driver
         );
         let limits = &device.limits;
-        println!(
+        crate::say!(
             "   images to {} texels and {} layers, storage buffers to {} MiB, allocations to {} MiB, shared memory {} KiB",
             limits.image_side,
             limits.image_layers,
@@ -30,10 +33,10 @@ pub fn run(args: &DevicesArgs) -> Result<Outcome> {
             0.0 => "no timestamps".to_owned(),
             period => format!("timestamps of {period} ns"),
         };
-        println!("   subgroups of {}, {timestamps}", device.subgroup_size);
+        crate::say!("   subgroups of {}, {timestamps}", device.subgroup_size);
         match device.missing.as_slice() {
-            [] => println!("   will do"),
-            missing => println!("   will not do, for want of: {}", missing.join(", ")),
+            [] => crate::say!("   will do"),
+            missing => crate::say!("   will not do, for want of: {}", missing.join(", ")),
         }
     }
     if let Some(path) = &args.json {

@@ -155,7 +155,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     }
     if !args.global.quiet {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
-        println!(
+        crate::say!(
             "{}: {} azimuths of {} × {}, {ms:.1} ms on {}",
             args.output.display(),
             quality.azimuths,

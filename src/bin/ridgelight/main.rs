@@ -1,5 +1,14 @@
 //! The command line: the first embedder, through the public API alone.
 
+/// A line on standard output; a reader that has gone (`| head`) is no error.
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($text)*);
+    }};
+}
+pub(crate) use say;
+
 mod args;
 mod bench;
 mod compare;

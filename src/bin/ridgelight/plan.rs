@@ -37,14 +37,12 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {
-            println!(
-                "for {}",
-                report.as_ref().map_or("lavapipe (no device here)", |r| r.name.as_str())
-            );
-            print!("{plan}");
+            let name = report.as_ref().map_or("lavapipe (no device here)", |r| r.name.as_str());
+            crate::say!("for {name}");
+            crate::say!("{}", plan.to_string().trim_end());
         }
-        PlanFormat::Json => println!("{:#}", json(&plan)),
-        PlanFormat::Dot => print!("{}", dot(&plan)),
+        PlanFormat::Json => crate::say!("{:#}", json(&plan)),
+        PlanFormat::Dot => crate::say!("{}", dot(&plan).trim_end()),
     }
     if let Some(path) = &args.global.json {
         ridgelight::files::write_json(path, &json(&plan))?;

@@ -81,7 +81,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
     if !args.global.quiet {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
-        println!("{}: {cols} × {rows}, {ms:.1} ms on {}", args.output.display(), gpu.report().name);
+        crate::say!(
+            "{}: {cols} × {rows}, {ms:.1} ms on {}",
+            args.output.display(),
+            gpu.report().name
+        );
     }
     Ok(Outcome::Done)
 }

@@ -1,0 +1,74 @@
+//! Cost against the field's size and the number of azimuths.
+
+use indicatif::ProgressBar;
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Quality, Scene};
+
+use super::flow;
+use super::rows::{Row, figure, sums};
+
+/// Whole frames of fixed fractal fields under the scene's lights, each of `sizes` with each of `azimuths`.
+pub fn run(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
+    (sizes, azimuths): (&[usize], &[u32]),
+    samples: usize,
+    bar: &ProgressBar,
+) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for &size in sizes {
+        let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
+        let contents = crate::setup::contents(&scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        for &count in azimuths {
+            bar.set_message(format!("{size}², {count} azimuths"));
+            let quality = Quality { azimuths: count, ..*quality };
+            let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
+            let mut frame = gpu.frame(plan, &contents)?;
+            let runs = flow(gpu, &mut frame, samples);
+            let kept = frame.plan().clone();
+            gpu.end(frame);
+            let runs = runs?;
+            let passes: Vec<_> = kept.passes.iter().collect();
+            let times = sums(&runs, |_| true);
+            let mut row = Row::of("total", "in_flow", &kept, &passes, count, (runs.len(), &times));
+            row.settings.push(("device_bytes".into(), kept.bytes().to_string()));
+            row.settings.push(("passes".into(), kept.passes.len().to_string()));
+            rows.push(row);
+        }
+    }
+    Ok(rows)
+}
+
+pub fn print(rows: &[Row]) {
+    crate::say!(
+        "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>8}",
+        "side",
+        "azimuths",
+        "frame ms",
+        "ms/(az·2^20)",
+        "device MB",
+        "MB/2^20",
+        "samples"
+    );
+    for row in rows {
+        let bytes = row.settings.iter().find(|s| s.0 == "device_bytes");
+        let mb = bytes.and_then(|b| b.1.parse::<f64>().ok()).map(|b| b * 1e-6);
+        let mega = f64::from(row.size[0]) * f64::from(row.size[1]) / f64::from(1 << 20);
+        crate::say!(
+            "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>8}",
+            row.size[0],
+            row.azimuths,
+            figure(row.times.map(|t| t.median * 1e-6), 2),
+            figure(row.ms_per_azimuth_and_mega(), 3),
+            figure(mb, 1),
+            figure(mb.map(|b| b / mega), 1),
+            row.samples
+        );
+    }
+}

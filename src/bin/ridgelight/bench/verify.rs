@@ -1,0 +1,262 @@
+//! Before a time is printed, the light is compared with the oracle's.
+
+use ridgelight::cpu::light;
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{
+    Albedo, Border, Fuse, HeightField, Method, Precision, Quality, Scene, Surface,
+};
+use ridgelight::{Error, Result};
+
+/// The oracle takes a whole field up to this side; of a larger one, a piece of [`PIECE`]².
+const WHOLE: usize = 128;
+const PIECE: usize = 96;
+/// Samples compared: about this many, all over the field.
+const PLACES: usize = 100;
+/// Azimuths of the oracle's sky.
+const TRUE_AZIMUTHS: usize = 360;
+/// Slices of the oracle's suns.
+const TRUE_STRIPS: usize = 32;
+
+/// What the light of a scene, or of a piece from its middle, should be.
+pub struct Verifier {
+    scene: Scene,
+    places: Vec<usize>,
+    expected: Vec<f64>,
+    /// Root mean squares of sky, environment and suns, each alone.
+    scales: [f64; 3],
+    /// Share of a sky's light that the field keeps out.
+    dark: f64,
+}
+
+impl Verifier {
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let scene = piece(scene)?;
+        let field = &scene.field;
+        let (cols, count) = (field.cols(), field.rows() * field.cols());
+        // A step without a common factor visits rows and columns alike; the corners on top.
+        let step = (count / PLACES).max(1) | 1;
+        let mut places: Vec<usize> = (0..count).step_by(step).collect();
+        places.extend([cols - 1, count - cols, count - 1]);
+        let oracle = Oracle::new(field, scene.surface.border);
+        let (mut expected, mut squares, mut open) = (Vec::new(), [0.0; 3], 0.0);
+        for place in &places {
+            let (row, col) = (place / cols, place % cols);
+            let albedo = match &scene.surface.albedo {
+                Albedo::Constant(c) => *c,
+                Albedo::Map(map) => map[*place],
+            };
+            let tint = |c: [f64; 3]| {
+                c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0
+            };
+            let lights = &scene.lights;
+            let share = light::sky_of(&oracle, row, col, TRUE_AZIMUTHS);
+            open += share / places.len() as f64;
+            let sky = lights.sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
+            let environment = lights
+                .environment
+                .as_ref()
+                .map_or(0.0, |e| tint(light::environment_of(&oracle, row, col, e)));
+            let suns: f64 = lights
+                .suns
+                .iter()
+                .map(|s| tint(light::sun_of(&oracle, row, col, s, TRUE_STRIPS)))
+                .sum();
+            for (square, value) in squares.iter_mut().zip([sky, environment, suns]) {
+                *square += value * value / places.len() as f64;
+            }
+            expected.push(sky + environment + suns);
+        }
+        Ok(Self { scene, places, expected, scales: squares.map(f64::sqrt), dark: 1.0 - open })
+    }
+
+    /// Lights the piece on the device with these settings; the relative error found and its bound.
+    ///
+    /// # Errors
+    /// An error beyond the bound, in a sentence.
+    pub fn check(
+        &self,
+        gpu: &mut Headless,
+        quality: &Quality,
+        limits: &Limits,
+    ) -> Result<(f64, f64)> {
+        let plan = plan::picture(&self.scene, quality, limits, Picture::default())?;
+        let contents = crate::setup::contents(&self.scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let mut frame = gpu.frame(plan, &contents)?;
+        let drawn = gpu.draw(&mut frame).and_then(|_| gpu.pixels(&frame, 0));
+        gpu.end(frame);
+        let pixels = drawn?;
+        let radiance: Vec<f64> = self
+            .places
+            .iter()
+            .map(|p| match pixels.channels {
+                1 => f64::from(pixels.values[*p]),
+                n => {
+                    pixels.values[p * n..p * n + 3].iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0
+                }
+            })
+            .collect();
+        self.judge(&radiance, quality)
+    }
+
+    /// RMSE over the root mean square of what is expected, and its bound, where it is within.
+    fn judge(&self, radiance: &[f64], quality: &Quality) -> Result<(f64, f64)> {
+        let scale = self.scales.iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        let shares = bounds(&self.scene, self.dark, quality);
+        let bound = self.scales.iter().zip(shares).map(|(s, b)| s * b).sum::<f64>() / scale;
+        let sum: f64 = radiance.iter().zip(&self.expected).map(|(a, b)| (a - b) * (a - b)).sum();
+        let error = (sum / self.expected.len() as f64).sqrt() / scale;
+        // NaN is beyond every bound.
+        if error <= bound && radiance.len() == self.expected.len() {
+            return Ok((error, bound));
+        }
+        Err(Error::Device {
+            doing: format!("verifying before timing (fuse {})", quality.fuse.name()),
+            reason: format!(
+                "the light is {:.2} % off the oracle's, more than {:.2} %: no time is worth printing",
+                100.0 * error,
+                100.0 * bound
+            ),
+        })
+    }
+}
+
+/// Largest relative RMSE of sky, environment and suns that settings may have.
+///
+/// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
+/// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:
+/// where nothing is hidden nothing can be hidden wrongly. Three elevation models stay below that line,
+/// too. Azimuths: 0.36 % on the moss with 64, in proportion to their spacing; four times that. Packed
+/// heights are within 2^-11 of the highest, a change of slope of at most twice that over the cell, and
+/// light changes by no more than the slope. A periodic field is marched for two periods: what lies
+/// farther is missed, at most relief / (2·side). An environment's bright places and a sun are seen or
+/// hidden whole: mean errors stay small but squares do not, hence the wide bounds there.
+fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
+    let transfer = match (quality.method, quality.lines.shift()) {
+        (Method::Brute, _) | (_, None) => 0.001,
+        (_, Some(shift)) => {
+            // 1/4, 1/2, 1, 2, 4 cells between lines.
+            let measured = match quality.fuse {
+                Fuse::Nearest => [0.042, 0.047, 0.056, 0.084, 0.131],
+                Fuse::Slopes => [0.043, 0.048, 0.059, 0.094, 0.160],
+                Fuse::Own => [0.038, 0.038, 0.039, 0.051, 0.082],
+                Fuse::AimedNearest => [0.014, 0.016, 0.024, 0.062, 0.133],
+                Fuse::Aimed => [0.013, 0.014, 0.017, 0.038, 0.095],
+            };
+            2.0 * measured[(shift as usize).saturating_sub(13).min(4)]
+        }
+    };
+    let azimuths = 4.0 * 0.0036 * 64.0 / f64::from(quality.azimuths);
+    let heights = scene.field.heights_m();
+    let highest = f64::from(heights.iter().fold(0.0_f32, |m, h| m.max(h.abs())));
+    let cell = scene.field.cell_m()[0].min(scene.field.cell_m()[1]);
+    let packed = match quality.precision {
+        Precision::Packed => 2.0 * highest / cell / 2048.0,
+        // A stored slope is within 2^-11 of itself.
+        Precision::F16 => 1.0 / 2048.0,
+        Precision::F32 => 0.0,
+    };
+    let side = scene.field.rows().min(scene.field.cols()) as f64 * cell;
+    let periods = match scene.surface.border {
+        Border::Periodic => 2.0 * highest / (2.0 * side),
+        _ => 0.0,
+    };
+    // No field hides so little that f32 sums and normals would not show.
+    let dark = dark.clamp(0.01, 0.5) / 0.5;
+    let sky = dark * (transfer + azimuths) + packed + periods;
+    [sky, 2.0 * sky + 0.05, sky + 0.4]
+}
+
+/// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
+fn piece(scene: &Scene) -> Result<Scene> {
+    let field = &scene.field;
+    let (rows, cols) = (field.rows(), field.cols());
+    if rows <= WHOLE && cols <= WHOLE {
+        return Ok(scene.clone());
+    }
+    let range = |side: usize| {
+        let kept = side.min(PIECE);
+        (side - kept) / 2..(side - kept) / 2 + kept
+    };
+    let of: Vec<usize> = range(rows).flat_map(|r| range(cols).map(move |c| r * cols + c)).collect();
+    let heights: Vec<f64> =
+        of.iter().map(|i| field.base_m() + f64::from(field.heights_m()[*i])).collect();
+    let albedo = match &scene.surface.albedo {
+        Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
+        constant => constant.clone(),
+    };
+    Ok(Scene {
+        field: HeightField::new(
+            range(rows).len(),
+            range(cols).len(),
+            &heights,
+            field.cell_m(),
+            None,
+        )?,
+        surface: Surface { albedo, border: scene.surface.border },
+        lights: scene.lights.clone(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::measure::fractal::fractal;
+    use ridgelight::scene::Lights;
+
+    fn scene(size: usize) -> Scene {
+        Scene {
+            field: fractal(size, 1).unwrap(),
+            surface: Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane },
+            lights: Lights { sky: Some([1.0; 3]), environment: None, suns: Vec::new() },
+        }
+    }
+
+    /// What a broken pass would give: no shadows, black, a mirrored field, horizons all too high, NaN.
+    /// Each is refused at the bound of the settings that a bench starts with; the oracle itself, at the
+    /// settings' number of azimuths, is not.
+    #[test]
+    fn wrong_light_is_refused() {
+        let verifier = Verifier::new(&scene(300)).unwrap();
+        let quality = Quality::default();
+        let field = &verifier.scene.field;
+        assert_eq!((field.rows(), field.cols()), (PIECE, PIECE));
+        let cols = field.cols();
+        let oracle = Oracle::new(field, Border::Plane);
+        let right: Vec<f64> = verifier
+            .places
+            .iter()
+            .map(|p| light::sky_of(&oracle, p / cols, p % cols, 64))
+            .collect();
+        let (error, _) = verifier.judge(&right, &quality).unwrap();
+        assert!(error < 0.01, "{error}");
+        let mirrored: Vec<f64> = verifier
+            .places
+            .iter()
+            .map(|p| light::sky_of(&oracle, p / cols, cols - 1 - p % cols, 64))
+            .collect();
+        let flat = vec![0.0; field.heights_m().len()];
+        let flat = HeightField::new(field.rows(), cols, &flat, field.cell_m(), None).unwrap();
+        let free = Oracle::new(&flat, Border::Plane);
+        let unshadowed: Vec<f64> =
+            verifier.places.iter().map(|p| light::sky_of(&free, p / cols, p % cols, 64)).collect();
+        let dim: Vec<f64> = right.iter().map(|v| 0.9 * v).collect();
+        let black = vec![0.0; right.len()];
+        let mut holed = right.clone();
+        holed[7] = f64::NAN;
+        let wrong = [mirrored, unshadowed, dim, black, holed, right[1..].to_vec()];
+        for (i, light) in wrong.iter().enumerate() {
+            let error = verifier.judge(light, &quality).expect_err(&format!("wrong light {i}"));
+            assert!(error.to_string().contains("verifying"), "{error}");
+        }
+    }
+
+    #[test]
+    fn small_fields_are_verified_whole() {
+        let verifier = Verifier::new(&scene(33)).unwrap();
+        assert_eq!(verifier.scene.field.rows(), 33);
+        assert!(verifier.expected.len() >= PLACES);
+    }
+}
