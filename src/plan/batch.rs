@@ -50,8 +50,6 @@ pub struct Batch {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// Where each of the axis' four octants ends, counted from `first`.
-    pub octant_ends: [u32; 4],
     /// Lines of the azimuth that has most.
     pub most_lines: u32,
     /// Samples on all lines.
@@ -119,7 +117,6 @@ pub(crate) fn cut(
                 axis,
                 first: first + i as u32,
                 count: 0,
-                octant_ends: [0; 4],
                 most_lines: 0,
                 line_samples: 0,
                 layers: 0,
@@ -132,9 +129,6 @@ pub(crate) fn cut(
         batch.count += 1;
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
         batch.line_samples += sweep.line_samples(azimuth, axis);
-        for end in &mut batch.octant_ends[azimuth.octant() % 4..] {
-            *end = batch.count;
-        }
     }
     Ok(batches)
 }
