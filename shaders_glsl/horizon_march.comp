@@ -4,7 +4,6 @@
 // next layer, where asked, the march steps to what is met (f32 bits).
 // One invocation is one sample in one azimuth.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -30,11 +29,17 @@ layout(push_constant) uniform HorizonMarchPush {
 
 Azimuth azimuth;
 
+// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
 float height_at(int lane, int step) {
-    lane = lane_position(azimuth, PERIODIC ? wrapped(lane, lanes) : clamp(lane, 0, lanes - 1), lanes);
-    step = march_position(azimuth, PERIODIC ? wrapped(step, steps) : clamp(step, 0, steps - 1), steps);
+    int lane_round = wrapped(lane, lanes);
+    int step_round = wrapped(step, steps);
+    int lane_held = clamp(lane, 0, lanes - 1);
+    int step_held = clamp(step, 0, steps - 1);
+    lane = lane_position(azimuth, PERIODIC ? lane_round : lane_held, lanes);
+    step = march_position(azimuth, PERIODIC ? step_round : step_held, steps);
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    return texelFetch(heights, by_row ? ivec2(lane, step) : ivec2(step, lane), 0).x;
+    ivec2 at = ivec2(by_row ? lane : step, by_row ? step : lane);
+    return texelFetch(heights, at, 0).x;
 }
 
 void main() {
@@ -67,7 +72,7 @@ void main() {
         slope = better ? found : slope;
         if (ALL_CROSSINGS) {
             vec3 places = segment_crossings(f0, advance, split_along);
-            [[unroll]] for (int c = 0; c < 3; c++) {
+            for (int c = 0; c < 3; c++) {
                 float u = places[c];
                 float f = f0 + u * advance;
                 int low = f > 1.0 ? cell + 1 : cell;

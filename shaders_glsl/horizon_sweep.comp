@@ -4,7 +4,6 @@
 // met; u16) and / or slopes, at [azimuth][32 lines][step][line]: a lattice, see fuse.glsl.
 // One invocation is four neighbouring lines, from the horizon's side to the other end.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -171,7 +170,7 @@ void main() {
         if (LINE_SHIFT == CELL_SHIFT && !PERIODIC) {
             h = four_line_heights(y, step);
         } else {
-            [[unroll]] for (int k = 0; k < 4; k++) {
+            for (int k = 0; k < 4; k++) {
                 h[k] = line_height(y + k * spacing, step);
             }
         }
@@ -179,7 +178,7 @@ void main() {
         // registers only; more are rare.
         bvec4 pops;
         kept = max(kept, depth + 1 - HULL_DEPTH);
-        [[unroll]] for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; k++) {
             precise float deeper = (h2[k] - h[k]) * (x - x1[k]);
             precise float newer = (h1[k] - h[k]) * (x - x2[k]);
             bool first = deeper >= newer;
@@ -211,7 +210,7 @@ void main() {
         // Left by all lanes together: llvmpipe (Mesa 22.3) lets a lane that leaves a loop early go on
         // computing values that are used after it.
         do {
-            [[unroll]] for (int k = 0; k < 4; k++) {
+            for (int k = 0; k < 4; k++) {
                 vec2 under;
                 int slot = depth[k] & (HULL_DEPTH - 1);
                 if (HULL_PLACE == HULL_IN_SHARED) {
@@ -268,7 +267,7 @@ void main() {
         x3 = x2;
         h2 = h1;
         x2 = x1;
-        [[unroll]] for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; k++) {
             h1[k] = kept_height(h[k]);
         }
         x1 = vec4(x);

@@ -35,23 +35,30 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
-    vec3 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0).rgb : vec3(texelFetch(scalar_sum, at, 0).x);
-    light *= colour.rgb;
+    vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
+    light *= colour;
     if (ALBEDO_IS_MAP) {
-        light *= texelFetch(albedo_map, at, 0).rgb;
+        light *= texelFetch(albedo_map, at, 0);
     }
-    if (WRITES_LAYER) {
-        if (GREY) {
-            imageStore(layer_grey, at, vec4(light.x));
-        } else {
-            imageStore(layer, at, vec4(light, 1.0));
+    light.w = 1.0;
+    // The first light clears what was there, which may be anything, not a number either.
+    bool keeps = clears == 0u;
+    if (GREY) {
+        if (WRITES_LAYER) {
+            imageStore(layer_grey, at, light);
         }
-    }
-    if (ADDS_TO_RADIANCE && GREY) {
-        float sum = clears == 1u ? 0.0 : imageLoad(radiance_grey, at).x;
-        imageStore(radiance_grey, at, vec4(sum + light.x));
-    } else if (ADDS_TO_RADIANCE) {
-        vec3 sum = clears == 1u ? vec3(0.0) : imageLoad(radiance, at).rgb;
-        imageStore(radiance, at, vec4(sum + light, 1.0));
+        if (ADDS_TO_RADIANCE) {
+            vec4 before = imageLoad(radiance_grey, at);
+            imageStore(radiance_grey, at, keeps ? before + light : light);
+        }
+    } else {
+        if (WRITES_LAYER) {
+            imageStore(layer, at, light);
+        }
+        if (ADDS_TO_RADIANCE) {
+            vec4 before = imageLoad(radiance, at);
+            vec4 sum = keeps ? before + light : light;
+            imageStore(radiance, at, vec4(sum.rgb, 1.0));
+        }
     }
 }

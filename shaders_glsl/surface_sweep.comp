@@ -4,7 +4,6 @@
 // next layer, where asked, the march steps to what is met (f32 bits).
 // One invocation is one line, from the horizon's side to the other end.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -30,11 +29,17 @@ layout(push_constant) uniform SurfaceSweepPush {
 
 Azimuth azimuth;
 
+// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
 float height_at(int lane, int step) {
-    lane = lane_position(azimuth, PERIODIC ? wrapped(lane, lanes) : clamp(lane, 0, lanes - 1), lanes);
-    step = march_position(azimuth, PERIODIC ? wrapped(step, steps) : clamp(step, 0, steps - 1), steps);
+    int lane_round = wrapped(lane, lanes);
+    int step_round = wrapped(step, steps);
+    int lane_held = clamp(lane, 0, lanes - 1);
+    int step_held = clamp(step, 0, steps - 1);
+    lane = lane_position(azimuth, PERIODIC ? lane_round : lane_held, lanes);
+    step = march_position(azimuth, PERIODIC ? step_round : step_held, steps);
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    return texelFetch(heights, by_row ? ivec2(lane, step) : ivec2(step, lane), 0).x;
+    ivec2 at = ivec2(by_row ? lane : step, by_row ? step : lane);
+    return texelFetch(heights, at, 0).x;
 }
 
 // Rise over `own` of the surface `u` past step `step`, for a line at lane position y (in 1/march
@@ -43,13 +48,54 @@ float rise_over(float own, int y, int step, float u) {
     int march = azimuth.vector_march;
     int cell = (y + march * 65536) / march - 65536;
     float f = float(y - cell * march) / float(march) + u * float(azimuth.vector_lane) / float(march);
-    if (f > 1.0) {
-        f -= 1.0;
-        cell++;
-    }
+    bool over = f > 1.0;
+    f -= over ? 1.0 : 0.0;
+    cell += over ? 1 : 0;
     bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
     return surface_rise(height_at(cell, step), height_at(cell, step + 1), height_at(cell + 1, step),
                         height_at(cell + 1, step + 1), own, u, f, split_along);
+}
+
+// Hull vertices: height, and place as whole step and the rest of one, so that differences of near
+// places keep their digits.
+float hull_h[HULL_DEPTH];
+float hull_step[HULL_DEPTH];
+float hull_rest[HULL_DEPTH];
+int depth;
+
+// Pops what a point at height h, `rest` past `step`, sees over.
+void pop_under(float h, float step, float rest, bool exists) {
+    // Left by all lanes together, as in horizon_sweep.
+    bool pops = exists;
+    do {
+        int newest = max(depth - 1, 0);
+        int older = max(depth - 2, 0);
+        float to_newest = (step - hull_step[newest]) + (rest - hull_rest[newest]);
+        float to_older = (step - hull_step[older]) + (rest - hull_rest[older]);
+        precise float deeper = (hull_h[older] - h) * to_newest;
+        precise float newer = (hull_h[newest] - h) * to_older;
+        pops = pops && depth > 1 && deeper >= newer;
+        depth -= pops ? 1 : 0;
+    } while (subgroupAny(pops));
+}
+
+void push(float h, float step, float rest, bool exists) {
+    if (exists) {
+        hull_h[depth] = h;
+        hull_step[depth] = step;
+        hull_rest[depth] = rest;
+        depth++;
+    }
+}
+
+// A crossing of the line that is at lane position y0 at `step`: on the hull where it is on the field.
+void cross_at(float u, int y0, int step, bool on) {
+    // Not before the first step, nor before the line entered across the first lane.
+    bool exists = on && u <= 1.0 && step >= 0
+               && (PERIODIC || float(y0) + u * float(azimuth.vector_lane) >= -1e-3);
+    float h = rise_over(0.0, y0, step, u);
+    pop_under(h, float(step), u, exists);
+    push(h, float(step), u, exists);
 }
 
 void main() {
@@ -68,12 +114,7 @@ void main() {
     int begin = shear > 0 && !PERIODIC ? max(0, (-last + shear - 1) / shear) : 0;
     int end = shear > 0 && !PERIODIC ? min(total, (width - first) / shear + 1) : total;
 
-    // Hull vertices: height, and place as whole step and the rest of one, so that differences of
-    // near places keep their digits.
-    float hull_h[HULL_DEPTH];
-    float hull_step[HULL_DEPTH];
-    float hull_rest[HULL_DEPTH];
-    int depth = 0;
+    depth = 0;
     for (int step = begin; step < end; step++) {
         int y = line - lead + step * shear;
         bool on = PERIODIC ? line <= width : y >= 0 && y <= width;
@@ -81,53 +122,32 @@ void main() {
         int y0 = y - shear;
         int cell0 = (y0 + march * 65536) / march - 65536;
         float f0 = float(y0 - cell0 * march) / float(march);
-        vec4 places = vec4(segment_crossings(f0, advance, split_along), 1.0);
-        [[unroll]] for (int c = 0; c < 4; c++) {
-            float u = places[c];
-            // Off the field: before the first step, or before the line entered across the first lane.
-            bool exists = on && u <= 1.0 && (c == 3 || (step > 0 && (PERIODIC || float(y0) + u * float(shear) >= -1e-3)));
-            float h = rise_over(0.0, y0, step - 1, u);
-            if (c == 3) {
-                int cell = y0 + shear + march * 65536;
-                h = height_at(cell / march - 65536, step);
-                float f = float(cell % march) / float(march);
-                h += f > 0.0 ? f * (height_at(cell / march - 65535, step) - h) : 0.0;
+        vec3 places = segment_crossings(f0, advance, split_along);
+        cross_at(places.x, y0, step - 1, on);
+        cross_at(places.y, y0, step - 1, on);
+        cross_at(places.z, y0, step - 1, on);
+        int cell = (y + march * 65536) / march - 65536;
+        float f = float(y - cell * march) / float(march);
+        float h = height_at(cell, step);
+        h += f > 0.0 ? f * (height_at(cell + 1, step) - h) : 0.0;
+        // As the end of its segment: places of one step are told apart by their rests.
+        pop_under(h, float(step - 1), 1.0, on);
+        if (on && y == cell * march && step >= warm_up) {
+            float slope = NO_SLOPE;
+            float back = 0.0;
+            if (depth > 0) {
+                int met_step = int(hull_step[depth - 1]);
+                float met_rest = hull_rest[depth - 1];
+                back = float(step - met_step) - met_rest;
+                slope = rise_over(h, y - (step - met_step) * shear, met_step, met_rest) / (back * azimuth.step_m);
             }
-            // Left by all lanes together, as in horizon_sweep.
-            bool pops = exists;
-            do {
-                int newest = max(depth - 1, 0);
-                int deeper_one = max(depth - 2, 0);
-                float x1 = (float(step - 1) - hull_step[newest]) + (u - hull_rest[newest]);
-                float x2 = (float(step - 1) - hull_step[deeper_one]) + (u - hull_rest[deeper_one]);
-                precise float deeper = (hull_h[deeper_one] - h) * x1;
-                precise float newer = (hull_h[newest] - h) * x2;
-                pops = pops && depth > 1 && deeper >= newer;
-                depth -= pops ? 1 : 0;
-            } while (subgroupAny(pops));
-            if (exists && c == 3 && y % march == 0 && step >= warm_up) {
-                float slope = NO_SLOPE;
-                float back = 0.0;
-                if (depth > 0) {
-                    int met_step = int(hull_step[depth - 1]);
-                    float met_rest = hull_rest[depth - 1];
-                    back = float(step - met_step) - met_rest;
-                    slope = rise_over(h, y - (step - met_step) * shear, met_step, met_rest) / (back * azimuth.step_m);
-                }
-                int lane = y / march;
-                ivec2 texel = ivec2(PERIODIC ? wrapped(lane, lanes) : lane, PERIODIC ? step - warm_up : step);
-                int layer = int(azimuth.layer);
-                imageStore(slopes, ivec3(texel, layer), uvec4(floatBitsToUint(slope)));
-                if (WRITES_DISTANCES) {
-                    imageStore(slopes, ivec3(texel, layer + 1), uvec4(floatBitsToUint(back)));
-                }
-            }
-            if (exists) {
-                hull_h[depth] = h;
-                hull_step[depth] = float(step - 1);
-                hull_rest[depth] = u;
-                depth++;
+            ivec2 texel = ivec2(PERIODIC ? wrapped(cell, lanes) : cell, PERIODIC ? step - warm_up : step);
+            int layer = int(azimuth.layer);
+            imageStore(slopes, ivec3(texel, layer), uvec4(floatBitsToUint(slope)));
+            if (WRITES_DISTANCES) {
+                imageStore(slopes, ivec3(texel, layer + 1), uvec4(floatBitsToUint(back)));
             }
         }
+        push(h, float(step - 1), 1.0, on);
     }
 }

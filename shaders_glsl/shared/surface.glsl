@@ -40,10 +40,11 @@ vec3 segment_crossings(float f0, float shear, bool split_along) {
 // Rise over `own` of the two triangles with corner heights h00, h10 (march), h01 (lane), h11. Takes
 // differences first, so that a small rise on a high summit keeps its digits.
 float surface_rise(float h00, float h10, float h01, float h11, float own, float u, float f, bool split_along) {
-    if (split_along) {
-        return f <= u ? (h00 - own) + u * (h10 - h00) + f * (h11 - h10)
-                      : (h00 - own) + f * (h01 - h00) + u * (h11 - h01);
-    }
-    return u + f <= 1.0 ? (h00 - own) + u * (h10 - h00) + f * (h01 - h00)
-                        : (h11 - own) + (1.0 - u) * (h01 - h11) + (1.0 - f) * (h10 - h11);
+    float along_march = (h00 - own) + u * (h10 - h00) + f * (h11 - h10);
+    float along_lane = (h00 - own) + f * (h01 - h00) + u * (h11 - h01);
+    float near_corner = (h00 - own) + u * (h10 - h00) + f * (h01 - h00);
+    float far_corner = (h11 - own) + (1.0 - u) * (h01 - h11) + (1.0 - f) * (h10 - h11);
+    float split = f <= u ? along_march : along_lane;
+    float across = u + f <= 1.0 ? near_corner : far_corner;
+    return split_along ? split : across;
 }

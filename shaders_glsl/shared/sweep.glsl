@@ -2,17 +2,19 @@
 
 // Position along the march axis at a step, and the step at a position: the same flip.
 int march_position(Azimuth azimuth, int step, int steps) {
-    return (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u ? steps - 1 - step : step;
+    int flipped = steps - 1 - step;
+    return (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u ? flipped : step;
 }
 
 // Position along the lane axis of a lane, and back.
 int lane_position(Azimuth azimuth, int lane, int lanes) {
-    return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? lanes - 1 - lane : lane;
+    int flipped = lanes - 1 - lane;
+    return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? flipped : lane;
 }
 
 int wrapped(int i, int n) {
     int r = i % n;
-    return r < 0 ? r + n : r;
+    return r + (r < 0 ? n : 0);
 }
 
 // Whether a lane position lies on the field.
