@@ -52,12 +52,18 @@ fn hulls_deeper_than_any_memory_lose_nothing() {
 fn forms_agree_to_the_bit_on_random_fields() {
     let mut gpu = Device::new();
     let mut next = random(11);
-    for (rows, cols) in [(1, 1), (1, 7), (7, 1), (2, 3), (31, 37), (64, 5), (5, 64)] {
+    for (i, (rows, cols)) in [(1, 1), (1, 7), (2, 3), (31, 37), (64, 5)].into_iter().enumerate() {
         let values: Vec<f64> = (0..rows * cols).map(|_| (next() * 40.0).floor()).collect();
         let f = field(rows, cols, [2.0, 3.0], |r, c| values[r * cols + c]);
-        for fuse in [Fuse::Slopes, Fuse::Aimed, Fuse::AimedNearest] {
-            let base = Quality { azimuths: 12, fuse, ..Quality::default() };
-            all_forms(&mut gpu, &f, Border::Plane, base);
+        let fuse = [Fuse::Slopes, Fuse::Aimed, Fuse::AimedNearest][i % 3];
+        all_forms(
+            &mut gpu,
+            &f,
+            Border::Plane,
+            Quality { azimuths: 12, fuse, ..Quality::default() },
+        );
+        if i < 3 {
+            continue;
         }
         all_forms(&mut gpu, &f, Border::Periodic, Quality { azimuths: 12, ..Quality::default() });
         let packed = Quality { azimuths: 12, precision: Precision::Packed, ..Quality::default() };
