@@ -39,15 +39,19 @@ void main() {
         float low = max(float(x), first);
         float high = min(float(x + 1), last);
         vec3 radiance = texelFetch(environment, ivec2(((x % width) + width) % width, row), 0).rgb;
-        // Counter-clockwise from the wedge's centre, at the middle of what lies in it.
+        // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
         float turn = (middle - 0.5 * (low + high)) / per_rad;
         float width_rad = (high - low) / per_rad;
-        along += radiance * (cosine(turn) * width_rad);
-        across += radiance * (sine(turn) * width_rad);
+        // The integral of cos over an arc is its chord, 2 sin(half), times cos of its middle.
+        float chord = 2.0 * sine(0.5 * width_rad);
+        along += radiance * (cosine(turn) * chord);
+        across += radiance * (sine(turn) * chord);
         plain += radiance * width_rad;
     }
     uint place = (k * uint(height) + uint(row)) * 3u;
-    wedge_rows[place] = vec4(azimuth.cos_phi * along - azimuth.sin_phi * across, 0.0);
-    wedge_rows[place + 1u] = vec4(azimuth.sin_phi * along + azimuth.cos_phi * across, 0.0);
+    // The mean direction of a wedge is its middle.
+    vec2 centre = normalize(vec2(azimuth.wedge_cos, azimuth.wedge_sin));
+    wedge_rows[place] = vec4(centre.x * along - centre.y * across, 0.0);
+    wedge_rows[place + 1u] = vec4(centre.y * along + centre.x * across, 0.0);
     wedge_rows[place + 2u] = vec4(plain, 0.0);
 }

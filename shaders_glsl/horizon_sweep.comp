@@ -254,7 +254,7 @@ void main() {
             imageStore(occluders, texel, uvec4(back.x | back.y << 16, back.z | back.w << 16, 0u, 0u));
         }
         if (SLOPE_FORMAT != 0u) {
-            vec4 slope = mix(vec4(NO_SLOPE), (h1 - h) / (vec4(x) - x1), met);
+            vec4 slope = mix(vec4(NO_SLOPE), (h1 - h) / ((vec4(x) - x1) * azimuth.step_m), met);
             if (SLOPE_FORMAT == SLOPES_F32) {
                 imageStore(slopes, texel, floatBitsToUint(slope));
             } else {

@@ -2,10 +2,12 @@
 // azimuths of a batch, added to what earlier batches gave.
 // Reads: heights, azimuths, lattice, env_tables. Reads and writes: sky_sum (exit
 // radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
-// One invocation is one sample.
+// One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
+// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
+// fetched together.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
@@ -15,12 +17,12 @@ layout(constant_id = 3) const uint BORDER = 0u;
 const bool LATTICE_HAS_DISTANCES = false;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
+layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform utexture2DArray lattice;
 
 #include "shared/angle.glsl"
-#include "shared/field.glsl"
 
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sky_sum;
@@ -35,65 +37,92 @@ layout(push_constant) uniform SkyShadePush {
     float cell_y_m;
     int warm_up;
     uint first_azimuth;  // of the batch
+    uint azimuth_count;
     uint clears;         // 1 in the first batch
-    uint pad;
-    uvec4 ends;          // where each of its four octants ends, counted from first_azimuth
 };
 
-float sky;
-vec3 environment;
+// Sums of the four samples, and their normals.
+vec4 sky;
+vec4 env_red;
+vec4 env_green;
+vec4 env_blue;
+vec4 normal_east;
+vec4 normal_north;
+vec4 normal_up;
 
-// One azimuth's light: `lowest` is the slope of the lowest direction that both the horizon and the
-// sample's own plane leave free.
-void add_light(uint index, Azimuth azimuth, float lowest, vec3 normal) {
+// Light of azimuth `index`: `lowest` is the slope of the lowest direction that both the horizon and
+// the sample's own plane leave free.
+void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     if (HAS_SKY) {
         // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
-        vec2 moments = elevation_moments(lowest);
-        float flat_part = normal.x * azimuth.wedge_cos + normal.y * azimuth.wedge_sin;
-        sky += (flat_part * moments.x + normal.z * azimuth.wedge_rad * moments.y) * (1.0 / PI);
+        Moments moments = elevation_moments(lowest);
+        vec4 flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
+        sky += (flat_part * moments.flat_part + normal_up * azimuth.wedge_rad * moments.vertical) * (1.0 / PI);
     }
     if (HAS_ENVIRONMENT) {
         int nodes = textureSize(env_tables, 0).x;
         float bottom = BORDER == BORDER_OPEN ? -HALF_PI : 0.0;
-        float place = (arc_tangent(lowest) - bottom) / (HALF_PI - bottom) * float(nodes - 1);
-        int node = clamp(int(place), 0, nodes - 2);
-        float t = clamp(place - float(node), 0.0, 1.0);
-        vec3 moment[3];
-        for (int m = 0; m < 3; m++) {
-            vec3 low = texelFetch(env_tables, ivec3(node, m, index), 0).rgb;
-            vec3 high = texelFetch(env_tables, ivec3(node + 1, m, index), 0).rgb;
-            moment[m] = mix(low, high, t);
+        vec4 place = (arc_tangent(lowest) - bottom) / (HALF_PI - bottom) * float(nodes - 1);
+        ivec4 node = clamp(ivec4(place), 0, nodes - 2);
+        vec4 t = clamp(place - vec4(node), 0.0, 1.0);
+        for (int k = 0; k < 4; k++) {
+            vec3 normal = vec3(normal_east[k], normal_north[k], normal_up[k]);
+            vec3 sum = vec3(0.0);
+            for (int m = 0; m < 3; m++) {
+                vec3 low = texelFetch(env_tables, ivec3(node[k], m, index), 0).rgb;
+                vec3 high = texelFetch(env_tables, ivec3(node[k] + 1, m, index), 0).rgb;
+                sum += normal[m] * mix(low, high, t[k]);
+            }
+            env_red[k] += sum.r;
+            env_green[k] += sum.g;
+            env_blue[k] += sum.b;
         }
-        environment += normal.x * moment[0] + normal.y * moment[1] + normal.z * moment[2];
     }
 }
 
 #include "shared/gather.glsl"
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= cols || at.y >= rows) {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    int lane = int(gl_GlobalInvocationID.y) * 4;
+    int march = int(gl_GlobalInvocationID.x);
+    if (lane >= lanes || march >= steps) {
         return;
     }
-    float own = texelFetch(heights, at, 0).x;
-    vec2 slope = field_slope(heights, at, ivec2(cols, rows), vec2(cell_x_m, cell_y_m), BORDER);
-    float steepness = dot(slope, slope);
-    vec3 normal = vec3(-slope, 1.0) * inversesqrt(1.0 + steepness);
-    sky = 0.0;
-    environment = vec3(0.0);
+    Quad q = quad_at(lane, march, lanes, steps);
+    vec4 east;
+    vec4 north;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
+    normal_up = inversesqrt(1.0 + east * east + north * north);
+    normal_east = -east * normal_up;
+    normal_north = -north * normal_up;
+    sky = vec4(0.0);
+    env_red = vec4(0.0);
+    env_green = vec4(0.0);
+    env_blue = vec4(0.0);
     if (clears == 0u) {
+        for (int k = 0; k < 4; k++) {
+            ivec2 at = texel_at(min(lane + k, lanes - 1), march);
+            if (HAS_SKY) {
+                sky[k] = imageLoad(sky_sum, at).x;
+            }
+            if (HAS_ENVIRONMENT) {
+                vec3 sum = imageLoad(env_sum, at).rgb;
+                env_red[k] = sum.r;
+                env_green[k] = sum.g;
+                env_blue[k] = sum.b;
+            }
+        }
+    }
+    add_all(q, lanes, steps, east, north);
+    for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        ivec2 at = texel_at(lane + k, march);
         if (HAS_SKY) {
-            sky = imageLoad(sky_sum, at).x;
+            imageStore(sky_sum, at, vec4(sky[k]));
         }
         if (HAS_ENVIRONMENT) {
-            environment = imageLoad(env_sum, at).rgb;
+            imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
         }
-    }
-    add_all(at, ivec2(cols, rows), own, slope, normal);
-    if (HAS_SKY) {
-        imageStore(sky_sum, at, vec4(sky));
-    }
-    if (HAS_ENVIRONMENT) {
-        imageStore(env_sum, at, vec4(environment, 0.0));
     }
 }

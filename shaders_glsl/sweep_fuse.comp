@@ -1,10 +1,13 @@
 // Computes: the horizon of every sample in the azimuths of a batch, from the lattice of a sweep.
 // Reads: heights, azimuths, lattice. Writes: horizon_angles (elevation, radians),
 // horizon_distances (world length to what makes the horizon, 0 where nothing does), [azimuth][row][column].
-// One invocation is one sample in one azimuth.
+// One invocation is four samples side by side along the lane axis, at one march position, in one
+// azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
+// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
+// fetched together.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
@@ -13,6 +16,7 @@ layout(constant_id = 2) const int LINE_SHIFT = 15;
 layout(constant_id = 3) const uint BORDER = 0u;
 layout(constant_id = 4) const bool WRITES_DISTANCES = false;
 layout(constant_id = 5) const bool LATTICE_HAS_DISTANCES = false;
+layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform utexture2DArray lattice;
@@ -33,25 +37,28 @@ layout(push_constant) uniform SweepFusePush {
 };
 
 void main() {
-    ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (at.x >= cols || at.y >= rows) {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    int march = int(gl_GlobalInvocationID.x);
+    int lane = int(gl_GlobalInvocationID.y) * 4;
+    if (lane >= lanes || march >= steps) {
         return;
     }
-    Azimuth azimuth = azimuth_at(azimuths, first_azimuth + at.z);
-    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    int lanes = by_row ? cols : rows;
-    int steps = by_row ? rows : cols;
-    int lane = lane_position(azimuth, by_row ? at.x : at.y, lanes);
-    int step = march_position(azimuth, by_row ? at.y : at.x, steps);
-    float own = texelFetch(heights, at.xy, 0).x;
-    Octant around = octant_around(azimuth, lane, step, lanes, steps, own);
-    vec2 found = fused(azimuth, lane, step, lanes, steps, warm_up, around);
-    ivec3 to = ivec3(at.xy, at.z + int(first_layer));
-    bool nothing = found.x <= LOWEST_MET;
-    float angle = nothing ? -HALF_PI : arc_tangent(found.x);
-    imageStore(horizon_angles, to, vec4(BORDER == BORDER_OPEN ? angle : max(angle, 0.0)));
-    if (WRITES_DISTANCES) {
-        bool ground = nothing || (BORDER == BORDER_PLANE && found.x <= 0.0);
-        imageStore(horizon_distances, to, vec4(ground ? 0.0 : found.y * azimuth.step_m));
+    uint k = gl_GlobalInvocationID.z;
+    Azimuth azimuth = azimuth_at(azimuths, first_azimuth + k);
+    Met found = fused(azimuth, quad_at(lane, march, lanes, steps), lanes, steps, warm_up);
+    bvec4 nothing = lessThanEqual(found.slope, vec4(LOWEST_MET));
+    vec4 angle = mix(arc_tangent(found.slope), vec4(-HALF_PI), nothing);
+    vec4 distance = found.steps * azimuth.step_m;
+    if (BORDER != BORDER_OPEN) {
+        angle = max(angle, 0.0);
+    }
+    for (int i = 0; i < 4 && lane + i < lanes; i++) {
+        ivec3 to = ivec3(texel_at(lane + i, march), k + first_layer);
+        imageStore(horizon_angles, to, vec4(angle[i]));
+        if (WRITES_DISTANCES) {
+            bool ground = nothing[i] || (BORDER != BORDER_OPEN && found.slope[i] <= 0.0);
+            imageStore(horizon_distances, to, vec4(ground ? 0.0 : distance[i]));
+        }
     }
 }

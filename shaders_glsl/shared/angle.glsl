@@ -2,12 +2,11 @@
 
 // Arc tangent to 1.2e-7 rad: Abramowitz & Stegun 4.4.49 on [0, 1], atan(x) = pi/2 - atan(1/x)
 // beyond. The built-in may be off by 4096 ULP.
-float arc_tangent(float x) {
-    float a = abs(x);
-    bool steep = a > 1.0;
-    float z = steep ? 1.0 / a : a;
-    float s = z * z;
-    float p = 0.0028662257;
+vec4 arc_tangent(vec4 x) {
+    vec4 a = abs(x);
+    vec4 z = min(a, 1.0) / max(a, 1.0);
+    vec4 s = z * z;
+    vec4 p = vec4(0.0028662257);
     p = p * s - 0.0161657367;
     p = p * s + 0.0429096138;
     p = p * s - 0.0752896400;
@@ -16,17 +15,22 @@ float arc_tangent(float x) {
     p = p * s + 0.1999355085;
     p = p * s - 0.3333314528;
     p = z + z * s * p;
-    p = steep ? HALF_PI - p : p;
-    return x < 0.0 ? -p : p;
+    p = mix(p, HALF_PI - p, greaterThan(a, vec4(1.0)));
+    return mix(p, -p, lessThan(x, vec4(0.0)));
 }
 
-// Integrals over elevation from the one of this slope to the zenith, of cos^2 and of sin cos:
+// Integrals over elevation from the one of this slope to the zenith, of cos^2 (x) and of sin cos (y):
 // what a slice of the sky gives to the horizontal and to the vertical part of a normal
 // (Timonen & Westerholm 2010, eq. 5, with elevation instead of zenith angle).
 //   int cos^2 = pi/4 - omega/2 - sin(omega) cos(omega)/2,   int sin cos = cos(omega)^2 / 2.
-vec2 elevation_moments(float slope) {
-    float cos2 = 1.0 / (1.0 + slope * slope);
-    return vec2(0.25 * PI - 0.5 * arc_tangent(slope) - 0.5 * slope * cos2, 0.5 * cos2);
+struct Moments {
+    vec4 flat_part;
+    vec4 vertical;
+};
+
+Moments elevation_moments(vec4 slope) {
+    vec4 cos2 = 1.0 / (1.0 + slope * slope);
+    return Moments(0.25 * PI - 0.5 * arc_tangent(slope) - 0.5 * slope * cos2, 0.5 * cos2);
 }
 
 // Sine on [-pi/2, pi/2] to 6e-8: Taylor to the 11th power. The built-in may be off by 2^-11.

@@ -35,7 +35,7 @@ const uint AZIMUTH_FLIPS_LANES = 4u;
 
 // One direction of a sweep and what it weighs.
 struct Azimuth {
-    float cos_phi;    // direction of the wedge's centre
+    float cos_phi;    // direction swept: the wedge's centre, but for exact azimuths
     float sin_phi;
     float wedge_cos;  // integral of cos over the wedge
     float wedge_sin;  // integral of sin over the wedge

@@ -1,8 +1,9 @@
 #include "shared/lattice.glsl"
+#include "shared/quad.glsl"
 
-// Brings the lattice of a sweep back to the field's samples. The including shader declares
-// `heights`, `lattice` and the constants FUSE, LATTICE,
-// LATTICE_HAS_DISTANCES, LINE_SHIFT and BORDER.
+// Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
+// declares `heights`, `lattice` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES, LINE_SHIFT,
+// BORDER and MARCHES_ROWS.
 
 const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample
 const uint FUSE_NEAREST = 1u;  // the slope that the nearer line found
@@ -16,159 +17,215 @@ const uint LATTICE_OCCLUDERS = 0u;
 const uint LATTICE_SLOPES_F32 = 1u;
 const uint LATTICE_SLOPES_F16 = 2u;
 
-// A sample's surroundings in march and lane coordinates of one octant of azimuths: heights one
-// step towards the horizon, straight, and to the lower lane; and of the lower lane's neighbour.
-struct Octant {
-    float own;
-    float ahead;
-    float ahead_low;
-    float low;
-    bool ahead_exists;
-    bool low_exists;
-    bool split_crosses;  // the cell's diagonal runs between `ahead` and `low`
+// Lines a cell apart pass four neighbouring samples at the same distance and lie in two texels.
+const bool LINES_FOLLOW_LANES = LINE_SHIFT == CELL_SHIFT && BORDER != BORDER_PERIODIC;
+
+// What four samples meet: slopes, and march steps to it.
+struct Met {
+    vec4 slope;
+    vec4 steps;
 };
 
-float lattice_slope(int line, uvec4 texel) {
+// The higher of two findings.
+Met higher(Met a, Met b) {
+    bvec4 takes = greaterThan(b.slope, a.slope);
+    return Met(mix(a.slope, b.slope, takes), mix(a.steps, b.steps, takes));
+}
+
+// Value `line` - `first` of those in two texels, whose first is line `first`.
+uint value_of_eight(uvec4 a, uvec4 b, int i) {
+    if (LATTICE == LATTICE_SLOPES_F32) {
+        uvec4 four = i < 4 ? a : b;
+        uvec2 two = (i & 2) == 0 ? four.xy : four.zw;
+        return (i & 1) == 0 ? two.x : two.y;
+    }
+    return lattice_u16(i < 4 ? a.xy : b.xy, i);
+}
+
+// What the lattice holds of four lines at a step (occluders: steps back). Where lines follow lanes,
+// all of them lie in lowest .. lowest + 4.
+uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int step) {
+    uvec4 values;
+    if (LINES_FOLLOW_LANES) {
+        int first = lowest & ~3;
+        uvec4 a = texelFetch(lattice, lattice_texel(azimuth, lowest, step), 0);
+        uvec4 b = texelFetch(lattice, lattice_texel(azimuth, min(lowest + 4, lines - 1), step), 0);
+        values.x = value_of_eight(a, b, line.x - first);
+        values.y = value_of_eight(a, b, line.y - first);
+        values.z = value_of_eight(a, b, line.z - first);
+        values.w = value_of_eight(a, b, line.w - first);
+    } else {
+        for (int k = 0; k < 4; k++) {
+            uvec4 a = texelFetch(lattice, lattice_texel(azimuth, line[k], step), 0);
+            values[k] = value_of_eight(a, a, line[k] & 3);
+        }
+    }
+    return values;
+}
+
+// Values of a lattice of slopes. What f16 clamped is nothing, too.
+vec4 slopes_of(uvec4 values) {
+    vec4 slope = uintBitsToFloat(values);
     if (LATTICE == LATTICE_SLOPES_F16) {
-        return unpackHalf2x16(lattice_u16(texel.xy, line)).x;
+        slope = vec4(unpackHalf2x16(values.x).x, unpackHalf2x16(values.y).x, unpackHalf2x16(values.z).x,
+                     unpackHalf2x16(values.w).x);
     }
-    uvec2 pair = (line & 2) == 0 ? texel.xy : texel.zw;
-    return uintBitsToFloat((line & 1) == 0 ? pair.x : pair.y);
+    return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
 }
 
-// The height of the surface at a lane position and a march step; false outside the field.
-bool surface_on_line(Azimuth azimuth, int y, int step, int lanes, int steps, out float height) {
-    int cell = y >> CELL_SHIFT;
-    int next = min(cell + 1, lanes - 1);
-    if (BORDER == BORDER_PERIODIC) {
-        cell = wrapped(cell, lanes);
-        next = (cell + 1) % lanes;
-        step = wrapped(step, steps);
-    } else if (!on_field(y, lanes) || step < 0) {
-        height = 0.0;
-        return false;
-    }
-    int march = march_position(azimuth, step, steps);
-    int a = lane_position(azimuth, cell, lanes);
-    int b = lane_position(azimuth, next, lanes);
-    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    float ha = texelFetch(heights, by_row ? ivec2(a, march) : ivec2(march, a), 0).x;
-    float hb = texelFetch(heights, by_row ? ivec2(b, march) : ivec2(march, b), 0).x;
-    height = ha + float(y & (CELL - 1)) * (1.0 / float(CELL)) * (hb - ha);
-    return true;
-}
-
-// The sample's surroundings for all azimuths that share its march axis and flips.
-Octant octant_around(Azimuth azimuth, int lane, int step, int lanes, int steps, float own) {
+// What the samples' own lines meet within their first step: the crossing with the next grid line,
+// and with the cell's diagonal where that lies across. Nearly all that unit steps miss lies here.
+Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     bool wraps = BORDER == BORDER_PERIODIC;
-    Octant o;
-    o.own = own;
-    o.ahead_exists = wraps || step > 0;
-    o.low_exists = wraps || lane > 0;
-    o.split_crosses = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) != ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
-    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    int here = march_position(azimuth, step, steps);
-    int ahead = march_position(azimuth, o.ahead_exists ? (step + steps - 1) % steps : step, steps);
-    int middle = lane_position(azimuth, lane, lanes);
-    int low = lane_position(azimuth, o.low_exists ? (lane + lanes - 1) % lanes : lane, lanes);
-    o.ahead = texelFetch(heights, by_row ? ivec2(middle, ahead) : ivec2(ahead, middle), 0).x;
-    o.ahead_low = texelFetch(heights, by_row ? ivec2(low, ahead) : ivec2(ahead, low), 0).x;
-    o.low = texelFetch(heights, by_row ? ivec2(low, here) : ivec2(here, low), 0).x;
-    return o;
-}
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    ivec4 lane = quad_lanes(q);
+    bool has_ahead = wraps || (flips_march ? q.march < steps - 1 : q.march > 0);
+    bvec4 has_side = flips_lanes ? lessThan(lane, ivec4(wraps ? lanes : lanes - 1)) : greaterThan(lane, ivec4(wraps ? -1 : 0));
+    vec4 own = q.here.four;
+    vec4 side = flips_lanes ? lane_above(q.here) : lane_below(q.here);
+    vec4 ahead = flips_march ? q.after.four : q.before.four;
+    vec4 ahead_above = flips_march ? lane_above(q.after) : lane_above(q.before);
+    vec4 ahead_below = flips_march ? lane_below(q.after) : lane_below(q.before);
+    vec4 ahead_side = flips_lanes ? ahead_above : ahead_below;
 
-// The higher of two findings, each (slope, march steps to what is met).
-vec2 higher(vec2 a, vec2 b) {
-    return b.x > a.x ? b : a;
-}
-
-// What the sample's own line meets within its first step: its crossing with the next grid line, and
-// with the cell's diagonal where that lies across. Nearly all that unit steps miss lies here.
-vec2 first_crossings(Azimuth azimuth, Octant o) {
     float shear = float(azimuth.shear) * (1.0 / float(CELL));
-    if (!o.ahead_exists || (azimuth.shear > 0 && !o.low_exists)) {
-        return vec2(NO_SLOPE, 0.0);
-    }
-    float rise = (o.ahead - o.own) + shear * (o.ahead_low - o.ahead);
-    vec2 found = vec2(rise / azimuth.step_m, 1.0);
-    if (o.split_crosses && o.low_exists) {
-        // (1, 0) to (0, 1) is crossed by (u, u * shear) at u = 1 / (1 + shear).
-        float u = 1.0 / (1.0 + shear);
-        float split_rise = (o.low - o.own) + u * (o.ahead - o.low);
-        found = higher(found, vec2(split_rise / (u * azimuth.step_m), u));
-    }
+    float per_m = 1.0 / azimuth.step_m;
+    Met next;
+    next.slope = ((ahead - own) + shear * (ahead_side - ahead)) * per_m;
+    next.steps = vec4(1.0);
+    // (1, 0) to (0, 1) is crossed by (u, u * shear) at u = 1 / (1 + shear).
+    float u = 1.0 / (1.0 + shear);
+    Met split;
+    split.slope = ((side - own) + u * (ahead - side)) * ((1.0 + shear) * per_m);
+    split.steps = vec4(u);
+    bool split_crosses = flips_march != flips_lanes;
+    split.slope = mix(vec4(NO_SLOPE), split.slope, split_crosses ? has_side : bvec4(false));
+    Met found = higher(next, split);
+    bvec4 inside = has_ahead ? (azimuth.shear > 0 ? has_side : bvec4(true)) : bvec4(false);
+    found.slope = mix(vec4(NO_SLOPE), found.slope, inside);
     return found;
 }
 
-// The surface where a proposal stands, seen from the sample.
-vec2 seen(Azimuth azimuth, int y, uint back, int step, int lanes, int steps, float own) {
-    float h;
-    if (back == 0u || !surface_on_line(azimuth, y - int(back) * azimuth.shear, step - int(back), lanes, steps, h)) {
-        return vec2(NO_SLOPE, 0.0);
+// The surface where proposals stand, `back` steps ahead on lines through the lane positions `y`
+// (not flipped), seen from the samples. Nothing where `back` is 0 or the line has left the field.
+Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    ivec4 place = y + ivec4(back) * (flips_lanes ? azimuth.shear : -azimuth.shear);
+    bvec4 stands = notEqual(back, uvec4(0));
+    if (BORDER != BORDER_PERIODIC) {
+        bvec4 on_field = lessThanEqual(uvec4(place), uvec4((lanes - 1) * CELL));
+        stands = bvec4(uvec4(stands) & uvec4(on_field));
+        place = mix(y, place, stands);
     }
-    return vec2((h - own) / (float(back) * azimuth.step_m), float(back));
+    ivec4 march = q.march + (flips_march ? ivec4(back) : -ivec4(back));
+    vec4 height;
+    for (int k = 0; k < 4; k++) {
+        int cell = place[k] >> CELL_SHIFT;
+        int next = cell + 1;
+        int m = march[k];
+        if (BORDER == BORDER_PERIODIC) {
+            cell = wrapped(cell, lanes);
+            next = cell + 1 == lanes ? 0 : cell + 1;
+            m = wrapped(m, steps);
+        } else {
+            cell = clamp(cell, 0, lanes - 1);
+            next = clamp(next, 0, lanes - 1);
+            m = clamp(m, 0, steps - 1);
+        }
+        float h = height_at(cell, m);
+        height[k] = h + float(place[k] & (CELL - 1)) * (1.0 / float(CELL)) * (height_at(next, m) - h);
+    }
+    vec4 distance = vec4(max(back, uvec4(1)));
+    vec4 slope = (height - q.here.four) * (1.0 / azimuth.step_m) / distance;
+    return Met(mix(vec4(NO_SLOPE), slope, stands), distance);
 }
 
-// Slope of the horizon at a sample (lane, step) and how many march steps away it stands.
-vec2 fused(Azimuth azimuth, int lane, int step, int lanes, int steps, int warm_up, Octant o) {
-    if (FUSE == FUSE_DIRECT) {
-        ivec3 texel = ivec3(lane, step, azimuth.layer);
-        float slope = uintBitsToFloat(texelFetch(lattice, texel, 0).x);
-        texel.z++;
-        return vec2(slope, LATTICE_HAS_DISTANCES ? uintBitsToFloat(texelFetch(lattice, texel, 0).x) : 0.0);
-    }
-    // The lines around the sample, before it (or through it) and after it.
+// Slopes of the horizons of four samples and how many march steps away they stand.
+Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     bool wraps = BORDER == BORDER_PERIODIC;
-    int y = lane * CELL;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int step = march_position(azimuth, q.march, steps);
+    ivec4 lane = flips_lanes ? lanes - 1 - quad_lanes(q) : quad_lanes(q);
+    Met met;
+    if (FUSE == FUSE_DIRECT) {
+        for (int k = 0; k < 4; k++) {
+            ivec3 texel = ivec3(clamp(lane[k], 0, lanes - 1), step, azimuth.layer);
+            met.slope[k] = uintBitsToFloat(texelFetch(lattice, texel, 0).x);
+            texel.z++;
+            met.steps[k] = LATTICE_HAS_DISTANCES ? uintBitsToFloat(texelFetch(lattice, texel, 0).x) : 0.0;
+        }
+        return met;
+    }
+    // Line 0 here, and the lines that are on the field here: none where `last` lies before `first`.
     int spacing = 1 << LINE_SHIFT;
     int total = warm_up + steps;
     int lead = lattice_lead(azimuth.shear, total, LINE_SHIFT, wraps);
     int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
-    // Of line 0, and which line lies before the sample.
-    int origin = (step + warm_up) * azimuth.shear - lead * spacing;
-    int before_line = (y - origin) >> LINE_SHIFT;
-    int before = origin + before_line * spacing;
-    int after = before + spacing;
-    bool has_before = wraps || before >= 0;
-    bool has_after = before < y && (wraps || after <= (lanes - 1) * CELL);
-    int after_line = wraps ? wrapped(before_line + 1, lines) : min(before_line + 1, lines - 1);
-    before_line = wraps ? wrapped(before_line, lines) : before_line;
-    float t = float(y - before) / float(spacing);
-    bool takes_after = has_after && (t > 0.5 || !has_before);
-    bool takes_one = has_after || has_before;
+    step += warm_up;
+    int origin = step * azimuth.shear - lead * spacing;
+    int first = (spacing - 1 - origin) >> LINE_SHIFT;
+    int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
+    ivec4 from_origin = lane * CELL - origin;
 
     if (FUSE == FUSE_NEAREST || FUSE == FUSE_AIMED_NEAREST) {
-        int line = takes_after ? after_line : before_line;
-        uvec4 texel = texelFetch(lattice, lattice_texel(azimuth, line, step + warm_up), 0);
-        if (FUSE == FUSE_NEAREST) {
-            return vec2(takes_one ? lattice_slope(line, texel) / azimuth.step_m : NO_SLOPE, 0.0);
+        // The nearer one; of two, the one before.
+        ivec4 line = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
+        bool takes = wraps || first <= last;
+        int lowest = clamp(flips_lanes ? line.w : line.x, first, last);
+        if (wraps) {
+            line = ivec4(wrapped(line.x, lines), wrapped(line.y, lines), wrapped(line.z, lines), wrapped(line.w, lines));
+        } else {
+            line = clamp(line, first, last);
         }
-        vec2 found = first_crossings(azimuth, o);
-        uint back = takes_one ? lattice_u16(texel.xy, line) : 0u;
+        uvec4 values = lattice_values(azimuth, line, lowest, lines, step);
+        if (FUSE == FUSE_NEAREST) {
+            return Met(takes ? slopes_of(values) : vec4(NO_SLOPE), vec4(0.0));
+        }
         // A proposal one step back is the first crossing itself.
-        return higher(found, seen(azimuth, y, back > 1u ? back : 0u, step, lanes, steps, o.own));
+        uvec4 back = takes ? mix(uvec4(0), values, greaterThan(values, uvec4(1))) : uvec4(0);
+        met = first_crossings(azimuth, q, lanes, steps);
+        return higher(met, seen(azimuth, q, quad_lanes(q) * CELL, back, lanes, steps));
     }
-    uvec4 before_texel = texelFetch(lattice, lattice_texel(azimuth, before_line, step + warm_up), 0);
-    uvec4 after_texel = texelFetch(lattice, lattice_texel(azimuth, after_line, step + warm_up), 0);
-    uint before_back = has_before ? lattice_u16(before_texel.xy, before_line) : 0u;
-    uint after_back = has_after ? lattice_u16(after_texel.xy, after_line) : 0u;
+    // The lines around each sample: before it (or through it), and after it.
+    ivec4 before = from_origin >> LINE_SHIFT;
+    ivec4 offset = from_origin & (spacing - 1);
+    vec4 t = vec4(offset) * (1.0 / float(spacing));
+    bvec4 has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(first));
+    bvec4 has_after = wraps ? bvec4(true) : lessThan(before, ivec4(last));
+    has_after = bvec4(uvec4(has_after) & uvec4(greaterThan(offset, ivec4(0))));
+    int lowest = clamp(flips_lanes ? before.w : before.x, first, last);
+    ivec4 before_line = wraps ? ivec4(wrapped(before.x, lines), wrapped(before.y, lines), wrapped(before.z, lines),
+                                      wrapped(before.w, lines)) : clamp(before, first, last);
+    ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(lines - 1)))
+                             : clamp(before + 1, first, last);
+    uvec4 before_values = lattice_values(azimuth, before_line, lowest, lines, step);
+    uvec4 after_values = lattice_values(azimuth, after_line, lowest, lines, step);
+    uvec4 before_back = mix(uvec4(0), before_values, has_before);
+    uvec4 after_back = mix(uvec4(0), after_values, has_after);
     if (FUSE == FUSE_AIMED) {
-        vec2 found = first_crossings(azimuth, o);
-        found = higher(found, seen(azimuth, y, before_back > 1u ? before_back : 0u, step, lanes, steps, o.own));
-        return higher(found, seen(azimuth, y, after_back > 1u ? after_back : 0u, step, lanes, steps, o.own));
+        ivec4 y = quad_lanes(q) * CELL;
+        before_back = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
+        after_back = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
+        met = first_crossings(azimuth, q, lanes, steps);
+        met = higher(met, seen(azimuth, q, y, before_back, lanes, steps));
+        return higher(met, seen(azimuth, q, y, after_back, lanes, steps));
     }
-    vec2 b;
-    vec2 a;
+    Met b;
+    Met a;
     if (FUSE == FUSE_OWN) {
-        b = seen(azimuth, before, before_back, step, lanes, steps, o.own);
-        a = seen(azimuth, after, after_back, step, lanes, steps, o.own);
+        ivec4 y = quad_lanes(q) * CELL;
+        b = seen(azimuth, q, y + (flips_lanes ? offset : -offset), before_back, lanes, steps);
+        a = seen(azimuth, q, y + (flips_lanes ? offset - spacing : spacing - offset), after_back, lanes, steps);
     } else {
-        b = vec2(has_before ? lattice_slope(before_line, before_texel) / azimuth.step_m : NO_SLOPE, 0.0);
-        a = vec2(has_after ? lattice_slope(after_line, after_texel) / azimuth.step_m : NO_SLOPE, 0.0);
+        b = Met(mix(vec4(NO_SLOPE), slopes_of(before_values), has_before), vec4(0.0));
+        a = Met(mix(vec4(NO_SLOPE), slopes_of(after_values), has_after), vec4(0.0));
     }
     // Where only one line met anything, it speaks for the sample.
-    if (b.x <= LOWEST_MET || a.x <= LOWEST_MET) {
-        return higher(a, b);
-    }
-    return vec2(mix(b.x, a.x, t), takes_after ? a.y : b.y);
+    bvec4 both = greaterThan(min(a.slope, b.slope), vec4(LOWEST_MET));
+    bvec4 nearer_after = greaterThan(t, vec4(0.5));
+    Met one = higher(a, b);
+    return Met(mix(one.slope, mix(b.slope, a.slope, t), both),
+               mix(one.steps, mix(b.steps, a.steps, nearer_after), both));
 }

@@ -1,31 +1,18 @@
 #include "shared/fuse.glsl"
 
-// Walks the azimuths of a batch at one sample. The including shader declares `azimuths` and the push
-// constants first_azimuth, ends and warm_up, and defines add_light.
+// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
+// push constants first_azimuth, azimuth_count and warm_up, and defines add_light.
 
-// `size` is (cols, rows); `plane` is the field's slope at the sample.
-void add_all(ivec2 at, ivec2 size, float own, vec2 plane, vec3 normal) {
-    for (uint octant = 0; octant < 4; octant++) {
-        uint k = octant == 0 ? 0u : ends[octant - 1];
-        if (k >= ends[octant]) {
-            continue;
+// `east` and `north` are the field's slopes at the samples.
+void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
+    for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
+        Azimuth azimuth = azimuth_at(azimuths, k);
+        vec4 horizon = fused(azimuth, q, lanes, steps, warm_up).slope;
+        // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+        vec4 lowest = max(horizon, east * azimuth.cos_phi + north * azimuth.sin_phi);
+        if (BORDER != BORDER_OPEN) {
+            lowest = max(lowest, vec4(0.0));
         }
-        Azimuth azimuth = azimuth_at(azimuths, first_azimuth + k);
-        bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-        int lanes = by_row ? size.x : size.y;
-        int steps = by_row ? size.y : size.x;
-        int lane = lane_position(azimuth, by_row ? at.x : at.y, lanes);
-        int step = march_position(azimuth, by_row ? at.y : at.x, steps);
-        Octant around = octant_around(azimuth, lane, step, lanes, steps, own);
-        for (; k < ends[octant]; k++) {
-            azimuth = azimuth_at(azimuths, first_azimuth + k);
-            float horizon = fused(azimuth, lane, step, lanes, steps, warm_up, around).x;
-            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
-            float lowest = max(horizon, dot(plane, vec2(azimuth.cos_phi, azimuth.sin_phi)));
-            if (BORDER != BORDER_OPEN) {
-                lowest = max(lowest, 0.0);
-            }
-            add_light(first_azimuth + k, azimuth, lowest, normal);
-        }
+        add_light(k, azimuth, lowest);
     }
 }

@@ -6,17 +6,21 @@
 // No crossing: beyond the end of the segment.
 const float NO_CROSSING = 2.0;
 
+// Tells equal from greater: places are whole 1/32768 of a cell, or quotients with whole numbers up
+// to 4096, which a device may get wrong by 2.5 ulp.
+const float HAIR = 1e-5;
+
 // Where a line that starts at f0 and advances by `shear` crosses lane lines and cell diagonals
 // strictly between two steps, sorted; these and the steps themselves are all the vertices of the
 // profile. `split_along` says that diagonals run from (0, 0) to (1, 1), else from (1, 0) to (0, 1).
 vec3 segment_crossings(float f0, float shear, bool split_along) {
     vec3 u = vec3(NO_CROSSING);
-    if (f0 + shear > 1.0) {
+    if (f0 + shear > 1.0 + HAIR) {
         u.x = (1.0 - f0) / shear;
     }
     if (split_along) {
         // f - u is an integer: from f0 down to f0 + shear - 1, past 0.
-        if (f0 > 0.0 && f0 + shear < 1.0) {
+        if (f0 > 0.0 && f0 + shear < 1.0 - HAIR) {
             u.y = f0 / (1.0 - shear);
         }
     } else {
@@ -24,7 +28,7 @@ vec3 segment_crossings(float f0, float shear, bool split_along) {
         if (f0 + shear > 0.0) {
             u.y = (1.0 - f0) / (1.0 + shear);
         }
-        if (f0 + shear > 1.0) {
+        if (f0 + shear > 1.0 + HAIR) {
             u.z = (2.0 - f0) / (1.0 + shear);
         }
     }

@@ -1,4 +1,20 @@
-//! The twins of the GPU passes in f64, and the brute-force truth they are all judged by.
+//! The twins of the GPU passes, and the brute-force truth they are all judged by.
+//!
+//! A twin has its shader's name and reads like it. Geometry (sweeps, fusing) does the shader's own
+//! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
+//! bits; light is summed in f64 and compared within a tolerance.
 
+pub mod env_tables;
+pub mod env_wedges;
+pub mod height_transpose;
+pub mod horizon_march;
+pub mod horizon_sweep;
+pub mod lattice;
 pub mod light;
+pub mod light_resolve;
 pub mod oracle;
+pub mod shared;
+pub mod sky_shade;
+pub mod sun_shade;
+pub mod surface_sweep;
+pub mod sweep_fuse;

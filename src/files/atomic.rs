@@ -69,6 +69,14 @@ impl Temporary {
     }
 }
 
+/// Whether a file can be written at `path`, found out by beginning one there and leaving nothing.
+///
+/// # Errors
+/// A destination that cannot be written to, or that is a directory or a device.
+pub fn check_writable(path: &Path) -> Result<()> {
+    Temporary::create(path).map(drop)
+}
+
 /// Writes UTF-8 text, whole or not at all.
 ///
 /// # Errors

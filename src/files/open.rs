@@ -40,6 +40,20 @@ impl Format {
         }
     }
 
+    /// For sentences.
+    fn extensions(self) -> &'static str {
+        match self {
+            Format::Png => ".png",
+            Format::Exr => ".exr",
+            Format::Tiff => ".tif .tiff",
+            Format::Hgt => ".hgt",
+            Format::Asc => ".asc",
+            Format::Npy => ".npy",
+            Format::Npz => ".npz",
+            Format::Hdr => ".hdr .pic",
+        }
+    }
+
     /// By the name's extension, in either case.
     fn of_name(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
@@ -80,8 +94,8 @@ pub(super) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<F
             Some(extension) => format!("the extension .{}", extension.display()),
             None => "no extension".into(),
         };
-        let names: Vec<_> = accepted.iter().map(|f| f.named()).collect();
-        Error::file(path, "name", found, format!("the name of {}", names.join(", ")))
+        let names: Vec<_> = accepted.iter().map(|f| f.extensions()).collect();
+        Error::file(path, "name", found, format!("one of {}", names.join(" ")))
     })?;
     if bytes.is_empty() {
         return Err(Error::file(path, "header", "an empty file", format.named()));

@@ -57,24 +57,52 @@ fn load() -> Result<ash::Entry> {
     })
 }
 
+fn no_driver() -> Error {
+    Error::Device {
+        doing: "choosing a device".into(),
+        reason: "no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into(),
+    }
+}
+
+/// Turns one of the validation layer's settings on.
+fn layer_setting(key: &'static CStr) -> vk::LayerSettingEXT<'static> {
+    const ON: [u8; 4] = vk::TRUE.to_ne_bytes();
+    let mut setting = vk::LayerSettingEXT::default()
+        .layer_name(VALIDATION)
+        .setting_name(key)
+        .ty(vk::LayerSettingTypeEXT::BOOL32)
+        .values(&ON);
+    // One VkBool32; ash 0.38 counts bytes.
+    setting.value_count = 1;
+    setting
+}
+
 fn instance(
     entry: &ash::Entry,
-    layers: &[*const i8],
-    extensions: &[*const i8],
-    next: &mut vk::ValidationFeaturesEXT<'_>,
+    messenger: Option<&mut vk::DebugUtilsMessengerCreateInfoEXT<'_>>,
 ) -> Result<ash::Instance> {
     let app = vk::ApplicationInfo::default()
         .application_name(c"ridgelight")
         .api_version(vk::API_VERSION_1_3);
-    let mut info = vk::InstanceCreateInfo::default()
-        .application_info(&app)
-        .enabled_layer_names(layers)
-        .enabled_extension_names(extensions);
-    if !layers.is_empty() {
-        info = info.push_next(next);
+    // Without the second, hazards of dispatches on one buffer go unheard.
+    let settings =
+        [layer_setting(c"validate_sync"), layer_setting(c"syncval_shader_accesses_heuristic")];
+    let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
+    let layers = [VALIDATION.as_ptr()];
+    let extensions = [ext::debug_utils::NAME.as_ptr()];
+    let mut info = vk::InstanceCreateInfo::default().application_info(&app);
+    if let Some(messenger) = messenger {
+        info = info
+            .enabled_layer_names(&layers)
+            .enabled_extension_names(&extensions)
+            .push_next(&mut layer_settings)
+            .push_next(messenger);
     }
-    // SAFETY: names are nul-terminated and live across the call.
-    unsafe { entry.create_instance(&info, None) }.map_err(failed("making a Vulkan instance"))
+    // SAFETY: names are nul-terminated and live across the call; so do the chained structs.
+    unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
+        vk::Result::ERROR_INCOMPATIBLE_DRIVER => no_driver(),
+        other => failed("making a Vulkan instance")(other),
+    })
 }
 
 /// All devices of the system.
@@ -83,7 +111,7 @@ fn instance(
 /// No loader, or no driver that answers.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let entry = load()?;
-    let instance = instance(&entry, &[], &[], &mut vk::ValidationFeaturesEXT::default())?;
+    let instance = instance(&entry, None)?;
     // SAFETY: the instance is alive; it is destroyed after its last use.
     unsafe {
         let found = instance.enumerate_physical_devices().map_err(failed("listing devices"));
@@ -121,8 +149,6 @@ impl Headless {
     /// layer where it is required.
     pub fn new(options: &HeadlessOptions) -> Result<Self> {
         let entry = load()?;
-        let mut layers = Vec::new();
-        let mut extensions = Vec::new();
         if options.validation {
             // SAFETY: a query without preconditions.
             let known = unsafe { entry.enumerate_instance_layer_properties() }
@@ -133,28 +159,24 @@ impl Headless {
                     reason: "no VK_LAYER_KHRONOS_validation is installed".into(),
                 });
             }
-            layers.push(VALIDATION.as_ptr());
-            extensions.push(ext::debug_utils::NAME.as_ptr());
         }
-        let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
-        let mut features =
-            vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
-        let instance = instance(&entry, &layers, &extensions, &mut features)?;
         let messages = Arc::new(Mutex::new(Vec::new()));
+        let listen = || {
+            vk::DebugUtilsMessengerCreateInfoEXT::default()
+                .message_severity(
+                    vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                        | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+                )
+                .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION)
+                .pfn_user_callback(Some(keep_message))
+                .user_data(Arc::as_ptr(&messages).cast_mut().cast())
+        };
+        let mut during = listen();
+        let instance = instance(&entry, options.validation.then_some(&mut during))?;
         let debug = if options.validation {
             let loader = ext::debug_utils::Instance::new(&entry, &instance);
-            let severities = vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR;
-            let kinds = vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                | vk::DebugUtilsMessageTypeFlagsEXT::GENERAL
-                | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE;
-            let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-                .message_severity(severities)
-                .message_type(kinds)
-                .pfn_user_callback(Some(keep_message))
-                .user_data(Arc::as_ptr(&messages).cast_mut().cast());
             // SAFETY: the callback and its data outlive the messenger (see Drop).
-            let messenger = unsafe { loader.create_debug_utils_messenger(&info, None) };
+            let messenger = unsafe { loader.create_debug_utils_messenger(&listen(), None) };
             Some((loader, messenger.map_err(failed("listening to validation"))?))
         } else {
             None
@@ -414,7 +436,7 @@ impl Headless {
         let barrier = [vk::MemoryBarrier2::default()
             .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
             .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
             .dst_access_mask(
                 vk::AccessFlags2::MEMORY_READ
                     | vk::AccessFlags2::MEMORY_WRITE
@@ -565,7 +587,12 @@ impl Owned {
     }
 }
 
-fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
+/// Which of the `reports` of [`devices`] would be used: the one `wanted`, by number or by a part of
+/// its name, else the first GPU that will do, else any that will.
+///
+/// # Errors
+/// No such device, none at all, or one that lacks what is needed (named).
+pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
     let listed = || reports.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
     let no = |reason: String| Error::Device { doing: "choosing a device".into(), reason };
     let index = match wanted {
@@ -581,9 +608,7 @@ fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
             let fit = |r: &DeviceReport| r.missing.is_empty();
             let gpu = reports.iter().position(|r| fit(r) && !r.limits.is_cpu);
             let any = || reports.iter().position(fit);
-            gpu.or_else(any).or((!reports.is_empty()).then_some(0)).ok_or_else(|| {
-                no("no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into())
-            })?
+            gpu.or_else(any).or((!reports.is_empty()).then_some(0)).ok_or_else(no_driver)?
         }
     };
     let report = &reports[index];

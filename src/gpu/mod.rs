@@ -7,7 +7,7 @@ mod renderer;
 mod requirements;
 pub mod shaders;
 
-pub use headless::{Frame, Headless, HeadlessOptions, Pixels, devices};
+pub use headless::{Frame, Headless, HeadlessOptions, Pixels, choose, devices};
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, limits, missing};
 

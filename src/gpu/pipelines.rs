@@ -33,7 +33,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 impl Pipelines {
     pub fn new(host: &Host, passes: &[Pass]) -> Result<Self> {
         let mut all = Self { made: Vec::new(), of_pass: Vec::new() };
-        let mut known: HashMap<(&str, &[(u32, u32)]), usize> = HashMap::new();
+        let mut known = HashMap::<_, usize>::new();
         for pass in passes {
             let key = (pass.name(), pass.constants.as_slice());
             let index = match known.get(&key) {

@@ -73,7 +73,8 @@ pub struct Renderer {
     plan: Plan,
     memory: Memory,
     resources: Vec<Option<Backed>>,
-    unused: Vec<(BindingKind, Backed)>,
+    /// For bindings that a pass leaves unused: (kind, pass that alone may write it, resource).
+    unused: Vec<(BindingKind, Option<usize>, Backed)>,
     pipelines: Pipelines,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
@@ -149,11 +150,16 @@ impl Renderer {
             })?;
             mapped[..bytes.len()].copy_from_slice(bytes);
         }
-        for pass in &self.plan.passes {
+        // What a shader might write is its pass's alone: two passes that "write" one unused image
+        // would need a barrier for nothing.
+        for (index, pass) in self.plan.passes.iter().enumerate() {
             for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
-                if id.is_none() && !self.unused.iter().any(|(kind, _)| *kind == binding.kind) {
+                let writer = binding.written.then_some(index);
+                let known =
+                    |u: &(BindingKind, Option<usize>, Backed)| u.0 == binding.kind && u.1 == writer;
+                if id.is_none() && !self.unused.iter().any(known) {
                     let backed = self.memory.make("unused", smallest(binding.kind))?;
-                    self.unused.push((binding.kind, backed));
+                    self.unused.push((binding.kind, writer, backed));
                 }
             }
         }
@@ -254,7 +260,7 @@ impl Renderer {
                 entry.push(transition(arg.image, arg.extent[2], arg.before, to));
             }
         }
-        for (_, backed) in self.unused.iter().filter(|(_, b)| b.image != vk::Image::null()) {
+        for (_, _, backed) in self.unused.iter().filter(|u| u.2.image != vk::Image::null()) {
             let from = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::WRITTEN };
             entry.push(transition(backed.image, backed.layers, from, ImageState::WRITTEN));
         }
@@ -384,7 +390,8 @@ impl Renderer {
     }
 
     fn write_sets(&self, slot: usize, bound: &[Option<&ImageArg>]) {
-        for (pass, set) in self.plan.passes.iter().zip(&self.slots[slot].sets) {
+        for (index, (pass, set)) in self.plan.passes.iter().zip(&self.slots[slot].sets).enumerate()
+        {
             let mut images = Vec::new();
             let mut buffers = Vec::new();
             let mut texels = Vec::new();
@@ -392,7 +399,10 @@ impl Renderer {
                 let backed = match id {
                     Some(id) => self.resources[id.0].as_ref(),
                     None => {
-                        self.unused.iter().find(|(kind, _)| *kind == binding.kind).map(|(_, b)| b)
+                        let writer = binding.written.then_some(index);
+                        let fitting =
+                            self.unused.iter().find(|u| u.0 == binding.kind && u.1 == writer);
+                        fitting.map(|u| &u.2)
                     }
                 };
                 let arg = id.and_then(|id| bound[id.0]);
@@ -475,7 +485,7 @@ impl Renderer {
         for mut backed in self.resources.drain(..).flatten() {
             self.memory.free(&mut backed);
         }
-        for (_, mut backed) in self.unused.drain(..) {
+        for (_, _, mut backed) in self.unused.drain(..) {
             self.memory.free(&mut backed);
         }
         for slot in self.slots.drain(..) {

@@ -4,3 +4,4 @@ pub mod error;
 pub mod fractal;
 pub mod scalar_sweep;
 pub mod statistics;
+pub mod tolerance;

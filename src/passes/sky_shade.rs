@@ -12,9 +12,8 @@ struct SkyShadePush {
     cell_y_m: f32,
     warm_up: i32,
     first_azimuth: u32,
+    azimuth_count: u32,
     clears: u32,
-    pad: u32,
-    ends: [u32; 4],
 }
 
 same_layout!(
@@ -26,8 +25,8 @@ same_layout!(
     cell_y_m = CELL_Y_M,
     warm_up = WARM_UP,
     first_azimuth = FIRST_AZIMUTH,
+    azimuth_count = AZIMUTH_COUNT,
     clears = CLEARS,
-    ends = ENDS,
 );
 
 /// What the shading of a batch reads and writes.
@@ -71,7 +70,7 @@ pub(crate) fn plan(
             (Some(_), None) => "uniform sky in closed form: no table",
             _ => "environment from its tables",
         },
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), 1],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),
@@ -79,6 +78,7 @@ pub(crate) fn plan(
             (3, border as u32),
             (4, u32::from(images.sky_sum.is_some())),
             (5, u32::from(images.environment.is_some())),
+            (6, u32::from(axis.marches_rows)),
         ],
         &SkyShadePush {
             cols: cols as i32,
@@ -87,9 +87,8 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
+            azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
-            pad: 0,
-            ends: batch.octant_ends,
         },
         &bound,
         axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),

@@ -12,9 +12,8 @@ struct SunShadePush {
     cell_y_m: f32,
     warm_up: i32,
     first_azimuth: u32,
+    azimuth_count: u32,
     clears: u32,
-    pad: u32,
-    ends: [u32; 4],
 }
 
 same_layout!(
@@ -26,8 +25,8 @@ same_layout!(
     cell_y_m = CELL_Y_M,
     warm_up = WARM_UP,
     first_azimuth = FIRST_AZIMUTH,
+    azimuth_count = AZIMUTH_COUNT,
     clears = CLEARS,
-    ends = ENDS,
 );
 
 /// Light of one sun through the horizons of the azimuths that its disc covers.
@@ -52,13 +51,14 @@ pub(crate) fn plan(
         } else {
             "the part of each chord of the disc above the horizon"
         },
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), 1],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),
             (2, sweep.line_shift()),
             (3, border as u32),
             (4, u32::from(is_point)),
+            (5, u32::from(axis.marches_rows)),
         ],
         &SunShadePush {
             cols: cols as i32,
@@ -67,9 +67,8 @@ pub(crate) fn plan(
             cell_y_m: cell_m[1] as f32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
+            azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
-            pad: 0,
-            ends: batch.octant_ends,
         },
         &[("heights", heights), ("lattice", lattice), ("azimuths", azimuths), ("sun_sum", sun_sum)],
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),

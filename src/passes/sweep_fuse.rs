@@ -46,7 +46,7 @@ pub(crate) fn plan(
         &shaders::SWEEP_FUSE,
         part,
         "from the lines back to the samples",
-        [cols.div_ceil(8), rows.div_ceil(8), batch.count],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), batch.count],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),
@@ -54,6 +54,7 @@ pub(crate) fn plan(
             (3, border as u32),
             (4, u32::from(distances.is_some())),
             (5, u32::from(sweep.lattice_has_distances())),
+            (6, u32::from(axis.marches_rows)),
         ],
         &SweepFusePush {
             cols: cols as i32,

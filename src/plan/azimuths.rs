@@ -19,9 +19,9 @@ pub(crate) const FLIPS_LANES: u32 = 4;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Azimuth {
-    /// cos φ of the wedge's centre.
+    /// cos φ of the direction swept: the wedge's centre, but for exact azimuths.
     pub cos_phi: f32,
-    /// sin φ of the wedge's centre.
+    /// sin φ of the direction swept.
     pub sin_phi: f32,
     /// ∫ cos φ over the wedge.
     pub wedge_cos: f32,
@@ -108,7 +108,7 @@ fn grid_direction(phi_rad: f64, cell_m: [f64; 2]) -> (f64, f64) {
 }
 
 fn with_wedge(azimuth: Azimuth, phi_rad: f64, wedge: [f64; 2]) -> Azimuth {
-    let mut centre = phi_rad.rem_euclid(TAU);
+    let mut centre = (0.5 * (wedge[0] + wedge[1])).rem_euclid(TAU);
     if centre > PI {
         centre -= TAU;
     }

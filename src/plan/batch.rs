@@ -50,8 +50,6 @@ pub struct Batch {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// Where each of the axis' four octants ends, counted from `first`.
-    pub octant_ends: [u32; 4],
     /// Lines of the azimuth that has most.
     pub most_lines: u32,
     /// Samples on all lines.
@@ -71,8 +69,9 @@ pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
     order
 }
 
-/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattice takes at
-/// most `lattice_bytes` at `layer_bytes` a layer, and gives each azimuth its layer.
+/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattice takes, at
+/// `layer_bytes` a layer, at most what `fixed_bytes` for all else leave of the memory budget, and
+/// gives each azimuth its layer.
 ///
 /// # Errors
 /// One azimuth that does not fit alone.
@@ -83,8 +82,9 @@ pub(crate) fn cut(
     border: Border,
     sweep: &Sweep,
     limits: &Limits,
-    (lattice_bytes, layer_bytes): (u64, u64),
+    (fixed_bytes, layer_bytes): (u64, u64),
 ) -> Result<Vec<Batch>> {
+    let lattice_bytes = limits.memory_budget.saturating_sub(fixed_bytes);
     let most_layers = u64::from(limits.image_layers)
         .min(lattice_bytes.min(limits.allocation_bytes) / layer_bytes.max(1))
         as u32;
@@ -93,15 +93,22 @@ pub(crate) fn cut(
         let axis = Axis::of(azimuth.marches_rows(), size, border);
         let layers = sweep.layers(azimuth, axis);
         if layers > most_layers {
-            return Err(Error::Limit {
-                what: format!("horizons of one azimuth of a {} × {} field", size[0], size[1]),
-                needs: bytes_text(u64::from(layers) * layer_bytes),
-                limit: if layers > limits.image_layers {
-                    format!("{} layers of an image on this device", limits.image_layers)
-                } else {
-                    format!("{} of the memory budget beside all else", bytes_text(lattice_bytes))
-                },
-            });
+            let what = format!("horizons of one azimuth of a {} × {} field", size[0], size[1]);
+            let bytes = u64::from(layers) * layer_bytes;
+            let (needs, limit) = if layers > limits.image_layers {
+                (
+                    format!("an image of {layers} layers"),
+                    format!("{} on this device", limits.image_layers),
+                )
+            } else if bytes > limits.allocation_bytes {
+                let limit = bytes_text(limits.allocation_bytes);
+                (bytes_text(bytes), format!("{limit} in one allocation on this device"))
+            } else {
+                let (all, budget) =
+                    (bytes_text(fixed_bytes + bytes), bytes_text(limits.memory_budget));
+                (format!("{all} with all else"), format!("{budget} of --memory-budget"))
+            };
+            return Err(Error::Limit { what, needs, limit });
         }
         let fits =
             batches.last().is_some_and(|b| b.axis == axis && b.layers + layers <= most_layers);
@@ -110,7 +117,6 @@ pub(crate) fn cut(
                 axis,
                 first: first + i as u32,
                 count: 0,
-                octant_ends: [0; 4],
                 most_lines: 0,
                 line_samples: 0,
                 layers: 0,
@@ -123,9 +129,6 @@ pub(crate) fn cut(
         batch.count += 1;
         batch.most_lines = batch.most_lines.max(sweep.lines(azimuth, axis));
         batch.line_samples += sweep.line_samples(azimuth, axis);
-        for end in &mut batch.octant_ends[azimuth.octant() % 4..] {
-            *end = batch.count;
-        }
     }
     Ok(batches)
 }

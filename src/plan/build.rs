@@ -197,12 +197,11 @@ fn prepare(
     let layer_bytes: u64 =
         [format_occluders, format_slopes].iter().flatten().map(|f| f.bytes() * texels).sum();
     let fixed = builder.bytes();
-    let rest = limits.memory_budget.saturating_sub(fixed);
     let mut batches = Vec::new();
     let mut first = 0;
     for list in &mut lists {
         batch::sort(list);
-        batches.push(batch::cut(list, first, size, border, &sweep, limits, (rest, layer_bytes))?);
+        batches.push(batch::cut(list, first, size, border, &sweep, limits, (fixed, layer_bytes))?);
         first += list.len() as u32;
     }
     let layers = batches.iter().flatten().map(|b| b.layers).max().unwrap_or(1);

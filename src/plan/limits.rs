@@ -30,4 +30,18 @@ impl Limits {
             memory_budget: 2 << 30,
         }
     }
+
+    /// No device's: beyond what any field asks for. What cannot be planned for these, in either
+    /// kind of device and within the budget, can be planned for none.
+    pub fn boundless(is_cpu: bool, memory_budget: u64) -> Self {
+        Self {
+            image_side: 1 << 20,
+            image_layers: 1 << 14,
+            buffer_bytes: 1 << 50,
+            allocation_bytes: 1 << 50,
+            shared_bytes: 32 << 10,
+            is_cpu,
+            memory_budget,
+        }
+    }
 }

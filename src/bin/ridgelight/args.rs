@@ -63,7 +63,7 @@ pub struct RenderArgs {
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,
     /// Factor before the picture curve of a .png, which clips at 1 and is sRGB
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", allow_negative_numbers = true)]
     pub exposure: f32,
     #[command(flatten)]
     pub global: GlobalArgs,
@@ -156,8 +156,8 @@ pub struct CompareArgs {
     /// What it should be
     #[arg(value_name = "B")]
     pub reference: PathBuf,
-    /// Largest RMSE relative to the mean of B, of the worst channel
-    #[arg(long, value_name = "X")]
+    /// Largest RMSE relative to the mean of B (0.01 is 1 %), of the worst channel
+    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_rmse: Option<f64>,
     /// Take values as elevations in radians and report degrees
     #[arg(long)]
@@ -191,13 +191,19 @@ pub struct Input {
 #[command(next_help_heading = "Lights")]
 pub struct LightArgs {
     /// Radiance of a uniform sky: one number or R,G,B. Default 1 where no other light is given
-    #[arg(long, value_name = "RADIANCE", value_parser = colour)]
+    #[arg(long, value_name = "RADIANCE", value_parser = colour, allow_negative_numbers = true)]
     pub sky: Option<[f32; 3]>,
     /// Environment at infinity: .hdr or .exr, equirectangular, angular map, cube cross or faces
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
     /// Turns the environment clockwise, compass degrees; unturned, its middle is east
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        requires = "env"
+    )]
     pub env_rotate: f64,
     /// A sun: compass azimuth, elevation, angular diameter (degrees; default 0.53), irradiance facing
     /// it (one number or R,G,B; default 1). Diameter 0 casts hard shadows. May be repeated
@@ -208,19 +214,20 @@ pub struct LightArgs {
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 pub struct SurfaceArgs {
-    /// Spacing of columns and of rows in the heights' unit, where the file has none or a wrong one
-    #[arg(long, value_name = "X[,Y]", value_parser = cell)]
+    /// Spacing of columns and of rows in the heights' unit (metres), where the file has none or a
+    /// wrong one. Default the file's, else 1
+    #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<[f64; 2]>,
-    /// Multiplies heights
+    /// Multiplies heights; not 0
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub z_scale: f64,
-    /// Diffuse reflectance: one number, R,G,B, or a picture of the field's size
-    #[arg(long, value_name = "VALUE|FILE", default_value = "1")]
+    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
+    #[arg(long, value_name = "VALUE|FILE", default_value = "1", allow_negative_numbers = true)]
     pub albedo: String,
     /// Beyond the edge: the ground goes on level (plane), nothing (open), the field repeats (periodic)
     #[arg(long, default_value = "plane")]
     pub border: BorderName,
-    /// The height that stands for no data (nan is one)
+    /// The height that stands for no data, as the file has it (nan is one). Default the file's
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
     pub nodata: Option<f64>,
 }
@@ -232,10 +239,10 @@ pub struct QualityArgs {
     #[arg(long, default_value = "auto")]
     pub method: MethodName,
     /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
-    #[arg(long, value_name = "M", default_value_t = 64)]
+    #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub azimuths: u32,
     /// Slices across a sun's disc, 1..256
-    #[arg(long, value_name = "M", default_value_t = 8)]
+    #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
     pub sun_azimuths: u32,
     /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
     #[arg(long, default_value = "1")]
@@ -250,19 +257,20 @@ pub struct QualityArgs {
     #[arg(long, default_value = "auto")]
     pub hull: HullName,
     /// Elevations of an environment's table, 8..4096
-    #[arg(long, value_name = "N", default_value_t = 256)]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
     pub table_elevations: u32,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = "Everywhere")]
 pub struct GlobalArgs {
-    /// Part of a device's name, or its number in `ridgelight devices`
+    /// Part of a device's name, or its number in `ridgelight devices`. Default the first GPU that
+    /// will do, else a software driver
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
     /// Most memory that images and buffers may take on the device, as 512MiB or 2GiB; default half
     /// of the device's
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    #[arg(long, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]
     pub memory_budget: Option<u64>,
     /// Settings really used, times and figures, for machines
     #[arg(long, value_name = "FILE")]
@@ -275,29 +283,29 @@ pub struct GlobalArgs {
 /// Flags of methods that are still to come: known, so that the answer is not "unexpected argument".
 #[derive(Args)]
 pub struct LaterArgs {
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     light: Vec<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     phong: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     bounces: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     subsample: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     level_step: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     level_offset: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     basis: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     max_error: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     time_budget: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     seed: Option<String>,
-    #[arg(long, hide = true)]
+    #[arg(long, hide = true, allow_hyphen_values = true)]
     camera: Option<String>,
 }
 
@@ -406,6 +414,11 @@ pub enum HullName {
     Private,
     Shared,
     List,
+}
+
+/// The range is [`ridgelight::scene::Quality`]'s to check.
+fn whole(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {

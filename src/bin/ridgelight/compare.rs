@@ -12,7 +12,11 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     if let Some(path) = &args.json {
         setup::check_output("--json", path, &["json"])?;
     }
-    if args.max_rmse.is_some_and(|x| !(x >= 0.0)) {
+    setup::check_distinct(
+        &[("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())],
+        &[&args.result, &args.reference],
+    )?;
+    if args.max_rmse.is_some_and(|x| x.is_nan() || x < 0.0) {
         return Err(Error::setting(
             "--max-rmse",
             args.max_rmse.unwrap_or_default().to_string(),
@@ -21,20 +25,18 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     }
     let (result, reference) =
         (files::read_planes(&args.result)?, files::read_planes(&args.reference)?);
+    let unlike = |place: &str, found: String, expected: String| Error::File {
+        path: args.result.clone(),
+        place: place.to_owned(),
+        found,
+        expected: format!("{expected} as in {}", args.reference.display()),
+    };
     let size = |p: &Planes| format!("{} × {}, {} channels", p.cols, p.rows, p.planes.len());
     if size(&result) != size(&reference) {
-        return Err(Error::setting(
-            args.result.display().to_string(),
-            size(&result),
-            format!("{} as in {}", size(&reference), args.reference.display()),
-        ));
+        return Err(unlike("size", size(&result), size(&reference)));
     }
     if result.names != reference.names {
-        return Err(Error::setting(
-            args.result.display().to_string(),
-            format!("channels {}", result.names.join(" ")),
-            format!("{} as in {}", reference.names.join(" "), args.reference.display()),
-        ));
+        return Err(unlike("channels", result.names.join(" "), reference.names.join(" ")));
     }
     let mut beyond = false;
     let mut rows = Vec::new();

@@ -2,9 +2,12 @@ use ridgelight::gpu;
 use ridgelight::{Result, files};
 
 use crate::args::DevicesArgs;
-use crate::setup::Outcome;
+use crate::setup::{self, Outcome};
 
 pub fn run(args: &DevicesArgs) -> Result<Outcome> {
+    if let Some(path) = &args.json {
+        setup::check_output("--json", path, &["json"])?;
+    }
     let all = gpu::devices()?;
     if all.is_empty() {
         crate::say!("no device: the Vulkan loader is there, but no driver answers");

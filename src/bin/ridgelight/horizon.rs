@@ -10,6 +10,15 @@ use crate::setup::{self, Outcome};
 /// Azimuths computed and read back at a time: their angles stay within this many bytes.
 const OUTPUT_BYTES: u64 = 256 << 20;
 
+/// Takes an azimuth's number, its elevations, and its distances or nothing.
+pub type Each<'a> = dyn FnMut(u32, &[f32], &[f32]) -> Result<()> + 'a;
+
+/// Azimuths whose outputs take at most [`OUTPUT_BYTES`] and a quarter of the budget.
+fn at_once(field: &HeightField, limits: &Limits) -> u32 {
+    let plane = 4 * (field.rows() * field.cols()) as u64;
+    (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
+}
+
 /// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
 /// of all passes and the last plan.
 pub fn for_each(
@@ -19,11 +28,10 @@ pub fn for_each(
     quality: &Quality,
     limits: &Limits,
     distances: bool,
-    each: &mut dyn FnMut(u32, &[f32], &[f32]) -> Result<()>,
+    each: &mut Each<'_>,
 ) -> Result<(Vec<Timing>, Plan)> {
     let plane = field.rows() * field.cols();
-    let room = OUTPUT_BYTES.min(limits.memory_budget / 4);
-    let at_once = (room / (4 * plane as u64)).clamp(1, 256) as u32;
+    let at_once = at_once(field, limits);
     let mut times = Vec::new();
     let mut first = 0;
     loop {
@@ -57,6 +65,19 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
+    let outputs = [
+        ("-o", Some(args.output.as_path())),
+        ("--distances", args.distances.as_deref()),
+        ("--json", args.global.json.as_deref()),
+    ];
+    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, None, &args.surface))?;
+    if args.surface.albedo != "1" {
+        return Err(Error::setting(
+            "--albedo",
+            &args.surface.albedo,
+            "nothing: horizons have no colour",
+        ));
+    }
     let quality = setup::quality(&args.quality)?;
     let is_npy = setup::extension(&args.output) == "npy";
     if quality.lines == Lines::Exact && is_npy && args.global.json.is_none() {
@@ -68,6 +89,10 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     }
     let field = setup::field(&args.input.path, &args.surface)?;
     let border = setup::border(&args.surface);
+    setup::check_plan(&args.global, |limits| {
+        let count = at_once(&field, limits).min(quality.azimuths);
+        plan::horizons(&field, border, &quality, limits, (0, count), args.distances.is_some())
+    })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let shape = [quality.azimuths as usize, field.rows(), field.cols()];
     let mut angles_file =
@@ -103,6 +128,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let azimuths = plan::circle_rad(&quality, field.cell_m());
     let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
     metadata.push(("azimuths".into(), quality.azimuths.to_string()));
+    metadata.extend(setup::asked(&args.input.path, &args.surface, None));
     if let Some(file) = angles_file {
         file.finish()?;
     } else {

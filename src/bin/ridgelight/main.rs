@@ -19,6 +19,7 @@ mod render;
 mod setup;
 
 use clap::Parser as _;
+use std::io::Write as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -37,20 +38,25 @@ fn main() -> ExitCode {
         args::Command::Bench(args) => bench::run(args),
         args::Command::Compare(args) => compare::run(args),
         args::Command::Devices(args) => devices::run(args),
-        args::Command::Reference(_)
-        | args::Command::Trade(_)
-        | args::Command::Bake(_)
-        | args::Command::View(_) => {
-            eprintln!("ridgelight: this command is not yet there");
-            return ExitCode::from(2);
-        }
+        args::Command::Reference(_) => not_yet("reference"),
+        args::Command::Trade(_) => not_yet("trade"),
+        args::Command::Bake(_) => not_yet("bake"),
+        args::Command::View(_) => not_yet("view"),
     };
     match done {
         Ok(setup::Outcome::Done) => ExitCode::SUCCESS,
         Ok(setup::Outcome::Beyond) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("ridgelight: {error}");
+            let error = setup::in_flags(error);
+            // One line whatever a file is called or a driver says; a closed stderr is no panic.
+            let line = error.to_string().replace(char::is_control, " ");
+            let _ = writeln!(std::io::stderr(), "ridgelight: {line}");
             ExitCode::from(if matches!(error, ridgelight::Error::Setting { .. }) { 2 } else { 1 })
         }
     }
+}
+
+fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {
+    let expected = "render, horizon, plan, bench, compare or devices: it is not yet there";
+    Err(ridgelight::Error::setting("command", command, expected))
 }

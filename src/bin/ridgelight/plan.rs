@@ -7,31 +7,38 @@ use crate::setup::{self, Outcome};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
     args.later.check()?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+        let inputs = setup::inputs(&args.input.path, Some(&args.lights), &args.surface);
+        setup::check_distinct(&[("--json", Some(json))], &inputs)?;
+    }
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     // Planned for the device that would run it; without one, for the software driver everyone has.
-    let devices = gpu::devices().unwrap_or_default();
-    let usable = devices.iter().filter(|d| d.missing.is_empty());
-    let named = |d: &&gpu::DeviceReport| {
-        args.global
-            .device
-            .as_ref()
-            .is_none_or(|n| d.name.to_lowercase().contains(&n.to_lowercase()))
+    let devices = gpu::devices();
+    let report = match &args.global.device {
+        Some(wanted) => {
+            let devices = devices?;
+            let index = gpu::choose(&devices, Some(wanted))?;
+            devices.into_iter().nth(index)
+        }
+        None => {
+            let devices = devices.unwrap_or_default();
+            let index = gpu::choose(&devices, None).ok();
+            index.and_then(|index| devices.into_iter().nth(index))
+        }
     };
-    let report = usable
-        .clone()
-        .filter(named)
-        .find(|d| !d.limits.is_cpu)
-        .or_else(|| usable.clone().find(named));
-    let mut limits = report.map_or_else(Limits::lavapipe, |r| r.limits);
+    let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
     if let Some(budget) = args.global.memory_budget {
         limits.memory_budget = budget;
     }
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     match args.format {
+        _ if args.global.quiet => {}
         PlanFormat::Text => {
-            crate::say!("for {}", report.map_or("lavapipe (no device here)", |r| r.name.as_str()));
+            let name = report.as_ref().map_or("lavapipe (no device here)", |r| r.name.as_str());
+            crate::say!("for {name}");
             crate::say!("{}", plan.to_string().trim_end());
         }
         PlanFormat::Json => crate::say!("{:#}", json(&plan)),

@@ -13,6 +13,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
+    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
+    setup::check_distinct(
+        &outputs,
+        &setup::inputs(&args.input.path, Some(&args.lights), &args.surface),
+    )?;
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(ridgelight::Error::setting(
             "--exposure",
@@ -28,15 +33,24 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             "an .exr output: a .png has no layers",
         ));
     }
+    if is_exr && args.exposure != 1.0 {
+        return Err(ridgelight::Error::setting(
+            "--exposure",
+            "an .exr output",
+            "a .png output: an .exr keeps linear radiance",
+        ));
+    }
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
     let wanted = Picture {
         light_layers: args.layers.contains(&Layer::Lights),
         sky_view: args.layers.contains(&Layer::SkyView),
     };
-    let plan = plan::picture(&scene, &quality, &limits, wanted)?;
+    let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
+    setup::check_plan(&args.global, picture)?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let plan = picture(&limits)?;
     let contents = setup::contents(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
@@ -47,7 +61,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     for output in 0..outputs {
         pixels.push(gpu.pixels(&frame, output)?);
     }
-    let metadata = setup::metadata(&gpu, &scene.field, frame.plan(), &times);
+    let mut metadata = setup::metadata(&gpu, &scene.field, frame.plan(), &times);
+    metadata.extend(setup::asked(&args.input.path, &args.surface, Some((&args.lights, &scene))));
     gpu.end(frame);
     let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =

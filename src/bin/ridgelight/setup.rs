@@ -8,7 +8,7 @@ use ridgelight::scene::{
     Surface,
 };
 use ridgelight::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::args::{
     BorderName, FuseName, GlobalArgs, HullName, LightArgs, LinesName, MethodName, PrecisionName,
@@ -23,8 +23,9 @@ pub enum Outcome {
 }
 
 pub fn field(path: &Path, surface: &SurfaceArgs) -> Result<HeightField> {
-    if !surface.z_scale.is_finite() {
-        return Err(Error::setting("--z-scale", surface.z_scale.to_string(), "a finite number"));
+    if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
+        let expected = "a finite number other than 0";
+        return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
     }
     let options =
         HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
@@ -109,6 +110,15 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
     Ok(quality)
 }
 
+/// What is wrong with a request whatever the device: planned for one without limits, so that it is
+/// said before a device is opened.
+pub fn check_plan(global: &GlobalArgs, plan: impl Fn(&Limits) -> Result<Plan>) -> Result<()> {
+    let budget = global.memory_budget.unwrap_or(1 << 50).min(1 << 50);
+    plan(&Limits::boundless(true, budget))
+        .or_else(|_| plan(&Limits::boundless(false, budget)))
+        .map(drop)
+}
+
 pub fn device(global: &GlobalArgs) -> Result<(Headless, Limits)> {
     let options = HeadlessOptions { device: global.device.clone(), validation: false };
     let gpu = Headless::new(&options)?;
@@ -156,8 +166,54 @@ pub fn metadata(
     let total: f64 = times.iter().map(|t| t.ns).sum();
     if !times.is_empty() {
         all.push(("gpu_ms".to_owned(), format!("{:.3}", total / 1e6)));
+        let each = times.iter().map(|t| format!("{} {:.3}", t.label, t.ns / 1e6));
+        all.push(("gpu_ms_of_passes".to_owned(), each.collect::<Vec<_>>().join("; ")));
     }
     all
+}
+
+/// What was asked for that no plan knows.
+pub fn asked(
+    input: &Path,
+    surface: &SurfaceArgs,
+    lights: Option<(&LightArgs, &Scene)>,
+) -> Vec<(String, String)> {
+    let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
+    let mut all = vec![
+        ("input".to_owned(), input.display().to_string()),
+        ("z_scale".to_owned(), surface.z_scale.to_string()),
+    ];
+    if let Some(nodata) = surface.nodata {
+        all.push(("nodata".to_owned(), nodata.to_string()));
+    }
+    let Some((args, scene)) = lights else { return all };
+    all.push(("albedo".to_owned(), surface.albedo.clone()));
+    if let Some(sky) = &scene.lights.sky {
+        all.push(("sky".to_owned(), numbers(sky)));
+    }
+    if let Some(path) = &args.env {
+        all.push(("env".to_owned(), path.display().to_string()));
+        all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
+    }
+    for (i, sun) in scene.lights.suns.iter().enumerate() {
+        // As --sun takes it, less the rounding of turning degrees to radians and back.
+        let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
+        let azimuth = degrees(std::f64::consts::FRAC_PI_2 - sun.azimuth_rad);
+        let [elevation, diameter] = [sun.elevation_rad, sun.diameter_rad].map(degrees);
+        let text = format!("{azimuth},{elevation},{diameter},{}", numbers(&sun.irradiance));
+        all.push((format!("sun{}", i + 1), text));
+    }
+    all
+}
+
+/// The files that a command reads.
+pub fn inputs<'a>(
+    field: &'a Path,
+    lights: Option<&'a LightArgs>,
+    surface: &'a SurfaceArgs,
+) -> Vec<&'a Path> {
+    let albedo = albedo_colour(&surface.albedo).is_none().then_some(Path::new(&surface.albedo));
+    [Some(field), lights.and_then(|l| l.env.as_deref()), albedo].into_iter().flatten().collect()
 }
 
 pub fn as_json(metadata: &[(String, String)], times: &[Timing]) -> serde_json::Value {
@@ -193,6 +249,9 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
             format!("a file ending in .{}", kinds.join(" or .")),
         ));
     }
+    if path.is_dir() {
+        return Err(Error::setting(flag, format!("the directory {}", path.display()), "a file"));
+    }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(Error::setting(
@@ -201,5 +260,51 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
             format!("a folder {} that exists", folder.display()),
         ));
     }
+    files::check_writable(path)
+}
+
+/// No output may be another's, or an input: it would be lost.
+pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Result<()> {
+    let place = |path: &Path| -> Option<PathBuf> {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        path.canonicalize()
+            .ok()
+            .or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
+    };
+    let mut taken: Vec<(&str, Option<PathBuf>)> =
+        inputs.iter().map(|path| ("the input", place(path))).collect();
+    for (flag, path) in outputs {
+        let Some(path) = path else { continue };
+        let here = place(path);
+        if let Some((other, _)) = taken.iter().find(|(_, p)| p.is_some() && *p == here) {
+            let found = format!("{}, which is {other}", path.display());
+            return Err(Error::setting(*flag, found, "a file of its own"));
+        }
+        taken.push((flag, here));
+    }
     Ok(())
+}
+
+/// Settings that the library names its own way, by the flags that their user wrote.
+pub fn in_flags(error: Error) -> Error {
+    const FLAGS: [(&str, &str); 9] = [
+        ("sky radiance", "--sky"),
+        ("sun ", "--sun "),
+        ("albedo", "--albedo"),
+        ("cell_m", "--cell"),
+        ("z_scale", "--z-scale"),
+        ("environment rotation", "--env-rotate"),
+        ("distances to the horizon", "--distances"),
+        ("lights", "--sky, --env, --sun"),
+        ("cell size", "--cell"),
+    ];
+    match error {
+        Error::Setting { name, found, expected } => {
+            let named = FLAGS.iter().find_map(|(ours, flag)| {
+                name.strip_prefix(ours).map(|rest| format!("{flag}{rest}"))
+            });
+            Error::Setting { name: named.unwrap_or(name), found, expected }
+        }
+        other => other,
+    }
 }

@@ -1,0 +1,100 @@
+#include "shared/sweep.glsl"
+
+// Four samples side by side along the lane axis, and the samples around them. Lanes and march
+// positions are the field's own here, whatever an azimuth flips, so that all azimuths of an axis
+// share them. The including shader declares `heights` and the constants BORDER and MARCHES_ROWS.
+
+// One march position: the four lanes, and the one to each side.
+struct Strip {
+    float low;
+    vec4 four;
+    float high;
+};
+
+struct Quad {
+    int lane;  // of the first sample; those beyond the last lane are not on the field
+    int march;
+    Strip before;  // held at the edges of the field where it does not repeat, as are the lanes
+    Strip here;
+    Strip after;
+};
+
+// The lane below each of the four, and above.
+vec4 lane_below(Strip s) {
+    return vec4(s.low, s.four.xyz);
+}
+
+vec4 lane_above(Strip s) {
+    return vec4(s.four.yzw, s.high);
+}
+
+ivec4 quad_lanes(Quad q) {
+    return q.lane + ivec4(0, 1, 2, 3);
+}
+
+// Column and row of a lane at a march position.
+ivec2 texel_at(int lane, int march) {
+    return MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane);
+}
+
+float height_at(int lane, int march) {
+    return texelFetch(heights, texel_at(lane, march), 0).x;
+}
+
+// Index of a neighbour along one axis: wrapped where the field repeats, else held at the edge.
+int neighbour(int i, int n) {
+    return BORDER == BORDER_PERIODIC ? wrapped(i, n) : clamp(i, 0, n - 1);
+}
+
+Strip strip_at(int lane, int march, int lanes) {
+    Strip s;
+    s.low = height_at(neighbour(lane - 1, lanes), march);
+    s.four.x = height_at(neighbour(lane, lanes), march);
+    s.four.y = height_at(neighbour(lane + 1, lanes), march);
+    s.four.z = height_at(neighbour(lane + 2, lanes), march);
+    s.four.w = height_at(neighbour(lane + 3, lanes), march);
+    s.high = height_at(neighbour(lane + 4, lanes), march);
+    return s;
+}
+
+Quad quad_at(int lane, int march, int lanes, int steps) {
+    Quad q;
+    q.lane = lane;
+    q.march = march;
+    q.before = strip_at(lane, neighbour(march - 1, steps), lanes);
+    q.here = strip_at(lane, march, lanes);
+    q.after = strip_at(lane, neighbour(march + 1, steps), lanes);
+    return q;
+}
+
+// Slopes of the surface towards east and north: the mean over the adjoining quads of samples that
+// exist, which is the direction of the sum of their unnormalised normals. Where a field is one
+// sample wide there is no quad across it: the slope across is 0.
+void quad_slopes(Quad q, int lanes, int steps, vec2 cell_m, out vec4 east, out vec4 north) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    // How many quads lie to each side: 0 or 1. Across an axis without any, the one line of samples
+    // stands for them.
+    float before = steps > 1 && (wraps || q.march > 0) ? 1.0 : 0.0;
+    float after = steps > 1 && (wraps || q.march < steps - 1) ? 1.0 : 0.0;
+    float marches = before + after;
+    vec3 march_weight = marches > 0.0 ? vec3(before, marches, after) / (2.0 * marches) : vec3(0.0, 1.0, 0.0);
+    ivec4 lane = quad_lanes(q);
+    vec4 below = vec4(lanes > 1 && wraps ? bvec4(true) : greaterThan(lane, ivec4(0)));
+    vec4 above = vec4(lanes > 1 && wraps ? bvec4(true) : lessThan(lane, ivec4(lanes - 1)));
+    vec4 sides = below + above;
+    vec4 side_weight = 0.5 / max(sides, vec4(1.0));
+    vec4 middle_weight = mix(vec4(1.0), vec4(0.5), greaterThan(sides, vec4(0.0)));
+
+    vec4 across = march_weight.x * (lane_above(q.before) - lane_below(q.before)) +
+                  march_weight.y * (lane_above(q.here) - lane_below(q.here)) +
+                  march_weight.z * (lane_above(q.after) - lane_below(q.after));
+    vec4 along = below * side_weight * (lane_below(q.after) - lane_below(q.before)) +
+                 middle_weight * (q.after.four - q.before.four) +
+                 above * side_weight * (lane_above(q.after) - lane_above(q.before));
+    vec2 cell = MARCHES_ROWS ? cell_m : cell_m.yx;  // lane, march
+    across = across / (max(sides, vec4(1.0)) * cell.x) * vec4(greaterThan(sides, vec4(0.0)));
+    along = along / (max(marches, 1.0) * cell.y);
+    // Rows count southwards.
+    east = MARCHES_ROWS ? across : along;
+    north = MARCHES_ROWS ? -along : -across;
+}

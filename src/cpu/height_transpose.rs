@@ -1,0 +1,14 @@
+//! The heights laid out for sweeps, one copy a march axis, lanes contiguous.
+
+/// `heights_by_col`: for marches along columns, `[col][row]`.
+///
+/// # Panics
+/// When there are fewer than `cols` × `rows` heights.
+pub fn heights_by_col(heights: &[f32], cols: usize, rows: usize) -> Vec<f32> {
+    (0..cols * rows).map(|i| heights[(i % rows) * cols + i / rows]).collect()
+}
+
+/// `heights_by_row`: for marches along rows, `[row][col]`, as the field itself.
+pub fn heights_by_row(heights: &[f32]) -> Vec<f32> {
+    heights.to_vec()
+}

@@ -1,0 +1,38 @@
+//! One light's share of the picture: its sum times its colour and the surface's albedo.
+
+/// A light's sum over azimuths, one value a sample.
+#[derive(Clone, Copy, Debug)]
+pub enum LightSum<'a> {
+    /// `scalar_sum`.
+    Scalar(&'a [f64]),
+    /// `colour_sum`.
+    Colour(&'a [[f64; 3]]),
+}
+
+/// The layer of one light, row-major. `colour`: of the light, where the sum has none, times the
+/// albedo, where that is constant.
+pub fn light_resolve(
+    sum: LightSum,
+    colour: [f32; 3],
+    albedo_map: Option<&[[f32; 3]]>,
+) -> Vec<[f64; 3]> {
+    let resolve = |i: usize, light: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|c| {
+            let albedo = albedo_map.map_or(1.0, |map| f64::from(map[i][c]));
+            light[c] * f64::from(colour[c]) * albedo
+        })
+    };
+    match sum {
+        LightSum::Scalar(s) => s.iter().enumerate().map(|(i, &l)| resolve(i, [l; 3])).collect(),
+        LightSum::Colour(s) => s.iter().enumerate().map(|(i, &l)| resolve(i, l)).collect(),
+    }
+}
+
+/// Adds a layer to the radiance of the lights before it.
+pub fn add_to_radiance(radiance: &mut [[f64; 3]], layer: &[[f64; 3]]) {
+    for (sum, light) in radiance.iter_mut().zip(layer) {
+        for (s, l) in sum.iter_mut().zip(light) {
+            *s += l;
+        }
+    }
+}

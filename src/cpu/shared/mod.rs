@@ -1,0 +1,7 @@
+//! What several shaders include, file by file as in `shaders_glsl/shared/`.
+
+pub mod field;
+pub mod fuse;
+pub mod gather;
+pub mod surface;
+pub mod sweep;

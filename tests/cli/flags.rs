@@ -1,0 +1,317 @@
+//! Arguments out of their range, of the wrong kind, or in combinations that cannot be.
+
+use crate::common::{HEIGHTS, colour, hdr, png};
+use crate::{Folder, refused};
+
+/// `flag value`, for each command given.
+fn each(commands: &[&str], folder: &Folder, flags: &[(&str, i32, &[&str])]) {
+    let all: Vec<(String, i32, &[&str])> = commands
+        .iter()
+        .flat_map(|c| flags.iter().map(move |(f, s, says)| (format!("{c} {f}"), *s, *says)))
+        .collect();
+    let cases: Vec<_> = all.iter().map(|(a, s, says)| (a.as_str(), *s, *says)).collect();
+    refused(folder, &cases);
+}
+
+const PLAN: &str = "plan a.asc";
+const RENDER: &str = "render a.asc -o out.exr";
+const HORIZON: &str = "horizon a.asc -o out.npy";
+
+#[test]
+fn quality() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--azimuths 3", 2, &["--azimuths: found 3", "4 to 1024"]),
+            ("--azimuths 1025", 2, &["--azimuths: found 1025", "4 to 1024"]),
+            ("--azimuths -1", 2, &["--azimuths", "'-1'", "whole number"]),
+            ("--azimuths x", 2, &["--azimuths", "'x'", "whole number"]),
+            ("--azimuths 4.5", 2, &["--azimuths", "'4.5'", "whole number"]),
+            ("--azimuths 99999999999", 2, &["--azimuths"]),
+            ("--azimuths", 2, &["--azimuths"]),
+            ("--azimuths 8 --azimuths 8", 2, &["--azimuths"]),
+            ("--sun-azimuths 0", 2, &["--sun-azimuths: found 0", "1 to 256"]),
+            ("--sun-azimuths 257", 2, &["--sun-azimuths: found 257"]),
+            ("--table-elevations 7", 2, &["--table-elevations: found 7", "8 to 4096"]),
+            ("--table-elevations 4097", 2, &["--table-elevations: found 4097"]),
+            ("--method pyramid", 2, &["--method: found pyramid", "not yet"]),
+            ("--method magic", 2, &["--method", "magic", "sweep"]),
+            ("--lines 3", 2, &["--lines", "'3'", "exact"]),
+            ("--fuse x", 2, &["--fuse"]),
+            ("--precision f64", 2, &["--precision", "f32"]),
+            ("--hull x", 2, &["--hull"]),
+            ("--nosuch", 2, &["--nosuch"]),
+        ],
+    );
+}
+
+#[test]
+fn surface() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--cell 0", 2, &["--cell: found 0", "1e-12 to 1e12"]),
+            ("--cell -1", 2, &["--cell: found -1"]),
+            ("--cell nan", 2, &["--cell: found NaN"]),
+            ("--cell inf", 2, &["--cell: found inf"]),
+            ("--cell 1,0", 2, &["--cell: found 1.0 × 0.0"]),
+            ("--cell 1,2,3", 2, &["--cell", "3 numbers"]),
+            ("--cell x", 2, &["--cell", "no number"]),
+            ("--cell 1,", 2, &["--cell", "no number"]),
+            ("--z-scale nan", 2, &["--z-scale: found NaN"]),
+            ("--z-scale inf", 2, &["--z-scale: found inf"]),
+            ("--z-scale=-inf", 2, &["--z-scale: found -inf"]),
+            ("--z-scale 0", 2, &["--z-scale: found 0"]),
+            ("--z-scale x", 2, &["--z-scale"]),
+            ("--z-scale 1e300", 1, &["a.asc", "height at row 0, column 1"]),
+            ("--border wall", 2, &["--border", "wall", "periodic"]),
+            ("--nodata x", 2, &["--nodata"]),
+        ],
+    );
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--albedo 2", 2, &["--albedo: found [2.0, 2.0, 2.0]", "0 to 1"]),
+            ("--albedo -1", 2, &["--albedo: found [-1.0"]),
+            ("--albedo nan", 2, &["--albedo: found [NaN"]),
+            ("--albedo 0,0,1.5", 2, &["--albedo: found [0.0, 0.0, 1.5]"]),
+            ("--albedo grey", 1, &["grey"]),
+        ],
+    );
+    refused(&folder, &[("horizon a.asc -o out.npy --albedo 0.5", 2, &["--albedo", "horizons"])]);
+    // Everything void: a field of one height with that height as no data.
+    folder.write("level.asc", b"ncols 2 nrows 2 cellsize 1 7 7 7 7");
+    refused(&folder, &[("plan level.asc --nodata 7", 1, &["level.asc", "no-data"])]);
+}
+
+#[test]
+fn lights() {
+    let folder = Folder::new();
+    folder.write("env.hdr", &hdr(8, 4, "", &[[128, 128, 128, 129]; 32]));
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--sky -1", 2, &["--sky: found [-1.0", "0 or more"]),
+            ("--sky nan", 2, &["--sky: found [NaN"]),
+            ("--sky inf", 2, &["--sky: found [inf"]),
+            ("--sky 1e39", 2, &["--sky: found [inf"]),
+            ("--sky 1,2", 2, &["--sky", "2 numbers"]),
+            ("--sky 1,2,3,4", 2, &["--sky", "4 numbers"]),
+            ("--sky blue", 2, &["--sky", "no number"]),
+            ("--sky 0", 2, &["found all of radiance 0"]),
+            ("--sun 90", 2, &["--sun", "at least AZ,EL"]),
+            ("--sun 1,2,3,4,5", 2, &["--sun", "expected AZ,EL"]),
+            ("--sun 1,2,3,4,5,6,7", 2, &["--sun", "expected AZ,EL"]),
+            ("--sun x,y", 2, &["--sun", "no number"]),
+            ("--sun 0,-1", 2, &["--sun 1: elevation: found -1°", "0° to 90°"]),
+            ("--sun 0,91", 2, &["--sun 1: elevation: found 91°"]),
+            ("--sun 0,nan", 2, &["--sun 1: elevation: found NaN"]),
+            ("--sun nan,45", 2, &["--sun 1: azimuth: found NaN"]),
+            ("--sun inf,45", 2, &["--sun 1: azimuth: found -inf"]),
+            ("--sun 0,45,-1", 2, &["--sun 1: angular diameter: found -1°"]),
+            ("--sun 0,45,91", 2, &["--sun 1: angular diameter: found 91°"]),
+            ("--sun 0,45,1,-1", 2, &["--sun 1: irradiance"]),
+            ("--sun 0,45,1,1,nan,1", 2, &["--sun 1: irradiance"]),
+            ("--sun 0,45 --sun 0,91", 2, &["--sun 2: elevation: found 91°"]),
+            ("--sun 0,45,0 --lines exact", 2, &["--lines exact with --sun", "--method brute"]),
+            ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found NaN"]),
+            ("--env env.hdr --env-rotate x", 2, &["--env-rotate"]),
+            ("--env-rotate 90", 2, &["--env"]),
+        ],
+    );
+}
+
+#[test]
+fn everywhere() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--memory-budget 0", 1, &["needs ", "0 bytes of --memory-budget"]),
+            ("--memory-budget 0.5KiB", 1, &["needs ", "512 bytes of --memory-budget"]),
+            ("--memory-budget 5XB", 2, &["--memory-budget", "XB", "MiB"]),
+            ("--memory-budget -1", 2, &["--memory-budget"]),
+            ("--memory-budget lots", 2, &["--memory-budget", "no size"]),
+            ("--memory-budget 1.2.3MiB", 2, &["--memory-budget"]),
+            ("--device nosuch", 1, &["driver"]),
+            ("--json out.txt", 2, &["--json: found out.txt", ".json"]),
+            ("--json no/out.json", 2, &["--json", "a folder no"]),
+            ("--json a.json/out.json", 2, &["--json", "a folder a.json"]),
+        ],
+    );
+}
+
+#[test]
+fn not_yet() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER, HORIZON],
+        &folder,
+        &[
+            ("--light 1,2,3,4,5", 2, &["--light: found 1,2,3,4,5", "not yet"]),
+            ("--light -1,2,3,4,5 --light 0", 2, &["--light: found -1,2,3,4,5", "not yet"]),
+            ("--phong 10,0.5", 2, &["--phong", "not yet"]),
+            ("--bounces 2", 2, &["--bounces", "not yet"]),
+            ("--subsample 2", 2, &["--subsample", "not yet"]),
+            ("--level-step 2", 2, &["--level-step", "not yet"]),
+            ("--level-offset 1", 2, &["--level-offset", "not yet"]),
+            ("--basis sh", 2, &["--basis", "not yet"]),
+            ("--max-error 0.01", 2, &["--max-error", "not yet"]),
+            ("--time-budget 5", 2, &["--time-budget", "not yet"]),
+            ("--scene s.json", 2, &["--scene", "not yet"]),
+            ("--seed 1", 2, &["--seed", "not yet"]),
+            ("--camera 1,2", 2, &["--camera", "not yet"]),
+        ],
+    );
+    refused(
+        &folder,
+        &[
+            ("reference a.asc -o out.exr --spp 4", 2, &["reference", "not yet"]),
+            ("trade a.asc -o out", 2, &["trade", "not yet"]),
+            ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
+            ("view a.asc", 2, &["view", "not yet"]),
+            ("nosuch a.asc", 2, &["nosuch"]),
+            ("render", 2, &["<INPUT>", "--output"]),
+            ("render a.asc", 2, &["--output"]),
+        ],
+    );
+}
+
+#[test]
+fn outputs() {
+    let folder = Folder::new();
+    for name in ["folder.exr", "folder.png", "folder.npy", "folder.json"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+    }
+    let field: Vec<u8> = HEIGHTS.iter().map(|h| *h as u8).collect();
+    folder.write("map.png", &png(4, 3, colour::GREY, 8, &[], &field));
+    // What stood at the destination before stays.
+    for old in ["old.exr", "old.png", "old.npy"] {
+        folder.write(old, b"what was here before");
+    }
+    refused(
+        &folder,
+        &[
+            ("render a.asc -o out.jpg", 2, &["-o: found out.jpg", ".exr or .png"]),
+            ("render a.asc -o out", 2, &["-o: found out"]),
+            ("render a.asc -o out.npy", 2, &["-o: found out.npy"]),
+            ("horizon a.asc -o out.png", 2, &["-o: found out.png", ".npy or .exr"]),
+            ("render a.asc -o no/out.exr", 2, &["-o", "a folder no"]),
+            ("render a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
+            ("render a.asc -o folder.png", 2, &["-o: found the directory folder.png"]),
+            ("horizon a.asc -o folder.npy", 2, &["-o: found the directory folder.npy"]),
+            ("horizon a.asc -o folder.exr", 2, &["-o: found the directory folder.exr"]),
+            ("render a.asc -o out.png --json folder.json", 2, &["--json", "folder.json"]),
+            ("horizon a.asc -o out.npy --json folder.json", 2, &["--json", "folder.json"]),
+            ("plan a.asc --json folder.json", 2, &["--json", "folder.json"]),
+            ("devices --json folder.json", 2, &["--json", "folder.json"]),
+            ("devices --json d.txt", 2, &["--json", "d.txt"]),
+            ("horizon a.asc -o out.npy --distances far.exr", 2, &["--distances", ".npy"]),
+            ("horizon a.asc -o out.npy --distances no/far.npy", 2, &["--distances", "a folder no"]),
+            ("horizon a.asc -o out.npy --distances out.npy", 2, &["--distances", "which is -o"]),
+            ("horizon a.asc -o out.npy --distances ./out.npy", 2, &["--distances", "which is -o"]),
+            (
+                "horizon a.asc -o out.npy --distances far.npy --fuse nearest",
+                2,
+                &["--distances", "--fuse nearest", "aimed"],
+            ),
+            ("horizon a.asc -o old.npy --distances far.npy --fuse slopes", 2, &["--distances"]),
+            ("horizon a.asc -o out.npy --lines exact", 2, &["--lines exact", "--json"]),
+            ("render a.png -o a.png", 2, &["-o: found a.png", "the input"]),
+            ("render a.png -o ./a.png", 2, &["-o", "the input"]),
+            ("render a.asc -o map.png --albedo map.png", 2, &["-o: found map.png", "the input"]),
+            ("horizon a.npy -o a.npy", 2, &["-o: found a.npy", "the input"]),
+            ("render a.asc -o out.png --layers lights", 2, &["--layers", ".png"]),
+            ("render a.asc -o out.exr --layers moon", 2, &["--layers", "moon", "sky-view"]),
+            ("render a.asc -o out.png --exposure 0", 2, &["--exposure: found 0"]),
+            ("render a.asc -o out.png --exposure -1", 2, &["--exposure: found -1"]),
+            ("render a.asc -o out.png --exposure nan", 2, &["--exposure: found NaN"]),
+            ("render a.asc -o out.exr --exposure 2", 2, &["--exposure", ".exr"]),
+            ("render missing.asc -o old.exr", 1, &["missing.asc"]),
+            ("render a.asc -o old.png --memory-budget 1", 1, &["--memory-budget"]),
+            ("render a.asc -o old.exr", 1, &["driver"]),
+        ],
+    );
+    #[cfg(target_os = "linux")]
+    refused(
+        &folder,
+        &[
+            // No file can be made in /proc, not even by root.
+            ("render a.asc -o /proc/out.exr", 1, &["/proc/out.exr"]),
+            ("horizon a.asc -o /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("horizon a.asc -o out.npy --distances /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("render a.asc -o out.exr --json /proc/out.json", 1, &["/proc/out.json"]),
+            ("compare a.npy a.npy --diff /proc/out.npy", 1, &["/proc/out.npy"]),
+            ("plan a.asc --json /proc/out.json", 1, &["/proc/out.json"]),
+        ],
+    );
+}
+
+/// Every flag with a range, a unit or a default says so.
+#[test]
+fn help_says_units_and_defaults() {
+    let folder = Folder::new();
+    let shared: &[(&str, &[&str])] = &[
+        ("--cell", &["metres", "Default the file's"]),
+        ("--z-scale", &["[default: 1]"]),
+        ("--border", &["[default: plane]"]),
+        ("--nodata", &["Default the file's"]),
+        ("--method", &["[default: auto]", "not yet"]),
+        ("--azimuths", &["4..1024", "[default: 64]"]),
+        ("--sun-azimuths", &["1..256", "[default: 8]"]),
+        ("--lines", &["Cells", "[default: 1]"]),
+        ("--fuse", &["[default: aimed-nearest]"]),
+        ("--precision", &["[default: f32]"]),
+        ("--hull", &["[default: auto]"]),
+        ("--table-elevations", &["8..4096", "[default: 256]"]),
+        ("--device", &["Default the first GPU"]),
+        ("--memory-budget", &["512MiB", "default half"]),
+    ];
+    let lit: &[(&str, &[&str])] = &[
+        ("--sky", &["Default 1"]),
+        ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
+        ("--sun", &["degrees", "default 0.53", "default 1"]),
+        ("--albedo", &["0..1", "[default: 1]"]),
+    ];
+    let render: &[(&str, &[&str])] =
+        &[("--exposure", &["[default: 1]"]), ("--layers", &["lights", "sky-view", "horizon"])];
+    let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
+    let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
+    let compare: &[(&str, &[&str])] =
+        &[("--max-rmse", &["relative"]), ("--horizons", &["radians", "degrees"])];
+    for (command, tables) in [
+        ("render", &[shared, lit, render][..]),
+        ("horizon", &[shared, horizon]),
+        ("plan", &[shared, lit, plan]),
+        ("compare", &[compare]),
+        ("devices", &[]),
+    ] {
+        let help = folder.run_without_driver(&[command, "--help"]);
+        assert_eq!((help.status, help.err.as_str()), (Some(0), ""), "{command}");
+        // Each flag's own paragraph: from its line to the next flag's.
+        let flags: Vec<&str> = help.out.split("\n      --").skip(1).collect();
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (flag, says) in tables.iter().copied().flatten() {
+            let own = flags
+                .iter()
+                .find(|f| f.split([' ', '\n']).next() == flag.strip_prefix("--"))
+                .unwrap_or_else(|| panic!("{command} --help has no {flag}"));
+            for said in *says {
+                assert!(words(own).contains(said), "{command} {flag} does not say {said:?}: {own}");
+            }
+        }
+        assert!(!help.out.contains("--bounces"), "{command} offers what is not yet there");
+    }
+    for args in [&["--help"][..], &["--version"]] {
+        let run = folder.run_without_driver(args);
+        assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
+    }
+    assert!(!folder.run_without_driver(&["--help"]).out.contains("reference"));
+}

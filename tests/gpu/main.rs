@@ -1,0 +1,138 @@
+//! Everything that needs a Vulkan device. `tools/test` runs it on lavapipe and on SwiftShader under
+//! validation with synchronisation validation; alone, it runs on whatever driver is first.
+
+mod analytic;
+mod contract;
+mod extremes;
+mod forms;
+mod real;
+
+use std::sync::{Mutex, MutexGuard};
+
+use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
+use ridgelight::plan::{self, Limits, Picture, Plan};
+use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Surface};
+
+/// One device at a time: two software devices on two cores only slow each other down.
+static ONE: Mutex<()> = Mutex::new(());
+
+/// A device whose validation messages fail the test that made it.
+struct Device {
+    gpu: Option<Headless>,
+    validates: bool,
+    _one: MutexGuard<'static, ()>,
+}
+
+impl Device {
+    fn new() -> Self {
+        let one = ONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let validation = std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1");
+        let options = HeadlessOptions { device: None, validation };
+        let gpu =
+            Headless::new(&options).expect("a Vulkan device that will do: run tools/setup --tests");
+        Self { gpu: Some(gpu), validates: validation, _one: one }
+    }
+
+    fn limits(&self) -> Limits {
+        self.report().limits
+    }
+
+    fn report(&self) -> &ridgelight::gpu::DeviceReport {
+        self.gpu.as_ref().expect("alive").report()
+    }
+
+    /// Draws a plan once and returns all its outputs.
+    fn draw(&mut self, plan: Plan, contents: &[&[f32]]) -> Vec<Pixels> {
+        let gpu = self.gpu.as_mut().expect("alive");
+        let count = plan.outputs().count();
+        let mut frame = gpu.frame(plan, contents).expect("a frame");
+        gpu.draw(&mut frame).expect("a drawn frame");
+        let pixels = (0..count).map(|o| gpu.pixels(&frame, o).expect("pixels")).collect();
+        gpu.end(frame);
+        pixels
+    }
+
+    /// Elevations of the horizon, radians, [azimuth][row][col] in the order of the circle.
+    fn horizons(&mut self, field: &HeightField, border: Border, quality: &Quality) -> Vec<f32> {
+        let limits = self.limits();
+        self.horizons_within(field, border, quality, &limits)
+    }
+
+    fn horizons_within(
+        &mut self,
+        field: &HeightField,
+        border: Border,
+        quality: &Quality,
+        limits: &Limits,
+    ) -> Vec<f32> {
+        let plan = plan::horizons(field, border, quality, limits, (0, quality.azimuths), false)
+            .expect("a plan");
+        let order = plan.layer_azimuths.clone();
+        let layers = self.draw(plan, &[field.heights_m()]).remove(0).values;
+        let plane = field.rows() * field.cols();
+        let mut sorted = vec![0.0; layers.len()];
+        for (layer, k) in order.iter().enumerate() {
+            let k = *k as usize * plane;
+            sorted[k..k + plane].copy_from_slice(&layers[layer * plane..(layer + 1) * plane]);
+        }
+        sorted
+    }
+
+    /// The picture of a scene without albedo map: its first output.
+    fn picture(&mut self, scene: &Scene, quality: &Quality) -> Pixels {
+        let limits = self.limits();
+        self.picture_within(scene, quality, &limits)
+    }
+
+    fn picture_within(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Pixels {
+        let plan = plan::picture(scene, quality, limits, Picture::default()).expect("a plan");
+        let environment: Option<Vec<f32>> = scene
+            .lights
+            .environment
+            .as_ref()
+            .map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
+        let mut contents = vec![scene.field.heights_m()];
+        contents.extend(environment.as_deref());
+        self.draw(plan, &contents).remove(0)
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        if let Some(gpu) = self.gpu.take() {
+            let messages = gpu.take_messages();
+            if !std::thread::panicking() {
+                assert!(messages.is_empty(), "validation said:\n{}", messages.join("\n"));
+            }
+        }
+    }
+}
+
+fn field(
+    rows: usize,
+    cols: usize,
+    cell_m: [f64; 2],
+    height: impl Fn(usize, usize) -> f64,
+) -> HeightField {
+    let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
+    HeightField::new(rows, cols, &heights, cell_m, None).expect("a good field")
+}
+
+fn under_sky(field: HeightField, border: Border) -> Scene {
+    Scene {
+        field,
+        surface: Surface { border, ..Surface::default() },
+        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+    }
+}
+
+/// A small deterministic generator for random fields.
+fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

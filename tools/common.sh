@@ -1,0 +1,77 @@
+# shellcheck shell=bash
+# What tools/setup and tools/test both ask of a machine. Sourced, never run; changes nothing.
+
+# Non-root users of Debian have no sbin on their PATH, and ldconfig lives there.
+PATH=$PATH:/usr/sbin:/sbin
+
+# Where Chromium's packages put SwiftShader and the validation layer they were tested with.
+chromium_folders=(/usr/lib/chromium /usr/lib64/chromium /usr/lib/chromium-browser)
+
+# library_path of a loader manifest as a file that exists and whose own libraries all do; fails
+# if there is none. A manifest left behind by a removed driver is the common case.
+library_of() {
+    local manifest=$1 library
+    library=$(sed -nE 's/.*"library_path"[[:space:]]*:[[:space:]]*"([^"]+)".*/\1/p' "$manifest" | head -n 1)
+    case $library in
+        '') return 1 ;;
+        /*) ;;
+        # With a slash the path is relative to the manifest, without one the linker searches.
+        */*) library=$(dirname "$manifest")/$library ;;
+        *) library=$(ldconfig -p 2>/dev/null | sed -nE "s|^[[:space:]]*${library//./\\.} .*=> (.+)$|\1|p" | head -n 1) ;;
+    esac
+    [ -f "$library" ] || return 1
+    # Not a pipe into `grep -q`: that one stops reading early, which pipefail takes for a failure.
+    local needs
+    needs=$(ldd "$library" 2>/dev/null) || return 1
+    [[ $needs != *"not found"* ]] || return 1
+    printf '%s\n' "$library"
+}
+
+# The driver manifests the Vulkan loader would read, one a line, in its own order.
+driver_manifests() {
+    local listed=${VK_DRIVER_FILES:-${VK_ICD_FILENAMES:-}} entry
+    local -a entries
+    if [ -n "$listed" ]; then
+        # The two variables replace the search, they do not add to it.
+        IFS=: read -ra entries <<<"$listed"
+    else
+        IFS=: read -ra entries <<<"${XDG_CONFIG_HOME:-$HOME/.config}/vulkan/icd.d:/etc/xdg/vulkan/icd.d:/etc/vulkan/icd.d:${XDG_DATA_HOME:-$HOME/.local/share}/vulkan/icd.d:/usr/local/share/vulkan/icd.d:/usr/share/vulkan/icd.d"
+    fi
+    for entry in "${entries[@]}"; do
+        if [ -d "$entry" ]; then
+            find -L "$entry" -maxdepth 1 -name '*.json' | sort
+        elif [ -f "$entry" ]; then
+            printf '%s\n' "$entry"
+        fi
+    done
+}
+
+# The first manifest with a library behind it whose file name matches the pattern; fails if none.
+working_driver() {
+    local pattern=$1 manifest
+    while IFS= read -r manifest; do
+        # shellcheck disable=SC2053 # the right-hand side is a pattern on purpose
+        if [[ $(basename "$manifest") == $pattern ]] && library_of "$manifest" >/dev/null; then
+            printf '%s\n' "$manifest"
+            return 0
+        fi
+    done < <(driver_manifests)
+    return 1
+}
+
+# The reference driver of the tests, wherever the caller's own variables point.
+lavapipe_manifest() {
+    VK_DRIVER_FILES='' VK_ICD_FILENAMES='' working_driver 'lvp_icd*.json'
+}
+
+# A file of Chromium's by name; fails if there is none.
+chromium_file() {
+    local folder
+    for folder in "${chromium_folders[@]}"; do
+        if [ -f "$folder/$1" ]; then
+            printf '%s\n' "$folder/$1"
+            return 0
+        fi
+    done
+    return 1
+}
