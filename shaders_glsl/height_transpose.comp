@@ -1,6 +1,6 @@
-// Computes: the heights laid out for sweeps, four neighbouring lanes a texel.
-// Reads: heights (one texel a sample). Writes: lane_heights at [march position][lane / 4], held at
-// the last lane beyond it.
+// Computes: the heights laid out for an axis, four neighbouring lanes a texel.
+// Reads: heights (one texel a sample). Writes: lane_heights at [march position][lane / 4]; beyond the
+// last lane it is held, or follows the first where the field repeats.
 // One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -8,6 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const bool MARCHES_ROWS = false;
+layout(constant_id = 1) const bool PERIODIC = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform writeonly image2D lane_heights;
@@ -25,7 +26,7 @@ void main() {
     }
     vec4 four;
     for (int k = 0; k < 4; k++) {
-        int lane = min(4 * group + k, lanes - 1);
+        int lane = PERIODIC ? (4 * group + k) % lanes : min(4 * group + k, lanes - 1);
         four[k] = texelFetch(heights, MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane), 0).x;
     }
     imageStore(lane_heights, ivec2(group, march), four);

@@ -1,6 +1,6 @@
 // Computes: what a uniform sky and an environment give to every sample through its horizons in the
 // azimuths of a batch, added to what earlier batches gave.
-// Reads: heights, azimuths, lattice, env_tables. Reads and writes: sky_sum (exit
+// Reads: lane_heights, azimuths, lattice, env_tables. Reads and writes: sky_sum (exit
 // radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
@@ -8,7 +8,7 @@
 
 // Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
 // fetched together.
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
 layout(constant_id = 1) const uint LATTICE = 0u;
@@ -19,8 +19,10 @@ layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
-layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform utexture2DArray lattice;
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"
 
@@ -28,7 +30,7 @@ layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sky_sum;
 layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
-layout(binding = 5) uniform texture2DArray env_tables;
+layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 
 layout(push_constant) uniform SkyShadePush {
     int cols;
@@ -60,7 +62,7 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
         sky += (flat_part * moments.flat_part + normal_up * azimuth.wedge_rad * moments.vertical) * (1.0 / PI);
     }
     if (HAS_ENVIRONMENT) {
-        int nodes = textureSize(env_tables, 0).x;
+        int nodes = imageSize(env_tables).x;
         float bottom = BORDER == BORDER_OPEN ? -HALF_PI : 0.0;
         vec4 place = (arc_tangent(lowest) - bottom) / (HALF_PI - bottom) * float(nodes - 1);
         ivec4 node = clamp(ivec4(place), 0, nodes - 2);
@@ -69,8 +71,8 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
             vec3 normal = vec3(normal_east[k], normal_north[k], normal_up[k]);
             vec3 sum = vec3(0.0);
             for (int m = 0; m < 3; m++) {
-                vec3 low = texelFetch(env_tables, ivec3(node[k], m, index), 0).rgb;
-                vec3 high = texelFetch(env_tables, ivec3(node[k] + 1, m, index), 0).rgb;
+                vec3 low = imageLoad(env_tables, ivec3(node[k], m, index)).rgb;
+                vec3 high = imageLoad(env_tables, ivec3(node[k] + 1, m, index)).rgb;
                 sum += normal[m] * mix(low, high, t[k]);
             }
             env_red[k] += sum.r;

@@ -1,6 +1,6 @@
 // Computes: what a sun gives to every sample through its horizons in the azimuths that its disc
 // covers, added to what earlier batches gave.
-// Reads: heights, azimuths, lattice. Reads and writes: sun_sum (exit radiance for
+// Reads: lane_heights, azimuths, lattice. Reads and writes: sun_sum (exit radiance for
 // irradiance 1 and albedo 1).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
@@ -8,7 +8,7 @@
 
 // Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
 // fetched together.
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
 layout(constant_id = 1) const uint LATTICE = 0u;
@@ -19,8 +19,10 @@ const bool LATTICE_HAS_DISTANCES = false;
 layout(constant_id = 4) const bool POINT = false;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
 
-layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform utexture2DArray lattice;
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"
 

@@ -1,5 +1,5 @@
 // Computes: the horizon of every sample in the azimuths of a batch, from the lattice of a sweep.
-// Reads: heights, azimuths, lattice. Writes: horizon_angles (elevation, radians),
+// Reads: lane_heights, azimuths, lattice. Writes: horizon_angles (elevation, radians),
 // horizon_distances (world length to what makes the horizon, 0 where nothing does), [azimuth][row][column].
 // One invocation is four samples side by side along the lane axis, at one march position, in one
 // azimuth.
@@ -8,7 +8,7 @@
 
 // Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
 // fetched together.
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
 layout(constant_id = 1) const uint LATTICE = 0u;
@@ -18,8 +18,10 @@ layout(constant_id = 4) const bool WRITES_DISTANCES = false;
 layout(constant_id = 5) const bool LATTICE_HAS_DISTANCES = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
-layout(binding = 0) uniform texture2D heights;
-layout(binding = 1) uniform utexture2DArray lattice;
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
 
 #include "shared/angle.glsl"
 #include "shared/fuse.glsl"

@@ -2,8 +2,8 @@
 #include "shared/quad.glsl"
 
 // Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
-// declares `heights`, `lattice` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES, LINE_SHIFT,
-// BORDER and MARCHES_ROWS.
+// declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
+// LATTICE_HAS_DISTANCES, LINE_SHIFT, BORDER and MARCHES_ROWS.
 
 const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample
 const uint FUSE_NEAREST = 1u;  // the slope that the nearer line found
@@ -32,7 +32,12 @@ Met higher(Met a, Met b) {
     return Met(mix(a.slope, b.slope, takes), mix(a.steps, b.steps, takes));
 }
 
-// Value `line` - `first` of those in two texels, whose first is line `first`.
+// A texel of four u16 or f16; or of one or four f32, whose images have other formats.
+uvec4 lattice_at(ivec3 texel) {
+    return LATTICE == LATTICE_SLOPES_F32 ? texelFetch(lattice_words, texel, 0) : imageLoad(lattice, texel);
+}
+
+// Value i of the eight in two texels.
 uint value_of_eight(uvec4 a, uvec4 b, int i) {
     if (LATTICE == LATTICE_SLOPES_F32) {
         uvec4 four = i < 4 ? a : b;
@@ -48,15 +53,15 @@ uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int ste
     uvec4 values;
     if (LINES_FOLLOW_LANES) {
         int first = lowest & ~3;
-        uvec4 a = texelFetch(lattice, lattice_texel(azimuth, lowest, step), 0);
-        uvec4 b = texelFetch(lattice, lattice_texel(azimuth, min(lowest + 4, lines - 1), step), 0);
+        uvec4 a = lattice_at(lattice_texel(azimuth, lowest, step));
+        uvec4 b = lattice_at(lattice_texel(azimuth, min(lowest + 4, lines - 1), step));
         values.x = value_of_eight(a, b, line.x - first);
         values.y = value_of_eight(a, b, line.y - first);
         values.z = value_of_eight(a, b, line.z - first);
         values.w = value_of_eight(a, b, line.w - first);
     } else {
         for (int k = 0; k < 4; k++) {
-            uvec4 a = texelFetch(lattice, lattice_texel(azimuth, line[k], step), 0);
+            uvec4 a = lattice_at(lattice_texel(azimuth, line[k], step));
             values[k] = value_of_eight(a, a, line[k] & 3);
         }
     }
@@ -152,9 +157,9 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     if (FUSE == FUSE_DIRECT) {
         for (int k = 0; k < 4; k++) {
             ivec3 texel = ivec3(clamp(lane[k], 0, lanes - 1), step, azimuth.layer);
-            met.slope[k] = uintBitsToFloat(texelFetch(lattice, texel, 0).x);
+            met.slope[k] = uintBitsToFloat(lattice_at(texel).x);
             texel.z++;
-            met.steps[k] = LATTICE_HAS_DISTANCES ? uintBitsToFloat(texelFetch(lattice, texel, 0).x) : 0.0;
+            met.steps[k] = LATTICE_HAS_DISTANCES ? uintBitsToFloat(lattice_at(texel).x) : 0.0;
         }
         return met;
     }

@@ -2,7 +2,7 @@
 
 // Four samples side by side along the lane axis, and the samples around them. Lanes and march
 // positions are the field's own here, whatever an azimuth flips, so that all azimuths of an axis
-// share them. The including shader declares `heights` and the constants BORDER and MARCHES_ROWS.
+// share them. The including shader declares `lane_heights` and the constants BORDER and MARCHES_ROWS.
 
 // One march position: the four lanes, and the one to each side.
 struct Strip {
@@ -37,8 +37,12 @@ ivec2 texel_at(int lane, int march) {
     return MARCHES_ROWS ? ivec2(lane, march) : ivec2(march, lane);
 }
 
+// Heights are loaded four lanes at a time, as an image rather than a texture: llvmpipe (Mesa 22.3)
+// calls a function to fetch from a texture, but loads from an image in place.
 float height_at(int lane, int march) {
-    return texelFetch(heights, texel_at(lane, march), 0).x;
+    vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
+    vec2 two = (lane & 2) == 0 ? four.xy : four.zw;
+    return (lane & 1) == 0 ? two.x : two.y;
 }
 
 // Index of a neighbour along one axis: wrapped where the field repeats, else held at the edge.
@@ -49,10 +53,7 @@ int neighbour(int i, int n) {
 Strip strip_at(int lane, int march, int lanes) {
     Strip s;
     s.low = height_at(neighbour(lane - 1, lanes), march);
-    s.four.x = height_at(neighbour(lane, lanes), march);
-    s.four.y = height_at(neighbour(lane + 1, lanes), march);
-    s.four.z = height_at(neighbour(lane + 2, lanes), march);
-    s.four.w = height_at(neighbour(lane + 3, lanes), march);
+    s.four = imageLoad(lane_heights, ivec2(lane >> 2, march));
     s.high = height_at(neighbour(lane + 4, lanes), march);
     return s;
 }

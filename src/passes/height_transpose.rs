@@ -1,5 +1,6 @@
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Axis, Builder, ResourceId};
+use crate::scene::Border;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -10,10 +11,11 @@ struct HeightTransposePush {
 
 same_layout!(HeightTransposePush, height_transpose_push, lanes = LANES, steps = STEPS);
 
-/// Heights laid out for the sweeps of one axis, four lanes a texel.
+/// Heights laid out for one axis, four lanes a texel.
 pub(crate) fn plan(
     builder: &mut Builder,
     axis: Axis,
+    border: Border,
     heights: ResourceId,
     lane_heights: ResourceId,
 ) {
@@ -21,9 +23,9 @@ pub(crate) fn plan(
     builder.pass(
         &shaders::HEIGHT_TRANSPOSE,
         axis.name(),
-        "sweeps read four neighbouring lanes at once",
+        "four neighbouring lanes are read at once",
         [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
-        &[(0, u32::from(axis.marches_rows))],
+        &[(0, u32::from(axis.marches_rows)), (1, u32::from(border == Border::Periodic))],
         &HeightTransposePush { lanes: axis.lanes as i32, steps: axis.steps as i32 },
         &[("heights", heights), ("lane_heights", lane_heights)],
         8 * axis.samples(),

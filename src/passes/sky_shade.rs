@@ -31,7 +31,7 @@ same_layout!(
 
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
-    pub heights: ResourceId,
+    pub lane_heights: ResourceId,
     pub lattice: ResourceId,
     pub azimuths: ResourceId,
     pub sky_sum: Option<ResourceId>,
@@ -52,8 +52,8 @@ pub(crate) fn plan(
     let axis = batch.axis;
     let [cols, rows] = axis.size();
     let mut bound = vec![
-        ("heights", images.heights),
-        ("lattice", images.lattice),
+        ("lane_heights", images.lane_heights),
+        (sweep.lattice_binding(), images.lattice),
         ("azimuths", images.azimuths),
     ];
     bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
@@ -70,7 +70,7 @@ pub(crate) fn plan(
             (Some(_), None) => "uniform sky in closed form: no table",
             _ => "environment from its tables",
         },
-        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), 1],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),

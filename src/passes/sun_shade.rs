@@ -39,7 +39,7 @@ pub(crate) fn plan(
     batch: &Batch,
     part: &str,
     is_point: bool,
-    [heights, lattice, azimuths, sun_sum]: [ResourceId; 4],
+    [lane_heights, lattice, azimuths, sun_sum]: [ResourceId; 4],
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
@@ -51,7 +51,7 @@ pub(crate) fn plan(
         } else {
             "the part of each chord of the disc above the horizon"
         },
-        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), 1],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),
@@ -70,7 +70,12 @@ pub(crate) fn plan(
             azimuth_count: batch.count,
             clears: u32::from(batch.is_first),
         },
-        &[("heights", heights), ("lattice", lattice), ("azimuths", azimuths), ("sun_sum", sun_sum)],
+        &[
+            ("lane_heights", lane_heights),
+            (sweep.lattice_binding(), lattice),
+            ("azimuths", azimuths),
+            ("sun_sum", sun_sum),
+        ],
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );

@@ -30,14 +30,14 @@ pub(crate) fn plan(
     border: Border,
     batch: &Batch,
     part: &str,
-    [heights, lattice, azimuths, angles]: [ResourceId; 4],
+    [lane_heights, lattice, azimuths, angles]: [ResourceId; 4],
     distances: Option<ResourceId>,
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
     let mut bound = vec![
-        ("heights", heights),
-        ("lattice", lattice),
+        ("lane_heights", lane_heights),
+        (sweep.lattice_binding(), lattice),
         ("azimuths", azimuths),
         ("horizon_angles", angles),
     ];
@@ -46,7 +46,7 @@ pub(crate) fn plan(
         &shaders::SWEEP_FUSE,
         part,
         "from the lines back to the samples",
-        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 8), batch.count],
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), batch.count],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),

@@ -111,7 +111,10 @@ struct Sweeping {
     sweep: Sweep,
     heights: ResourceId,
     azimuths: ResourceId,
+    /// Heights by lanes of each axis that is marched: columns', rows'.
     lane_heights: [Option<ResourceId>; 2],
+    /// Whether the sweep reads its heights from them too, four lanes at a time.
+    quads: bool,
     lattice: ResourceId,
     /// Where both are stored, the one that is not the lattice.
     occluders: Option<ResourceId>,
@@ -120,12 +123,17 @@ struct Sweeping {
 }
 
 impl Sweeping {
+    /// Heights by lanes of a batch's axis.
+    fn lane_heights(&self, batch: &Batch) -> ResourceId {
+        self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
+    }
+
     fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
         match &self.sweep {
             Sweep::Lines(lines) => {
                 let images = passes::horizon_sweep::Images {
                     heights: self.heights,
-                    lane_heights: self.lane_heights[usize::from(batch.axis.marches_rows)],
+                    lane_heights: self.quads.then(|| self.lane_heights(batch)),
                     azimuths: self.azimuths,
                     occluders: self.occluders,
                     slopes: self.slopes,
@@ -168,11 +176,11 @@ fn prepare(
         let used = lists.iter().flatten().any(|a| a.marches_rows() == marches_rows);
         used.then(|| Axis::of(marches_rows, size, border))
     });
-    // Lines a cell apart read their heights four lanes at a time.
+    // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
     let lane_heights = axes.map(|axis| {
-        let axis = axis.filter(|_| quads)?;
+        let axis = axis?;
         let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
         let name = format!("lane_heights_{}", axis.name());
         Some(builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false))
@@ -217,11 +225,20 @@ fn prepare(
     let lost_lines = can_lose.then(|| builder.buffer("lost_lines", u64::from(layers) * 32, false));
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
-            passes::height_transpose::plan(builder, *axis, heights, lanes);
+            passes::height_transpose::plan(builder, *axis, border, heights, lanes);
         }
     }
-    let sweeping =
-        Sweeping { sweep, heights, azimuths, lane_heights, lattice, occluders, slopes, lost_lines };
+    let sweeping = Sweeping {
+        sweep,
+        heights,
+        azimuths,
+        lane_heights,
+        quads,
+        lattice,
+        occluders,
+        slopes,
+        lost_lines,
+    };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -489,7 +506,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             let part = part("sky", batch, batches.len() == 1);
             sweeping.record(&mut builder, batch, &part);
             let images = passes::sky_shade::Images {
-                heights,
+                lane_heights: sweeping.lane_heights(batch),
                 lattice: sweeping.lattice,
                 azimuths: sweeping.azimuths,
                 sky_sum,
@@ -518,7 +535,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         for batch in batches {
             let part = part(&format!("sun{}", i + 1), batch, batches.len() == 1);
             sweeping.record(&mut builder, batch, &part);
-            let ids = [heights, sweeping.lattice, sweeping.azimuths, sum];
+            let ids = [sweeping.lane_heights(batch), sweeping.lattice, sweeping.azimuths, sum];
             let is_point = sun.diameter_rad == 0.0;
             passes::sun_shade::plan(
                 &mut builder,
@@ -628,7 +645,7 @@ pub fn horizons(
     for batch in &lists.batches[0] {
         let part = part("", batch, lists.batches[0].len() == 1);
         sweeping.record(&mut builder, batch, part.trim());
-        let ids = [heights, sweeping.lattice, sweeping.azimuths, angles];
+        let ids = [sweeping.lane_heights(batch), sweeping.lattice, sweeping.azimuths, angles];
         passes::sweep_fuse::plan(
             &mut builder,
             &sweeping.sweep,

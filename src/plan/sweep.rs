@@ -192,6 +192,11 @@ impl Sweep {
         }
     }
 
+    /// Which of the shaders' two bindings the lattice is: halves of words, or words.
+    pub(crate) fn lattice_binding(&self) -> &'static str {
+        if self.lattice_content() == 1 { "lattice_words" } else { "lattice" }
+    }
+
     /// Bytes that a sample reads from the lattice and the field around what it proposes.
     pub(crate) fn lattice_bytes(&self) -> u64 {
         match self {
