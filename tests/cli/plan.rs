@@ -86,7 +86,6 @@ fn dot_is_a_graph_of_declared_nodes() {
 
 /// `| head -1`, told to go before anything is written.
 #[test]
-#[ignore = "waits for say! in place of println!"]
 fn a_reader_that_goes_away_is_no_panic() {
     let folder = Folder::new();
     for args in [&LIT[..], &["plan", "a.asc", "--format", "dot"], &["--help"]] {
