@@ -61,7 +61,10 @@ fn missing_barriers_are_heard() {
     }
     device.draw(plan, &[scene.field.heights_m()]);
     let messages = device.gpu.as_ref().expect("alive").take_messages();
-    assert!(messages.iter().any(|m| m.contains("HAZARD")), "validation is deaf: {messages:?}");
+    assert!(
+        messages.iter().any(|m| m.contains("hazard detected")),
+        "validation is deaf: {messages:?}"
+    );
 }
 
 #[test]
