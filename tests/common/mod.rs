@@ -32,13 +32,14 @@ pub fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
 }
 
 /// The colour types of PNG's IHDR.
-#[allow(dead_code, reason = "no test crate needs all of them")]
 pub mod colour {
     pub const GREY: u8 = 0;
     pub const RGB: u8 = 2;
     pub const PALETTE: u8 = 3;
     pub const GREY_ALPHA: u8 = 4;
     pub const RGBA: u8 = 6;
+
+    pub const ALL: [u8; 5] = [GREY, RGB, PALETTE, GREY_ALPHA, RGBA];
 }
 
 /// A PNG of raw rows, stored, with chunks before them; a palette is black and white.
@@ -50,6 +51,7 @@ pub fn png(
     chunks: &[(&[u8; 4], &[u8])],
     samples: &[u8],
 ) -> Vec<u8> {
+    assert!(colour::ALL.contains(&colour), "PNG knows no colour type {colour}");
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
     let mut chunk = |name: &[u8; 4], data: &[u8]| {
         let named = [name, data].concat();
