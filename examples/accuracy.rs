@@ -8,7 +8,8 @@
 
 use std::path::PathBuf;
 
-use ridgelight::cpu::{light, oracle::Oracle};
+use ridgelight::cpu::light;
+use ridgelight::cpu::oracle::{Horizon, ONE_PLACE_CELLS, Oracle, elevation_of};
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
 use ridgelight::measure::error::{HorizonError, ImageError};
@@ -95,31 +96,68 @@ fn picture(
     Ok((pixels.values, pixels.channels, times))
 }
 
-/// Elevations at the picked samples, [azimuth][pick].
+/// Elevations at the picked samples, [azimuth][pick], and where asked distances, metres.
 fn horizons(
     gpu: &mut Headless,
     field: &HeightField,
     quality: &Quality,
     picks: &[[usize; 2]],
-) -> Result<Vec<f32>> {
+    distances: bool,
+) -> Result<[Vec<f32>; 2]> {
     let plane = field.rows() * field.cols();
-    let mut found = vec![0.0; picks.len() * quality.azimuths as usize];
+    let mut found = [0, 1].map(|_| vec![0.0; picks.len() * quality.azimuths as usize]);
     for first in (0..quality.azimuths).step_by(16) {
         let count = 16.min(quality.azimuths - first);
         let limits = gpu.report().limits;
-        let plan = plan::horizons(field, Border::Plane, quality, &limits, (first, count), false)?;
+        let part = (first, count);
+        let plan = plan::horizons(field, Border::Plane, quality, &limits, part, distances)?;
         let order = plan.layer_azimuths.clone();
         let mut frame = gpu.frame(plan, &[field.heights_m()])?;
         gpu.draw(&mut frame)?;
-        let angles = gpu.pixels(&frame, 0)?.values;
-        gpu.end(frame);
-        for (layer, k) in order.iter().enumerate() {
-            for (i, [r, c]) in picks.iter().enumerate() {
-                found[*k as usize * picks.len() + i] = angles[layer * plane + r * field.cols() + c];
+        for (output, found) in found.iter_mut().enumerate().take(1 + usize::from(distances)) {
+            let values = gpu.pixels(&frame, output)?.values;
+            for (layer, k) in order.iter().enumerate() {
+                for (i, [r, c]) in picks.iter().enumerate() {
+                    let at = layer * plane + r * field.cols() + c;
+                    found[*k as usize * picks.len() + i] = values[at];
+                }
             }
         }
+        gpu.end(frame);
     }
     Ok(found)
+}
+
+/// The oracle at the picked samples, [azimuth][pick].
+fn truth(oracle: &Oracle, azimuths: &[f64], picks: &[[usize; 2]]) -> Vec<Option<Horizon>> {
+    let at =
+        |phi: &f64| picks.iter().map(|[r, c]| oracle.horizon(*r, *c, *phi)).collect::<Vec<_>>();
+    azimuths.iter().flat_map(at).collect()
+}
+
+/// How often an exact sweep names the oracle's occluder, where that is unique.
+fn occluders(
+    field: &HeightField,
+    [angles, distances]: &[Vec<f32>; 2],
+    truth: &[Option<Horizon>],
+) -> String {
+    let one_place_m = ONE_PLACE_CELLS * field.cell_m()[0].max(field.cell_m()[1]);
+    let (mut unique, mut same, mut lost) = (0_usize, 0_usize, 0.0_f64);
+    for ((angle, distance), truth) in angles.iter().zip(distances).zip(truth) {
+        // Where the ground beyond the edge is the horizon, nothing is met.
+        let Some(met) = truth.filter(|h| h.unique && h.slope > 0.0) else { continue };
+        unique += 1;
+        // A distance is f32 steps times f32 metres a step.
+        let rounding = 4.0 * f64::from(f32::EPSILON) * met.distance_m;
+        if (f64::from(*distance) - met.distance_m).abs() <= one_place_m + rounding {
+            same += 1;
+        } else {
+            lost = lost.max((met.slope.atan() - f64::from(*angle)).abs().to_degrees());
+        }
+    }
+    format!(
+        "exact: the oracle's occluder at {same} of {unique} places where it is unique; at the others the angle is at most {lost:.1e}° off"
+    )
 }
 
 fn main() -> Result<()> {
@@ -148,18 +186,25 @@ fn main() -> Result<()> {
         }
     }
     rows.push((Method::Sweep, Lines::Exact, Fuse::AimedNearest));
-    if samples * field.cols().max(field.rows()) < 8_000_000 {
+    // Brute force costs a side's length a sample.
+    if megasamples * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::Brute, Lines::Cell, Fuse::AimedNearest));
     }
+    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m()), &picks);
+    let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
         let quality = Quality { method, lines, fuse, ..Quality::default() };
-        let found = horizons(&mut gpu, &field, &quality, &picks)?;
-        let azimuths = plan::circle_rad(&quality, field.cell_m());
-        let truth: Vec<f32> = azimuths
-            .iter()
-            .flat_map(|phi| picks.iter().map(|[r, c]| oracle.elevation_rad(*r, *c, *phi) as f32))
-            .collect();
-        let e = HorizonError::of(&found, &truth, 1, samples)?;
+        let is_exact = lines == Lines::Exact;
+        let found = horizons(&mut gpu, &field, &quality, &picks, is_exact)?;
+        let own =
+            is_exact.then(|| truth(&oracle, &plan::circle_rad(&quality, field.cell_m()), &picks));
+        let met = own.as_ref().unwrap_or(&even);
+        let elevations: Vec<f32> =
+            met.iter().map(|h| elevation_of(Border::Plane, *h) as f32).collect();
+        let e = HorizonError::of(&found[0], &elevations, 1, samples)?;
+        if is_exact {
+            same_occluders = occluders(&field, &found, met);
+        }
         let (values, channels, times) = picture(&mut gpu, &sky, &quality)?;
         let ours: Vec<f64> =
             lit.iter().map(|[r, c]| f64::from(values[(r * field.cols() + c) * channels])).collect();
@@ -185,7 +230,7 @@ fn main() -> Result<()> {
         );
     }
     println!(
-        "\nms an azimuth and megasample. Exact horizons are in the azimuths of grid vectors near the even ones."
+        "\n{same_occluders}\nms an azimuth and megasample. Exact horizons are in the azimuths of grid vectors near the even ones."
     );
     let Some(environment) = environment else { return Ok(()) };
     let lit = &picks[..samples / 20];

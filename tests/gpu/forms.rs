@@ -74,10 +74,11 @@ fn forms_agree_to_the_bit_on_random_fields() {
 #[test]
 fn batches_and_the_whole_are_the_same_to_the_bit() {
     let mut gpu = Device::new();
-    let scene = under_sky(fractal(256, 3).expect("a field"), Border::Plane);
-    let quality = Quality { azimuths: 16, ..Quality::default() };
+    let scene = under_sky(fractal(1024, 3).expect("a field"), Border::Plane);
+    let quality = Quality { azimuths: 8, ..Quality::default() };
     let limits = Limits { memory_budget: 1 << 30, ..gpu.limits() };
-    let tight = Limits { memory_budget: 2_400_000, ..limits };
+    // Three images of 4 MiB, the heights by lanes of each axis, and room for one azimuth's lattice.
+    let tight = Limits { memory_budget: 28_000_000, ..limits };
     let count = |l: &Limits| {
         let plan = plan::picture(&scene, &quality, l, Picture::default()).expect("a plan");
         plan.passes.iter().filter(|p| p.name() == "sky_shade").count()

@@ -11,6 +11,7 @@ use ridgelight::files;
 use ridgelight::gpu::{Frame, Headless, Timing};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Pass, Picture, Plan};
+use ridgelight::scene::Quality;
 use ridgelight::{Error, Result};
 
 use crate::args::BenchArgs;
@@ -57,6 +58,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if !args.sizes.is_empty() {
         let counts =
             if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
+        for &azimuths in counts {
+            verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
+        }
         let lists = (&args.sizes[..], counts);
         let table = sizes::run(&mut gpu, &scene, &quality, &limits, lists, args.samples, &bar)?;
         bar.finish_and_clear();
