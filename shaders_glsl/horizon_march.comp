@@ -7,7 +7,6 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
-#include "shared/sweep.glsl"
 #include "shared/surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -20,33 +19,13 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
-layout(push_constant) uniform HorizonMarchPush {
-    int lanes;
-    int steps;
-    int warm_up;  // steps marched beyond the field: whole periods, or 0
-    uint first_azimuth;
-};
-
-Azimuth azimuth;
-
-// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
-float height_at(int lane, int step) {
-    int lane_round = wrapped(lane, lanes);
-    int step_round = wrapped(step, steps);
-    int lane_held = clamp(lane, 0, lanes - 1);
-    int step_held = clamp(step, 0, steps - 1);
-    lane = lane_position(azimuth, PERIODIC ? lane_round : lane_held, lanes);
-    step = march_position(azimuth, PERIODIC ? step_round : step_held, steps);
-    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    ivec2 at = ivec2(by_row ? lane : step, by_row ? step : lane);
-    return texelFetch(heights, at, 0).x;
-}
+#include "shared/march.glsl"
 
 void main() {
     azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
     int lane = int(gl_GlobalInvocationID.x);
     int step = int(gl_GlobalInvocationID.y);
-    bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    bool split_along = splits_along();
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
     float own = height_at(lane, step);
     float slope = NO_SLOPE;

@@ -32,17 +32,6 @@ layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
 layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 
-layout(push_constant) uniform SkyShadePush {
-    int cols;
-    int rows;
-    float cell_x_m;
-    float cell_y_m;
-    int warm_up;
-    uint first_azimuth;  // of the batch
-    uint azimuth_count;
-    uint clears;         // 1 in the first batch
-};
-
 // Sums of the four samples, and their normals.
 vec4 sky;
 vec4 env_red;

@@ -29,17 +29,6 @@ layout(binding = 7) uniform utexture2DArray lattice_words;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sun_sum;
 
-layout(push_constant) uniform SunShadePush {
-    int cols;
-    int rows;
-    float cell_x_m;
-    float cell_y_m;
-    int warm_up;
-    uint first_azimuth;  // of the batch
-    uint azimuth_count;
-    uint clears;         // 1 in the first batch
-};
-
 // Sums of the four samples, and their normals.
 vec4 sun;
 vec4 normal_east;

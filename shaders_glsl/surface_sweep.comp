@@ -7,7 +7,6 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
-#include "shared/sweep.glsl"
 #include "shared/surface.glsl"
 
 layout(local_size_x_id = 0) in;
@@ -20,27 +19,7 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
-layout(push_constant) uniform SurfaceSweepPush {
-    int lanes;
-    int steps;
-    int warm_up;
-    uint first_azimuth;
-};
-
-Azimuth azimuth;
-
-// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
-float height_at(int lane, int step) {
-    int lane_round = wrapped(lane, lanes);
-    int step_round = wrapped(step, steps);
-    int lane_held = clamp(lane, 0, lanes - 1);
-    int step_held = clamp(step, 0, steps - 1);
-    lane = lane_position(azimuth, PERIODIC ? lane_round : lane_held, lanes);
-    step = march_position(azimuth, PERIODIC ? step_round : step_held, steps);
-    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    ivec2 at = ivec2(by_row ? lane : step, by_row ? step : lane);
-    return texelFetch(heights, at, 0).x;
-}
+#include "shared/march.glsl"
 
 // Rise over `own` of the surface `u` past step `step`, for a line at lane position y (in 1/march
 // of a cell) at that step.
@@ -51,7 +30,7 @@ float rise_over(float own, int y, int step, float u) {
     bool over = f > 1.0;
     f -= over ? 1.0 : 0.0;
     cell += over ? 1 : 0;
-    bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    bool split_along = splits_along();
     return surface_rise(height_at(cell, step), height_at(cell, step + 1), height_at(cell + 1, step),
                         height_at(cell + 1, step + 1), own, u, f, split_along);
 }
@@ -106,7 +85,7 @@ void main() {
     int width = PERIODIC ? lanes * march - 1 : (lanes - 1) * march;
     int lead = PERIODIC ? 0 : (total - 1) * shear;
     int line = int(gl_GlobalInvocationID.x);
-    bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    bool split_along = splits_along();
     float advance = float(shear) / float(march);
     // All lines of a group march together, over the steps at which any of them is on the field.
     int first = int(gl_WorkGroupID.x * gl_WorkGroupSize.x) - lead;

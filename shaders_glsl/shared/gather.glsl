@@ -1,7 +1,18 @@
 #include "shared/fuse.glsl"
 
-// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
-// push constants first_azimuth, azimuth_count and warm_up, and defines add_light.
+// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and
+// defines add_light.
+
+layout(push_constant) uniform ShadePush {
+    int cols;
+    int rows;
+    float cell_x_m;
+    float cell_y_m;
+    int warm_up;
+    uint first_azimuth;  // of the batch
+    uint azimuth_count;
+    uint clears;         // 1 in the first batch
+};
 
 // `east` and `north` are the field's slopes at the samples.
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {

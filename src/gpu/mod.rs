@@ -1,13 +1,19 @@
 //! Vulkan: device, memory, pipelines, barriers, recording, timing. All of the crate's `unsafe`.
 
+mod copy;
+mod frame;
 mod headless;
+mod instance;
 mod memory;
 mod pipelines;
 mod renderer;
 mod requirements;
 pub mod shaders;
+mod validation;
 
-pub use headless::{Frame, Headless, HeadlessOptions, Pixels, choose, devices};
+pub use frame::{Frame, Pixels};
+pub use headless::{Headless, HeadlessOptions};
+pub use instance::{choose, devices};
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, limits, missing};
 

@@ -1,4 +1,5 @@
-//! One file a pass: what it binds, how large it is, and why it is there.
+//! One file a pass: what it binds, how large it is, and why it is there; `push` has what
+//! several push alike.
 
 pub(crate) mod env_tables;
 pub(crate) mod env_wedges;
@@ -6,6 +7,7 @@ pub(crate) mod height_transpose;
 pub(crate) mod horizon_march;
 pub(crate) mod horizon_sweep;
 pub(crate) mod light_resolve;
+mod push;
 pub(crate) mod sky_shade;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;

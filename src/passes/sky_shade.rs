@@ -1,33 +1,8 @@
-use crate::gpu::shaders::{self, same_layout};
+use super::push::ShadePush;
+use crate::gpu::shaders;
 use crate::plan::sweep::Sweep;
 use crate::plan::{Batch, Builder, ResourceId};
 use crate::scene::Border;
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SkyShadePush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    warm_up: i32,
-    first_azimuth: u32,
-    azimuth_count: u32,
-    clears: u32,
-}
-
-same_layout!(
-    SkyShadePush,
-    sky_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    warm_up = WARM_UP,
-    first_azimuth = FIRST_AZIMUTH,
-    azimuth_count = AZIMUTH_COUNT,
-    clears = CLEARS,
-);
 
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
@@ -50,7 +25,6 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let [cols, rows] = axis.size();
     let mut bound = vec![
         ("lane_heights", images.lane_heights),
         (sweep.lattice_binding(), images.lattice),
@@ -80,16 +54,7 @@ pub(crate) fn plan(
             (5, u32::from(images.environment.is_some())),
             (6, u32::from(axis.marches_rows)),
         ],
-        &SkyShadePush {
-            cols: cols as i32,
-            rows: rows as i32,
-            cell_x_m: cell_m[0] as f32,
-            cell_y_m: cell_m[1] as f32,
-            warm_up: axis.warm_up as i32,
-            first_azimuth: batch.first,
-            azimuth_count: batch.count,
-            clears: u32::from(batch.is_first),
-        },
+        &ShadePush::of(batch, cell_m),
         &bound,
         axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),

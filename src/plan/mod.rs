@@ -3,20 +3,26 @@
 
 pub mod azimuths;
 mod batch;
-mod build;
+mod builder;
+mod horizons;
 mod limits;
 mod pass;
+mod picture;
 mod print;
 mod resource;
+mod shining;
 pub mod sweep;
+mod sweeping;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
-pub(crate) use build::Builder;
-pub use build::{Picture, circle_rad, horizons, picture};
+pub(crate) use builder::Builder;
+pub use horizons::horizons;
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
+pub use picture::{Picture, picture};
 pub use resource::{Format, Kind, Owner, Resource};
+pub use sweeping::circle_rad;
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]

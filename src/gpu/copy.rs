@@ -1,0 +1,152 @@
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+
+use super::Headless;
+use super::frame::Owned;
+use super::memory::{Backed, whole};
+use crate::{Error, Result};
+
+/// Staging goes through buffers of at most this size.
+const STAGING_BYTES: u64 = 64 << 20;
+
+impl Headless {
+    pub(super) fn to_general(&self, commands: vk::CommandBuffer, image: &Owned) {
+        let barrier = [vk::ImageMemoryBarrier2::default()
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .new_layout(vk::ImageLayout::GENERAL)
+            .image(image.backed.image)
+            .subresource_range(whole(image.extent[2]))];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
+        // SAFETY: `commands` is being recorded; the image is ours and its contents are not needed.
+        unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
+    }
+
+    /// Copies between an image in GENERAL and host memory, in stretches of whole rows.
+    pub(super) fn copy(
+        &mut self,
+        image: &Owned,
+        to_image: bool,
+        mut each: impl FnMut(&mut [u8], usize) -> Result<()>,
+    ) -> Result<()> {
+        let [width, height, layers] = image.extent;
+        let row_bytes = image.format.bytes() * u64::from(width);
+        let rows = (STAGING_BYTES / row_bytes).clamp(1, u64::from(height)) as u32;
+        let usage = if to_image {
+            vk::BufferUsageFlags::TRANSFER_SRC
+        } else {
+            vk::BufferUsageFlags::TRANSFER_DST
+        };
+        let location = if to_image { MemoryLocation::CpuToGpu } else { MemoryLocation::GpuToCpu };
+        let mut staging =
+            self.memory.buffer("staging", row_bytes * u64::from(rows), usage, location)?;
+        let mut done = 0;
+        let mut copied = Ok(());
+        'all: for layer in 0..layers {
+            for top in (0..height).step_by(rows as usize) {
+                let count = rows.min(height - top);
+                let bytes = (row_bytes * u64::from(count)) as usize;
+                copied = self.copy_rows(
+                    image,
+                    &mut staging,
+                    to_image,
+                    [layer, top, count],
+                    &mut |all| each(&mut all[..bytes], done),
+                );
+                if copied.is_err() {
+                    break 'all;
+                }
+                done += bytes;
+            }
+        }
+        self.memory.free(&mut staging);
+        copied
+    }
+
+    fn copy_rows(
+        &self,
+        image: &Owned,
+        staging: &mut Backed,
+        to_image: bool,
+        [layer, top, count]: [u32; 3],
+        each: &mut dyn FnMut(&mut [u8]) -> Result<()>,
+    ) -> Result<()> {
+        let mut touch = |staging: &mut Backed| {
+            let mapped = staging.allocation.as_mut().and_then(|a| a.mapped_slice_mut());
+            each(mapped.expect("host-visible memory is mapped"))
+        };
+        if to_image {
+            touch(staging)?;
+        }
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                mip_level: 0,
+                base_array_layer: layer,
+                layer_count: 1,
+            })
+            .image_offset(vk::Offset3D { x: 0, y: top as i32, z: 0 })
+            .image_extent(vk::Extent3D { width: image.extent[0], height: count, depth: 1 })];
+        let (image, buffer) = (image.backed.image, staging.buffer);
+        let barrier = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(
+                vk::AccessFlags2::MEMORY_READ
+                    | vk::AccessFlags2::MEMORY_WRITE
+                    | vk::AccessFlags2::HOST_READ,
+            )];
+        let all = vk::DependencyInfo::default().memory_barriers(&barrier);
+        self.run(|commands| {
+            // SAFETY: the image is in GENERAL, the buffer as large as the region, both ours.
+            unsafe {
+                let device = &self.host().device;
+                device.cmd_pipeline_barrier2(commands, &all);
+                if to_image {
+                    device.cmd_copy_buffer_to_image(
+                        commands,
+                        buffer,
+                        image,
+                        vk::ImageLayout::GENERAL,
+                        &region,
+                    );
+                } else {
+                    device.cmd_copy_image_to_buffer(
+                        commands,
+                        image,
+                        vk::ImageLayout::GENERAL,
+                        buffer,
+                        &region,
+                    );
+                }
+                device.cmd_pipeline_barrier2(commands, &all);
+            }
+            Ok(())
+        })?;
+        if to_image { Ok(()) } else { touch(staging) }
+    }
+
+    pub(super) fn upload(&mut self, image: &Owned, values: &[f32]) -> Result<()> {
+        let wanted =
+            image.format.bytes() / 4 * image.extent.iter().map(|e| u64::from(*e)).product::<u64>();
+        if values.len() as u64 != wanted {
+            return Err(Error::setting(
+                &image.name,
+                format!("{} values", values.len()),
+                format!("{wanted} values"),
+            ));
+        }
+        self.run(|commands| {
+            self.to_general(commands, image);
+            Ok(())
+        })?;
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        self.copy(image, true, |staging, from| {
+            staging.copy_from_slice(&bytes[from..from + staging.len()]);
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,190 @@
+use ash::vk;
+
+use super::memory::Backed;
+use super::{Headless, ImageArg, ImageState, Renderer, Timing};
+use crate::plan::{Format, Kind, Plan, Resource};
+use crate::{Error, Result};
+
+/// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
+pub struct Frame {
+    renderer: Option<Renderer>,
+    inputs: Vec<Owned>,
+    outputs: Vec<Owned>,
+}
+
+impl Frame {
+    /// What it draws.
+    pub fn plan(&self) -> &Plan {
+        self.renderer.as_ref().expect("alive until ended").plan()
+    }
+}
+
+/// An image of a frame, in GENERAL layout.
+pub(super) struct Owned {
+    pub backed: Backed,
+    pub format: Format,
+    pub extent: [u32; 3],
+    pub name: String,
+}
+
+impl Owned {
+    fn arg(&self) -> ImageArg {
+        let state = ImageState {
+            stage: vk::PipelineStageFlags2::ALL_COMMANDS,
+            access: vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
+            layout: vk::ImageLayout::GENERAL,
+        };
+        ImageArg {
+            image: self.backed.image,
+            view: self.backed.view,
+            format: self.format.vk(),
+            extent: self.extent,
+            before: state,
+            after: state,
+        }
+    }
+}
+
+/// Contents of an image: rows of texels of one or four f32.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pixels {
+    /// The image's name in the plan.
+    pub name: String,
+    /// f32 a texel: 1 or 4.
+    pub channels: usize,
+    /// Layer after layer, row after row.
+    pub values: Vec<f32>,
+}
+
+impl Headless {
+    /// Makes an image for an input or output of a plan, in GENERAL layout after [`frame`](Self::frame).
+    fn image_for(&mut self, resource: &Resource) -> Result<Owned> {
+        let Kind::Image { format, width, height, layers, layered } = resource.kind else {
+            return Err(Error::setting(&resource.name, "a buffer", "an image"));
+        };
+        let extent = [width, height, layers];
+        let backed = self.memory.image(&resource.name, format, extent, layered)?;
+        Ok(Owned { backed, format, extent, name: resource.name.clone() })
+    }
+
+    /// Makes a renderer for `plan` with images for all its inputs and outputs, and fills the inputs:
+    /// `contents` are their texels in the plan's order, 1 or 4 f32 each.
+    ///
+    /// # Errors
+    /// Contents that do not fit, or a device out of memory.
+    pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+        let inputs: Vec<Resource> = plan.inputs().map(|(_, r)| r.clone()).collect();
+        let outputs: Vec<Resource> = plan.outputs().map(|(_, r)| r.clone()).collect();
+        let mut frame = Frame {
+            renderer: Some(Renderer::new(self.host(), plan, 1)?),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+        };
+        let filled = self.fill(&mut frame, &inputs, &outputs, contents);
+        match filled {
+            Ok(()) => Ok(frame),
+            Err(error) => {
+                self.end(frame);
+                Err(error)
+            }
+        }
+    }
+
+    fn fill(
+        &mut self,
+        frame: &mut Frame,
+        inputs: &[Resource],
+        outputs: &[Resource],
+        contents: &[&[f32]],
+    ) -> Result<()> {
+        if inputs.len() != contents.len() {
+            return Err(Error::setting(
+                "inputs",
+                contents.len().to_string(),
+                inputs.len().to_string(),
+            ));
+        }
+        for resource in inputs {
+            let image = self.image_for(resource)?;
+            frame.inputs.push(image);
+        }
+        for resource in outputs {
+            let image = self.image_for(resource)?;
+            frame.outputs.push(image);
+        }
+        for (image, values) in frame.inputs.iter().zip(contents) {
+            self.upload(image, values)?;
+        }
+        self.run(|commands| {
+            for image in &frame.outputs {
+                self.to_general(commands, image);
+            }
+            Ok(())
+        })
+    }
+
+    /// Writes new texels into input number `input` of a frame.
+    ///
+    /// # Errors
+    /// Contents that do not fit.
+    pub fn refill(&mut self, frame: &Frame, input: usize, values: &[f32]) -> Result<()> {
+        let image = frame.inputs.get(input).ok_or_else(|| {
+            Error::setting("input", input.to_string(), format!("less than {}", frame.inputs.len()))
+        })?;
+        self.upload(image, values)
+    }
+
+    /// Runs a frame once and waits; its times by pass, where the device has timestamps.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn draw(&self, frame: &mut Frame) -> Result<Vec<Timing>> {
+        let all: Vec<usize> = (0..frame.plan().passes.len()).collect();
+        self.draw_passes(frame, &all)
+    }
+
+    /// Runs some passes of a frame that has been drawn, and waits.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn draw_passes(&self, frame: &mut Frame, passes: &[usize]) -> Result<Vec<Timing>> {
+        let args = |images: &[Owned]| images.iter().map(Owned::arg).collect::<Vec<_>>();
+        let (inputs, outputs) = (args(&frame.inputs), args(&frame.outputs));
+        let renderer = frame.renderer.as_mut().expect("alive until ended");
+        self.run(|commands| renderer.record_passes(commands, 0, &inputs, &outputs, passes))?;
+        Ok(renderer.timings(0).unwrap_or_default())
+    }
+
+    /// Texels of output number `output` of a frame.
+    ///
+    /// # Errors
+    /// An output that does not exist, or the device's.
+    pub fn pixels(&mut self, frame: &Frame, output: usize) -> Result<Pixels> {
+        let image = frame.outputs.get(output).ok_or_else(|| {
+            Error::setting(
+                "output",
+                output.to_string(),
+                format!("less than {}", frame.outputs.len()),
+            )
+        })?;
+        let channels = (image.format.bytes() / 4) as usize;
+        let count = image.extent.iter().map(|e| *e as usize).product::<usize>() * channels;
+        let mut values = vec![0.0_f32; count];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut values);
+        self.copy(image, false, |staging, from| {
+            bytes[from..from + staging.len()].copy_from_slice(staging);
+            Ok(())
+        })?;
+        Ok(Pixels { name: image.name.clone(), channels, values })
+    }
+
+    /// Frees a frame.
+    pub fn end(&mut self, mut frame: Frame) {
+        if let Some(renderer) = frame.renderer.take() {
+            renderer.destroy();
+        }
+        for mut image in frame.inputs.drain(..).chain(frame.outputs.drain(..)) {
+            self.memory.free(&mut image.backed);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+use ash::{ext, vk};
+
+use super::requirements::report;
+use super::{DeviceReport, failed, validation};
+use crate::{Error, Result};
+
+pub(super) fn load() -> Result<ash::Entry> {
+    // SAFETY: loading the system's Vulkan loader runs its initialisers, which is its purpose.
+    unsafe { ash::Entry::load() }.map_err(|e| Error::Device {
+        doing: "loading Vulkan".into(),
+        reason: format!(
+            "{e}; install a Vulkan loader and a driver (Debian: libvulkan1 mesa-vulkan-drivers)"
+        ),
+    })
+}
+
+fn no_driver() -> Error {
+    Error::Device {
+        doing: "choosing a device".into(),
+        reason: "no Vulkan driver answers (Debian: install mesa-vulkan-drivers)".into(),
+    }
+}
+
+/// An instance; with the validation layer where there is a `messenger` for what it says meanwhile.
+pub(super) fn instance(
+    entry: &ash::Entry,
+    messenger: Option<&mut vk::DebugUtilsMessengerCreateInfoEXT<'_>>,
+) -> Result<ash::Instance> {
+    let app = vk::ApplicationInfo::default()
+        .application_name(c"ridgelight")
+        .api_version(vk::API_VERSION_1_3);
+    let settings = validation::settings();
+    let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
+    let layers = [validation::LAYER.as_ptr()];
+    let extensions = [ext::debug_utils::NAME.as_ptr()];
+    let mut info = vk::InstanceCreateInfo::default().application_info(&app);
+    if let Some(messenger) = messenger {
+        info = info
+            .enabled_layer_names(&layers)
+            .enabled_extension_names(&extensions)
+            .push_next(&mut layer_settings)
+            .push_next(messenger);
+    }
+    // SAFETY: names are nul-terminated and live across the call; so do the chained structs.
+    unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
+        vk::Result::ERROR_INCOMPATIBLE_DRIVER => no_driver(),
+        other => failed("making a Vulkan instance")(other),
+    })
+}
+
+/// All devices of the system.
+///
+/// # Errors
+/// No loader, or no driver that answers.
+pub fn devices() -> Result<Vec<DeviceReport>> {
+    let entry = load()?;
+    let instance = instance(&entry, None)?;
+    // SAFETY: the instance is alive; it is destroyed after its last use.
+    unsafe {
+        let found = instance.enumerate_physical_devices().map_err(failed("listing devices"));
+        let reports = found.map(|all| all.into_iter().map(|d| report(&instance, d)).collect());
+        instance.destroy_instance(None);
+        reports
+    }
+}
+
+/// The device of an instance that [`choose`] chooses.
+pub(super) fn chosen(
+    instance: &ash::Instance,
+    wanted: Option<&str>,
+) -> Result<(vk::PhysicalDevice, DeviceReport)> {
+    // SAFETY: the instance is alive.
+    let all =
+        unsafe { instance.enumerate_physical_devices() }.map_err(failed("listing devices"))?;
+    let mut reports: Vec<_> = all.iter().map(|d| report(instance, *d)).collect();
+    let index = choose(&reports, wanted)?;
+    Ok((all[index], reports.swap_remove(index)))
+}
+
+/// Which of the `reports` of [`devices`] would be used: the one `wanted`, by number or by a part of
+/// its name, else the first GPU that will do, else any that will.
+///
+/// # Errors
+/// No such device, none at all, or one that lacks what is needed (named).
+pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
+    let listed = || reports.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
+    let no = |reason: String| Error::Device { doing: "choosing a device".into(), reason };
+    let index = match wanted {
+        Some(wanted) => {
+            let number = wanted.parse::<usize>().ok().filter(|i| *i < reports.len());
+            let lower = wanted.to_lowercase();
+            let named = || reports.iter().position(|r| r.name.to_lowercase().contains(&lower));
+            number.or_else(named).ok_or_else(|| {
+                no(format!("no device is called {wanted}; there are: {}", listed()))
+            })?
+        }
+        None => {
+            let fit = |r: &DeviceReport| r.missing.is_empty();
+            let gpu = reports.iter().position(|r| fit(r) && !r.limits.is_cpu);
+            let any = || reports.iter().position(fit);
+            gpu.or_else(any).or((!reports.is_empty()).then_some(0)).ok_or_else(no_driver)?
+        }
+    };
+    let report = &reports[index];
+    if !report.missing.is_empty() {
+        return Err(no(format!("{} lacks {}", report.name, report.missing.join(", "))));
+    }
+    Ok(index)
+}

@@ -1,0 +1,149 @@
+use super::azimuths::Azimuth;
+use super::batch::bytes_text;
+use super::pass::place_barriers;
+use super::{Format, Kind, Limits, Owner, Pass, Plan, Resource, ResourceId};
+use crate::gpu::shaders::Shader;
+use crate::scene::HeightField;
+use crate::{Error, Result};
+
+/// Collects a plan.
+pub(crate) struct Builder {
+    resources: Vec<Resource>,
+    passes: Vec<Pass>,
+}
+
+impl Builder {
+    pub(super) fn new() -> Self {
+        Self { resources: Vec::new(), passes: Vec::new() }
+    }
+
+    pub(super) fn image(
+        &mut self,
+        name: impl Into<String>,
+        owner: Owner,
+        format: Format,
+        [width, height, layers]: [u32; 3],
+        layered: bool,
+    ) -> ResourceId {
+        self.resources.push(Resource {
+            name: name.into(),
+            kind: Kind::Image { format, width, height, layers, layered },
+            owner,
+        });
+        ResourceId(self.resources.len() - 1)
+    }
+
+    pub(super) fn buffer(&mut self, name: &str, bytes: u64, texels: bool) -> ResourceId {
+        self.resources.push(Resource {
+            name: name.into(),
+            kind: Kind::Buffer { bytes, texels },
+            owner: Owner::Internal,
+        });
+        ResourceId(self.resources.len() - 1)
+    }
+
+    /// Adds a dispatch of `shader`; `bound` names its bindings, all others are unused.
+    #[expect(clippy::too_many_arguments, reason = "a pass is all of this")]
+    pub(crate) fn pass<P: bytemuck::Pod>(
+        &mut self,
+        shader: &'static Shader,
+        part: &str,
+        why: impl Into<String>,
+        groups: [u32; 3],
+        constants: &[(u32, u32)],
+        push: &P,
+        bound: &[(&str, ResourceId)],
+        bytes: u64,
+        samples: u64,
+    ) {
+        let push = bytemuck::bytes_of(push).to_vec();
+        assert_eq!(push.len(), shader.push_bytes as usize, "{}: push constants", shader.name);
+        for (name, id) in bound {
+            let binding = shader.bindings.iter().find(|b| b.name == *name);
+            let binding = binding.unwrap_or_else(|| panic!("{} binds no {name}", shader.name));
+            let resource = &self.resources[id.0];
+            assert!(
+                resource.fits(binding.kind),
+                "{}: {} is no {:?}",
+                shader.name,
+                resource.name,
+                binding.kind
+            );
+        }
+        let bindings = shader
+            .bindings
+            .iter()
+            .map(|b| bound.iter().find(|(name, _)| b.name == *name).map(|(_, id)| *id))
+            .collect();
+        self.passes.push(Pass {
+            shader,
+            part: part.to_owned(),
+            why: why.into(),
+            groups,
+            constants: constants.to_vec(),
+            push,
+            bindings,
+            bytes,
+            samples,
+            barrier_before: false,
+        });
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.resources.iter().map(Resource::bytes).sum()
+    }
+}
+
+/// Columns and rows of a field that the device has images for.
+pub(super) fn check_size(field: &HeightField, limits: &Limits) -> Result<[u32; 2]> {
+    let longest = field.cols().max(field.rows());
+    if longest > limits.image_side as usize {
+        return Err(Error::Limit {
+            what: format!("a field of {} × {}", field.cols(), field.rows()),
+            needs: format!("images {longest} texels long"),
+            limit: format!("{} on this device", limits.image_side),
+        });
+    }
+    Ok([field.cols() as u32, field.rows() as u32])
+}
+
+impl Plan {
+    /// What was collected as a plan, with its barriers; `notes` and `settings` are its own.
+    ///
+    /// # Errors
+    /// More memory than the budget or the device has.
+    pub(super) fn finish(
+        builder: Builder,
+        size: [u32; 2],
+        azimuths: Vec<Azimuth>,
+        layer_azimuths: Vec<u32>,
+        notes: Vec<String>,
+        settings: Vec<(String, String)>,
+        limits: &Limits,
+    ) -> Result<Plan> {
+        let Builder { resources, mut passes } = builder;
+        place_barriers(&mut passes);
+        let plan = Plan { size, resources, passes, azimuths, layer_azimuths, notes, settings };
+        if plan.bytes() > limits.memory_budget {
+            return Err(Error::Limit {
+                what: "images and buffers of this picture".into(),
+                needs: bytes_text(plan.bytes()),
+                limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
+            });
+        }
+        for resource in &plan.resources {
+            let limit = match resource.kind {
+                Kind::Image { .. } => limits.allocation_bytes,
+                Kind::Buffer { .. } => limits.allocation_bytes.min(limits.buffer_bytes),
+            };
+            if resource.bytes() > limit {
+                return Err(Error::Limit {
+                    what: resource.name.clone(),
+                    needs: bytes_text(resource.bytes()),
+                    limit: format!("{} on this device", bytes_text(limit)),
+                });
+            }
+        }
+        Ok(plan)
+    }
+}

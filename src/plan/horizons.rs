@@ -1,0 +1,71 @@
+use super::azimuths::Azimuth;
+use super::builder::check_size;
+use super::sweep::Sweep;
+use super::sweeping::{circle, part, prepare, settings};
+use super::{Builder, Format, Limits, Owner, Plan, batch};
+use crate::scene::{Border, HeightField, Quality};
+use crate::{Error, Result, passes};
+
+/// Passes that write the horizons of `count` azimuths from number `first` on, of the quality's
+/// circle: output "horizon_angles" (f32 elevation, radians, one layer an azimuth, in the order of
+/// [`Plan::layer_azimuths`]) and, where asked, "horizon_distances" (metres, 0 where nothing is met).
+///
+/// # Errors
+/// As [`picture`].
+pub fn horizons(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    (first, count): (u32, u32),
+    distances: bool,
+) -> Result<Plan> {
+    quality.check()?;
+    let size = check_size(field, limits)?;
+    let mut notes = Vec::new();
+    let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?;
+    if distances && matches!(&sweep, Sweep::Lines(l) if !l.writes_occluders || l.slope_format > 0) {
+        return Err(Error::setting(
+            "distances to the horizon",
+            format!("--fuse {}", quality.fuse.name()),
+            "a fuse that knows its occluders: own, aimed-nearest or aimed",
+        ));
+    }
+    let mut list = circle(quality, &sweep, field.cell_m());
+    let range = first as usize..(first + count) as usize;
+    list = list.get(range).map(<[Azimuth]>::to_vec).unwrap_or_default();
+    if list.is_empty() {
+        return Err(Error::setting(
+            "azimuths",
+            format!("{count} from {first}"),
+            format!("some of 0..{}", quality.azimuths),
+        ));
+    }
+    let layer_azimuths = batch::sort(&mut list).iter().map(|k| k + first).collect();
+    let mut builder = Builder::new();
+    let [cols, rows] = size;
+    let heights = builder.image("heights", Owner::Input, Format::R32Float, [cols, rows, 1], false);
+    let extent = [cols, rows, list.len() as u32];
+    let angles = builder.image("horizon_angles", Owner::Output, Format::R32Float, extent, true);
+    let distances = distances
+        .then(|| builder.image("horizon_distances", Owner::Output, Format::R32Float, extent, true));
+    let (sweeping, lists) =
+        prepare(&mut builder, field, border, sweep, heights, vec![list], limits)?;
+    let batches = &lists.batches[0];
+    for batch in batches {
+        let part = part("", batch, batches);
+        sweeping.record(&mut builder, batch, &part);
+        let ids = [sweeping.lane_heights(batch), sweeping.lattice, sweeping.azimuths, angles];
+        passes::sweep_fuse::plan(
+            &mut builder,
+            &sweeping.sweep,
+            border,
+            batch,
+            &part,
+            ids,
+            distances,
+        );
+    }
+    let used = settings(quality, &sweeping.sweep, border);
+    Plan::finish(builder, size, lists.lists.concat(), layer_azimuths, notes, used, limits)
+}

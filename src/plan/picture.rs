@@ -1,0 +1,316 @@
+use super::builder::check_size;
+use super::shining::{Shining, sun_name};
+use super::sweep::Sweep;
+use super::sweeping::{Lists, Sweeping, part, prepare, settings};
+use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use crate::passes::{self, light_resolve};
+use crate::scene::{Albedo, Border, Environment, Quality, Scene};
+use crate::{Error, Result};
+
+/// What a picture should hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Picture {
+    /// Besides the whole, an image for each light.
+    pub light_layers: bool,
+    /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
+    /// receiver, [0..1].
+    pub sky_view: bool,
+}
+
+/// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
+///
+/// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
+/// "radiance", then one "direct.*" image a light and "sky_view" where asked. All are images of one
+/// channel where every colour is grey, else of four.
+///
+/// # Errors
+/// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
+pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Picture) -> Result<Plan> {
+    let Scene { field, surface, lights } = scene;
+    quality.check()?;
+    lights.check()?;
+    surface.albedo.check(field.rows() * field.cols())?;
+    let size = check_size(field, limits)?;
+    let mut notes = Vec::new();
+    let shining = Shining::of(scene, wanted, &mut notes)?;
+    let sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    if matches!(sweep, Sweep::Surface { .. }) && !shining.suns.is_empty() {
+        return Err(Error::setting(
+            "--lines exact with --sun",
+            "a sun, whose azimuths are no grid vectors",
+            "--method brute, which is exact in every azimuth",
+        ));
+    }
+    if shining.is_grey {
+        notes.push("one channel: every colour is grey".into());
+    }
+    let mut builder = Builder::new();
+    let images = Images::make(&mut builder, scene, &shining, wanted);
+    let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes);
+    let tables = shining.environment.map(|e| Tables::make(&mut builder, e, quality));
+    if tables.is_none() && shining.sky.is_some() {
+        notes.push("no environment: no table".into());
+    }
+    let (sweeping, lists) =
+        prepare(&mut builder, field, surface.border, sweep, images.heights, lists, limits)?;
+    let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
+    let mut drawing =
+        Drawing { builder, scene, shining, images, tables, sweeping, is_begun: false };
+    drawing.fill_tables(quality);
+    drawing.sky_and_environment(&lists);
+    drawing.suns(&lists);
+    drawing.sky_view();
+    drawing.dark()?;
+    Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
+}
+
+/// Images of the field's size, and the environment.
+struct Images {
+    heights: ResourceId,
+    environment: Option<ResourceId>,
+    albedo_map: Option<ResourceId>,
+    radiance: ResourceId,
+    sky_layer: Option<ResourceId>,
+    env_layer: Option<ResourceId>,
+    /// In the order of the suns that shine.
+    sun_layers: Vec<Option<ResourceId>>,
+    sky_view: Option<ResourceId>,
+    sky_sum: Option<ResourceId>,
+    env_sum: Option<ResourceId>,
+    sun_sum: Option<ResourceId>,
+}
+
+impl Images {
+    fn make(builder: &mut Builder, scene: &Scene, shining: &Shining<'_>, wanted: Picture) -> Self {
+        let flat = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
+        let mut image = |name: &str, owner: Owner, format: Format, extent: [u32; 3]| {
+            builder.image(name, owner, format, extent, false)
+        };
+        let colour = if shining.is_grey { Format::R32Float } else { Format::Rgba32Float };
+        let heights = image("heights", Owner::Input, Format::R32Float, flat);
+        let environment = shining.environment.map(|e| {
+            let extent = [e.width() as u32, e.height() as u32, 1];
+            image("environment", Owner::Input, Format::Rgba32Float, extent)
+        });
+        let has_map = matches!(scene.surface.albedo, Albedo::Map(_));
+        let albedo_map = has_map.then(|| image("albedo", Owner::Input, Format::Rgba32Float, flat));
+        let radiance = image("radiance", Owner::Output, colour, flat);
+        let mut layer = |shines: bool, light: &str| {
+            let name = format!("direct.{light}");
+            (shines && wanted.light_layers).then(|| image(&name, Owner::Output, colour, flat))
+        };
+        let sky_layer = layer(shining.sky.is_some(), "sky");
+        let env_layer = layer(environment.is_some(), "env");
+        let sun_layers = shining.suns.iter().map(|(i, _)| layer(true, &sun_name(*i))).collect();
+        let view = wanted.sky_view;
+        let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
+        let mut sum = |needed: bool, name: &str, format: Format| {
+            needed.then(|| image(name, Owner::Internal, format, flat))
+        };
+        let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
+        let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
+        let sun_sum = sum(!shining.suns.is_empty(), "sun_sum", Format::R32Float);
+        Self {
+            heights,
+            environment,
+            albedo_map,
+            radiance,
+            sky_layer,
+            env_layer,
+            sun_layers,
+            sky_view,
+            sky_sum,
+            env_sum,
+            sun_sum,
+        }
+    }
+
+    /// Whether anything is lit from all around.
+    fn need_circle(&self) -> bool {
+        self.sky_sum.is_some() || self.env_sum.is_some()
+    }
+}
+
+/// The environment by azimuth and elevation.
+struct Tables {
+    wedge_rows: ResourceId,
+    tables: ResourceId,
+}
+
+impl Tables {
+    fn make(builder: &mut Builder, environment: &Environment, quality: &Quality) -> Self {
+        let rows_bytes = u64::from(quality.azimuths) * environment.height() as u64 * 48;
+        let wedge_rows = builder.buffer("wedge_rows", rows_bytes, false);
+        let extent = [quality.table_elevations, 3, quality.azimuths];
+        let format = Format::Rgba32Float;
+        let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
+        Self { wedge_rows, tables }
+    }
+}
+
+/// A picture while its passes are added.
+struct Drawing<'a> {
+    builder: Builder,
+    scene: &'a Scene,
+    shining: Shining<'a>,
+    images: Images,
+    tables: Option<Tables>,
+    sweeping: Sweeping,
+    /// Whether a light has been resolved into the picture: the first clears it.
+    is_begun: bool,
+}
+
+impl Drawing<'_> {
+    fn border(&self) -> Border {
+        self.scene.surface.border
+    }
+
+    fn fill_tables(&mut self, quality: &Quality) {
+        let (Some(e), Some(image), Some(tables)) =
+            (self.shining.environment, self.images.environment, &self.tables)
+        else {
+            return;
+        };
+        let Tables { wedge_rows, tables } = *tables;
+        let wedges = [image, self.sweeping.azimuths, wedge_rows];
+        let (border, count) = (self.border(), quality.azimuths);
+        passes::env_wedges::plan(&mut self.builder, e, count, wedges);
+        let (height, nodes) = (e.height() as u32, quality.table_elevations);
+        let ids = [wedge_rows, tables];
+        passes::env_tables::plan(&mut self.builder, border, height, nodes, count, ids);
+    }
+
+    fn sky_and_environment(&mut self, lists: &Lists) {
+        if !self.images.need_circle() {
+            return;
+        }
+        let (border, cell_m) = (self.border(), self.scene.field.cell_m());
+        let Images { sky_sum, env_sum, sky_layer, env_layer, .. } = self.images;
+        let batches = &lists.batches[0];
+        for batch in batches {
+            let part = part("sky", batch, batches);
+            let (builder, sweeping) = (&mut self.builder, &self.sweeping);
+            sweeping.record(builder, batch, &part);
+            let images = passes::sky_shade::Images {
+                lane_heights: sweeping.lane_heights(batch),
+                lattice: sweeping.lattice,
+                azimuths: sweeping.azimuths,
+                sky_sum,
+                environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
+            };
+            let sweep = &sweeping.sweep;
+            passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
+        }
+        if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
+            self.resolve("sky", sum, Some(colour), sky_layer);
+        }
+        if let Some(sum) = env_sum {
+            self.resolve("env", sum, None, env_layer);
+        }
+    }
+
+    fn suns(&mut self, lists: &Lists) {
+        let Some(sum) = self.images.sun_sum else { return };
+        let (border, cell_m) = (self.border(), self.scene.field.cell_m());
+        let batches_of_suns = &lists.batches[usize::from(self.images.need_circle())..];
+        for (s, batches) in batches_of_suns.iter().enumerate() {
+            let (position, sun) = self.shining.suns[s];
+            let name = sun_name(position);
+            let is_point = sun.diameter_rad == 0.0;
+            for batch in batches {
+                let part = part(&name, batch, batches);
+                let (builder, sweeping) = (&mut self.builder, &self.sweeping);
+                sweeping.record(builder, batch, &part);
+                let lanes = sweeping.lane_heights(batch);
+                let ids = [lanes, sweeping.lattice, sweeping.azimuths, sum];
+                let sweep = &sweeping.sweep;
+                passes::sun_shade::plan(
+                    builder, sweep, border, cell_m, batch, &part, is_point, ids,
+                );
+            }
+            self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);
+        }
+    }
+
+    /// Adds the light of a sum to the picture: of one channel times `colour`, or of its own colour.
+    fn resolve(
+        &mut self,
+        name: &str,
+        sum: ResourceId,
+        colour: Option<[f32; 3]>,
+        layer: Option<ResourceId>,
+    ) {
+        let albedo = match self.scene.surface.albedo {
+            Albedo::Constant(c) => c,
+            Albedo::Map(_) => [1.0; 3],
+        };
+        let of_light = colour.unwrap_or([1.0; 3]);
+        let is_first = !std::mem::replace(&mut self.is_begun, true);
+        let light = light_resolve::Light {
+            sum,
+            has_colour: colour.is_none(),
+            colour: [0, 1, 2].map(|c| of_light[c] * albedo[c]),
+            albedo_map: self.images.albedo_map,
+            radiance: Some((self.images.radiance, is_first)),
+            layer,
+            grey: self.shining.is_grey,
+        };
+        self.light_resolve(name, &light);
+    }
+
+    fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
+        let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
+        light_resolve::plan(&mut self.builder, size, name, light);
+    }
+
+    fn sky_view(&mut self) {
+        if let (Some(layer), Some(sum)) = (self.images.sky_view, self.images.sky_sum) {
+            let light = light_resolve::Light {
+                sum,
+                has_colour: false,
+                colour: [1.0; 3],
+                albedo_map: None,
+                radiance: None,
+                layer: Some(layer),
+                grey: true,
+            };
+            self.light_resolve("sky_view", &light);
+        }
+    }
+
+    /// Where nothing shines the picture is black all the same.
+    fn dark(&mut self) -> Result<()> {
+        if self.is_begun {
+            return Ok(());
+        }
+        match self.images.sky_sum {
+            Some(sum) => self.resolve("dark", sum, Some([0.0; 3]), None),
+            None => {
+                let expected = "at least one that shines";
+                return Err(Error::setting("lights", "all of radiance 0", expected));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The settings really used.
+fn used(
+    quality: &Quality,
+    sweep: &Sweep,
+    border: Border,
+    shining: &Shining<'_>,
+    images: &Images,
+) -> Vec<(String, String)> {
+    let mut used = settings(quality, sweep, border);
+    if images.need_circle() {
+        used.push(("azimuths".into(), quality.azimuths.to_string()));
+    }
+    if shining.environment.is_some() {
+        used.push(("table_elevations".into(), quality.table_elevations.to_string()));
+    }
+    if shining.suns.iter().any(|(_, s)| s.diameter_rad > 0.0) {
+        used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
+    }
+    used
+}
