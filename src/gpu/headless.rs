@@ -1,3 +1,5 @@
+mod read;
+
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
 
@@ -507,8 +509,7 @@ impl Headless {
     /// # Errors
     /// The device's.
     pub fn draw_passes(&self, frame: &mut Frame, passes: &[usize]) -> Result<Vec<Timing>> {
-        let args = |images: &[Owned]| images.iter().map(Owned::arg).collect::<Vec<_>>();
-        let (inputs, outputs) = (args(&frame.inputs), args(&frame.outputs));
+        let (inputs, outputs) = (frame.inputs(), frame.outputs());
         let renderer = frame.renderer.as_mut().expect("alive until ended");
         self.run(|commands| renderer.record_passes(commands, 0, &inputs, &outputs, passes))?;
         Ok(renderer.timings(0).unwrap_or_default())
@@ -571,18 +572,13 @@ struct Owned {
 
 impl Owned {
     fn arg(&self) -> ImageArg {
-        let state = ImageState {
-            stage: vk::PipelineStageFlags2::ALL_COMMANDS,
-            access: vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
-            layout: vk::ImageLayout::GENERAL,
-        };
         ImageArg {
             image: self.backed.image,
             view: self.backed.view,
             format: self.format.vk(),
             extent: self.extent,
-            before: state,
-            after: state,
+            before: ImageState::ANY_USE,
+            after: ImageState::ANY_USE,
         }
     }
 }
