@@ -1,5 +1,3 @@
-use ash::vk;
-
 use super::memory::Backed;
 use super::{Headless, ImageArg, ImageState, Renderer, Timing};
 use crate::plan::{Format, Kind, Plan, Resource};
@@ -7,9 +5,9 @@ use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
 pub struct Frame {
-    renderer: Option<Renderer>,
-    inputs: Vec<Owned>,
-    outputs: Vec<Owned>,
+    pub(super) renderer: Option<Renderer>,
+    pub(super) inputs: Vec<Owned>,
+    pub(super) outputs: Vec<Owned>,
 }
 
 impl Frame {
@@ -28,19 +26,14 @@ pub(super) struct Owned {
 }
 
 impl Owned {
-    fn arg(&self) -> ImageArg {
-        let state = ImageState {
-            stage: vk::PipelineStageFlags2::ALL_COMMANDS,
-            access: vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE,
-            layout: vk::ImageLayout::GENERAL,
-        };
+    pub(super) fn arg(&self) -> ImageArg {
         ImageArg {
             image: self.backed.image,
             view: self.backed.view,
             format: self.format.vk(),
             extent: self.extent,
-            before: state,
-            after: state,
+            before: ImageState::ANY_USE,
+            after: ImageState::ANY_USE,
         }
     }
 }
@@ -148,8 +141,7 @@ impl Headless {
     /// # Errors
     /// The device's.
     pub fn draw_passes(&self, frame: &mut Frame, passes: &[usize]) -> Result<Vec<Timing>> {
-        let args = |images: &[Owned]| images.iter().map(Owned::arg).collect::<Vec<_>>();
-        let (inputs, outputs) = (args(&frame.inputs), args(&frame.outputs));
+        let (inputs, outputs) = (frame.inputs(), frame.outputs());
         let renderer = frame.renderer.as_mut().expect("alive until ended");
         self.run(|commands| renderer.record_passes(commands, 0, &inputs, &outputs, passes))?;
         Ok(renderer.timings(0).unwrap_or_default())

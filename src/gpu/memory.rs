@@ -75,6 +75,7 @@ impl Memory {
                 } else {
                     vk::BufferUsageFlags::STORAGE_BUFFER
                 };
+                let usage = usage | vk::BufferUsageFlags::TRANSFER_SRC;
                 let mut backed =
                     self.buffer(name, bytes.max(16), usage, MemoryLocation::CpuToGpu)?;
                 if texels {

@@ -6,6 +6,7 @@ mod headless;
 mod instance;
 mod memory;
 mod pipelines;
+mod read;
 mod renderer;
 mod requirements;
 pub mod shaders;

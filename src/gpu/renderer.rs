@@ -208,6 +208,11 @@ impl Renderer {
         &self.plan
     }
 
+    /// An image or buffer of the renderer's own.
+    pub(crate) fn internal(&self, id: ResourceId) -> Option<&Backed> {
+        self.resources.get(id.0)?.as_ref()
+    }
+
     /// Appends the plan to `commands`.
     ///
     /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and

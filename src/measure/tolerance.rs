@@ -47,3 +47,165 @@ pub fn surface_slope(largest_m: f64, step_m: f64) -> f64 {
 pub fn aimed_slope(largest_m: f64, step_m: f64) -> f64 {
     2.0 * march_slope(largest_m, step_m)
 }
+
+// What follows holds a pass on a device against its twin, both given the same inputs. A device may err
+// by more than the twin, which rounds as the processor does: Vulkan rounds sums and products
+// correctly, but lets a quotient be off by 2.5 ulp (5 ε) and `inversesqrt` by 2 ulp (4 ε), and fuses
+// products with sums where it is not told otherwise. Most twins are f64 and err by nothing that counts.
+
+/// `arc_tangent` of the shaders, radians.
+///
+/// Abramowitz & Stegun 4.4.49: 2e-8. Its argument, a quotient z ≤ 1, errs by 5 ε z, which turns the
+/// angle by z / (1 + z²) of that, 2.5 ε; the last products and sums of at most π/4, 2 ε; π/2 itself
+/// 0.75 ε and the difference from it π/2 ε.
+pub const ARC_TANGENT: f64 = 2e-8 + 7.0 * EPSILON;
+
+/// Slope that `horizon_sweep` stores, against its twin.
+///
+/// Which occluder is met is decided by sums and products that are not fused (`precise`): there is no
+/// tolerance for it. The slope is their difference over a distance with equal roundings: a quotient,
+/// 5 ε, and the twin's own ε.
+pub fn twin_slope(slope: f64) -> f64 {
+    6.0 * EPSILON * slope.abs()
+}
+
+/// The same stored as f16: rounded either way by a device and to nearest by the twin, one step of f16
+/// apart, 2^-10 of the slope, or of the smallest numbers, 2^-24.
+pub fn twin_slope_f16(slope: f64) -> f64 {
+    twin_slope(slope) + slope.abs() / 1024.0 + 1.0 / (1 << 24) as f64
+}
+
+/// Slope that a line of `horizon_sweep` finds with packed entries, against its twin.
+///
+/// A kept height is rounded either way, to 2^-11 of H, and divided by its scale, 6 ε: each of the two is
+/// that far from the truth at what is chosen and at what is missed, a step or more away, and errs as
+/// [`sweep_slope`] besides.
+pub fn twin_slope_packed(largest_m: f64, step_m: f64) -> f64 {
+    let kept = (1.0 / 2048.0 + 6.0 * EPSILON) * largest_m;
+    2.0 * (2.0 * kept / step_m + sweep_slope(largest_m, step_m))
+}
+
+/// Slope of `horizon_march` against its twin.
+///
+/// The twin errs as [`march_slope`]. With quotients off by 5 ε, a device's crossing is off by
+/// (6 ε, 8 ε): the rise by 1 + 8 + 10 + 4 = 23 ε R, distance, product, quotient and the step by 10 ε of
+/// the slope: (23 + 10) ε R / (s/2).
+pub fn twin_march_slope(relief_m: f64, step_m: f64) -> f64 {
+    march_slope(relief_m, step_m) + 66.0 * EPSILON * relief_m / step_m
+}
+
+/// Slope of `surface_sweep` against its twin, along the grid vector (`march`, `lane`).
+///
+/// Each errs as [`surface_slope`]; a device besides by its quotients: f0 = k / march is off by 5 ε, so a
+/// crossing (1 - f0) / shear by 5 ε march / lane of a step, across which the surface rises by 2 H at
+/// most, seen s/2 away, at what is chosen and at what is missed; likewise by the crossing's own 5 ε.
+pub fn twin_surface_slope(largest_m: f64, step_m: f64, [march, lane]: [i32; 2]) -> f64 {
+    let shallow = if lane == 0 { 0.0 } else { f64::from(march) / f64::from(lane) };
+    2.0 * surface_slope(largest_m, step_m) + 40.0 * (1.0 + shallow) * EPSILON * largest_m / step_m
+}
+
+/// Slope that `fuse.glsl` finds at a sample from a given lattice, against its twin.
+///
+/// A first crossing: differences 2 + 2, product 2, sum 2, of which u = 1 / (1 + shear), 5 ε of a rise of
+/// 2 H: 18 ε H, over half a step; its reciprocal distance and products 7 ε of a slope of 4 H / s: 64 ε H / s
+/// at most. A proposal, whole steps away, errs by 29 and two slopes interpolated by 24. The twin errs
+/// by no more.
+pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
+    128.0 * EPSILON * largest_m / step_m
+}
+
+/// Elevation of a slope that errs by `slope_error`, radians.
+pub fn twin_angle(slope: f64, slope_error: f64) -> f64 {
+    let flattest = (slope.abs() - slope_error).max(0.0);
+    ARC_TANGENT + slope_error / (1.0 + flattest * flattest)
+}
+
+/// World length to what makes a horizon, from the same march steps: the steps' quotient 5 ε, a product
+/// on each side.
+pub fn twin_distance(distance_m: f64) -> f64 {
+    8.0 * EPSILON * distance_m
+}
+
+/// One row of one wedge of `env_wedges`, of `columns` columns of at most `brightest`, all three moments.
+///
+/// Angles of at most 4 π, summed and scaled: a wedge's ends are off by 140 ε rad, where radiance may
+/// begin or end, in two moments at once. Within it, turns err by 150 ε, sines by 6e-8 = ε, chords by
+/// 10 ε; n sums by n ε; turning by the wedge's middle by 20 ε more.
+pub fn twin_wedge_row(brightest: f64, wedge_rad: f64, columns: f64) -> f64 {
+    EPSILON * brightest * (2.0 * 140.0 * 2.0_f64.sqrt() + wedge_rad * (185.0 + columns))
+}
+
+/// A texel of `env_tables`, of `rows` wedge rows of at most `largest` in `nodes` nodes.
+///
+/// Elevations, sums, products and quotients within π, err by 25 ε, moments from them by 6 ε: a row by
+/// 62 ε between its two ends. A piece of a row, one a node or row, costs a difference, a product and a
+/// sum: 1.6 ε each. All over π.
+pub fn twin_table(largest: f64, rows: f64, nodes: f64) -> f64 {
+    EPSILON * largest * (20.0 * rows + 0.6 * (rows + nodes) + 2.0)
+}
+
+/// What the light that a sample gets through its horizons errs by.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadeError {
+    lowest_slope: f64,
+    normal: f64,
+    count: f64,
+}
+
+impl ShadeError {
+    /// For horizons whose slopes err by `slope_error`, on a field of `relief_m` in cells of at least
+    /// `cell_m`, in `count` azimuths.
+    ///
+    /// A component of the gradient: differences 1, weighted exactly and summed 2, a quotient 5: 8 ε R / c;
+    /// two of them turn the normal by √2 of that, `inversesqrt` and products by 8 ε. The slope of the
+    /// sample's own plane is 3 roundings of the gradient besides, √2 R / c at most.
+    pub fn new(slope_error: f64, relief_m: f64, cell_m: f64, count: usize) -> Self {
+        let gradient = 2.0_f64.sqrt() * 8.0 * EPSILON * relief_m / cell_m;
+        let own_plane = gradient + 3.0 * EPSILON * 2.0_f64.sqrt() * relief_m / cell_m;
+        Self {
+            lowest_slope: slope_error.max(own_plane),
+            normal: gradient + 8.0 * EPSILON,
+            count: count as f64,
+        }
+    }
+
+    /// `sky_shade`, the sky's sum.
+    ///
+    /// Wedges sum to 2 π, over π. A slice's end moves by the slope's error, where the integrand is at most
+    /// 1; moments are at most π/2 + 1/2 for the normal to turn, and err by half an arc tangent and 10 ε;
+    /// terms, 4.2 in all, by 5 ε; each sum by ε of at most 2.
+    pub fn sky(&self) -> f64 {
+        2.0 * self.lowest_slope
+            + 5.0 * self.normal
+            + ARC_TANGENT
+            + (41.0 + 2.0 * self.count) * EPSILON
+    }
+
+    /// `sky_shade`, the environment's sum, from given tables; `brightest` is its largest radiance.
+    ///
+    /// As [`sky`](Self::sky), by tables: three components, √3 at most, change by 1 a radian (2 √3 over all
+    /// wedges), are at most π/2 (√3 π), and stand at a place that errs by an arc tangent and 22 ε.
+    pub fn environment(&self, brightest: f64) -> f64 {
+        let place = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
+        let rest = (33.0 + 5.5 * self.count) * EPSILON;
+        brightest * (3.5 * place + 5.5 * self.normal + rest)
+    }
+
+    /// `sun_shade`, of slices whose weights sum to `weights`, where both agree on what is lit.
+    ///
+    /// As [`sky`](Self::sky), between two slopes, with weights over π instead of wedges.
+    pub fn sun(&self, weights: f64) -> f64 {
+        let slice = self.lowest_slope + 2.1 * self.normal + ARC_TANGENT + 33.0 * EPSILON;
+        weights / std::f64::consts::PI * slice + self.count * EPSILON
+    }
+
+    /// How near to a point sun a horizon has to stand for the two to disagree on what is lit.
+    pub fn lowest_slope(&self) -> f64 {
+        self.lowest_slope
+    }
+}
+
+/// `light_resolve` from given sums: two products a light, and a sum for each of `lights`.
+pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
+    (2.0 + lights as f64) * EPSILON * radiance.abs()
+}

@@ -6,6 +6,7 @@ mod contract;
 mod extremes;
 mod forms;
 mod real;
+mod twins;
 
 use std::sync::{Mutex, MutexGuard};
 

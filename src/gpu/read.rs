@@ -1,0 +1,133 @@
+//! Reading back whatever a plan left, and handing a frame's images to other renderers: for tools
+//! and tests that look inside.
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+
+use super::frame::Owned;
+use super::{Frame, Headless, ImageArg, ImageState, failed, memory};
+use crate::plan::{Kind, Owner, ResourceId};
+use crate::{Error, Result};
+
+impl Frame {
+    /// The plan's inputs, in its order: in GENERAL, where they are to stay.
+    pub fn inputs(&self) -> Vec<ImageArg> {
+        self.inputs.iter().map(Owned::arg).collect()
+    }
+
+    /// The plan's outputs, in its order: in GENERAL, where they are to stay.
+    pub fn outputs(&self) -> Vec<ImageArg> {
+        self.outputs.iter().map(Owned::arg).collect()
+    }
+
+    /// The image or buffer that a resource of the plan is.
+    fn handles(&self, id: ResourceId) -> Option<(vk::Image, vk::Buffer)> {
+        let owner = self.plan().resources.get(id.0)?.owner;
+        let backed = match owner {
+            Owner::Internal => self.renderer.as_ref()?.internal(id)?,
+            Owner::Input | Owner::Output => {
+                let before = &self.plan().resources[..id.0];
+                let n = before.iter().filter(|r| r.owner == owner).count();
+                let images = if owner == Owner::Input { &self.inputs } else { &self.outputs };
+                &images.get(n)?.backed
+            }
+        };
+        Some((backed.image, backed.buffer))
+    }
+}
+
+impl Headless {
+    /// Words of any resource of a frame that has been drawn, as its passes left it: an image layer
+    /// after layer, row after row, texel after texel; a buffer from its begin. f32 as their bits.
+    ///
+    /// Images that several passes write in turn hold what the last left: to see what an earlier one
+    /// did, run the passes one by one ([`draw_passes`](Self::draw_passes)).
+    ///
+    /// # Errors
+    /// A resource that the plan does not have, or a device out of memory: all of it is staged at once.
+    pub fn read(&mut self, frame: &Frame, id: ResourceId) -> Result<Vec<u32>> {
+        let (image, buffer) = frame.handles(id).ok_or_else(|| {
+            let count = frame.plan().resources.len();
+            Error::setting("resource", id.0.to_string(), format!("less than {count}"))
+        })?;
+        let resource = &frame.plan().resources[id.0];
+        let (bytes, kind) = (resource.bytes(), resource.kind);
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let mut staging =
+            self.memory.buffer("staging", bytes.max(4), usage, MemoryLocation::GpuToCpu)?;
+        let to = staging.buffer;
+        let device = &self.host().device;
+        let done = self.run(|commands| {
+            let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+            let barrier = [vk::MemoryBarrier2::default()
+                .src_stage_mask(all)
+                .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+                .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
+                .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::HOST_READ)];
+            let wait = vk::DependencyInfo::default().memory_barriers(&barrier);
+            // SAFETY: the frame's image is in GENERAL and its buffer may be copied from; both are
+            // alive while `frame` is, and the staging buffer holds all their bytes.
+            unsafe {
+                device.cmd_pipeline_barrier2(commands, &wait);
+                match kind {
+                    Kind::Image { width, height, layers, .. } => {
+                        let region = [vk::BufferImageCopy::default()
+                            .image_subresource(vk::ImageSubresourceLayers {
+                                aspect_mask: vk::ImageAspectFlags::COLOR,
+                                mip_level: 0,
+                                base_array_layer: 0,
+                                layer_count: layers,
+                            })
+                            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+                        let layout = vk::ImageLayout::GENERAL;
+                        device.cmd_copy_image_to_buffer(commands, image, layout, to, &region);
+                    }
+                    Kind::Buffer { .. } => {
+                        let region = [vk::BufferCopy { src_offset: 0, dst_offset: 0, size: bytes }];
+                        device.cmd_copy_buffer(commands, buffer, to, &region);
+                    }
+                }
+                device.cmd_pipeline_barrier2(commands, &wait);
+            }
+            Ok(())
+        });
+        let mapped = staging.allocation.as_ref().and_then(|a| a.mapped_slice());
+        let words = mapped.map(|m| {
+            let texels = m[..bytes as usize].as_chunks::<4>().0;
+            texels.iter().map(|word| u32::from_ne_bytes(*word)).collect()
+        });
+        self.memory.free(&mut staging);
+        done?;
+        words.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
+    }
+
+    /// Takes an image from its state `before` to its state `after`, within `commands`, which is being
+    /// recorded ([`run`](Self::run)).
+    pub fn transition(&self, commands: vk::CommandBuffer, image: &ImageArg) {
+        let ImageArg { before, after, .. } = *image;
+        let barrier = [vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(before.stage)
+            .src_access_mask(before.access)
+            .dst_stage_mask(after.stage)
+            .dst_access_mask(after.access)
+            .old_layout(before.layout)
+            .new_layout(after.layout)
+            .image(image.image)
+            .subresource_range(memory::whole(image.extent[2]))];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
+        // SAFETY: the caller says that `commands` is being recorded and the image is alive and in the
+        // state that it comes in.
+        unsafe { self.host().device.cmd_pipeline_barrier2(commands, &info) };
+    }
+}
+
+impl ImageState {
+    /// The state of a [`Frame`]'s images between recordings: GENERAL, used in any way.
+    pub const ANY_USE: Self = Self {
+        stage: vk::PipelineStageFlags2::ALL_COMMANDS,
+        access: vk::AccessFlags2::from_raw(
+            vk::AccessFlags2::MEMORY_READ.as_raw() | vk::AccessFlags2::MEMORY_WRITE.as_raw(),
+        ),
+        layout: vk::ImageLayout::GENERAL,
+    };
+}

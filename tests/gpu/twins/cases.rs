@@ -1,0 +1,200 @@
+//! What is run against the twins: small fields of odd sizes, every form of every pass at least once.
+
+use ridgelight::plan::{self, Limits, Picture, Plan};
+use ridgelight::scene::{
+    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Precision,
+    Quality, Scene, Sun, Surface,
+};
+
+use crate::{field, random};
+
+pub(super) enum Wanted {
+    Horizons { distances: bool },
+    Picture(Picture),
+}
+
+pub(super) struct Case {
+    pub name: &'static str,
+    pub scene: Scene,
+    pub quality: Quality,
+    pub wanted: Wanted,
+    /// Whether some hull is deeper than the memory that it is kept in.
+    pub loses_lines: bool,
+}
+
+impl Case {
+    pub fn plan(&self, limits: &Limits) -> Plan {
+        match self.wanted {
+            Wanted::Horizons { distances } => plan::horizons(
+                &self.scene.field,
+                self.scene.surface.border,
+                &self.quality,
+                limits,
+                (0, self.quality.azimuths),
+                distances,
+            ),
+            Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, wanted),
+        }
+        .expect("a plan")
+    }
+
+    /// Texels of the plan's inputs, in its order.
+    pub fn contents(&self) -> Vec<Vec<f32>> {
+        let mut all = vec![self.scene.field.heights_m().to_vec()];
+        if let Wanted::Picture(_) = self.wanted {
+            let four = |texels: &[[f32; 3]]| -> Vec<f32> {
+                texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
+            };
+            all.extend(self.scene.lights.environment.as_ref().map(|e| four(e.texels())));
+            if let Albedo::Map(map) = &self.scene.surface.albedo {
+                all.push(four(map));
+            }
+        }
+        all
+    }
+}
+
+/// Heights without two alike, so that no tie hides a wrong choice, over a few cells.
+fn rough(rows: usize, cols: usize, seed: u64) -> HeightField {
+    let mut next = random(seed);
+    let noise: Vec<f64> = (0..rows * cols).map(|_| next()).collect();
+    field(rows, cols, [3.0, 2.0], |r, c| 900.0 + 7.0 * noise[r * cols + c])
+}
+
+/// A dome, whose samples all stay on the hull, before a cliff that pops them: deeper than the 64
+/// entries that a line keeps in shared memory.
+fn dome(rows: usize, cols: usize) -> HeightField {
+    let middle = cols as f64 / 2.0;
+    field(rows, cols, [1.0, 1.0], |r, c| {
+        let x = (c as f64 - middle) / middle;
+        let cliff = if c + 6 > cols { 9.0 * (c + 6 - cols) as f64 } else { 0.0 };
+        (2.0 - x * x).sqrt() * middle + cliff + 0.25 * (r % 3) as f64
+    })
+}
+
+fn horizons(
+    name: &'static str,
+    field: HeightField,
+    border: Border,
+    quality: Quality,
+    distances: bool,
+) -> Case {
+    let surface = Surface { border, ..Surface::default() };
+    let scene = Scene { field, surface, lights: Lights::default() };
+    Case { name, scene, quality, wanted: Wanted::Horizons { distances }, loses_lines: false }
+}
+
+/// `horizon_sweep`: three places of the hull, both kinds of entries, both kinds of slopes, all fuses.
+pub(super) fn sweeps() -> Vec<Case> {
+    let base = Quality { azimuths: 12, ..Quality::default() };
+    let packed = Quality { precision: Precision::Packed, ..base };
+    let shared_slopes = Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base };
+    vec![
+        horizons("private f32", rough(37, 23, 1), Border::Plane, base, true),
+        Case {
+            loses_lines: true,
+            ..horizons("shared f32", dome(13, 97), Border::Plane, shared_slopes, false)
+        },
+        horizons(
+            "list f32",
+            rough(18, 31, 2),
+            Border::Periodic,
+            Quality { hull: Hull::List, fuse: Fuse::Own, ..base },
+            false,
+        ),
+        horizons(
+            "private packed",
+            rough(21, 26, 3),
+            Border::Open,
+            Quality { lines: Lines::HalfCell, fuse: Fuse::Aimed, ..packed },
+            true,
+        ),
+        horizons(
+            "shared packed",
+            rough(29, 19, 4),
+            Border::Plane,
+            Quality { hull: Hull::Shared, fuse: Fuse::Nearest, ..packed },
+            false,
+        ),
+        horizons(
+            "list packed",
+            rough(14, 33, 5),
+            Border::Plane,
+            Quality { hull: Hull::List, fuse: Fuse::Nearest, ..packed },
+            false,
+        ),
+        horizons(
+            "private f32, slopes f16",
+            rough(25, 34, 6),
+            Border::Open,
+            Quality {
+                lines: Lines::TwoCells,
+                fuse: Fuse::Slopes,
+                precision: Precision::F16,
+                ..base
+            },
+            false,
+        ),
+    ]
+}
+
+/// `surface_sweep` and `horizon_march`: one value a sample, with what is met.
+pub(super) fn samples() -> Vec<Case> {
+    let exact = Quality { azimuths: 12, lines: Lines::Exact, ..Quality::default() };
+    let brute = Quality { azimuths: 12, method: Method::Brute, ..Quality::default() };
+    vec![
+        horizons("exact", rough(17, 22, 7), Border::Plane, exact, true),
+        horizons("exact, periodic", rough(9, 10, 8), Border::Periodic, exact, true),
+        horizons("brute", rough(19, 14, 9), Border::Open, brute, true),
+        horizons("brute, periodic", rough(10, 9, 10), Border::Periodic, brute, true),
+    ]
+}
+
+fn noisy_environment(seed: u64) -> Environment {
+    let mut next = random(seed);
+    let texels = (0..18 * 9).map(|i| {
+        let peak = if i == 40 { 30.0 } else { 0.0 };
+        [next() as f32, next() as f32 + peak, 0.5]
+    });
+    Environment::new(18, 9, texels.collect(), 0.7).expect("an environment")
+}
+
+/// Everything that sums light: sky, environment, discs and a point; colours and a map, or all grey.
+pub(super) fn pictures() -> Vec<Case> {
+    let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
+        azimuth_rad,
+        elevation_rad: 0.4,
+        diameter_rad,
+        irradiance,
+    };
+    let quality = Quality { azimuths: 12, table_elevations: 33, ..Quality::default() };
+    let colourful = {
+        let field = rough(23, 30, 11);
+        let mut next = random(12);
+        let map = (0..23 * 30).map(|_| [next() as f32, next() as f32, 1.0]).collect();
+        let surface = Surface { border: Border::Open, albedo: Albedo::Map(map) };
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(13)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0])],
+        };
+        Scene { field, surface, lights }
+    };
+    let grey = {
+        let surface = Surface { border: Border::Plane, albedo: Albedo::Constant([0.5; 3]) };
+        let suns = vec![sun(-1.1, 0.0, [2.0; 3])];
+        let lights = Lights { sky: Some([1.0; 3]), environment: None, suns };
+        Scene { field: rough(12, 17, 14), surface, lights }
+    };
+    let picture = |name, scene, quality, light_layers, sky_view| Case {
+        name,
+        scene,
+        quality,
+        wanted: Wanted::Picture(Picture { light_layers, sky_view }),
+        loses_lines: false,
+    };
+    vec![
+        picture("colours", colourful, quality, true, false),
+        picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
+    ]
+}

@@ -1,0 +1,215 @@
+//! The passes that sum light.
+
+use ridgelight::cpu::env_tables::{self as tables_twin, EnvTables, bottom_rad};
+use ridgelight::cpu::env_wedges as wedges_twin;
+use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
+use ridgelight::cpu::shared::gather::Swept;
+use ridgelight::cpu::sky_shade as sky_twin;
+use ridgelight::cpu::sun_shade as sun_twin;
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::tolerance::{
+    ShadeError, twin_fused_slope, twin_resolved, twin_table, twin_wedge_row,
+};
+use ridgelight::plan::Pass;
+use ridgelight::scene::{Albedo, Environment};
+
+use super::{Pair, Run, constant, fuse_of, pushed};
+
+type Rgb = glam::DVec3;
+
+fn rgb(texel: &[f32]) -> Rgb {
+    Rgb::new(texel[0].into(), texel[1].into(), texel[2].into())
+}
+
+fn brightest(environment: &Environment) -> f64 {
+    environment.texels().iter().flatten().fold(0.0, |m, v| f64::max(m, (*v).into()))
+}
+
+/// Three channels of a texel.
+fn channels(got: &[f32], want: Rgb, tolerance: f64, at: [usize; 3]) -> impl Iterator<Item = Pair> {
+    let got = rgb(got);
+    (0..3).map(move |c| Pair { got: got[c], want: want[c], tolerance, at })
+}
+
+/// `wedge_rows` of the device: [azimuth][row][moment].
+fn wedge_rows(run: &mut Run, pass: &Pass) -> Vec<[Rgb; 3]> {
+    let texels = run.floats(pass, "wedge_rows").expect("bound");
+    let rows = texels.chunks_exact(12);
+    rows.map(|t| [rgb(t), rgb(&t[4..]), rgb(&t[8..])]).collect()
+}
+
+pub(super) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let got = wedge_rows(run, pass);
+    let environment = run.scene.lights.environment.as_ref().expect("an environment");
+    let azimuths = &run.plan.azimuths[..pass.groups[1] as usize];
+    let want = wedges_twin::env_wedges(environment, azimuths);
+    assert_eq!(got.len(), want.len());
+    let mut pairs = Vec::new();
+    for (i, (got, want)) in got.iter().zip(&want).enumerate() {
+        let (k, row) = (i / environment.height(), i % environment.height());
+        let wedge = f64::from(azimuths[k].wedge_rad);
+        let columns = wedge / std::f64::consts::TAU * environment.width() as f64 + 2.0;
+        let tolerance = twin_wedge_row(brightest(environment), wedge, columns);
+        for (moment, (got, want)) in got.iter().zip(want).enumerate() {
+            let at = [k, row, moment];
+            pairs.extend((0..3).map(|c| Pair { got: got[c], want: want[c], tolerance, at }));
+        }
+    }
+    pairs
+}
+
+/// `env_tables` of the device.
+fn device_tables(run: &mut Run, pass: &Pass) -> EnvTables {
+    let texels = run.floats(pass, "env_tables").expect("bound");
+    EnvTables {
+        nodes: run.extent(pass, "env_tables")[0],
+        bottom_rad: bottom_rad(run.border()),
+        texels: texels.chunks_exact(4).map(rgb).collect(),
+    }
+}
+
+pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let rows = wedge_rows(run, pass);
+    let got = device_tables(run, pass);
+    let height = pushed(pass, offsets::env_tables_push::HEIGHT) as usize;
+    let want = tables_twin::env_tables(&rows, height, got.nodes, got.bottom_rad);
+    assert_eq!(got.texels.len(), want.texels.len());
+    let largest = rows.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs().max_element()));
+    let tolerance = twin_table(largest, height as f64, got.nodes as f64);
+    let nodes = got.nodes;
+    let pairs = got.texels.iter().zip(&want.texels).enumerate().flat_map(|(i, (got, want))| {
+        let at = [i / (3 * nodes), i / nodes % 3, i % nodes];
+        (0..3).map(move |c| Pair { got: got[c], want: want[c], tolerance, at })
+    });
+    pairs.collect()
+}
+
+/// The azimuths of the light that a shading pass adds to, up to its own, and what their horizons err
+/// by: every batch is judged as the sum so far.
+fn so_far(
+    run: &mut Run,
+    pass: &Pass,
+    [first, count, clears]: [usize; 3],
+) -> (std::ops::Range<usize>, ShadeError) {
+    let word = |offset| pushed(pass, offset) as usize;
+    let (first, count) = (word(first), word(count));
+    if word(clears) == 1 {
+        run.light_begins = first;
+    }
+    let range = run.light_begins..first + count;
+    let [largest, relief] = run.relief();
+    let steps = run.plan.azimuths[range.clone()].iter().map(|a| f64::from(a.step_m));
+    let slope_error = twin_fused_slope(largest, steps.fold(f64::MAX, f64::min));
+    let [x, y] = run.scene.field.cell_m();
+    let error = ShadeError::new(slope_error, relief, x.min(y), range.len());
+    (range, error)
+}
+
+pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
+    let [cols, _] = run.size();
+    let at = |i: usize| [range.len(), i / cols, i % cols];
+    let mut pairs = Vec::new();
+    if let Some(got) = run.floats(pass, "sky_sum") {
+        let want = run.swept(range.clone(), fuse_of(pass), sky_twin::sky_shade);
+        let tolerance = error.sky();
+        pairs.extend(got.iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
+            got: (*got).into(),
+            want,
+            tolerance,
+            at: at(i),
+        }));
+    }
+    if let Some(got) = run.floats(pass, "env_sum") {
+        let tables = device_tables(run, pass);
+        let environment = run.scene.lights.environment.as_ref().expect("an environment");
+        let tolerance = error.environment(brightest(environment));
+        let twin = |swept: &Swept| sky_twin::env_shade(swept, &tables);
+        let want = run.swept(range.clone(), fuse_of(pass), twin);
+        for (i, (got, want)) in got.chunks_exact(4).zip(want).enumerate() {
+            pairs.extend(channels(got, want.into(), tolerance, at(i)));
+        }
+    }
+    pairs
+}
+
+pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
+    let is_point = constant(pass, 4) == 1;
+    let got = run.floats(pass, "sun_sum").expect("written");
+    let [cols, _] = run.size();
+    run.swept(range.clone(), fuse_of(pass), |swept| {
+        let weights = swept.azimuths.iter().map(|a| f64::from(a.weight)).sum();
+        let tolerance = error.sun(weights);
+        // A horizon that a point sun grazes within its error may hide it or not.
+        let grazes = |col: i32, row: i32| {
+            let mut any = false;
+            swept.add_all(col, row, |_, azimuth, lowest, _| {
+                let off = lowest - f64::from(azimuth.high_slope);
+                any |= off.abs() <= error.lowest_slope();
+            });
+            is_point && any
+        };
+        let mut pairs = Vec::new();
+        for (i, got) in got.iter().enumerate() {
+            let (col, row) = ((i % cols) as i32, (i / cols) as i32);
+            if !grazes(col, row) {
+                let want = sun_twin::sun_at(swept, is_point, col, row);
+                let at = [range.len(), i / cols, i % cols];
+                pairs.push(Pair { got: (*got).into(), want, tolerance, at });
+            }
+        }
+        assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
+        pairs
+    })
+}
+
+pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::light_resolve_push::{CLEARS, COLOUR};
+    let colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
+    let map = match &run.scene.surface.albedo {
+        Albedo::Map(map) if constant(pass, 1) == 1 => Some(map.as_slice()),
+        _ => None,
+    };
+    let layer = if constant(pass, 0) == 1 {
+        let sum = run.floats(pass, "colour_sum").expect("read");
+        let sum: Vec<[f64; 3]> = sum.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
+        resolve_twin::light_resolve(LightSum::Colour(&sum), colour, map)
+    } else {
+        let sum = run.floats(pass, "scalar_sum").expect("read");
+        let sum: Vec<f64> = sum.into_iter().map(f64::from).collect();
+        resolve_twin::light_resolve(LightSum::Scalar(&sum), colour, map)
+    };
+    if pushed(pass, CLEARS) == 1 {
+        run.radiance = vec![[0.0; 3]; layer.len()];
+        run.lights = 0;
+    }
+    if constant(pass, 2) == 1 {
+        resolve_twin::add_to_radiance(&mut run.radiance, &layer);
+        run.lights += 1;
+    }
+    let (radiance, lights) = (run.radiance.clone(), run.lights);
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    let written = [
+        ("radiance", &radiance, lights, 4),
+        ("radiance_grey", &radiance, lights, 1),
+        ("layer", &layer, 0, 4),
+        ("layer_grey", &layer, 0, 1),
+    ];
+    for (binding, want, lights, size) in written {
+        let Some(got) = run.floats(pass, binding) else { continue };
+        for (i, (got, want)) in got.chunks_exact(size).zip(want).enumerate() {
+            let at = [0, i / cols, i % cols];
+            pairs.extend(got.iter().zip(want).map(|(got, want)| Pair {
+                got: (*got).into(),
+                want: *want,
+                tolerance: twin_resolved(*want, lights),
+                at,
+            }));
+        }
+    }
+    pairs
+}

@@ -1,0 +1,298 @@
+//! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
+//! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
+
+mod cases;
+mod light;
+mod sweep;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
+use ridgelight::cpu::shared::gather::Swept;
+use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::gpu::{Frame, Headless, shaders};
+use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
+use ridgelight::scene::{Border, Fuse, Scene};
+
+use crate::Device;
+use cases::Case;
+
+/// One value of the device, its twin's, and how far apart they may be.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    got: f64,
+    want: f64,
+    tolerance: f64,
+    /// Azimuth or layer, row, column; or what stands for them in a resource that has others.
+    at: [usize; 3],
+}
+
+impl Pair {
+    /// Error over tolerance: above 1 is too far. What is no number is never near.
+    fn ratio(&self) -> f64 {
+        let error = (self.got - self.want).abs();
+        if self.got == self.want {
+            0.0
+        } else if error.is_nan() || self.tolerance == 0.0 {
+            f64::INFINITY
+        } else {
+            error / self.tolerance
+        }
+    }
+}
+
+fn worst(pairs: &[Pair]) -> Option<&Pair> {
+    pairs.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
+}
+
+type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
+
+/// The twin of every pass, by name.
+const TWINS: &[(&str, Twin)] = &[
+    ("height_transpose", sweep::height_transpose),
+    ("horizon_sweep", sweep::horizon_sweep),
+    ("surface_sweep", sweep::surface_sweep),
+    ("horizon_march", sweep::horizon_march),
+    ("sweep_fuse", sweep::sweep_fuse),
+    ("env_wedges", light::env_wedges),
+    ("env_tables", light::env_tables),
+    ("sky_shade", light::sky_shade),
+    ("sun_shade", light::sun_shade),
+    ("light_resolve", light::light_resolve),
+];
+
+/// A plan run pass by pass, and what its passes have left so far.
+struct Run<'a> {
+    gpu: &'a mut Headless,
+    frame: Frame,
+    plan: Plan,
+    scene: &'a Scene,
+    /// What the device's sweeps left, by azimuth, as lattices of one layer.
+    lattices: Vec<Option<Lattice>>,
+    /// Where the azimuths of the light that is being summed begin.
+    light_begins: usize,
+    /// The sum of the lights so far, by the twin, and how many they are.
+    radiance: Vec<[f64; 3]>,
+    lights: usize,
+    /// Groups of four lines whose hull was deeper than its memory.
+    lost: usize,
+}
+
+impl<'a> Run<'a> {
+    fn new(gpu: &'a mut Headless, case: &'a Case) -> Self {
+        let plan = case.plan(&gpu.report().limits);
+        let contents = case.contents();
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        Self {
+            gpu,
+            frame,
+            scene: &case.scene,
+            lattices: vec![None; plan.azimuths.len()],
+            light_begins: 0,
+            radiance: Vec::new(),
+            lights: 0,
+            lost: 0,
+            plan,
+        }
+    }
+
+    /// Runs every pass alone, in order, and pairs what it left with its twin's.
+    fn pairs(&mut self) -> Vec<(String, Vec<Pair>)> {
+        let passes = self.plan.passes.clone();
+        let mut all = Vec::new();
+        for (i, pass) in passes.iter().enumerate() {
+            self.gpu.draw_passes(&mut self.frame, &[i]).expect("drawn");
+            let twin = TWINS.iter().find(|t| t.0 == pass.name());
+            let (_, twin) = twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name()));
+            all.push((pass.label(), twin(self, pass)));
+        }
+        all
+    }
+
+    fn bound(pass: &Pass, binding: &str) -> Option<ResourceId> {
+        let place = pass.shader.bindings.iter().position(|b| b.name == binding);
+        pass.bindings[place.unwrap_or_else(|| panic!("{} binds no {binding}", pass.name()))]
+    }
+
+    /// Words of what the pass binds under this name, if it binds anything.
+    fn words(&mut self, pass: &Pass, binding: &str) -> Option<Vec<u32>> {
+        let id = Self::bound(pass, binding)?;
+        Some(self.gpu.read(&self.frame, id).expect("read back"))
+    }
+
+    fn floats(&mut self, pass: &Pass, binding: &str) -> Option<Vec<f32>> {
+        Some(self.words(pass, binding)?.into_iter().map(f32::from_bits).collect())
+    }
+
+    /// Columns and rows of the image that the pass binds under this name.
+    fn extent(&self, pass: &Pass, binding: &str) -> [usize; 2] {
+        let id = Self::bound(pass, binding).expect("bound");
+        match self.plan.resources[id.0].kind {
+            Kind::Image { width, height, .. } => [width as usize, height as usize],
+            Kind::Buffer { .. } => panic!("{binding} is a buffer"),
+        }
+    }
+
+    fn size(&self) -> [usize; 2] {
+        [self.scene.field.cols(), self.scene.field.rows()]
+    }
+
+    fn border(&self) -> Border {
+        self.scene.surface.border
+    }
+
+    fn heights(&self) -> Heights<'a> {
+        let scene = self.scene;
+        Heights::of(&scene.field, scene.surface.border)
+    }
+
+    /// The largest |height| and the relief.
+    fn relief(&self) -> [f64; 2] {
+        let all = || self.scene.field.heights_m().iter().map(|h| f64::from(*h));
+        let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
+        [low.abs().max(high.abs()), high - low]
+    }
+
+    fn warm_up(&self, marches_rows: bool) -> i32 {
+        let batch = ridgelight::plan::Axis::of(marches_rows, self.plan.size, self.border());
+        batch.warm_up as i32
+    }
+
+    /// What the sweeps of some azimuths left, for the twins of what comes after.
+    fn swept<T>(
+        &self,
+        azimuths: Range<usize>,
+        (fuse, line_shift): (Option<Fuse>, u32),
+        of: impl FnOnce(&Swept) -> T,
+    ) -> T {
+        let mut list: Vec<Azimuth> = self.plan.azimuths[azimuths.clone()].to_vec();
+        number_layers(&mut list);
+        let shift = if fuse.is_none() { 15 } else { line_shift };
+        let mut lattices = Lattices::new(&list, self.size(), shift, self.border());
+        for (azimuth, left) in list.iter().zip(&self.lattices[azimuths]) {
+            let left = left.as_ref().expect("swept before");
+            let all = lattices.of_mut(azimuth);
+            let begin = all.texel(0, 0, azimuth.layer);
+            let texels = begin..begin + left.slopes.len();
+            all.occluders[texels.clone()].copy_from_slice(&left.occluders);
+            all.slopes[texels.clone()].copy_from_slice(&left.slopes);
+            all.distances[texels].copy_from_slice(&left.distances);
+        }
+        of(&Swept {
+            heights: self.heights(),
+            azimuths: &list,
+            lattices: &lattices,
+            fuse,
+            line_shift,
+            warm_up: [self.warm_up(false), self.warm_up(true)],
+        })
+    }
+}
+
+/// A specialisation constant of a pass.
+fn constant(pass: &Pass, id: u32) -> u32 {
+    pass.constants.iter().find(|c| c.0 == id).expect("a constant of the pass").1
+}
+
+/// A word of a pass's push constants.
+fn pushed(pass: &Pass, offset: usize) -> u32 {
+    u32::from_ne_bytes(pass.push[offset..offset + 4].try_into().expect("four bytes"))
+}
+
+/// FUSE and LINE_SHIFT, which the shaders that include `fuse.glsl` share.
+fn fuse_of(pass: &Pass) -> (Option<Fuse>, u32) {
+    let modes = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed].map(Some);
+    let fuse = (constant(pass, 0) as usize).checked_sub(1).and_then(|mode| modes[mode]);
+    (fuse, constant(pass, 2))
+}
+
+/// Runs a case; prints the worst ratio of each pass and fails above 1. Returns the lines redone.
+fn check(device: &mut Device, case: &Case) -> usize {
+    let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
+    let all = run.pairs();
+    let lost = run.lost;
+    run.gpu.end(run.frame);
+    let mut by_pass: BTreeMap<&str, Vec<Pair>> = BTreeMap::new();
+    for (label, pairs) in &all {
+        by_pass.entry(label.as_str()).or_default().extend(pairs);
+    }
+    let mut failed = Vec::new();
+    for (label, pairs) in by_pass {
+        let Some(worst) = worst(&pairs) else { continue };
+        println!("{}: {label}: {:.3} of {} values", case.name, worst.ratio(), pairs.len());
+        if worst.ratio() > 1.0 {
+            failed.push(format!("{label}: error/tolerance {:e}: {worst:?}", worst.ratio()));
+        }
+    }
+    assert!(failed.is_empty(), "{}:\n{}", case.name, failed.join("\n"));
+    lost
+}
+
+#[test]
+fn every_shader_has_a_twin_and_a_case() {
+    let cases: Vec<Case> =
+        [cases::sweeps(), cases::samples(), cases::pictures()].into_iter().flatten().collect();
+    let planned: Vec<&str> = cases
+        .iter()
+        .flat_map(|case| case.plan(&Limits::lavapipe()).passes)
+        .map(|pass| pass.name())
+        .collect();
+    for shader in shaders::ALL {
+        assert!(TWINS.iter().any(|t| t.0 == shader.name), "{} has no twin test", shader.name);
+        assert!(planned.contains(&shader.name), "no case runs {}", shader.name);
+    }
+    assert_eq!(TWINS.len(), shaders::ALL.len(), "a twin of no shader");
+}
+
+#[test]
+fn sweeps_in_every_form_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::sweeps() {
+        let lost = check(&mut device, &case);
+        assert_eq!(lost > 0, case.loses_lines, "{}: {lost} groups of lines redone", case.name);
+    }
+}
+
+#[test]
+fn sweeps_of_one_value_a_sample_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::samples() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn pictures_are_their_twins_pass_by_pass() {
+    let mut device = Device::new();
+    for case in cases::pictures() {
+        check(&mut device, &case);
+    }
+}
+
+/// The comparison is not deaf: any value of any pass, moved by a bit more than its tolerance, fails.
+#[test]
+fn a_value_beyond_its_tolerance_is_seen() {
+    let mut device = Device::new();
+    let case = &cases::pictures()[1];
+    let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
+    let all = run.pairs();
+    run.gpu.end(run.frame);
+    for (label, pairs) in all.iter().filter(|a| !a.1.is_empty()) {
+        for picked in [0, pairs.len() / 2, pairs.len() - 1] {
+            let mut spoiled = pairs.clone();
+            let pair = &mut spoiled[picked];
+            // Where nothing is tolerated, the next f32; the f64 sum may round towards the twin.
+            let beyond = (pair.want as f32).next_up();
+            pair.got = if pair.tolerance > 0.0 {
+                pair.want + 1.01 * pair.tolerance
+            } else {
+                f64::from(beyond)
+            };
+            let found = worst(&spoiled).expect("values");
+            assert!(found.ratio() > 1.0, "{label}: deaf at {picked}: {found:?}");
+        }
+    }
+}

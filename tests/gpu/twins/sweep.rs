@@ -1,0 +1,309 @@
+//! The passes that find horizons.
+
+use half::f16;
+use ridgelight::cpu::height_transpose::{heights_by_col, heights_by_row};
+use ridgelight::cpu::horizon_march::{self as march_twin, MarchOptions};
+use ridgelight::cpu::horizon_sweep::{self as sweep_twin, SweepOptions, height_scale, line_height};
+use ridgelight::cpu::lattice::{Lattice, line_number, line_position, slots};
+use ridgelight::cpu::shared::sweep::{LOWEST_MET, March, on_field};
+use ridgelight::cpu::surface_sweep as surface_twin;
+use ridgelight::cpu::sweep_fuse::fused_horizon;
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::tolerance::{
+    EPSILON, twin_angle, twin_distance, twin_fused_slope, twin_march_slope, twin_slope,
+    twin_slope_f16, twin_slope_packed, twin_surface_slope,
+};
+use ridgelight::plan::azimuths::CELL;
+use ridgelight::plan::{Azimuth, Pass};
+use ridgelight::scene::{Border, Fuse};
+
+use super::{Pair, Run, constant, fuse_of, pushed};
+
+/// Heights are moved, not changed.
+pub(super) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let [cols, rows] = run.size();
+    let samples = run.heights().samples;
+    let by_row = constant(pass, 0) == 1;
+    let (lanes, want) = if by_row {
+        (cols, heights_by_row(samples))
+    } else {
+        (rows, heights_by_col(samples, cols, rows))
+    };
+    let periodic = run.border() == Border::Periodic;
+    let width = lanes.next_multiple_of(4);
+    let got = run.floats(pass, "lane_heights").expect("written");
+    assert_eq!(got.len(), width * want.len() / lanes);
+    let pairs = got.iter().enumerate().map(|(i, got)| {
+        let (march, lane) = (i / width, i % width);
+        // Beyond the last lane it is held, or follows the first.
+        let from = if periodic { lane % lanes } else { lane.min(lanes - 1) };
+        let want = want[march * lanes + from].into();
+        Pair { got: (*got).into(), want, tolerance: 0.0, at: [0, march, lane] }
+    });
+    pairs.collect()
+}
+
+/// A lattice of lines as the device stores it: [layer][step][line], 32 lines a layer.
+struct Stored {
+    words: Vec<u32>,
+    height: usize,
+    /// Words of four lines: 4 of f32, 2 of halves.
+    texel: usize,
+}
+
+impl Stored {
+    fn bits(&self, layer: u32, line: i32, step: i32) -> u32 {
+        let line = line as usize;
+        let layer = layer as usize + line / 32;
+        let texel = (layer * self.height + step as usize) * 8 + line % 32 / 4;
+        if self.texel == 4 {
+            return self.words[texel * 4 + line % 4];
+        }
+        self.words[texel * 2 + line % 4 / 2] >> (16 * (line % 2)) & 0xffff
+    }
+}
+
+fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) -> Option<Stored> {
+    let words = run.words(pass, binding)?;
+    Some(Stored { words, height: run.extent(pass, binding)[1], texel })
+}
+
+/// Slope of the sample of a line `back` steps before, in f64; nothing where nothing is met.
+fn slope_of(march: &March, y: i32, step: i32, back: i32) -> Option<f64> {
+    let at = |n: i32| f64::from(line_height(march, y - n * march.azimuth.shear, step - n));
+    (back > 0).then(|| (at(back) - at(0)) / (f64::from(back) * f64::from(march.azimuth.step_m)))
+}
+
+pub(super) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let in_occluders = constant(pass, 1) == 2;
+    let holds_line = constant(pass, 6) == 1;
+    if !holds_line && !in_occluders {
+        // Complete once its lost lines have been redone, by the pass that follows.
+        let lost = run.words(pass, "lost_lines").expect("written");
+        run.lost += lost.iter().filter(|w| **w != 0).count();
+        return Vec::new();
+    }
+    let slope_format = constant(pass, 9);
+    let occluders = stored(run, pass, "occluders", 2).filter(|_| constant(pass, 8) == 1);
+    let slopes = stored(run, pass, "slopes", if slope_format == 1 { 4 } else { 2 });
+    let packed = (constant(pass, 7) == 1).then(|| height_scale(run.heights().samples));
+    let first = pushed(pass, offsets::horizon_sweep_push::FIRST_AZIMUTH) as usize;
+    let mut pairs = Vec::new();
+    for k in first..first + pass.groups[2] as usize {
+        let azimuth = run.plan.azimuths[k];
+        let options = SweepOptions {
+            line_shift: constant(pass, 11),
+            warm_up: run.warm_up(azimuth.marches_rows()),
+            packed,
+            slopes_f16: slope_format == 2,
+        };
+        let left = lines_of(run, (k, &azimuth), options, &occluders, &slopes, &mut pairs);
+        run.lattices[k] = Some(left);
+    }
+    pairs
+}
+
+/// Pairs one azimuth's lines and returns what the device left of them, as the twins store it.
+fn lines_of(
+    run: &Run,
+    (k, azimuth): (usize, &Azimuth),
+    options: SweepOptions,
+    occluders: &Option<Stored>,
+    slopes: &Option<Stored>,
+    pairs: &mut Vec<Pair>,
+) -> Lattice {
+    let heights = run.heights();
+    let alone = Azimuth { layer: 0, ..*azimuth };
+    let march = March::new(heights, &alone);
+    let (shift, border) = (options.line_shift, run.border());
+    let slots = slots(march.lanes as usize, shift, border);
+    let mut left = Lattice::new(1, slots, march.steps as usize);
+    let mut twin = left.clone();
+    sweep_twin::horizon_sweep(heights, &alone, &options, &mut twin);
+    let [largest, _] = run.relief();
+    let step_m = f64::from(azimuth.step_m);
+    let total = options.warm_up + march.steps;
+    for (row, slot) in (0..march.steps).flat_map(|s| (0..slots as i32).map(move |t| (s, t))) {
+        let step = options.warm_up + row;
+        let y = line_position(slot, step, azimuth.shear, shift);
+        if border != Border::Periodic && !on_field(y, march.lanes) {
+            continue;
+        }
+        let place = (slot, slots as i32);
+        let line = line_number(place, (step, total), azimuth.shear, shift, border);
+        let texel = left.texel(slot, march.march_position(row), 0);
+        let at = [k, row as usize, slot as usize];
+        if let Some(occluders) = occluders {
+            let got = occluders.bits(azimuth.layer, line, step);
+            let want = twin.occluders[texel];
+            left.occluders[texel] = got as u16;
+            let slope = |back| slope_of(&march, y, step, back);
+            pairs.push(match (slope(got as i32), slope(want.into())) {
+                // Rounded heights may choose another occluder, if it stands as high.
+                (Some(got), Some(want)) if options.packed.is_some() => {
+                    Pair { got, want, tolerance: twin_slope_packed(largest, step_m), at }
+                }
+                _ => Pair { got: got.into(), want: want.into(), tolerance: 0.0, at },
+            });
+        }
+        if let Some(slopes) = slopes {
+            let bits = slopes.bits(azimuth.layer, line, step);
+            let got = match options.slopes_f16 {
+                true => f16::from_bits(bits as u16).to_f32(),
+                false => f32::from_bits(bits),
+            };
+            left.slopes[texel] = got;
+            let want = f64::from(twin.slopes[texel]);
+            let tolerance = match (options.packed, options.slopes_f16) {
+                (Some(_), _) => twin_slope_packed(largest, step_m),
+                (None, true) => twin_slope_f16(want),
+                (None, false) => twin_slope(want),
+            };
+            pairs.push(Pair { got: got.into(), want, tolerance, at });
+        }
+    }
+    left
+}
+
+/// Slope of the surface `back` steps ahead on a sample's own line, in f64.
+fn slope_at(march: &March, (lane, step): (i32, i32), back: f64) -> f64 {
+    let azimuth = &march.azimuth;
+    let shear = if azimuth.vector_march > 0 {
+        f64::from(azimuth.vector_lane) / f64::from(azimuth.vector_march)
+    } else {
+        f64::from(azimuth.shear) / f64::from(CELL)
+    };
+    let (across, along) = (f64::from(lane) - back * shear, f64::from(step) - back);
+    let (cell, at) = (across.floor(), along.floor());
+    let (f, u) = (across - cell, along - at);
+    let corner = |l: i32, s: i32| f64::from(march.height_at(cell as i32 + l, at as i32 + s));
+    let [h00, h10, h01, h11] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
+    let height = match march.split_along() {
+        true if f <= u => h00 + u * (h10 - h00) + f * (h11 - h10),
+        true => h00 + f * (h01 - h00) + u * (h11 - h01),
+        false if u + f <= 1.0 => h00 + u * (h10 - h00) + f * (h01 - h00),
+        false => h11 + (1.0 - u) * (h01 - h11) + (1.0 - f) * (h10 - h11),
+    };
+    (height - f64::from(march.height_at(lane, step))) / (back * f64::from(azimuth.step_m))
+}
+
+/// What is met need not be the twin's own, where two stand equally high; but it must be a place that
+/// stands as high as the twin's slope says, once for the device's error and once for the twin's.
+fn place_pair(
+    march: &March,
+    sample: (i32, i32),
+    back: f64,
+    (want, tolerance): (f32, f64),
+    at: [usize; 3],
+) -> Pair {
+    if want <= LOWEST_MET {
+        return Pair { got: back, want: 0.0, tolerance: 0.0, at };
+    }
+    let got = slope_at(march, sample, back);
+    Pair { got, want: want.into(), tolerance: 2.0 * tolerance, at }
+}
+
+/// Pairs passes that find one value a sample: [layer][step][lane], distances in the next layer.
+fn one_a_sample(
+    run: &mut Run,
+    pass: &Pass,
+    first: u32,
+    has_distances: bool,
+    twin_of: impl Fn(&Run, &Azimuth, &mut Lattice) -> f64,
+) -> Vec<Pair> {
+    let words = run.floats(pass, "slopes").expect("written");
+    let [width, height] = run.extent(pass, "slopes");
+    let mut pairs = Vec::new();
+    for k in first as usize..(first + pass.groups[2]) as usize {
+        let azimuth = run.plan.azimuths[k];
+        let alone = Azimuth { layer: 0, ..azimuth };
+        let march = March::new(run.heights(), &alone);
+        let mut left = Lattice::new(1, march.lanes as usize, march.steps as usize);
+        let mut twin = left.clone();
+        let tolerance = twin_of(run, &alone, &mut twin);
+        for (step, lane) in (0..march.steps).flat_map(|s| (0..march.lanes).map(move |l| (s, l))) {
+            let texel = left.texel(lane, march.march_position(step), 0);
+            let (row, col) = (step as usize, lane as usize);
+            let stored = |layer: u32| words[(layer as usize * height + row) * width + col];
+            left.slopes[texel] = stored(azimuth.layer);
+            let (got, want) = (left.slopes[texel].into(), twin.slopes[texel]);
+            let at = [k, row, col];
+            pairs.push(Pair { got, want: want.into(), tolerance, at });
+            if has_distances {
+                left.distances[texel] = stored(azimuth.layer + 1);
+                let back = left.distances[texel].into();
+                pairs.push(place_pair(&march, (lane, step), back, (want, tolerance), at));
+            }
+        }
+        run.lattices[k] = Some(left);
+    }
+    pairs
+}
+
+pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
+    one_a_sample(run, pass, first, constant(pass, 3) == 1, |run, azimuth, twin| {
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        surface_twin::surface_sweep(run.heights(), azimuth, warm_up, twin);
+        let vector = [azimuth.vector_march, azimuth.vector_lane];
+        twin_surface_slope(run.relief()[0], azimuth.step_m.into(), vector)
+    })
+}
+
+pub(super) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
+    one_a_sample(run, pass, first, constant(pass, 2) == 1, |run, azimuth, twin| {
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        let options = MarchOptions { all_crossings: constant(pass, 0) == 1, warm_up };
+        march_twin::horizon_march(run.heights(), azimuth, options, twin);
+        twin_march_slope(run.relief()[1], azimuth.step_m.into())
+    })
+}
+
+pub(super) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let (fuse, line_shift) = fuse_of(pass);
+    let angles = run.floats(pass, "horizon_angles").expect("written");
+    let distances = run.floats(pass, "horizon_distances");
+    let first = pushed(pass, offsets::sweep_fuse_push::FIRST_AZIMUTH) as usize;
+    let layer = pushed(pass, offsets::sweep_fuse_push::FIRST_LAYER) as usize;
+    let [cols, rows] = run.size();
+    let [largest, _] = run.relief();
+    let range = first..first + pass.groups[2] as usize;
+    run.swept(range, (fuse, line_shift), |swept| {
+        let mut pairs = Vec::new();
+        for (k, azimuth) in swept.azimuths.iter().enumerate() {
+            // What is only read has no error.
+            let slope_error = match fuse {
+                None | Some(Fuse::Nearest) => 0.0,
+                _ => twin_fused_slope(largest, azimuth.step_m.into()),
+            };
+            for i in 0..rows * cols {
+                let (row, col) = (i / cols, i % cols);
+                let want = fused_horizon(swept, azimuth, col as i32, row as i32);
+                let slope = want.found.slope;
+                let place = (layer + k) * rows * cols + i;
+                let at = [k, row, col];
+                let tolerance = twin_angle(slope.into(), slope_error);
+                pairs.push(Pair { got: angles[place].into(), want: want.angle_rad, tolerance, at });
+                let Some(distances) = &distances else { continue };
+                let (got, want_m) = (f64::from(distances[place]), f64::from(want.distance_m));
+                let pair = Pair { got, want: want_m, tolerance: twin_distance(want_m), at };
+                let on_edge = swept.heights.border != Border::Open
+                    && f64::from(slope).abs() <= slope_error
+                    && (got == 0.0 || want_m == 0.0);
+                if pair.ratio() <= 1.0 || got == 0.0 || want_m == 0.0 {
+                    // A slope of 0 may round to either side of the ground.
+                    pairs.extend((!on_edge).then_some(pair));
+                } else {
+                    let march = March::new(swept.heights, azimuth);
+                    let sample = march.of_sample(col as i32, row as i32);
+                    let steepest = 2.0 * largest / f64::from(azimuth.step_m);
+                    let error = slope_error + 8.0 * EPSILON * steepest;
+                    let back = got / f64::from(azimuth.step_m);
+                    pairs.push(place_pair(&march, sample, back, (slope, error), at));
+                }
+            }
+        }
+        pairs
+    })
+}
