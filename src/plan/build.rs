@@ -5,7 +5,7 @@ use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Format, Kind, Limits, Owner, Pass, Plan, Resource, ResourceId};
 use crate::gpu::shaders::Shader;
 use crate::passes;
-use crate::scene::{Albedo, Border, HeightField, Lines, Method, Quality, Scene};
+use crate::scene::{Albedo, Border, HeightField, Lights, Lines, Method, Quality, Scene, Surface};
 use crate::{Error, Result};
 
 /// What a picture should hold.
@@ -300,6 +300,18 @@ fn finish(
     Ok(plan)
 }
 
+/// What only the reference can light so far.
+fn refuse_later(surface: &Surface, lights: &Lights) -> Result<()> {
+    let expected = "none: it is not yet there for pictures, only for the reference";
+    if !lights.spheres.is_empty() {
+        return Err(Error::setting("light 1", "a local light", expected));
+    }
+    if surface.phong.is_some() {
+        return Err(Error::setting("phong", "a lobe", expected));
+    }
+    Ok(())
+}
+
 /// Even azimuths, or the grid vectors near them.
 fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Vec<Azimuth> {
     match sweep {
@@ -355,7 +367,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let Scene { field, surface, lights } = scene;
     quality.check()?;
     lights.check()?;
-    surface.albedo.check(field.rows() * field.cols())?;
+    surface.check(field.rows() * field.cols())?;
+    refuse_later(surface, lights)?;
     let size = check_size(field, limits)?;
     let border = surface.border;
     let cell_m = field.cell_m();
