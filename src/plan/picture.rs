@@ -4,7 +4,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Border, Environment, Quality, Scene};
+use crate::scene::{Albedo, Border, Environment, Lights, Quality, Scene, Surface};
 use crate::{Error, Result};
 
 /// What a picture should hold.
@@ -29,7 +29,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let Scene { field, surface, lights } = scene;
     quality.check()?;
     lights.check()?;
-    surface.albedo.check(field.rows() * field.cols())?;
+    surface.check(field.rows() * field.cols())?;
+    refuse_later(surface, lights)?;
     let size = check_size(field, limits)?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, wanted, &mut notes)?;
@@ -62,6 +63,18 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     drawing.sky_view();
     drawing.dark()?;
     Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
+}
+
+/// What only the reference can light so far.
+fn refuse_later(surface: &Surface, lights: &Lights) -> Result<()> {
+    let expected = "none: it is not yet there for pictures, only for the reference";
+    if !lights.spheres.is_empty() {
+        return Err(Error::setting("light 1", "a local light", expected));
+    }
+    if surface.phong.is_some() {
+        return Err(Error::setting("phong", "a lobe", expected));
+    }
+    Ok(())
 }
 
 /// Images of the field's size, and the environment.

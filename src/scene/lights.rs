@@ -10,6 +10,8 @@ pub struct Lights {
     pub environment: Option<Environment>,
     /// Suns: discs at infinity.
     pub suns: Vec<Sun>,
+    /// Balls of light near the field.
+    pub spheres: Vec<SphereLight>,
 }
 
 /// A disc of uniform radiance at infinity.
@@ -24,6 +26,25 @@ pub struct Sun {
     /// Irradiance on a surface that faces it, unoccluded, linear RGB.
     pub irradiance: [f32; 3],
 }
+
+/// A ball of uniform radiance near the field, or with its middle inside the ground.
+///
+/// Only what stands between a place and the ball hides it; the ball itself hides nothing, neither the
+/// sky behind it nor other lights. A place inside it receives its radiance from every direction
+/// that the surface leaves free up to where the ball ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphereLight {
+    /// Centre: x east from the westernmost column, y north from the southernmost row, z up, absolute
+    /// like the file's heights; the field's length unit.
+    pub position_m: [f64; 3],
+    /// Radius, above 0, in the same unit.
+    pub radius_m: f64,
+    /// Radiance that it gives off, linear RGB.
+    pub radiance: [f32; 3],
+}
+
+/// The farthest that a local light may stand and the largest that it may be, as for heights.
+const PLACE_LIMIT: f64 = 1e15;
 
 impl Lights {
     /// Checks every range.
@@ -71,6 +92,45 @@ impl Lights {
                 );
             }
         }
+        for (i, sphere) in self.spheres.iter().enumerate() {
+            let bad = |what: &str, found: String, expected: &str| {
+                Err(Error::setting(format!("light {}: {what}", i + 1), found, expected))
+            };
+            let SphereLight { position_m, radius_m, radiance } = sphere;
+            if !position_m.iter().all(|v| v.abs() <= PLACE_LIMIT) {
+                return bad("position", format!("{position_m:?}"), "finite numbers within ±1e15");
+            }
+            if !(*radius_m > 0.0 && *radius_m <= PLACE_LIMIT) {
+                return bad("radius", radius_m.to_string(), "a length above 0, up to 1e15");
+            }
+            if !shines(radiance) {
+                return bad("radiance", format!("{radiance:?}"), "finite numbers, 0 or more");
+            }
+        }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_out_of_range_is_named() {
+        let good = SphereLight { position_m: [1.0, -2.0, 9e3], radius_m: 1e-6, radiance: [0.0; 3] };
+        let of = |sphere| Lights { spheres: vec![good, sphere], ..Lights::default() }.check();
+        assert!(of(good).is_ok());
+        let far = [f64::NAN, 0.0, 0.0];
+        for (sphere, what) in [
+            (SphereLight { position_m: far, ..good }, "position"),
+            (SphereLight { position_m: [0.0, 0.0, 1e16], ..good }, "position"),
+            (SphereLight { radius_m: 0.0, ..good }, "radius"),
+            (SphereLight { radius_m: f64::NAN, ..good }, "radius"),
+            (SphereLight { radiance: [1.0, -1.0, 0.0], ..good }, "radiance"),
+            (SphereLight { radiance: [f32::INFINITY; 3], ..good }, "radiance"),
+        ] {
+            let said = of(sphere).unwrap_err().to_string();
+            assert!(said.starts_with(&format!("light 2: {what}: ")), "{said}");
+        }
     }
 }

@@ -8,9 +8,9 @@ mod surface;
 
 pub use environment::Environment;
 pub use field::HeightField;
-pub use lights::{Lights, Sun};
+pub use lights::{Lights, SphereLight, Sun};
 pub use quality::{Fuse, Hull, Lines, Method, Precision, Quality};
-pub use surface::{Albedo, Border, Surface};
+pub use surface::{Albedo, Border, Phong, Surface};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

@@ -44,11 +44,12 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
     };
     let none = lights.sky.is_none() && environment.is_none() && lights.sun.is_empty();
     Ok(Scene {
-        surface: Surface { albedo, border: border(surface) },
+        surface: Surface { albedo, border: border(surface), phong: None },
         lights: Lights {
             sky: if none { Some([1.0; 3]) } else { lights.sky },
             environment,
             suns: lights.sun.clone(),
+            spheres: Vec::new(),
         },
         field,
     })

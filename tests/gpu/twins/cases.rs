@@ -172,18 +172,24 @@ pub(super) fn pictures() -> Vec<Case> {
         let field = rough(23, 30, 11);
         let mut next = random(12);
         let map = (0..23 * 30).map(|_| [next() as f32, next() as f32, 1.0]).collect();
-        let surface = Surface { border: Border::Open, albedo: Albedo::Map(map) };
+        let surface =
+            Surface { border: Border::Open, albedo: Albedo::Map(map), ..Surface::default() };
         let lights = Lights {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(13)),
             suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0])],
+            ..Lights::default()
         };
         Scene { field, surface, lights }
     };
     let grey = {
-        let surface = Surface { border: Border::Plane, albedo: Albedo::Constant([0.5; 3]) };
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            ..Surface::default()
+        };
         let suns = vec![sun(-1.1, 0.0, [2.0; 3])];
-        let lights = Lights { sky: Some([1.0; 3]), environment: None, suns };
+        let lights = Lights { sky: Some([1.0; 3]), suns, ..Lights::default() };
         Scene { field: rough(12, 17, 14), surface, lights }
     };
     let picture = |name, scene, quality, light_layers, sky_view| Case {

@@ -152,13 +152,13 @@ pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value
 mod tests {
     use super::*;
     use ridgelight::plan::{self, Limits, Picture};
-    use ridgelight::scene::{Albedo, Border, Lights, Quality, Scene, Surface};
+    use ridgelight::scene::{Lights, Quality, Scene, Surface};
 
     fn plan() -> Plan {
         let scene = Scene {
             field: ridgelight::measure::fractal::fractal(32, 1).unwrap(),
-            surface: Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane },
-            lights: Lights { sky: Some([1.0; 3]), environment: None, suns: Vec::new() },
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
         };
         plan::picture(&scene, &Quality::default(), &Limits::lavapipe(), Picture::default()).unwrap()
     }

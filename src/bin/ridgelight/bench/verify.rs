@@ -195,7 +195,7 @@ fn piece(scene: &Scene) -> Result<Scene> {
             field.cell_m(),
             None,
         )?,
-        surface: Surface { albedo, border: scene.surface.border },
+        surface: Surface { albedo, ..scene.surface },
         lights: scene.lights.clone(),
     })
 }
@@ -209,8 +209,8 @@ mod tests {
     fn scene(size: usize) -> Scene {
         Scene {
             field: fractal(size, 1).unwrap(),
-            surface: Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane },
-            lights: Lights { sky: Some([1.0; 3]), environment: None, suns: Vec::new() },
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
         }
     }
 
