@@ -2,7 +2,7 @@
 
 use super::npy::Array;
 use super::open::{self, Format};
-use super::{exr, png};
+use super::{exr, hdr, png};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -22,8 +22,8 @@ pub struct Planes {
 /// Reads every plane of a result.
 ///
 /// `.exr`: all channels under their names ("direct.sky.R"), at full resolution. `.npy`: a 2-D array
-/// as the plane "0", a 3-D one [k, rows, cols] as "0" to "k-1". `.png`: "R", "G", "B" or "Y" decoded
-/// from sRGB to linear light, and "A" (0 to 1) where there is alpha.
+/// as the plane "0", a 3-D one [k, rows, cols] as "0" to "k-1". `.hdr`: "R", "G", "B". `.png`: "R",
+/// "G", "B" or "Y" decoded from sRGB to linear light, and "A" (0 to 1) where there is alpha.
 ///
 /// # Errors
 /// A file that cannot be read or decoded; other dimensions; sizes beyond 65 536 a side or 2³⁰
@@ -37,7 +37,7 @@ pub fn read_planes(path: &Path) -> Result<Planes> {
 /// # Errors
 /// As [`read_planes`], but for those of reading.
 pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
-    match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png])? {
+    match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png, Format::Hdr])? {
         Format::Exr => {
             let file = exr::ExrFile::open(name, bytes)?;
             let names: Vec<String> = file.names().into_iter().map(str::to_owned).collect();
@@ -46,19 +46,30 @@ pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
             Ok(Planes { rows, cols, names, planes })
         }
         Format::Npy => from_npy(name, bytes),
+        Format::Hdr => {
+            let (rows, cols, rgb) = hdr::colour(name, bytes)?;
+            let (names, planes) = channels(&rgb, false, None);
+            Ok(Planes { rows, cols, names, planes })
+        }
         _ => {
             let png = png::linear(name, bytes)?;
-            let channels: &[&str] = if png.grey { &["Y"] } else { &["R", "G", "B"] };
-            let mut names: Vec<String> = channels.iter().map(|n| (*n).to_owned()).collect();
-            let mut planes: Vec<Vec<f32>> =
-                (0..names.len()).map(|i| png.rgb.iter().map(|t| t[i]).collect()).collect();
-            if let Some(alpha) = png.alpha {
-                names.push("A".to_owned());
-                planes.push(alpha);
-            }
+            let (names, planes) = channels(&png.rgb, png.grey, png.alpha);
             Ok(Planes { rows: png.rows, cols: png.cols, names, planes })
         }
     }
+}
+
+/// Names and planes of a picture.
+fn channels(rgb: &[[f32; 3]], grey: bool, alpha: Option<Vec<f32>>) -> (Vec<String>, Vec<Vec<f32>>) {
+    let colours: &[&str] = if grey { &["Y"] } else { &["R", "G", "B"] };
+    let mut names: Vec<String> = colours.iter().map(|n| (*n).to_owned()).collect();
+    let mut planes: Vec<Vec<f32>> =
+        (0..names.len()).map(|i| rgb.iter().map(|t| t[i]).collect()).collect();
+    if let Some(alpha) = alpha {
+        names.push("A".to_owned());
+        planes.push(alpha);
+    }
+    (names, planes)
 }
 
 fn from_npy(path: &Path, bytes: &[u8]) -> Result<Planes> {

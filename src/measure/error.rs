@@ -21,7 +21,8 @@ pub struct ImageError {
     pub mean_reference: f64,
     /// Root of the mean squared difference.
     pub rmse: f64,
-    /// `rmse` over |`mean_reference`|; 0 when both are 0, infinite when only the mean is.
+    /// `rmse` over |`mean_reference`|; 0 when `rmse` is, else infinite when the mean is 0 or itself
+    /// no finite number.
     pub relative_rmse: f64,
     /// Mean of (result - reference): above 0 the result is too bright.
     pub mean_shift: f64,
@@ -29,8 +30,12 @@ pub struct ImageError {
     pub relative_mean_shift: f64,
     /// 99th percentile of |difference|.
     pub p99: f64,
+    /// `p99` over |`mean_reference`|, as for `relative_rmse`.
+    pub relative_p99: f64,
     /// Largest |difference|.
     pub worst: f64,
+    /// `worst` over |`mean_reference`|, as for `relative_rmse`.
+    pub relative_worst: f64,
     /// Row of the largest |difference|, the first in reading order.
     pub worst_row: usize,
     /// Column of the largest |difference|.
@@ -61,7 +66,12 @@ impl ImageError {
         } else {
             worst
         };
-        let relative = |x: f64| if x == 0.0 { 0.0 } else { x / mean_reference.abs() };
+        let relative = |x: f64| match x {
+            0.0 => 0.0,
+            x if mean_reference.is_finite() => x / mean_reference.abs(),
+            // An infinity on both sides is no error, and must not hide those of the others.
+            x => x * f64::INFINITY,
+        };
         let [p99] = quantiles(magnitudes, [0.99]).unwrap_or_default();
         Ok(Self {
             count,
@@ -73,7 +83,9 @@ impl ImageError {
             mean_shift,
             relative_mean_shift: relative(mean_shift),
             p99,
+            relative_p99: relative(p99),
             worst,
+            relative_worst: relative(worst),
             worst_row: at / cols,
             worst_col: at % cols,
         })
@@ -223,8 +235,8 @@ mod tests {
         assert!((e.rmse - 2.5_f64.sqrt()).abs() < 1e-15);
         assert!((e.relative_rmse - 2.5_f64.sqrt() / 2.0).abs() < 1e-15);
         assert_eq!((e.mean_reference, e.mean_shift, e.relative_mean_shift), (2.0, 0.5, 0.25));
-        assert!((e.p99 - 2.94).abs() < 1e-14);
-        assert_eq!((e.worst, e.worst_row, e.worst_col), (3.0, 0, 0));
+        assert!((e.p99 - 2.94).abs() < 1e-14 && (e.relative_p99 - 1.47).abs() < 1e-14);
+        assert_eq!((e.worst, e.relative_worst, e.worst_row, e.worst_col), (3.0, 1.5, 0, 0));
         assert!(e.within(0.8) && !e.within(0.79));
     }
 
@@ -251,6 +263,12 @@ mod tests {
         }
         let e = ImageError::of(&[1.0, f64::INFINITY], &[1.0, 1.0], 2).unwrap();
         assert_eq!((e.rmse, e.worst, e.worst_col), (f64::INFINITY, f64::INFINITY, 1));
+        assert!(!e.within(1e300));
+        let e = ImageError::of(&[f64::INFINITY, 1.5], &[f64::INFINITY, 1.0], 2).unwrap();
+        assert_eq!(
+            (e.worst, e.relative_worst, e.relative_mean_shift),
+            (0.5, f64::INFINITY, f64::INFINITY)
+        );
         assert!(!e.within(1e300));
         assert!(ImageError::of(&[NAN, 1.0], &[1.0, NAN], 2).is_err(), "nothing in common");
         assert!(ImageError::of(&[1.0, 1.0], &[1.0], 1).is_err());

@@ -1,6 +1,7 @@
 //! Error metrics and statistics.
 
 pub mod error;
+pub mod flip;
 pub mod fractal;
 pub mod scalar_sweep;
 pub mod statistics;

@@ -284,8 +284,20 @@ fn help_says_units_and_defaults() {
         &[("--exposure", &["[default: 1]"]), ("--layers", &["lights", "sky-view", "horizon"])];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
-    let compare: &[(&str, &[&str])] =
-        &[("--max-rmse", &["relative"]), ("--horizons", &["radians", "degrees"])];
+    let compare: &[(&str, &[&str])] = &[
+        ("--max-rmse", &["relative to the mean of B", "0.01 is 1 %"]),
+        ("--max-mean-shift", &["relative to the mean of B"]),
+        ("--max-p99", &["relative to the mean of B"]),
+        ("--max-worst", &["relative to the mean of B"]),
+        ("--max-flip", &["0 (looks the same) to 1"]),
+        ("--max-median-deg", &["degrees"]),
+        ("--max-p999-deg", &["degrees"]),
+        ("--max-worst-deg", &["degrees"]),
+        ("--horizons", &["radians", "degrees"]),
+        ("--exposure", &["[default: 1]"]),
+        ("--pixels-per-degree", &["1..1000", "Default 67.02"]),
+        ("--diff", &["difference.CHANNEL", "flip", "A - B"]),
+    ];
     for (command, tables) in [
         ("render", &[shared, lit, render][..]),
         ("horizon", &[shared, horizon]),

@@ -1,8 +1,12 @@
 //! What can be asked for, and how it is spelled.
 
+mod compare;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+
+pub use compare::CompareArgs;
 
 /// Lights height fields: exact horizons, sky, environment and sun, as Vulkan compute passes.
 #[derive(Parser)]
@@ -146,31 +150,6 @@ pub struct BenchArgs {
     pub global: GlobalArgs,
     #[command(flatten)]
     pub later: LaterArgs,
-}
-
-#[derive(Args)]
-pub struct CompareArgs {
-    /// The result
-    #[arg(value_name = "A")]
-    pub result: PathBuf,
-    /// What it should be
-    #[arg(value_name = "B")]
-    pub reference: PathBuf,
-    /// Largest RMSE relative to the mean of B (0.01 is 1 %), of the worst channel
-    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
-    pub max_rmse: Option<f64>,
-    /// Take values as elevations in radians and report degrees
-    #[arg(long)]
-    pub horizons: bool,
-    /// The difference A - B as .exr or .npy
-    #[arg(long, value_name = "FILE")]
-    pub diff: Option<PathBuf>,
-    /// Figures for machines
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
-    /// Prints nothing but errors
-    #[arg(long)]
-    pub quiet: bool,
 }
 
 #[derive(Args)]

@@ -1,11 +1,61 @@
-use ridgelight::files::{self, Channels, Layer, Planes};
-use ridgelight::measure::error::{HorizonError, ImageError};
+mod pairs;
+mod rows;
+
+use std::path::Path;
+
+use ridgelight::files::{self, Channels, Layer};
 use ridgelight::{Error, Result};
 
 use crate::args::CompareArgs;
 use crate::setup::{self, Outcome};
+use pairs::{Pairs, difference};
+use rows::{Excess, Row};
 
 pub fn run(args: &CompareArgs) -> Result<Outcome> {
+    check(args)?;
+    let (a, b) = (pairs::read(&args.result)?, pairs::read(&args.reference)?);
+    let pairs = Pairs::of(args, &a, &b)?;
+    let bar = crate::render::progress(args.quiet, "comparing");
+    let mut maps = Vec::new();
+    let (channels, pictures) = if args.horizons {
+        (vec![rows::horizons(args, &pairs)?], Vec::new())
+    } else {
+        let channels = pairs
+            .channels
+            .iter()
+            .map(|pair| rows::channel(args, &pairs, pair))
+            .collect::<Result<_>>()?;
+        let mut pictures = Vec::new();
+        for picture in pairs.pictures() {
+            let map = picture.flip(args, &pairs)?;
+            pictures.push(rows::picture(args, &pairs, &picture.layer, &map)?);
+            maps.push((picture.layer, map));
+        }
+        (channels, pictures)
+    };
+    bar.finish_and_clear();
+    let rows = || channels.iter().chain(&pictures);
+    let beyond = rows::beyond(&args.bounds.all(), rows());
+    if !args.quiet {
+        for (path, names) in [(&args.result, &pairs.only_a), (&args.reference, &pairs.only_b)] {
+            if !names.is_empty() {
+                crate::say!("not compared, only in {}: {}", path.display(), names.join(" "));
+            }
+        }
+        rows().for_each(|row| crate::say!("{}: {}", row.name, row.text));
+        beyond.iter().for_each(|excess| crate::say!("beyond {excess}"));
+    }
+    if let Some(path) = &args.diff {
+        write_difference(path, &pairs, &maps)?;
+    }
+    if let Some(path) = &args.json {
+        files::write_json(path, &figures(args, &pairs, &channels, &pictures, &beyond))?;
+    }
+    Ok(if beyond.is_empty() { Outcome::Done } else { Outcome::Beyond })
+}
+
+/// What can be known to be wrong before a file is read.
+fn check(args: &CompareArgs) -> Result<()> {
     if let Some(path) = &args.diff {
         setup::check_output("--diff", path, &["exr", "npy"])?;
     }
@@ -16,114 +66,63 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         &[("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())],
         &[&args.result, &args.reference],
     )?;
-    if args.max_rmse.is_some_and(|x| x.is_nan() || x < 0.0) {
-        return Err(Error::setting(
-            "--max-rmse",
-            args.max_rmse.unwrap_or_default().to_string(),
-            "0 or more",
-        ));
-    }
-    let (result, reference) =
-        (files::read_planes(&args.result)?, files::read_planes(&args.reference)?);
-    let unlike = |place: &str, found: String, expected: String| Error::File {
-        path: args.result.clone(),
-        place: place.to_owned(),
-        found,
-        expected: format!("{expected} as in {}", args.reference.display()),
-    };
-    let size = |p: &Planes| format!("{} × {}, {} channels", p.cols, p.rows, p.planes.len());
-    if size(&result) != size(&reference) {
-        return Err(unlike("size", size(&result), size(&reference)));
-    }
-    if result.names != reference.names {
-        return Err(unlike("channels", result.names.join(" "), reference.names.join(" ")));
-    }
-    let mut beyond = false;
-    let mut rows = Vec::new();
-    if args.horizons {
-        let e = HorizonError::of(
-            &result.planes.concat(),
-            &reference.planes.concat(),
-            result.rows,
-            result.cols,
-        )?;
-        beyond |= e.mismatched > 0;
-        if !args.quiet {
-            crate::say!(
-                "horizons: mean {:.5}°  median {:.5}°  99 % {:.4}°  99.9 % {:.4}°  worst {:.4}° at azimuth {}, row {}, column {}; {} compared, {} masked, {} masked in one only",
-                e.mean,
-                e.median,
-                e.p99,
-                e.p999,
-                e.worst,
-                e.worst_at[0],
-                e.worst_at[1],
-                e.worst_at[2],
-                e.count,
-                e.masked,
-                e.mismatched
-            );
-        }
-        rows.push(serde_json::json!({
-            "mean_deg": e.mean, "median_deg": e.median, "p99_deg": e.p99, "p999_deg": e.p999, "worst_deg": e.worst,
-            "worst_at": e.worst_at, "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-        }));
-    } else {
-        for ((name, a), b) in result.names.iter().zip(&result.planes).zip(&reference.planes) {
-            let e = ImageError::of(a, b, result.cols)?;
-            beyond |= e.mismatched > 0 || args.max_rmse.is_some_and(|x| !e.within(x));
-            if !args.quiet {
-                crate::say!(
-                    "{name}: RMSE {:.6} ({:.4} % of the mean)  mean shift {:+.4} %  99 % {:.6}  worst {:.6} at row {}, column {}; {} compared, {} masked, {} masked in one only",
-                    e.rmse,
-                    100.0 * e.relative_rmse,
-                    100.0 * e.relative_mean_shift,
-                    e.p99,
-                    e.worst,
-                    e.worst_row,
-                    e.worst_col,
-                    e.count,
-                    e.masked,
-                    e.mismatched
-                );
-            }
-            rows.push(serde_json::json!({
-                "channel": name, "rmse": e.rmse, "relative_rmse": e.relative_rmse, "mean_shift": e.mean_shift,
-                "relative_mean_shift": e.relative_mean_shift, "p99": e.p99, "worst": e.worst,
-                "worst_row": e.worst_row, "worst_col": e.worst_col, "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
-            }));
+    for (flag, bound) in args.bounds.all() {
+        if let Some(bound) = bound.filter(|x| x.is_nan() || *x < 0.0) {
+            return Err(Error::setting(flag, bound.to_string(), "0 or more"));
         }
     }
-    if let Some(path) = &args.diff {
-        write_difference(path, &result, &reference)?;
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
     }
-    if let Some(path) = &args.json {
-        files::write_json(path, &serde_json::json!({ "rows": rows, "beyond": beyond }))?;
+    if args.exposure != 1.0
+        && [&args.result, &args.reference].iter().all(|path| setup::extension(path) == "png")
+    {
+        let expected = "at least one .exr or .hdr: a .png is shown as it is";
+        return Err(Error::setting("--exposure", "two .png files", expected));
     }
-    if beyond && !args.quiet {
-        crate::say!("beyond the bound");
-    }
-    Ok(if beyond { Outcome::Beyond } else { Outcome::Done })
+    Ok(())
 }
 
-fn write_difference(path: &std::path::Path, a: &Planes, b: &Planes) -> Result<()> {
-    let planes: Vec<Vec<f32>> = a
-        .planes
+fn figures(
+    args: &CompareArgs,
+    pairs: &Pairs,
+    channels: &[Row],
+    pictures: &[Row],
+    beyond: &[Excess],
+) -> serde_json::Value {
+    let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
+    let excesses: Vec<_> = beyond.iter().map(Excess::json).collect();
+    serde_json::json!({
+        "rows": of(channels),
+        "flip": of(pictures),
+        "exposure": args.exposure,
+        "pixels_per_degree": pairs::pixels_per_degree(args),
+        "only_in_a": pairs.only_a,
+        "only_in_b": pairs.only_b,
+        "beyond": !beyond.is_empty(),
+        "excesses": excesses,
+    })
+}
+
+/// Maps are ꟻLIP of a layer each, by its name.
+fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> Result<()> {
+    let differences: Vec<Vec<f32>> = pairs
+        .channels
         .iter()
-        .zip(&b.planes)
-        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        .map(|pair| pair.a.iter().zip(pair.b).map(|(a, b)| difference(*a, *b)).collect())
         .collect();
+    let (rows, cols) = (pairs.rows, pairs.cols);
     if setup::extension(path) == "npy" {
-        return files::write_npy_f32(
-            path,
-            &[planes.len(), a.rows, a.cols],
-            planes.iter().map(Vec::as_slice),
-        );
+        let shape = [differences.len(), rows, cols];
+        return files::write_npy_f32(path, &shape, differences.iter().map(Vec::as_slice));
     }
-    let layers: Vec<Layer> = planes
+    let layer = |name: &str, channels| Layer { name: name.to_owned(), channels };
+    let mut layers: Vec<Layer> = pairs
+        .channels
         .iter()
-        .zip(&a.names)
-        .map(|(plane, name)| Layer { name: String::new(), channels: Channels::Scalar(name, plane) })
+        .zip(&differences)
+        .map(|(pair, plane)| layer("difference", Channels::Scalar(pair.name, plane)))
         .collect();
-    files::write_exr(path, a.rows, a.cols, &layers, &[])
+    layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));
+    files::write_exr(path, rows, cols, &layers, &[])
 }

@@ -288,7 +288,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 9] = [
+    const FLAGS: [(&str, &str); 10] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
         ("albedo", "--albedo"),
@@ -298,6 +298,7 @@ pub fn in_flags(error: Error) -> Error {
         ("distances to the horizon", "--distances"),
         ("lights", "--sky, --env, --sun"),
         ("cell size", "--cell"),
+        ("pixels per degree", "--pixels-per-degree"),
     ];
     match error {
         Error::Setting { name, found, expected } => {
