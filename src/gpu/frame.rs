@@ -127,6 +127,14 @@ impl Headless {
         self.upload(image, values)
     }
 
+    /// [`Renderer::replace_plan`] of a frame's renderer.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn replace_plan(&mut self, frame: &mut Frame, plan: Plan) -> Result<Vec<usize>> {
+        frame.renderer.as_mut().expect("alive until ended").replace_plan(plan)
+    }
+
     /// Runs a frame once and waits; its times by pass, where the device has timestamps.
     ///
     /// # Errors

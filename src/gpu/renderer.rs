@@ -140,16 +140,7 @@ impl Renderer {
             };
             self.resources.push(backed);
         }
-        if let Some(id) = self.plan.find("azimuths") {
-            let backed = self.resources[id.0].as_mut();
-            let mapped = backed.and_then(|b| b.allocation.as_mut()?.mapped_slice_mut());
-            let bytes: &[u8] = bytemuck::cast_slice(&self.plan.azimuths);
-            let mapped = mapped.ok_or_else(|| Error::Device {
-                doing: "writing the azimuths".into(),
-                reason: "the device has no memory that the host can write".into(),
-            })?;
-            mapped[..bytes.len()].copy_from_slice(bytes);
-        }
+        self.write_azimuths()?;
         // What a shader might write is its pass's alone: two passes that "write" one unused image
         // would need a barrier for nothing.
         for (index, pass) in self.plan.passes.iter().enumerate() {
@@ -164,6 +155,20 @@ impl Renderer {
             }
         }
         self.make_slots(slots)
+    }
+
+    fn write_azimuths(&mut self) -> Result<()> {
+        if let Some(id) = self.plan.find("azimuths") {
+            let backed = self.resources[id.0].as_mut();
+            let mapped = backed.and_then(|b| b.allocation.as_mut()?.mapped_slice_mut());
+            let bytes: &[u8] = bytemuck::cast_slice(&self.plan.azimuths);
+            let mapped = mapped.ok_or_else(|| Error::Device {
+                doing: "writing the azimuths".into(),
+                reason: "the device has no memory that the host can write".into(),
+            })?;
+            mapped[..bytes.len()].copy_from_slice(bytes);
+        }
+        Ok(())
     }
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
@@ -208,6 +213,27 @@ impl Renderer {
         &self.plan
     }
 
+    /// Goes over to a plan that differs in what its passes are told, not in which there are nor in
+    /// images and buffers: another colour of a light, a sun that has moved a little. Returns the
+    /// passes that must run next for inputs that are as they were ([`Plan::passes_after`]). The
+    /// device must be done with all that was recorded.
+    ///
+    /// # Errors
+    /// A plan that needs a renderer of its own; the old one stays.
+    pub fn replace_plan(&mut self, plan: Plan) -> Result<Vec<usize>> {
+        if plan.resources != self.plan.resources || !plan.has_passes_of(&self.plan) {
+            return Err(Error::setting(
+                "plan",
+                "other passes, images or buffers",
+                "those of the plan that the renderer was made for",
+            ));
+        }
+        let passes = plan.passes_after(&self.plan, &[]);
+        self.plan = plan;
+        self.write_azimuths()?;
+        Ok(passes)
+    }
+
     /// An image or buffer of the renderer's own.
     pub(crate) fn internal(&self, id: ResourceId) -> Option<&Backed> {
         self.resources.get(id.0)?.as_ref()
@@ -232,8 +258,10 @@ impl Renderer {
         self.record_passes(commands, slot, inputs, outputs, &all)
     }
 
-    /// Appends only some passes, by position in the plan, for timing them alone: what they read must
-    /// have been left by an earlier recording of this renderer.
+    /// Appends only some passes, by position in the plan: for timing them alone, or because no others
+    /// are needed ([`Plan::passes_after`]). What they read must have been left by an earlier recording
+    /// of this renderer; of outputs that they do not write the contents are kept where the caller's
+    /// state before keeps them.
     ///
     /// # Errors
     /// As [`record`](Self::record); a pass that does not exist.
@@ -287,7 +315,7 @@ impl Renderer {
             device.cmd_write_timestamp2(commands, compute, queries, 0);
             for (query, &index) in passes.iter().enumerate() {
                 let pass = &self.plan.passes[index];
-                if pass.barrier_before && query > 0 {
+                if query > 0 && self.must_wait(passes[query - 1], index) {
                     device.cmd_pipeline_barrier2(commands, &between);
                 }
                 self.label(commands, Some(pass));
@@ -319,6 +347,12 @@ impl Renderer {
         }
         self.slots[slot].recorded = passes.to_vec();
         Ok(())
+    }
+
+    /// Whether a barrier stands between two passes recorded one after the other.
+    fn must_wait(&self, last: usize, next: usize) -> bool {
+        let between = self.plan.passes.get(last + 1..=next);
+        between.is_none_or(|passes| passes.iter().any(|p| p.barrier_before))
     }
 
     fn label(&self, commands: vk::CommandBuffer, pass: Option<&Pass>) {

@@ -46,6 +46,8 @@ impl Axis {
 pub struct Batch {
     /// Their axis.
     pub axis: Axis,
+    /// Which of the plan's batches, in the order of the lists.
+    pub number: u32,
     /// Position of the first in the buffer "azimuths".
     pub first: u32,
     /// How many.
@@ -115,6 +117,7 @@ pub(crate) fn cut(
         if !fits {
             batches.push(Batch {
                 axis,
+                number: batches.len() as u32,
                 first: first + i as u32,
                 count: 0,
                 most_lines: 0,

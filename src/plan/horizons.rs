@@ -50,12 +50,13 @@ pub fn horizons(
     let distances = distances
         .then(|| builder.image("horizon_distances", Owner::Output, Format::R32Float, extent, true));
     let (sweeping, lists) =
-        prepare(&mut builder, field, border, sweep, heights, vec![list], limits)?;
+        prepare(&mut builder, field, border, sweep, heights, vec![list], (limits, false))?;
     let batches = &lists.batches[0];
     for batch in batches {
         let part = part("", batch, batches);
         sweeping.record(&mut builder, batch, &part);
-        let ids = [sweeping.lane_heights(batch), sweeping.lattice, sweeping.azimuths, angles];
+        let ids =
+            [sweeping.lane_heights(batch), sweeping.lattice(batch), sweeping.azimuths, angles];
         passes::sweep_fuse::plan(
             &mut builder,
             &sweeping.sweep,

@@ -4,6 +4,7 @@
 pub mod azimuths;
 mod batch;
 mod builder;
+mod change;
 mod horizons;
 mod limits;
 mod pass;

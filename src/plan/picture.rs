@@ -15,6 +15,9 @@ pub struct Picture {
     /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
     /// receiver, [0..1].
     pub sky_view: bool,
+    /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
+    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
+    pub keeps_horizons: bool,
 }
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
@@ -52,8 +55,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if tables.is_none() && shining.sky.is_some() {
         notes.push("no environment: no table".into());
     }
+    let held = (limits, wanted.keeps_horizons);
     let (sweeping, lists) =
-        prepare(&mut builder, field, surface.border, sweep, images.heights, lists, limits)?;
+        prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
     let mut drawing =
         Drawing { builder, scene, shining, images, tables, sweeping, is_begun: false };
@@ -206,7 +210,7 @@ impl Drawing<'_> {
             sweeping.record(builder, batch, &part);
             let images = passes::sky_shade::Images {
                 lane_heights: sweeping.lane_heights(batch),
-                lattice: sweeping.lattice,
+                lattice: sweeping.lattice(batch),
                 azimuths: sweeping.azimuths,
                 sky_sum,
                 environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
@@ -235,7 +239,7 @@ impl Drawing<'_> {
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
                 sweeping.record(builder, batch, &part);
                 let lanes = sweeping.lane_heights(batch);
-                let ids = [lanes, sweeping.lattice, sweeping.azimuths, sum];
+                let ids = [lanes, sweeping.lattice(batch), sweeping.azimuths, sum];
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
                     builder, sweep, border, cell_m, batch, &part, is_point, ids,

@@ -79,7 +79,7 @@ pub enum Owner {
 }
 
 /// An image or a buffer of a plan.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Resource {
     /// By content: "lane_heights_cols".
     pub name: String,

@@ -14,8 +14,13 @@ pub(super) struct Sweeping {
     lane_heights: [Option<ResourceId>; 2],
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
-    pub lattice: ResourceId,
-    /// Where both are stored, the one that is not the lattice.
+    /// One for all batches in turn, or one a batch.
+    lattices: Vec<Lattice>,
+}
+
+/// What sweeps leave behind.
+#[derive(Clone, Copy)]
+struct Lattice {
     occluders: Option<ResourceId>,
     slopes: Option<ResourceId>,
     lost_lines: Option<ResourceId>,
@@ -27,25 +32,36 @@ impl Sweeping {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
+    fn lattice_of(&self, batch: &Batch) -> Lattice {
+        self.lattices[batch.number as usize % self.lattices.len()]
+    }
+
+    /// What a batch's sweep leaves for the samples: slopes where they are stored, else occluders.
+    pub fn lattice(&self, batch: &Batch) -> ResourceId {
+        let lattice = self.lattice_of(batch);
+        lattice.slopes.or(lattice.occluders).expect("a sweep stores something")
+    }
+
     pub fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
+        let lattice = self.lattice_of(batch);
         match &self.sweep {
             Sweep::Lines(lines) => {
                 let images = passes::horizon_sweep::Images {
                     heights: self.heights,
                     lane_heights: self.quads.then(|| self.lane_heights(batch)),
                     azimuths: self.azimuths,
-                    occluders: self.occluders,
-                    slopes: self.slopes,
-                    lost_lines: self.lost_lines,
+                    occluders: lattice.occluders,
+                    slopes: lattice.slopes,
+                    lost_lines: lattice.lost_lines,
                 };
                 passes::horizon_sweep::plan(builder, lines, batch, part, &images);
             }
             Sweep::Surface { hull_depth, distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice];
+                let ids = [self.heights, self.azimuths, self.lattice(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
             }
             Sweep::March { distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice];
+                let ids = [self.heights, self.azimuths, self.lattice(batch)];
                 passes::horizon_march::plan(builder, batch, part, *distances, ids);
             }
         }
@@ -103,7 +119,7 @@ pub(super) fn prepare(
     sweep: Sweep,
     heights: ResourceId,
     mut lists: Vec<Vec<Azimuth>>,
-    limits: &Limits,
+    (limits, keeps): (&Limits, bool),
 ) -> Result<(Sweeping, Lists)> {
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
@@ -115,17 +131,27 @@ pub(super) fn prepare(
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
     let shape = LatticeShape::of(&sweep, &axes);
     let batches = cut_lists(&mut lists, builder.bytes(), &shape, size, border, &sweep, limits)?;
-    let layers = batches.iter().flatten().map(|b| b.layers).max().unwrap_or(1);
-    let extent = [shape.width, shape.height, layers];
-    let mut make = |name: &str, format: Option<Format>| {
-        format.map(|f| builder.image(name, Owner::Internal, f, extent, true))
-    };
-    let occluders = make("lattice_occluders", shape.occluders);
-    let slopes = make("lattice_slopes", shape.slopes);
-    let lattice = slopes.or(occluders).expect("a sweep stores something");
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullPlace::Occluders);
-    let lost_lines = can_lose.then(|| builder.buffer("lost_lines", u64::from(layers) * 32, false));
+    let mut make = |layers: u32, suffix: &str| {
+        let extent = [shape.width, shape.height, layers];
+        let mut image = |name: &str, format: Option<Format>| {
+            format
+                .map(|f| builder.image(format!("{name}{suffix}"), Owner::Internal, f, extent, true))
+        };
+        let (occluders, slopes) =
+            (image("lattice_occluders", shape.occluders), image("lattice_slopes", shape.slopes));
+        let bytes = u64::from(layers) * 32;
+        let lost_lines =
+            can_lose.then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
+        Lattice { occluders, slopes, lost_lines }
+    };
+    let all = || batches.iter().flatten();
+    let lattices = if keeps {
+        all().map(|b| make(b.layers, &format!("_{}", b.number))).collect()
+    } else {
+        vec![make(all().map(|b| b.layers).max().unwrap_or(1), "")]
+    };
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
             passes::height_transpose::plan(builder, *axis, border, heights, lanes);
@@ -134,17 +160,7 @@ pub(super) fn prepare(
     // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
-    let sweeping = Sweeping {
-        sweep,
-        heights,
-        azimuths,
-        lane_heights,
-        quads,
-        lattice,
-        occluders,
-        slopes,
-        lost_lines,
-    };
+    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, lattices };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -166,14 +182,17 @@ fn cut_lists(
     limits: &Limits,
 ) -> Result<Vec<Vec<Batch>>> {
     let bytes = (fixed_bytes, shape.layer_bytes());
-    let mut batches = Vec::new();
+    let mut all: Vec<Vec<Batch>> = Vec::new();
     let mut first = 0;
     for list in lists {
         batch::sort(list);
-        batches.push(batch::cut(list, first, size, border, sweep, limits, bytes)?);
+        let mut batches = batch::cut(list, first, size, border, sweep, limits, bytes)?;
+        let before = all.iter().map(Vec::len).sum::<usize>() as u32;
+        batches.iter_mut().for_each(|b| b.number += before);
+        all.push(batches);
         first += list.len() as u32;
     }
-    Ok(batches)
+    Ok(all)
 }
 
 /// The part of a pass for one of the batches of a light.

@@ -118,7 +118,7 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
                 &scene,
                 &quality,
                 &device.limits(),
-                Picture { light_layers: true, sky_view: true },
+                Picture { light_layers: true, sky_view: true, ..Picture::default() },
             )
             .expect("a plan");
             assert_eq!(missing_barriers(&plan.passes), []);

@@ -196,7 +196,7 @@ pub(super) fn pictures() -> Vec<Case> {
         name,
         scene,
         quality,
-        wanted: Wanted::Picture(Picture { light_layers, sky_view }),
+        wanted: Wanted::Picture(Picture { light_layers, sky_view, ..Picture::default() }),
         loses_lines: false,
     };
     vec![

@@ -1,0 +1,143 @@
+use super::{Pass, Plan, ResourceId};
+
+impl Plan {
+    /// Passes that must run after a frame of `before`, by position, for the same outputs as if all
+    /// ran: those that differ from `before`'s or read what has changed since, and what follows from
+    /// them. `changed` are inputs with new contents. All passes where the plans differ in more than
+    /// what a pass is told: in their images and buffers, or in which passes there are.
+    ///
+    /// With [`Picture::keeps_horizons`](super::Picture::keeps_horizons) a change of light alone needs
+    /// no sweep; a change of heights alone never needs an environment's tables.
+    pub fn passes_after(&self, before: &Plan, changed: &[ResourceId]) -> Vec<usize> {
+        let count = self.passes.len();
+        if self.resources != before.resources || !self.has_passes_of(before) {
+            return (0..count).collect();
+        }
+        let azimuths = self.find("azimuths").filter(|_| self.azimuths != before.azimuths);
+        let is_new = |id: ResourceId| changed.contains(&id) || azimuths == Some(id);
+        let mut runs: Vec<bool> = (0..count)
+            .map(|i| {
+                let (pass, old) = (&self.passes[i], &before.passes[i]);
+                pass.push != old.push || pass.groups != old.groups || pass.reads().any(is_new)
+            })
+            .collect();
+        while let Some(next) = (0..count).find(|i| !runs[*i] && self.follows(*i, &runs)) {
+            runs[next] = true;
+        }
+        (0..count).filter(|i| runs[*i]).collect()
+    }
+
+    /// Whether the same shaders with the same constants are bound to the same resources.
+    pub(crate) fn has_passes_of(&self, before: &Plan) -> bool {
+        let same = |(a, b): (&Pass, &Pass)| {
+            a.name() == b.name() && a.constants == b.constants && a.bindings == b.bindings
+        };
+        self.passes.len() == before.passes.len() && self.passes.iter().zip(&before.passes).all(same)
+    }
+
+    /// Whether pass `i` must run because of those that do.
+    fn follows(&self, i: usize, runs: &[bool]) -> bool {
+        let pass = &self.passes[i];
+        let writes = |p: usize, id: ResourceId| self.passes[p].writes().any(|w| w == id);
+        let touched = (0..runs.len()).filter(|p| runs[*p]);
+        // What it reads is made anew, or what it has a share in is.
+        let remade = |id: ResourceId| touched.clone().any(|p| writes(p, id));
+        if pass.reads().any(remade) || pass.writes().any(remade) {
+            return true;
+        }
+        // One that runs reads what it made, and something has overwritten that since.
+        pass.writes().any(|id| {
+            touched.clone().any(|p| {
+                let reads = self.passes[p].reads().any(|r| r == id);
+                reads && (p + 1..runs.len()).any(|later| writes(later, id))
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::measure::fractal::fractal;
+    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::{Environment, Lights, Quality, Scene, Sun, Surface};
+
+    fn scene() -> Scene {
+        let texels = (0..32 * 16).map(|i| [i as f32, 1.0, 2.0]).collect();
+        let sun = Sun {
+            azimuth_rad: 1.0,
+            elevation_rad: 0.4,
+            diameter_rad: 0.01,
+            irradiance: [2.0, 1.5, 1.0],
+        };
+        Scene {
+            field: fractal(64, 1).unwrap(),
+            surface: Surface::default(),
+            lights: Lights {
+                sky: Some([1.0, 0.9, 0.8]),
+                environment: Some(Environment::new(32, 16, texels, 0.0).unwrap()),
+                suns: vec![sun],
+                ..Lights::default()
+            },
+        }
+    }
+
+    fn plan(scene: &Scene, keeps_horizons: bool) -> Plan {
+        let wanted = Picture { keeps_horizons, ..Picture::default() };
+        let quality = Quality { azimuths: 16, ..Quality::default() };
+        plan::picture(scene, &quality, &Limits::lavapipe(), wanted).unwrap()
+    }
+
+    fn names(plan: &Plan, passes: &[usize]) -> Vec<&'static str> {
+        let mut names: Vec<_> = passes.iter().map(|i| plan.passes[*i].name()).collect();
+        names.dedup();
+        names
+    }
+
+    #[test]
+    fn nothing_new_needs_nothing() {
+        let plan = plan(&scene(), true);
+        assert!(plan.passes_after(&plan, &[]).is_empty());
+    }
+
+    #[test]
+    fn new_light_on_a_still_field_needs_no_sweep() {
+        let mut scene = scene();
+        let before = plan(&scene, true);
+        scene.lights.suns[0].irradiance = [9.0; 3];
+        let after = plan(&scene, true);
+        // The picture adds up from its first light on.
+        assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
+        let environment = after.find("environment").unwrap();
+        let needed = after.passes_after(&after, &[environment]);
+        assert_eq!(
+            names(&after, &needed),
+            ["env_wedges", "env_tables", "sky_shade", "light_resolve"]
+        );
+    }
+
+    #[test]
+    fn lattices_used_in_turn_must_be_swept_again() {
+        let before = plan(&scene(), false);
+        let environment = before.find("environment").unwrap();
+        let needed = names(&before, &before.passes_after(&before, &[environment]));
+        assert!(needed.contains(&"horizon_sweep"), "{needed:?}");
+    }
+
+    #[test]
+    fn a_new_field_under_still_light_keeps_its_tables() {
+        let plan = plan(&scene(), true);
+        let heights = plan.find("heights").unwrap();
+        let needed = names(&plan, &plan.passes_after(&plan, &[heights]));
+        assert!(!needed.iter().any(|n| n.starts_with("env_")), "{needed:?}");
+        assert!(needed.contains(&"horizon_sweep") && needed.contains(&"sun_shade"));
+    }
+
+    #[test]
+    fn another_plan_is_run_whole() {
+        let mut scene = scene();
+        let before = plan(&scene, true);
+        scene.lights.suns.clear();
+        let after = plan(&scene, true);
+        assert_eq!(after.passes_after(&before, &[]).len(), after.passes.len());
+    }
+}

@@ -1,0 +1,127 @@
+//! Only the passes that a change needs: the same bits as all of them.
+
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::{Environment, Lights, Quality, Scene, Sun, Surface};
+
+use crate::{Device, random};
+
+fn environment(seed: u64) -> Environment {
+    let mut next = random(seed);
+    let texels = (0..32 * 16).map(|_| [next() as f32, next() as f32, 4.0 * next() as f32]);
+    Environment::new(32, 16, texels.collect(), 0.0).expect("an environment")
+}
+
+fn scene() -> Scene {
+    let sun = |azimuth_rad, diameter_rad| Sun {
+        azimuth_rad,
+        elevation_rad: 0.3,
+        diameter_rad,
+        irradiance: [2.0, 1.5, 1.0],
+    };
+    Scene {
+        field: fractal(96, 1).expect("a field"),
+        surface: Surface::default(),
+        lights: Lights {
+            sky: Some([1.0, 0.9, 0.8]),
+            environment: Some(environment(5)),
+            suns: vec![sun(1.0, 0.02), sun(4.0, 0.0)],
+            ..Lights::default()
+        },
+    }
+}
+
+fn contents(scene: &Scene) -> [Vec<f32>; 2] {
+    let environment = scene.lights.environment.as_ref().expect("one");
+    let texels = environment.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+    [scene.field.heights_m().to_vec(), texels]
+}
+
+fn planned(gpu: &Headless, scene: &Scene, keeps_horizons: bool) -> Plan {
+    let quality = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
+    let wanted = Picture { keeps_horizons, light_layers: true, ..Picture::default() };
+    plan::picture(scene, &quality, &gpu.report().limits, wanted).expect("a plan")
+}
+
+/// Every output's bits.
+fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
+    let count = frame.plan().outputs().count();
+    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
+    all.flatten().map(f32::to_bits).collect()
+}
+
+fn from_nothing(gpu: &mut Headless, scene: &Scene, keeps_horizons: bool) -> Vec<u32> {
+    let plan = planned(gpu, scene, keeps_horizons);
+    let [heights, environment] = contents(scene);
+    let mut frame = gpu.frame(plan, &[&heights, &environment]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let all = bits(gpu, &frame);
+    gpu.end(frame);
+    all
+}
+
+#[test]
+fn passes_after_a_change_give_what_all_would() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    for keeps_horizons in [true, false] {
+        let mut scene = scene();
+        let plan = planned(gpu, &scene, keeps_horizons);
+        let [heights, texels] = contents(&scene);
+        let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+        gpu.draw(&mut frame).expect("drawn");
+        let mut last = bits(gpu, &frame);
+        // A lamp of another colour; a new environment; a new field.
+        for change in 0..3 {
+            let passes = match change {
+                0 => {
+                    scene.lights.suns[1].irradiance = [0.1, 0.2, 7.0];
+                    let plan = planned(gpu, &scene, keeps_horizons);
+                    gpu.replace_plan(&mut frame, plan).expect("the same passes")
+                }
+                1 => {
+                    scene.lights.environment = Some(environment(6));
+                    gpu.refill(&frame, 1, &contents(&scene)[1]).expect("refilled");
+                    let input = frame.plan().find("environment").expect("an input");
+                    frame.plan().passes_after(frame.plan(), &[input])
+                }
+                _ => {
+                    scene.field = fractal(96, 2).expect("a field");
+                    gpu.refill(&frame, 0, scene.field.heights_m()).expect("refilled");
+                    let input = frame.plan().find("heights").expect("an input");
+                    frame.plan().passes_after(frame.plan(), &[input])
+                }
+            };
+            let all = frame.plan().passes.len();
+            assert!(passes.len() < all, "change {change}: {} of {all} passes", passes.len());
+            gpu.draw_passes(&mut frame, &passes).expect("drawn");
+            let found = bits(gpu, &frame);
+            assert!(found != last, "change {change} shows");
+            assert!(
+                found == from_nothing(gpu, &scene, !keeps_horizons),
+                "change {change}, horizons kept: {keeps_horizons}"
+            );
+            last = found;
+        }
+        gpu.end(frame);
+    }
+}
+
+#[test]
+fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, true);
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let before = bits(gpu, &frame);
+    scene.lights.suns.clear();
+    let other = planned(gpu, &scene, true);
+    assert!(gpu.replace_plan(&mut frame, other).is_err());
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) == before);
+    gpu.end(frame);
+}
