@@ -154,11 +154,14 @@ fn pictures_have_their_known_flip() {
     ] {
         assert_eq!(run(&folder, &format!("compare {args}")).status, Some(status), "{args}");
     }
-    // A .png is shown as it is: against grey of twice the exposure, white is the same.
-    folder.write("white.png", &png(4, 3, colour::RGB, 8, &[], &[255; 36]));
-    for files in ["white.png grey.exr", "grey.exr white.png"] {
+    // A .png is shown as it is: code 128 is the same as half its light at twice the exposure.
+    let light = ((128.0_f64 / 255.0 + 0.055) / 1.055).powf(2.4) as f32;
+    folder.write("code.png", &png(4, 3, colour::GREY, 8, &[], &[128; 12]));
+    write(&folder, "light.exr", &[("Y", [light / 2.0; 12])]);
+    for files in ["code.png light.exr", "light.exr code.png"] {
         let json = figures(&folder, &format!("{files} --exposure 2 --max-flip 0"));
         assert_eq!((&json["flip"][0]["mean"], &json["exposure"]), (&0.0.into(), &2.0.into()));
+        assert_eq!(figures(&folder, &format!("{files} --max-flip 0"))["beyond"], true);
     }
     // A texel is hardly seen where 1000 make a degree.
     let mut dot = half;
@@ -169,6 +172,10 @@ fn pictures_have_their_known_flip() {
         figures(&folder, &format!("dot.exr plain.exr{ppd}"))["flip"][0]["worst"].as_f64().unwrap()
     };
     let default = at("");
+    let flip = &figures(&folder, "dot.exr plain.exr")["flip"][0];
+    let [mean, p99] = ["mean", "p99"].map(|key| flip[key].as_f64().unwrap());
+    assert!(mean < 0.9 * p99, "{flip}");
+    bounded(&folder, "dot.exr plain.exr", "--max-flip", mean, "FLIP has 0.");
     assert!(at(" --pixels-per-degree 1000") < default && default < at(" --pixels-per-degree 10"));
     assert!((at(" --pixels-per-degree 67.02064") - default).abs() < 1e-6);
 }
@@ -284,8 +291,9 @@ fn horizons_are_compared_in_degrees() {
             assert!(run.out.contains(place), "{}", run.out);
         }
     }
-    // Of all but two off by 2°, the median is.
-    write(&folder, "c1.npy", &[("", level.map(|v| v + 2_f32.to_radians())); 4]);
+    // Three quarters of all are off by 2°: so is the median, and the mean is 1.5°.
+    let off = level.map(|v| v + 2_f32.to_radians());
+    write(&folder, "c1.npy", &[("", off), ("", level), ("", off), ("", off)]);
     for (limit, status) in [("2.00001", 0), ("1.99999", 1)] {
         let args = format!("compare c1.npy b1.npy --horizons --max-median-deg {limit}");
         assert_eq!(run(&folder, &args).status, Some(status), "{limit}");

@@ -2,14 +2,24 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-#[derive(Args)]
-#[command(after_help = "\
+const AFTER_HELP: &str = "\
 Every channel that both files have is compared by name, in linear light (a .png is decoded from sRGB); \
 channels that only one has are named. Voids are NaN, or alpha 0: a void in both is masked and counted; \
-a void in one only is counted and is beyond every bound, given or not.
+a void in one only is counted and is beyond any bound, given or not.
+
+FLIP (Andersson et al. 2020) is how different two pictures look when one takes the other's place: 0 \
+nothing is seen, 1 the most there is. Its quartiles are weighted by the error itself: a quarter of all \
+error lies in pixels below the first.
 
 Exit status: 0 within all bounds, 1 beyond one (each is named with what was found) or failed, 2 wrong \
-usage.")]
+usage.
+
+  ridgelight compare new.exr old.exr --max-rmse 0.001 --max-worst 0.05 --diff off.exr
+  ridgelight compare new.png old.png --max-flip 0.02
+  ridgelight compare new.npy old.npy --horizons --max-p999-deg 2";
+
+#[derive(Args)]
+#[command(after_help = AFTER_HELP)]
 pub struct CompareArgs {
     /// The result: .exr, .png, .hdr or .npy
     #[arg(value_name = "A")]
@@ -17,8 +27,6 @@ pub struct CompareArgs {
     /// What it should be, of the same size
     #[arg(value_name = "B")]
     pub reference: PathBuf,
-    #[command(flatten)]
-    pub bounds: Bounds,
     /// Take values as elevations in radians and report degrees
     #[arg(long)]
     pub horizons: bool,
@@ -46,10 +54,12 @@ pub struct CompareArgs {
     /// Prints nothing but errors
     #[arg(long)]
     pub quiet: bool,
+    #[command(flatten)]
+    pub bounds: Bounds,
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Bounds, for the worst channel; 0 or more")]
+#[command(next_help_heading = "Bounds on every channel, each 0 or more")]
 pub struct Bounds {
     /// Largest RMSE relative to the mean of B (0.01 is 1 %)
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
@@ -66,13 +76,13 @@ pub struct Bounds {
     /// Largest mean FLIP of a picture (R, G and B, or Y), 0 (looks the same) to 1
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_flip: Option<f64>,
-    /// Largest median of |A - B|, degrees
+    /// With --horizons: largest median of |A - B|, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
     pub max_median_deg: Option<f64>,
-    /// Largest 99.9th percentile of |A - B|, degrees
+    /// With --horizons: largest 99.9th percentile of |A - B|, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
     pub max_p999_deg: Option<f64>,
-    /// Largest |A - B| of any horizon, degrees
+    /// With --horizons: largest |A - B| of any horizon, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true, requires = "horizons")]
     pub max_worst_deg: Option<f64>,
 }
