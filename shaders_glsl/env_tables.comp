@@ -12,7 +12,8 @@ layout(binding = 0) readonly buffer WedgeRows { vec4 wedge_rows[]; };
 layout(binding = 1, rgba32f) uniform writeonly image2DArray env_tables;
 
 layout(push_constant) uniform EnvTablesPush {
-    int height;
+    int height;        // rows from pole to pole
+    int rows;          // those in wedge_rows
     int nodes;
     int azimuth_count;
     float bottom_rad;  // elevation of node 0: 0, or -pi/2 where light may come from below
@@ -44,7 +45,7 @@ void main() {
             float row_bottom = HALF_PI - PI * float(row + 1) / float(height);
             float lower = max(row_bottom, elevation);
             float above_lower = moment_above(lower, vertical);
-            sum += wedge_rows[(k * height + min(row, height - 1)) * 3 + moment].rgb * (above_lower - above_upper);
+            sum += wedge_rows[(k * rows + min(row, rows - 1)) * 3 + moment].rgb * (above_lower - above_upper);
             upper = lower;
             above_upper = above_lower;
             row += row_bottom >= elevation ? 1 : 0;

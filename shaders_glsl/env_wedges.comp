@@ -15,14 +15,14 @@ layout(binding = 2) writeonly buffer WedgeRows { vec4 wedge_rows[]; };
 
 layout(push_constant) uniform EnvWedgesPush {
     int width;
-    int height;
+    int rows;          // of the environment, from the zenith down, that light arrives from
     float rotation_rad;
 };
 
 void main() {
     int row = int(gl_GlobalInvocationID.x);
     uint k = gl_GlobalInvocationID.y;
-    if (row >= height) {
+    if (row >= rows) {
         return;
     }
     Azimuth azimuth = azimuth_at(azimuths, k);
@@ -48,7 +48,7 @@ void main() {
         across += radiance * (sine(turn) * chord);
         plain += radiance * width_rad;
     }
-    uint place = (k * uint(height) + uint(row)) * 3u;
+    uint place = (k * uint(rows) + uint(row)) * 3u;
     // The mean direction of a wedge is its middle.
     vec2 centre = normalize(vec2(azimuth.wedge_cos, azimuth.wedge_sin));
     wedge_rows[place] = vec4(centre.x * along - centre.y * across, 0.0);

@@ -38,18 +38,19 @@ fn moment_above(elevation: f64, vertical: bool) -> f64 {
     if vertical { 0.5 * c * c } else { FRAC_PI_4 - 0.5 * elevation - 0.5 * s * c }
 }
 
-/// Tables from [`super::env_wedges::env_wedges`] of an environment of `height` rows.
+/// Tables from [`super::env_wedges::env_wedges`], for each of `azimuths` wedges, of an environment of
+/// `height` rows.
 ///
 /// # Panics
-/// When `nodes` is below 2.
+/// When `nodes` is below 2 or there is no azimuth.
 pub fn env_tables(
     wedge_rows: &[[DVec3; 3]],
-    height: usize,
+    (height, azimuths): (usize, usize),
     nodes: usize,
     bottom_rad: f64,
 ) -> EnvTables {
     assert!(nodes >= 2, "{nodes} nodes");
-    let azimuths = wedge_rows.len() / height;
+    let rows = wedge_rows.len() / azimuths;
     let mut texels = vec![DVec3::ZERO; azimuths * 3 * nodes];
     for k in 0..azimuths {
         for moment in 0..3 {
@@ -64,7 +65,7 @@ pub fn env_tables(
                     let row_bottom = FRAC_PI_2 - PI * (row + 1) as f64 / height as f64;
                     let lower = row_bottom.max(elevation);
                     let above_lower = moment_above(lower, vertical);
-                    let radiance = wedge_rows[k * height + row.min(height - 1)][moment];
+                    let radiance = wedge_rows[k * rows + row.min(rows - 1)][moment];
                     sum += radiance * (above_lower - above_upper);
                     upper = lower;
                     above_upper = above_lower;

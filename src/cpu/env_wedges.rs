@@ -1,7 +1,7 @@
 //! The environment summed over each azimuth's wedge, row by row: three azimuthal moments.
 
 use crate::plan::azimuths::Azimuth;
-use crate::scene::Environment;
+use crate::scene::{Border, Environment};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -37,8 +37,8 @@ pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3]
     [centre.x * along - centre.y * across, centre.y * along + centre.x * across, plain]
 }
 
-/// `wedge_rows` as `[azimuth][row][moment]`.
-pub fn env_wedges(env: &Environment, azimuths: &[Azimuth]) -> Vec<[DVec3; 3]> {
-    let rows = |a| (0..env.height()).map(move |row| wedge_row(env, a, row));
+/// `wedge_rows` as `[azimuth][row][moment]`, of the rows that light arrives from.
+pub fn env_wedges(env: &Environment, border: Border, azimuths: &[Azimuth]) -> Vec<[DVec3; 3]> {
+    let rows = |a| (0..env.rows_above_ground(border)).map(move |row| wedge_row(env, a, row));
     azimuths.iter().flat_map(rows).collect()
 }

@@ -1,11 +1,12 @@
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
-use crate::scene::Border;
+use crate::scene::{Border, Environment};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct EnvTablesPush {
     height: i32,
+    rows: i32,
     nodes: i32,
     azimuth_count: i32,
     bottom_rad: f32,
@@ -15,6 +16,7 @@ same_layout!(
     EnvTablesPush,
     env_tables_push,
     height = HEIGHT,
+    rows = ROWS,
     nodes = NODES,
     azimuth_count = AZIMUTH_COUNT,
     bottom_rad = BOTTOM_RAD,
@@ -23,14 +25,14 @@ same_layout!(
 /// What each azimuth's wedge gives above each elevation.
 pub(crate) fn plan(
     builder: &mut Builder,
-    border: Border,
-    height: u32,
+    (environment, border): (&Environment, Border),
     nodes: u32,
     azimuths: u32,
     [rows, tables]: [ResourceId; 2],
 ) {
     let bottom_rad = if border == Border::Open { -std::f32::consts::FRAC_PI_2 } else { 0.0 };
-    let words = u64::from(azimuths) * 3 * u64::from(height + nodes);
+    let rows_kept = environment.rows_above_ground(border) as u32;
+    let words = u64::from(azimuths) * 3 * u64::from(rows_kept + nodes);
     builder.pass(
         &shaders::ENV_TABLES,
         "",
@@ -38,7 +40,8 @@ pub(crate) fn plan(
         [1, azimuths.div_ceil(4), 1],
         &[],
         &EnvTablesPush {
-            height: height as i32,
+            height: environment.height() as i32,
+            rows: rows_kept as i32,
             nodes: nodes as i32,
             azimuth_count: azimuths as i32,
             bottom_rad,

@@ -51,7 +51,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
     let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes);
-    let tables = shining.environment.map(|e| Tables::make(&mut builder, e, quality));
+    let tables =
+        shining.environment.map(|e| Tables::make(&mut builder, (e, surface.border), quality));
     if tables.is_none() && shining.sky.is_some() {
         notes.push("no environment: no table".into());
     }
@@ -155,8 +156,13 @@ struct Tables {
 }
 
 impl Tables {
-    fn make(builder: &mut Builder, environment: &Environment, quality: &Quality) -> Self {
-        let rows_bytes = u64::from(quality.azimuths) * environment.height() as u64 * 48;
+    fn make(
+        builder: &mut Builder,
+        (environment, border): (&Environment, Border),
+        quality: &Quality,
+    ) -> Self {
+        let rows = environment.rows_above_ground(border) as u64;
+        let rows_bytes = u64::from(quality.azimuths) * rows * 48;
         let wedge_rows = builder.buffer("wedge_rows", rows_bytes, false);
         let extent = [quality.table_elevations, 3, quality.azimuths];
         let format = Format::Rgba32Float;
@@ -191,10 +197,11 @@ impl Drawing<'_> {
         let Tables { wedge_rows, tables } = *tables;
         let wedges = [image, self.sweeping.azimuths, wedge_rows];
         let (border, count) = (self.border(), quality.azimuths);
-        passes::env_wedges::plan(&mut self.builder, e, count, wedges);
-        let (height, nodes) = (e.height() as u32, quality.table_elevations);
+        let seen = (e, border);
+        passes::env_wedges::plan(&mut self.builder, seen, count, wedges);
+        let nodes = quality.table_elevations;
         let ids = [wedge_rows, tables];
-        passes::env_tables::plan(&mut self.builder, border, height, nodes, count, ids);
+        passes::env_tables::plan(&mut self.builder, seen, nodes, count, ids);
     }
 
     fn sky_and_environment(&mut self, lists: &Lists) {

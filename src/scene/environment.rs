@@ -1,3 +1,4 @@
+use super::Border;
 use crate::{Error, Result};
 
 /// Radiance from infinity as an equirectangular (latitude-longitude) image, linear RGB.
@@ -68,5 +69,14 @@ impl Environment {
     /// Counter-clockwise turn about the vertical, radians.
     pub fn rotation_rad(&self) -> f64 {
         self.rotation_rad
+    }
+
+    /// Rows that light arrives from, from the zenith down: those above horizontal, in part or whole,
+    /// unless the border is `open`.
+    pub fn rows_above_ground(&self, border: Border) -> usize {
+        match border {
+            Border::Open => self.height(),
+            Border::Plane | Border::Periodic => self.height().div_ceil(2),
+        }
     }
 }

@@ -6,6 +6,7 @@ mod change;
 mod contract;
 mod extremes;
 mod forms;
+mod pruned;
 mod real;
 mod twins;
 

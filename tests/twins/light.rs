@@ -143,7 +143,8 @@ fn environments() -> Vec<Environment> {
 }
 
 fn tables(env: &Environment, azimuths: &[Azimuth], nodes: usize, border: Border) -> EnvTables {
-    env_tables(&env_wedges(env, azimuths), env.height(), nodes, bottom_rad(border))
+    let rows = env_wedges(env, border, azimuths);
+    env_tables(&rows, (env.height(), azimuths.len()), nodes, bottom_rad(border))
 }
 
 /// All wedges together are the whole circle, wherever they part: the tables' sums over azimuths are

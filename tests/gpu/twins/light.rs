@@ -42,11 +42,12 @@ pub(super) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = wedge_rows(run, pass);
     let environment = run.scene.lights.environment.as_ref().expect("an environment");
     let azimuths = &run.plan.azimuths[..pass.groups[1] as usize];
-    let want = wedges_twin::env_wedges(environment, azimuths);
+    let want = wedges_twin::env_wedges(environment, run.scene.surface.border, azimuths);
     assert_eq!(got.len(), want.len());
+    let rows = got.len() / azimuths.len();
     let mut pairs = Vec::new();
     for (i, (got, want)) in got.iter().zip(&want).enumerate() {
-        let (k, row) = (i / environment.height(), i % environment.height());
+        let (k, row) = (i / rows, i % rows);
         let wedge = f64::from(azimuths[k].wedge_rad);
         let columns = wedge / std::f64::consts::TAU * environment.width() as f64 + 2.0;
         let tolerance = twin_wedge_row(brightest(environment), wedge, columns);
@@ -72,7 +73,8 @@ pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let rows = wedge_rows(run, pass);
     let got = device_tables(run, pass);
     let height = pushed(pass, offsets::env_tables_push::HEIGHT) as usize;
-    let want = tables_twin::env_tables(&rows, height, got.nodes, got.bottom_rad);
+    let azimuths = pushed(pass, offsets::env_tables_push::AZIMUTH_COUNT) as usize;
+    let want = tables_twin::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
     assert_eq!(got.texels.len(), want.texels.len());
     let largest = rows.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs().max_element()));
     let tolerance = twin_table(largest, height as f64, got.nodes as f64);

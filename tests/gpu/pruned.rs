@@ -1,0 +1,168 @@
+//! What a scene cannot show is not in its plan, and forcing it back changes nothing.
+
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Kind, Limits, Picture, Plan};
+use ridgelight::scene::{Border, Environment, HeightField, Lights, Quality, Scene, Sun, Surface};
+
+use crate::{Device, random};
+
+fn scene(lights: Lights) -> Scene {
+    let field = fractal(64, 4).expect("a field");
+    Scene { field, surface: Surface::default(), lights }
+}
+
+fn sky(radiance: [f32; 3]) -> Lights {
+    Lights { sky: Some(radiance), ..Lights::default() }
+}
+
+fn quality() -> Quality {
+    Quality { azimuths: 8, table_elevations: 512, ..Quality::default() }
+}
+
+fn planned(scene: &Scene) -> Plan {
+    let limits = Limits::lavapipe();
+    plan::picture(scene, &quality(), &limits, Picture::default()).expect("a plan")
+}
+
+fn names(plan: &Plan) -> Vec<&str> {
+    plan.passes.iter().map(|p| p.name()).collect()
+}
+
+fn noise(seed: u64, height: usize) -> Vec<[f32; 3]> {
+    let mut next = random(seed);
+    (0..2 * height * height).map(|_| [next() as f32, next() as f32, next() as f32]).collect()
+}
+
+fn environment(texels: Vec<[f32; 3]>, height: usize) -> Environment {
+    Environment::new(2 * height, height, texels, 0.0).expect("an environment")
+}
+
+/// Grey lights on grey ground take one channel; a colour so near grey that it is the same number in
+/// 24 bits but one takes three, and gives the same picture.
+#[test]
+fn grey_is_one_channel() {
+    let grey = scene(sky([1.0; 3]));
+    let nearly = scene(sky([1.0, 1.0, 1.0 + f32::EPSILON]));
+    let bytes = |s: &Scene| {
+        let plan = planned(s);
+        plan.outputs().map(|(_, r)| r.bytes()).sum::<u64>()
+    };
+    assert_eq!(bytes(&nearly), 4 * bytes(&grey));
+    let mut gpu = Device::new();
+    let one = gpu.picture(&grey, &quality());
+    let four = gpu.picture(&nearly, &quality());
+    assert_eq!((one.channels, four.channels), (1, 4));
+    for (one, four) in one.values.iter().zip(four.values.chunks_exact(4)) {
+        assert_eq!((four[0], four[1]), (*one, *one));
+        assert!((four[2] - one).abs() <= 2.0 * f32::EPSILON * one);
+    }
+}
+
+/// A uniform sky needs no environment and no table. The same sky as an environment goes through one:
+/// its nodes hold cos² and sin cos integrals, and between two of them, Δ = (π/2)/511 apart, a line
+/// errs by at most Δ²/8 of the integrand's largest slope, 1: 1.2e-6, times π of azimuth over π.
+#[test]
+fn a_uniform_sky_has_no_table() {
+    let plain = scene(sky([0.5, 0.6, 0.7]));
+    assert!(names(&planned(&plain)).iter().all(|n| !n.starts_with("env_")));
+    assert!(planned(&plain).find("env_tables").is_none());
+    let all = vec![[0.5, 0.6, 0.7]; 2 * 32 * 32];
+    let through_table = scene(Lights {
+        environment: Some(environment(all, 32)),
+        ..Lights::default()
+    });
+    let mut gpu = Device::new();
+    let a = gpu.picture(&plain, &quality()).values;
+    let b = gpu.picture(&through_table, &quality()).values;
+    let step = std::f32::consts::FRAC_PI_2 / 511.0;
+    // Sums of 8 azimuths of f32 terms of order 1 on either side.
+    let tolerance = step * step / 8.0 * 2.0 + 64.0 * f32::EPSILON;
+    for (a, b) in a.iter().zip(&b) {
+        assert!((a - b).abs() <= tolerance, "{a} {b}");
+    }
+}
+
+/// A sun alone sweeps its own azimuths. A sky that is all but black brings the circle back, and
+/// nothing else.
+#[test]
+fn a_sun_alone_sweeps_its_own_azimuths() {
+    let sun = Sun {
+        azimuth_rad: 0.7,
+        elevation_rad: 0.3,
+        diameter_rad: 0.0,
+        irradiance: [2.0; 3],
+    };
+    let alone = scene(Lights { suns: vec![sun], ..Lights::default() });
+    let with_sky = scene(Lights { suns: vec![sun], ..sky([1e-30; 3]) });
+    assert_eq!(planned(&alone).azimuths.len(), 1);
+    assert_eq!(planned(&with_sky).azimuths.len(), 9);
+    assert!(!names(&planned(&alone)).contains(&"sky_shade"));
+    let mut gpu = Device::new();
+    let a = gpu.picture(&alone, &quality()).values;
+    let b = gpu.picture(&with_sky, &quality()).values;
+    assert!(a.iter().any(|v| *v > 0.0) && a == b);
+}
+
+/// Environment rows below horizontal are seen by no sample on a plane: they are not summed, and what
+/// they hold does not show, to the bit. Under an open border they are, and it does.
+#[test]
+fn environment_rows_below_any_horizon_are_left_out() {
+    let mut gpu = Device::new();
+    for height in [16, 17] {
+        let bright = noise(3, height);
+        let mut dark_below = bright.clone();
+        // The middle row of an odd number lies on both sides of horizontal.
+        dark_below[height.div_ceil(2) * 2 * height..].fill([0.0; 3]);
+        let lit = |texels: &[[f32; 3]], border| {
+            let mut scene = scene(Lights {
+                environment: Some(environment(texels.to_vec(), height)),
+                ..Lights::default()
+            });
+            scene.surface.border = border;
+            scene
+        };
+        let rows = |border| {
+            let plan = planned(&lit(&bright, border));
+            let wedges = plan.find("wedge_rows").expect("wedges");
+            match plan.resources[wedges.0].kind {
+                Kind::Buffer { bytes, .. } => bytes / 48 / 8,
+                Kind::Image { .. } => unreachable!("a buffer"),
+            }
+        };
+        assert_eq!(rows(Border::Plane), height.div_ceil(2) as u64);
+        assert_eq!(rows(Border::Periodic), height.div_ceil(2) as u64);
+        assert_eq!(rows(Border::Open), height as u64);
+        for (border, shows) in [(Border::Plane, false), (Border::Open, true)] {
+            let a = gpu.picture(&lit(&bright, border), &quality()).values;
+            let b = gpu.picture(&lit(&dark_below, border), &quality()).values;
+            assert_eq!(a != b, shows, "{border:?}, {height} rows");
+        }
+    }
+}
+
+/// Lights of radiance 0 have no pass, and a field lit by one that shines is as if they were not there.
+#[test]
+fn lights_that_do_not_shine_have_no_pass() {
+    let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.0, irradiance: [0.0; 3] };
+    let dark = scene(Lights { suns: vec![sun], ..sky([1.0; 3]) });
+    assert!(!names(&planned(&dark)).contains(&"sun_shade"));
+    let mut gpu = Device::new();
+    let a = gpu.picture(&dark, &quality()).values;
+    assert!(a == gpu.picture(&scene(sky([1.0; 3])), &quality()).values);
+}
+
+/// A field of one height has no horizon above horizontal anywhere: nothing hides the sky.
+#[test]
+fn a_level_field_is_not_swept() {
+    let level = HeightField::new(40, 50, &[7.0; 2000], [1.0, 2.0], None).expect("a field");
+    let sun = Sun { azimuth_rad: 0.7, elevation_rad: 0.3, diameter_rad: 0.1, irradiance: [2.0; 3] };
+    let lights = Lights { suns: vec![sun], ..sky([0.5, 0.6, 0.7]) };
+    let still = Scene { field: level, surface: Surface::default(), lights };
+    let limits = Limits::lavapipe();
+    let wanted = Picture { still: true, ..Picture::default() };
+    let plan = plan::picture(&still, &quality(), &limits, wanted).expect("a plan");
+    assert!(!names(&plan).contains(&"horizon_sweep"), "{:?}", names(&plan));
+    let mut gpu = Device::new();
+    let without = gpu.draw(plan, &[still.field.heights_m()]).remove(0).values;
+    assert!(without == gpu.picture(&still, &quality()).values);
+}
