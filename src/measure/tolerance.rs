@@ -191,6 +191,18 @@ impl ShadeError {
         brightest * (3.5 * place + 5.5 * self.normal + rest)
     }
 
+    /// The environment's sum of at most `brightest`, from an image of `columns` × `rows` by tables of `nodes`
+    /// made on the device.
+    ///
+    /// As [`environment`](Self::environment); and three components of every table, √3 at most, that err
+    /// themselves and by their rows, over moments of at most π/2, over π.
+    pub fn whole_environment(&self, brightest: f64, [columns, rows, nodes]: [f64; 3]) -> f64 {
+        let wedge = std::f64::consts::TAU / self.count;
+        let row = twin_wedge_row(brightest, wedge, columns / self.count + 2.0);
+        let table = twin_table(brightest * wedge, rows, nodes) + 0.5 * row;
+        self.environment(brightest) + 3.0_f64.sqrt() * self.count * table
+    }
+
     /// `sun_shade`, of slices whose weights sum to `weights`, where both agree on what is lit.
     ///
     /// As [`sky`](Self::sky), between two slopes, with weights over π instead of wedges.
@@ -208,4 +220,9 @@ impl ShadeError {
 /// `light_resolve` from given sums: two products a light, and a sum for each of `lights`.
 pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
     (2.0 + lights as f64) * EPSILON * radiance.abs()
+}
+
+/// Two devices: each as far from the twin as it may be, on either side.
+pub fn two_devices(twin: f64) -> f64 {
+    2.0 * twin
 }

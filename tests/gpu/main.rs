@@ -3,8 +3,10 @@
 
 mod analytic;
 mod contract;
+mod embedding;
 mod extremes;
 mod forms;
+mod goldens;
 mod real;
 mod twins;
 
