@@ -14,9 +14,13 @@ pub(crate) fn plan(
     batch: &Batch,
     part: &str,
     is_point: bool,
-    [lane_heights, lattice, azimuths, sun_sum]: [ResourceId; 4],
+    lattice: Option<ResourceId>,
+    [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
+    let mut bound =
+        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
+    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     builder.pass(
         &shaders::SUN_SHADE,
         part,
@@ -35,12 +39,7 @@ pub(crate) fn plan(
             (5, u32::from(axis.marches_rows)),
         ],
         &ShadePush::of(batch, cell_m),
-        &[
-            ("lane_heights", lane_heights),
-            (sweep.lattice_binding(), lattice),
-            ("azimuths", azimuths),
-            ("sun_sum", sun_sum),
-        ],
+        &bound,
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );

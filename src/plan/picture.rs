@@ -18,6 +18,8 @@ pub struct Picture {
     /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
     /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
     pub keeps_horizons: bool,
+    /// The heights will stay those of the scene: what these cannot show is left out.
+    pub still: bool,
 }
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
@@ -37,7 +39,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let size = check_size(field, limits)?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, wanted, &mut notes)?;
-    let sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
+        notes.push("no sweep: nothing rises above anything else, the field is concave".into());
+        sweep = Sweep::Crossings;
+    }
     if matches!(sweep, Sweep::Surface { .. }) && !shining.suns.is_empty() {
         return Err(Error::setting(
             "--lines exact with --sun",
@@ -246,10 +252,11 @@ impl Drawing<'_> {
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
                 sweeping.record(builder, batch, &part);
                 let lanes = sweeping.lane_heights(batch);
-                let ids = [lanes, sweeping.lattice(batch), sweeping.azimuths, sum];
+                let ids = [lanes, sweeping.azimuths, sum];
+                let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, is_point, ids,
+                    builder, sweep, border, cell_m, batch, &part, is_point, lattice, ids,
                 );
             }
             self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);

@@ -37,9 +37,13 @@ impl Sweeping {
     }
 
     /// What a batch's sweep leaves for the samples: slopes where they are stored, else occluders.
-    pub fn lattice(&self, batch: &Batch) -> ResourceId {
+    pub fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
         let lattice = self.lattice_of(batch);
-        lattice.slopes.or(lattice.occluders).expect("a sweep stores something")
+        lattice.slopes.or(lattice.occluders)
+    }
+
+    fn written(&self, batch: &Batch) -> ResourceId {
+        self.lattice(batch).expect("a sweep stores something")
     }
 
     pub fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
@@ -56,12 +60,13 @@ impl Sweeping {
                 };
                 passes::horizon_sweep::plan(builder, lines, batch, part, &images);
             }
+            Sweep::Crossings => {}
             Sweep::Surface { hull_depth, distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice(batch)];
+                let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
             }
             Sweep::March { distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice(batch)];
+                let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::horizon_march::plan(builder, batch, part, *distances, ids);
             }
         }
@@ -96,6 +101,7 @@ impl LatticeShape {
                 width: 8,
                 height: used().map(|a| a.steps + a.warm_up).max().unwrap_or(1),
             },
+            Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
             Sweep::Surface { .. } | Sweep::March { .. } => Self {
                 occluders: None,
                 slopes: Some(Format::R32Uint),
@@ -241,6 +247,7 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
             add("method", "sweep".into());
             add("lines", "exact".into());
         }
+        Sweep::Crossings => add("method", "first crossings".into()),
         Sweep::March { .. } => add("method", "brute".into()),
     }
     all

@@ -4,8 +4,10 @@
 mod analytic;
 mod change;
 mod contract;
+mod embedding;
 mod extremes;
 mod forms;
+mod goldens;
 mod pruned;
 mod real;
 mod twins;

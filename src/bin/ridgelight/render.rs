@@ -46,6 +46,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let wanted = Picture {
         light_layers: args.layers.contains(&Layer::Lights),
         sky_view: args.layers.contains(&Layer::SkyView),
+        still: true,
         ..Picture::default()
     };
     let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
