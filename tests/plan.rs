@@ -180,7 +180,7 @@ fn long_and_thin() {
         | horizon_sweep sky 0+2 1×1×2
         | horizon_sweep sky 0+2 again 1×1×2
         | sky_shade sky 0+2 1024×1×1
-        | horizon_sweep sky 2+2 256×1×2
+          horizon_sweep sky 2+2 256×1×2
         | horizon_sweep sky 2+2 again 256×1×2
         | sky_shade sky 2+2 1×128×1
         | light_resolve sky 1024×1×1
@@ -188,8 +188,10 @@ fn long_and_thin() {
         azimuths 256
         lane_heights_cols 1×8191×1
         lane_heights_rows 2048×3×1
-        lattice_occluders 8×8191×512
-        lost_lines 16384
+        lattice_occluders 8×8191×2
+        lost_lines 64
+        lattice_occluders_across 8×3×512
+        lost_lines_across 16384
         ",
     );
     is(
@@ -200,7 +202,7 @@ fn long_and_thin() {
         | horizon_sweep sky 0+2 256×1×2
         | horizon_sweep sky 0+2 again 256×1×2
         | sky_shade sky 0+2 1×128×1
-        | horizon_sweep sky 2+2 1×1×2
+          horizon_sweep sky 2+2 1×1×2
         | horizon_sweep sky 2+2 again 1×1×2
         | sky_shade sky 2+2 1024×1×1
         | light_resolve sky 1×1024×1
@@ -208,8 +210,10 @@ fn long_and_thin() {
         azimuths 256
         lane_heights_cols 2048×3×1
         lane_heights_rows 1×8191×1
-        lattice_occluders 8×8191×512
+        lattice_occluders 8×3×512
         lost_lines 16384
+        lattice_occluders_across 8×8191×2
+        lost_lines_across 64
         ",
     );
 }
