@@ -26,7 +26,7 @@ fn plane<'a>(planes: &'a Planes, name: &str) -> &'a [f32] {
 }
 
 /// A square field of f32 heights, unit cells.
-fn write_field(folder: &Folder, side: usize, height: impl Fn(usize, usize) -> f32) {
+pub fn write_field(folder: &Folder, side: usize, height: impl Fn(usize, usize) -> f32) {
     let data: Vec<u8> =
         (0..side * side).flat_map(|i| height(i / side, i % side).to_le_bytes()).collect();
     folder.write("field.npy", &npy("<f4", false, &format!("({side}, {side})"), &data));
