@@ -32,10 +32,9 @@ fn end_cleanly_on_signals() {
         let _ = writeln!(std::io::stderr(), "ridgelight: interrupted");
         std::process::exit(INTERRUPTED);
     };
-    if let Err(error) = ctrlc::set_handler(end) {
-        // Nothing but tidiness is lost.
-        let _ = writeln!(std::io::stderr(), "ridgelight: signals are not handled: {error}");
-    }
+    // Where one of the signals is ignored (nohup, jobs in the background of a script) it stays so,
+    // and the others do what they do by default: no more than tidiness is lost.
+    let _ = ctrlc::try_set_handler(end);
 }
 
 fn main() -> ExitCode {
