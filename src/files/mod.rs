@@ -24,7 +24,7 @@ mod planes;
 mod png;
 mod tif;
 
-pub use atomic::{check_writable, write_json, write_text};
+pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
 pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};

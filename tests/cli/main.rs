@@ -8,6 +8,7 @@ mod flags;
 mod inputs;
 mod needs_vulkan;
 mod plan;
+mod signals;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -86,7 +86,7 @@ pub struct HorizonArgs {
     #[arg(long, value_name = "OUT.npy")]
     pub distances: Option<PathBuf>,
     #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub surface: FieldArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]
@@ -191,8 +191,23 @@ pub struct LightArgs {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Surface")]
 pub struct SurfaceArgs {
+    #[command(flatten)]
+    pub field: FieldArgs,
+    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
+    #[arg(
+        long,
+        value_name = "VALUE|FILE",
+        default_value = "1",
+        allow_negative_numbers = true,
+        help_heading = "Surface"
+    )]
+    pub albedo: String,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Surface")]
+pub struct FieldArgs {
     /// Spacing of columns and of rows in the heights' unit (metres), where the file has none or a
     /// wrong one. Default the file's, else 1
     #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true)]
@@ -200,9 +215,6 @@ pub struct SurfaceArgs {
     /// Multiplies heights; not 0
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub z_scale: f64,
-    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
-    #[arg(long, value_name = "VALUE|FILE", default_value = "1", allow_negative_numbers = true)]
-    pub albedo: String,
     /// Beyond the edge: the ground goes on level (plane), nothing (open), the field repeats (periodic)
     #[arg(long, default_value = "plane")]
     pub border: BorderName,

@@ -22,6 +22,21 @@ use clap::Parser as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
+/// What shells report of a command that Ctrl-C ended.
+const INTERRUPTED: i32 = 130;
+
+/// Leaves no unfinished file behind when the user, the terminal or the system asks to end.
+fn end_cleanly_on_signals() {
+    let end = || {
+        ridgelight::files::abandon_unfinished();
+        let _ = writeln!(std::io::stderr(), "ridgelight: interrupted");
+        std::process::exit(INTERRUPTED);
+    };
+    // Where one of the signals is ignored (nohup, jobs in the background of a script) it stays so,
+    // and the others do what they do by default: no more than tidiness is lost.
+    let _ = ctrlc::try_set_handler(end);
+}
+
 fn main() -> ExitCode {
     let command = match args::Cli::try_parse() {
         Ok(cli) => cli.command,
@@ -31,6 +46,7 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    end_cleanly_on_signals();
     let done = match &command {
         args::Command::Render(args) => render::run(args),
         args::Command::Horizon(args) => horizon::run(args),
