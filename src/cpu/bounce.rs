@@ -19,7 +19,7 @@
 //! second order in the triangles' size where light is smooth, first along shadows' edges; second
 //! order in the step between azimuths. [`truth`] measures both by halving both.
 
-use super::light::{Receiver, environment_on, normal, sun_on};
+use super::light::{Receiver, Slice, environment_on, normal, sun_on};
 use super::oracle::Oracle;
 use super::profile::Stretch;
 use super::sphere::sphere_on;
@@ -230,49 +230,51 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
 /// radiance all around arrives as it is, and none is gained.
 fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: usize) -> Vec<Seen> {
     let corners = corner_count(oracle);
-    let mut weights = vec![vec![0.0; corners]; receivers.len()];
-    let mut skies = vec![0.0; receivers.len()];
+    let mut dense = vec![vec![0.0; corners]; receivers.len()];
+    let mut all = vec![Seen::default(); receivers.len()];
     let mut totals = vec![0.0; receivers.len()];
     let mut seen = Vec::new();
     for k in 0..azimuths {
         let azimuth = TAU * (k as f64 + 0.5) / azimuths as f64;
         oracle.stretches(here[0], here[1], azimuth, &mut seen);
-        let met = seen.last().map_or(-FRAC_PI_2, |last: &Stretch| last.high_rad);
+        let met = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         let horizon = if oracle.border() == Border::Open { met } else { met.max(0.0) };
         for (i, receiver) in receivers.iter().enumerate() {
             let slice = receiver.slice(azimuth);
-            skies[i] += slice.light(horizon, FRAC_PI_2);
+            all[i].sky += slice.light(horizon, FRAC_PI_2);
             totals[i] += slice.light(-FRAC_PI_2, FRAC_PI_2);
             for stretch in &seen {
-                let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
-                let weight = slice.light(low, high);
+                let weight = slice.light(stretch.low_rad, stretch.high_rad);
                 if weight > 0.0 {
-                    let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
-                    let [(near, f), (far, g)] = [middle - off, middle + off]
-                        .map(|w| (stretch.distance_m(w), w.cos() * slice.at(w)));
-                    let both = f + g;
-                    let mean =
-                        if both > 0.0 { (f * near + g * far) / both } else { 0.5 * (near + far) };
-                    let shares = stretch.corner_weights(mean);
-                    for (j, share) in shares.into_iter().enumerate() {
-                        weights[i][3 * stretch.triangle + j] += weight * share;
+                    let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
+                    for (j, share) in shares.into_iter().enumerate().filter(|(_, s)| *s > 0.0) {
+                        let corner = 3 * stretch.triangle + j;
+                        if dense[i][corner] == 0.0 {
+                            all[i].corners.push(corner as u32);
+                        }
+                        dense[i][corner] += weight * share;
                     }
                 }
             }
         }
     }
-    let scale = 2.0 / azimuths as f64;
-    (0..receivers.len())
-        .map(|i| {
-            let scale = if receivers[i].lobe.is_none() { 1.0 / totals[i] } else { scale };
-            let met = (0..corners).filter(|c| weights[i][*c] != 0.0);
-            Seen {
-                weights: met.clone().map(|c| scale * weights[i][c]).collect(),
-                corners: met.map(|c| c as u32).collect(),
-                sky: scale * skies[i],
-            }
-        })
-        .collect()
+    for (i, seen) in all.iter_mut().enumerate() {
+        let lobe = receivers[i].lobe.is_some();
+        let scale = if lobe { 2.0 / azimuths as f64 } else { 1.0 / totals[i] };
+        seen.weights = seen.corners.iter().map(|c| scale * dense[i][*c as usize]).collect();
+        seen.sky *= scale;
+    }
+    all
+}
+
+/// Where on a stretch its mean radiance is found, radiance being linear in the distance: the distance
+/// averaged by Gauss' rule of two points over the elevations above the slice's plane.
+fn mean_distance_m(slice: &Slice, stretch: &Stretch) -> f64 {
+    let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
+    let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
+    let [(near, f), (far, g)] =
+        [middle - off, middle + off].map(|w| (stretch.distance_m(w), w.cos() * slice.at(w)));
+    if f + g > 0.0 { (f * near + g * far) / (f + g) } else { 0.5 * (near + far) }
 }
 
 /// Light straight from its sources at each receiver of a sample, for albedo 1.

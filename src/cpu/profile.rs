@@ -89,7 +89,8 @@ impl Oracle<'_> {
         let per_line = [cols_per_m, rows_per_m, rows_per_m - cols_per_m].map(|p| 1.0 / p.abs());
         let mut lines = [1.0; 3];
         let (mut near, mut best) = (0.0, f64::NEG_INFINITY);
-        while !(periodic && near > cap_m) && !(near > 0.0 && (self.highest_m - own_m) / near <= best)
+        while !(periodic && near > cap_m)
+            && !(near > 0.0 && (self.highest_m - own_m) / near <= best)
         {
             let crossings = [0, 1, 2].map(|i| lines[i] * per_line[i]);
             let far = crossings.into_iter().fold(f64::INFINITY, f64::min);
@@ -110,7 +111,11 @@ impl Oracle<'_> {
             }
             let lower = r - cell_r > c - cell_c;
             let along = |down: f64, right: f64| {
-                if lower { [1.0 - down, down - right, right] } else { [1.0 - right, right - down, down] }
+                if lower {
+                    [1.0 - down, down - right, right]
+                } else {
+                    [1.0 - right, right - down, down]
+                }
             };
             let at_0 = along(row - cell_r, col - cell_c);
             let ahead = along(rows_per_m, cols_per_m);
@@ -123,8 +128,9 @@ impl Oracle<'_> {
             let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - own_m };
             let top = slope + rise_m / far;
             if top > best {
+                // The surface is continuous: no piece begins above the largest slope before it.
                 seen.push(Stretch {
-                    low_rad: best.max(slope + rise_m / near.max(f64::MIN_POSITIVE)).atan(),
+                    low_rad: seen.last().map_or(-FRAC_PI_2, |last| last.high_rad),
                     high_rad: top.atan(),
                     triangle,
                     rise_m,
@@ -132,9 +138,6 @@ impl Oracle<'_> {
                     span_m: [near, far],
                     weights: [at_0, per_m],
                 });
-                if near == 0.0 {
-                    seen[0].low_rad = -FRAC_PI_2;
-                }
                 best = top;
             }
             near = far;

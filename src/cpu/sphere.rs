@@ -54,7 +54,8 @@ pub fn sphere_on(
         let visible = disc.visible(&seen);
         for (receiver, sum) in receivers.iter().zip(&mut sums) {
             let slice = receiver.slice(azimuth);
-            *sum += visible.iter().map(|[low, high]| weight * slice.light(*low, *high)).sum::<f64>();
+            *sum +=
+                visible.iter().map(|[low, high]| weight * slice.light(*low, *high)).sum::<f64>();
         }
     }
     sums.iter().map(|s| s / PI).collect()
