@@ -4,7 +4,10 @@ mod energy;
 mod grooves;
 mod pits;
 mod profile;
+#[path = "../scenes/mod.rs"]
+mod scenes;
 mod sources;
+mod table;
 
 use ridgelight::cpu::bounce::{Fineness, Picture, light};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
