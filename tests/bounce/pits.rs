@@ -85,7 +85,7 @@ fn a_pit_is_lit_as_its_closed_form() {
                 ((i / side) as f64 - middle).hypot((i % side) as f64 - middle)
             };
             let scene = under_sky(field, Border::Plane, albedo);
-            let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
+            let fineness = Fineness { azimuths: 24, divisions: 1, strips: 1 };
             let pictures = reds(&scene, limit, fineness);
             let inside: Vec<usize> = (0..side * side).filter(|i| away(*i) < rim - 0.01).collect();
             // No place can gain more than all it does not see.
