@@ -113,8 +113,7 @@ impl Search {
         if let Some(place) = alone.min_by_key(|&i| self.distance(i, self.start)) {
             return Some(place);
         }
-        let merit = |i: usize| self.merit(&self.predicted(i));
-        let scored = open.into_iter().map(|i| (merit(i), i));
+        let scored = open.into_iter().map(|i| (self.merit(i), i));
         scored.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, i)| i)
     }
 
@@ -209,10 +208,11 @@ impl Search {
         Value { cost, error }
     }
 
-    /// How far a value lies beyond the frontier: the natural logarithm of the factor by which every
-    /// point of it would have to be better, in cost or in error, to cover it. Below 0: covered.
-    fn merit(&self, value: &Value) -> f64 {
-        let [cost, error] = value.logs();
+    /// How far a place is expected to lie beyond the frontier: the natural logarithm of the factor by
+    /// which some point of it would have to be better, in cost or in error, to cover it. Below 0:
+    /// covered.
+    pub fn merit(&self, place: usize) -> f64 {
+        let [cost, error] = self.predicted(place).logs();
         let past = |i: &usize| {
             let [c, e] = self.values[*i].map_or([f64::INFINITY; 2], |v| v.logs());
             (c - cost).max(e - error)

@@ -170,7 +170,7 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
 }
 
 /// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
-fn piece(scene: &Scene) -> Result<Scene> {
+pub fn piece(scene: &Scene) -> Result<Scene> {
     let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
     if rows <= WHOLE && cols <= WHOLE {
