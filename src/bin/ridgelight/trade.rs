@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use ridgelight::files;
 use ridgelight::gpu::Frame;
+use ridgelight::measure::statistics::Summary;
 use ridgelight::measure::trade::{Knob, Place, Rule, Search, knobs, places, recommend};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Lines, Method, Quality};
@@ -64,6 +65,11 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let places = places(&knobs, &start);
     let walk = walk(&mut rig, &truth, (&knobs, &places), &start, &bar)?;
     bar.finish_and_clear();
+    // In the units of the walk's costs, frames of the baseline.
+    let rule = match rule {
+        Rule::MaxCost(ns) => Rule::MaxCost(ns / walk.baseline_ns()),
+        other => other,
+    };
     let values: Vec<_> = walk.points.iter().filter_map(|p| walk.search.value(p.place)).collect();
     let Some(recommended) = recommend(&values, rule) else {
         return Err(Error::Device {
@@ -167,6 +173,20 @@ pub struct Walk {
     pub out_of_time: bool,
 }
 
+impl Walk {
+    /// Median nanoseconds of the baseline's frame over the whole run: the unit of costs.
+    pub fn baseline_ns(&self) -> f64 {
+        self.drift().map_or(0.0, |s| s.median)
+    }
+
+    /// The baseline's frame through the run, nanoseconds.
+    pub fn drift(&self) -> Option<Summary> {
+        let all: Vec<f64> =
+            self.points.iter().flat_map(|p| p.baseline_ns.iter().copied()).collect();
+        Summary::of(&all)
+    }
+}
+
 fn walk(
     rig: &mut Rig,
     truth: &Truth,
@@ -245,7 +265,7 @@ fn visit(
             return Ok(());
         }
     }
-    let (mut point, frame) = match point::measure(rig, truth, place, quality) {
+    let (point, frame) = match point::measure(rig, truth, place, quality, baseline.as_mut()) {
         Ok(measured) => measured,
         Err(error @ Error::Device { .. }) if baseline.is_some() => {
             give_up(walk, error.to_string(), false);
@@ -254,19 +274,8 @@ fn visit(
         Err(error) => return Err(error),
     };
     match baseline {
-        None => {
-            point.baseline_ns = Some(point.total_ns.median);
-            *baseline = Some(frame);
-        }
-        Some(kept) => {
-            rig.gpu.end(frame);
-            let first = walk.points[0].total_ns.median * 1e-9;
-            // A baseline that is long itself is drawn where it takes a tenth of what is left.
-            if 10.0 * first < rig.left() {
-                let again: f64 = rig.gpu.draw(kept)?.iter().map(|t| t.ns).sum();
-                point.baseline_ns = Some(again);
-            }
-        }
+        None => *baseline = Some(frame),
+        Some(_) => rig.gpu.end(frame),
     }
     walk.search.measured(place, point.value());
     walk.points.push(point);
@@ -288,7 +297,7 @@ fn expected_s(
     slow: &mut Vec<((Method, Lines), f64)>,
 ) -> Result<f64> {
     if quality.method != Method::Brute && quality.lines != Lines::Exact {
-        return Ok(walk.search.predicted(place).cost * 1e-9);
+        return Ok(walk.search.predicted(place).cost * walk.baseline_ns() * 1e-9);
     }
     let form = match quality.method {
         Method::Brute => (Method::Brute, Lines::Exact),

@@ -28,8 +28,7 @@ pub fn page(report: &Report) -> String {
         format!("{held}<ul>{}</ul>", lines(breaks))
     };
     let recommended = report.recommended();
-    let headline =
-        format!("{}, {}", ms(recommended.total_ns.median), report.error_text(recommended));
+    let headline = format!("{}, {}", report.time_text(recommended), report.error_text(recommended));
     let why = report.why().iter().map(|l| format!("<p>{}\n", escaped(l))).collect::<String>();
     let text = |text: String| escaped(&text);
     filled(
@@ -89,7 +88,7 @@ fn cards(report: &Report) -> String {
             if is_it { " class=best" } else { "" },
             picture(&pictures.light, &flags),
             picture(&pictures.difference, &format!("difference of {flags}")),
-            escaped(&ms(point.total_ns.median)),
+            escaped(&report.time_text(point)),
             escaped(&report.error_text(point)),
             escaped(&flags),
             escaped(&percent(pictures.scale)),
@@ -101,7 +100,7 @@ fn cards(report: &Report) -> String {
 fn rows(report: &Report) -> String {
     let front = report.walk.search.frontier();
     let mut points: Vec<&Point> = report.walk.points.iter().collect();
-    points.sort_by(|a, b| a.total_ns.median.total_cmp(&b.total_ns.median));
+    points.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
     let row = |p: &&Point| {
         let kind = match (p.place == report.recommended().place, front.contains(&p.place)) {
             (true, _) => "best",
@@ -112,15 +111,15 @@ fn rows(report: &Report) -> String {
         let passes: Vec<String> =
             p.passes.iter().map(|(name, ns)| format!("{name}: {}", ms(*ns))).collect();
         let cells = [
-            ms(t.median),
-            format!("{} – {}", ms(t.p10), ms(t.p90)),
+            report.time_text(p),
+            format!("{}, {} – {}", ms(t.median), ms(t.p10), ms(t.p90)),
             p.draws.to_string(),
             report.error_text(p),
             percent(d.mean_shift),
             percent(d.p99),
             format!("{} at row {}, column {}", percent(d.worst), d.worst_row, d.worst_col),
             format!("{:.1} MiB", p.bytes as f64 / 1_048_576.0),
-            p.baseline_ns.map_or_else(|| "-".to_owned(), ms),
+            ms(p.baseline_median()),
         ];
         let cells: String = cells.iter().map(|c| format!("<td>{}", escaped(c))).collect();
         format!(

@@ -1,7 +1,7 @@
 //! Time against error on log axes, as SVG.
 
 use super::html::escaped;
-use super::report::{Report, ms};
+use super::report::Report;
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 500.0;
@@ -56,7 +56,7 @@ pub fn svg(report: &Report) -> String {
     let points = &report.walk.points;
     let own = report.truth.own_error;
     let [left, top, right, bottom] = MARGIN;
-    let x = Axis::of(points.iter().map(|p| p.total_ns.median * 1e-6), left, WIDTH - right);
+    let x = Axis::of(points.iter().map(|p| report.time_ns(p) * 1e-6), left, WIDTH - right);
     let errors = points.iter().map(|p| 100.0 * report.error(p)).chain([100.0 * own]);
     let y = Axis::of(errors, HEIGHT - bottom, top);
     let mut svg = format!(
@@ -96,7 +96,7 @@ pub fn svg(report: &Report) -> String {
             at + 14.0
         );
     }
-    let place = |p: &super::Point| (x.at(p.total_ns.median * 1e-6), y.at(100.0 * report.error(p)));
+    let place = |p: &super::Point| (x.at(report.time_ns(p) * 1e-6), y.at(100.0 * report.error(p)));
     let front = report.frontier();
     let mut path = String::new();
     for (i, point) in front.iter().enumerate() {
@@ -115,7 +115,7 @@ pub fn svg(report: &Report) -> String {
         let label = format!(
             "{}: {}, {}",
             report.flags(point.place),
-            ms(point.total_ns.median),
+            report.time_text(point),
             report.error_text(point)
         );
         if point.place == report.recommended().place {

@@ -16,6 +16,7 @@ use super::truth::{Distance, Truth};
 const DRAWS: usize = 9;
 const FEWEST: usize = 3;
 const TIMING: f64 = 0.01;
+const COMPILING_S: f64 = 20.0;
 /// Longest side of a picture in the report, pixels.
 const PICTURE_SIDE: usize = 240;
 
@@ -34,8 +35,11 @@ pub struct Point {
     pub settings: Vec<(String, String)>,
     /// When it was begun and done, seconds from the start.
     pub at_s: [f64; 2],
-    /// Nanoseconds of the baseline's frame drawn after it.
-    pub baseline_ns: Option<f64>,
+    /// Median of each draw's time over that of the baseline drawn right after it: what a busy machine
+    /// or a changing clock does to both falls out. 1 for the baseline itself.
+    pub ratio: f64,
+    /// Nanoseconds of those draws of the baseline.
+    pub baseline_ns: Vec<f64>,
     /// Kept while it is on the frontier.
     pub pictures: Option<Pictures>,
 }
@@ -49,21 +53,28 @@ pub struct Pictures {
 }
 
 impl Point {
+    /// Median nanoseconds of the baseline's frame beside its own draws.
+    pub fn baseline_median(&self) -> f64 {
+        Summary::of(&self.baseline_ns).map_or(0.0, |s| s.median)
+    }
+
+    /// Its cost in frames of the baseline.
     pub fn value(&self) -> Value {
-        Value { cost: self.total_ns.median, error: self.distance.rmse }
+        Value { cost: self.ratio, error: self.distance.rmse }
     }
 }
 
-/// Measures a quality; its frame, too, for the baseline.
+/// Measures a quality beside the baseline, none for the baseline itself; its frame, too.
 pub fn measure(
     rig: &mut Rig,
     truth: &Truth,
     place: usize,
     quality: &Quality,
+    baseline: Option<&mut Frame>,
 ) -> Result<(Point, Frame)> {
     let begun_s = rig.spent();
     let mut frame = rig.frame(quality)?;
-    match fill(rig, truth, place, begun_s, &mut frame) {
+    match fill(rig, truth, place, begun_s, &mut frame, baseline) {
         Ok(point) => Ok((point, frame)),
         Err(error) => {
             rig.gpu.end(frame);
@@ -78,30 +89,43 @@ fn fill(
     place: usize,
     begun_s: f64,
     frame: &mut Frame,
+    mut baseline: Option<&mut Frame>,
 ) -> Result<Point> {
     let first = rig.gpu.draw(frame)?;
     let planes = rig.radiance(frame)?;
     let distance = truth.distance(&planes)?;
     let begun = Instant::now();
     let most = TIMING * rig.budget.as_secs_f64();
-    let mut runs: Vec<Vec<Timing>> = Vec::new();
-    // A frame so long that one more would be missed elsewhere is timed by its first draw.
-    let long = first.iter().map(|t| t.ns).sum::<f64>() * 1e-9 > 0.25 * rig.left();
-    while !long && runs.len() < DRAWS {
+    let sum = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
+    // The first compiles, up to seconds: only a frame much longer than that, and than what is left,
+    // is timed by it.
+    let long = sum(&first) * 1e-9 > rig.left().max(COMPILING_S);
+    let mut runs: Vec<Vec<Timing>> = if long { vec![first] } else { Vec::new() };
+    let mut baseline_ns = Vec::new();
+    while runs.len() < DRAWS {
         let seconds = begun.elapsed().as_secs_f64();
-        if seconds > most * if runs.len() < FEWEST { 5.0 } else { 1.0 } {
+        let enough = most * if runs.len() < FEWEST { 5.0 } else { 1.0 };
+        if !runs.is_empty() && (long || seconds > enough) {
             break;
         }
         runs.push(rig.gpu.draw(frame)?);
+        if let Some(baseline) = baseline.as_deref_mut() {
+            baseline_ns.push(sum(&rig.gpu.draw(baseline)?));
+        }
     }
-    if runs.is_empty() {
-        runs.push(first);
+    if let Some(baseline) = baseline.filter(|_| long) {
+        baseline_ns.push(sum(&rig.gpu.draw(baseline)?));
     }
-    let totals: Vec<f64> = runs.iter().map(|r| r.iter().map(|t| t.ns).sum()).collect();
+    let totals: Vec<f64> = runs.iter().map(|r| sum(r)).collect();
     let total_ns = Summary::of(&totals).filter(|s| s.min > 0.0).ok_or_else(|| Error::Device {
         doing: "timing a frame".into(),
         reason: "the device has no timestamps".into(),
     })?;
+    let ratios: Vec<f64> = totals.iter().zip(&baseline_ns).map(|(ns, b)| ns / b).collect();
+    let ratio = Summary::of(&ratios).map_or(1.0, |s| s.median);
+    if baseline_ns.is_empty() {
+        baseline_ns.clone_from(&totals);
+    }
     let passes = (0..runs[0].len())
         .map(|i| {
             let times: Vec<f64> = runs.iter().map(|r| r[i].ns).collect();
@@ -121,7 +145,8 @@ fn fill(
         bytes,
         settings,
         at_s: [begun_s, rig.spent()],
-        baseline_ns: None,
+        ratio,
+        baseline_ns,
         pictures,
     })
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use ridgelight::measure::statistics::Summary;
 use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side, Skip};
 use serde_json::{Value, json};
 
@@ -56,6 +55,15 @@ impl Report<'_> {
         point.distance.rmse <= self.truth.own_error
     }
 
+    /// Nanoseconds of a frame, had the machine been throughout as it was in the middle of the run.
+    pub fn time_ns(&self, point: &Point) -> f64 {
+        point.ratio * self.walk.baseline_ns()
+    }
+
+    pub fn time_text(&self, point: &Point) -> String {
+        ms(self.time_ns(point))
+    }
+
     /// A point's error, the truth's own at least.
     pub fn error(&self, point: &Point) -> f64 {
         point.distance.rmse.max(self.truth.own_error)
@@ -70,6 +78,7 @@ impl Report<'_> {
     pub fn why(&self) -> Vec<String> {
         let point = self.recommended();
         let (front, mut all) = (self.frontier(), Vec::new());
+        let time = |cost: f64| ms(cost * self.walk.baseline_ns());
         all.push(match (self.rule, self.recommended.holds) {
             (Rule::Knee, _) => "Of the frontier it has the least product of time and error: from \
                  here, twice the time at best halves the error, and half the time at least doubles \
@@ -83,7 +92,7 @@ impl Report<'_> {
                 percent(most)
             ),
             (Rule::MaxCost(most), true) => {
-                format!("The most accurate measured within {}, as --time-budget asks.", ms(most))
+                format!("The most accurate measured within {}, as --time-budget asks.", time(most))
             }
             (Rule::MaxCost(most), false) => {
                 format!(
@@ -97,7 +106,7 @@ impl Report<'_> {
             format!(
                 "The next {name} on the frontier, {}, takes {} × the time for {} × the error.",
                 self.flags(other.place),
-                digits(other.total_ns.median / point.total_ns.median),
+                digits(other.ratio / point.ratio),
                 digits(self.error(other) / self.error(point).max(f64::MIN_POSITIVE))
             )
         };
@@ -113,24 +122,19 @@ impl Report<'_> {
         all
     }
 
-    /// The baseline's frame through the run: nanoseconds.
-    pub fn drift(&self) -> Option<Summary> {
-        let all: Vec<f64> = self.walk.points.iter().filter_map(|p| p.baseline_ns).collect();
-        Summary::of(&all)
-    }
-
     /// What the drift means, in a sentence.
     pub fn drift_text(&self) -> String {
-        let Some(s) = self.drift() else { return "The baseline was not drawn again.".to_owned() };
+        let Some(s) = self.walk.drift() else { return String::new() };
         let spread = s.p90 / s.p10.max(f64::MIN_POSITIVE) - 1.0;
         let meaning = if spread > 0.1 {
-            "the machine was busy or changed its clock: times that differ by less say nothing"
+            "the machine was busy or changed its clock, so times were taken as ratios to draws of the \
+             baseline beside them"
         } else {
             "the machine was steady"
         };
         format!(
-            "The baseline ({}), drawn once after each point: {} in the middle, {} to {} of four \
-             fifths of the draws, {} to {} of all; {meaning}.",
+            "The baseline ({}), drawn in turn with every point: {} in the middle, {} to {} four \
+             fifths of the time, {} to {} in all; {meaning}.",
             self.flags(self.walk.baseline),
             ms(s.median),
             ms(s.p10),
@@ -145,7 +149,7 @@ impl Report<'_> {
         let value = |i: usize| {
             let value = self.walk.search.value(i);
             value.map_or_else(String::new, |v| match found.side {
-                Side::Cost => ms(v.cost),
+                Side::Cost => ms(v.cost * self.walk.baseline_ns()),
                 Side::Error => percent(v.error),
             })
         };
@@ -206,7 +210,8 @@ impl Report<'_> {
 
     pub fn expected_text(&self, place: usize) -> String {
         let value = self.walk.search.predicted(place);
-        format!("{}, {}", ms(value.cost), percent(value.error))
+        let time = ms(value.cost * self.walk.baseline_ns());
+        format!("{time}, {}", percent(value.error))
     }
 
     pub fn summary(&self) -> String {
@@ -249,7 +254,7 @@ impl Report<'_> {
             let mark = if point.place == self.recommended().place { " <- recommended" } else { "" };
             crate::say!(
                 "{:>12}  {:>12}  {}{mark}",
-                ms(point.total_ns.median),
+                self.time_text(point),
                 self.error_text(point),
                 self.flags(point.place)
             );
@@ -262,7 +267,7 @@ impl Report<'_> {
     pub fn csv(&self) -> String {
         let names = self.knobs.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
         let mut text = format!(
-            "settings,{},median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
+            "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
              worst,worst_row,worst_col,bytes,baseline_ms,frontier,recommended\n",
             names.join(",")
         );
@@ -276,14 +281,17 @@ impl Report<'_> {
             });
             let mut row = vec![self.flags(point.place)];
             row.extend(steps.map(str::to_owned));
-            row.extend([t.median, t.p10, t.p90, t.min].map(|ns| format!("{:.6}", ns * 1e-6)));
+            row.extend(
+                [self.time_ns(point), t.median, t.p10, t.p90, t.min]
+                    .map(|ns| format!("{:.6}", ns * 1e-6)),
+            );
             row.push(point.draws.to_string());
             row.push(format!("{:e}", self.error(point)));
             row.push(self.is_at_most(point).to_string());
             row.extend([d.mean_shift, d.p99, d.worst].map(|x| format!("{x:e}")));
             row.extend([d.worst_row, d.worst_col].map(|x| x.to_string()));
             row.push(point.bytes.to_string());
-            row.push(point.baseline_ns.map_or_else(String::new, |ns| format!("{:.6}", ns * 1e-6)));
+            row.push(format!("{:.6}", point.baseline_median() * 1e-6));
             row.push(front.contains(&point.place).to_string());
             row.push((point.place == self.recommended().place).to_string());
             text += &row.join(",");
@@ -303,12 +311,12 @@ impl Report<'_> {
             .collect();
         json!({
             "flags": self.flags(point.place), "settings": settings,
-            "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
+            "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
             "draws": point.draws, "passes": passes, "bytes": point.bytes,
             "relative_rmse": self.error(point), "at_most": self.is_at_most(point),
             "mean_shift": d.mean_shift, "p99": d.p99, "worst": d.worst,
             "worst_row": d.worst_row, "worst_col": d.worst_col,
-            "begun_s": point.at_s[0], "done_s": point.at_s[1], "baseline_ns": point.baseline_ns,
+            "begun_s": point.at_s[0], "done_s": point.at_s[1], "baseline_ns": point.baseline_median(),
         })
     }
 
@@ -337,7 +345,7 @@ impl Report<'_> {
             .map(|i| {
                 let expected = self.walk.search.predicted(*i);
                 json!({
-                    "flags": self.flags(*i), "expected_ns": expected.cost,
+                    "flags": self.flags(*i), "expected_ns": expected.cost * self.walk.baseline_ns(),
                     "expected_relative_rmse": expected.error,
                 })
             })

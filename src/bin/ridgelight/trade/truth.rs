@@ -16,6 +16,8 @@ const DRAWING: f64 = 0.35;
 const PROBING: f64 = 0.1;
 /// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, elevations.
 const MOST: [u32; 3] = [512, 128, 4096];
+/// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
+const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
 /// The oracle's: azimuths of the sky, strips across a sun; probes at most, and at least.
 const TRUE_AZIMUTHS: usize = 720;
@@ -117,9 +119,9 @@ impl Truth {
             ..Quality::default()
         };
         let brute = Quality { method: Method::Brute, ..dense };
-        let (quality, half) = match fitting(rig, &brute, share)? {
+        let (quality, half) = match fitting(rig, &brute, BRUTE_HALVINGS, share)? {
             Some(fits) => fits,
-            None => fitting(rig, &dense, share)?
+            None => fitting(rig, &dense, HALVINGS, share)?
                 .unwrap_or((counts(&dense, HALVINGS), counts(&dense, HALVINGS + 1))),
         };
         let planes = rig.draw_once(&quality)?;
@@ -232,13 +234,18 @@ fn counts(quality: &Quality, halvings: u32) -> Quality {
 }
 
 /// The largest counts, and half of them, that can be drawn in so many seconds.
-fn fitting(rig: &mut Rig, quality: &Quality, seconds: f64) -> Result<Option<(Quality, Quality)>> {
+fn fitting(
+    rig: &mut Rig,
+    quality: &Quality,
+    most_halvings: u32,
+    seconds: f64,
+) -> Result<Option<(Quality, Quality)>> {
     // A device that cannot do this at all says so here.
-    if rig.plan(&counts(quality, HALVINGS)).is_err() {
+    if rig.plan(&counts(quality, most_halvings)).is_err() {
         return Ok(None);
     }
     let each = rig.seconds_per_azimuth(quality)?;
-    for halvings in 0..=HALVINGS {
+    for halvings in 0..=most_halvings {
         let (whole, half) = (counts(quality, halvings), counts(quality, halvings + 1));
         if let (Ok(a), Ok(b)) = (rig.plan(&whole), rig.plan(&half))
             && each * (a.azimuths.len() + b.azimuths.len()) as f64 <= seconds
