@@ -7,6 +7,7 @@ mod flags;
 mod inputs;
 mod needs_vulkan;
 mod plan;
+mod trade;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

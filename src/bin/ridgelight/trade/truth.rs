@@ -309,4 +309,30 @@ mod tests {
         let error = truth(vec![vec![2.0; 4]], 0.0).distance(&holed).unwrap_err();
         assert!(error.to_string().contains("1 texels"), "{error}");
     }
+
+    /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², which wavers by
+    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)).
+    #[test]
+    fn a_references_noise_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("truth.exr");
+        let (light, noise) = (vec![[2.0; 3]; 64], vec![[0.2; 3]; 64]);
+        let layer = |name: &str, texels| files::Layer {
+            name: name.to_owned(),
+            channels: files::Channels::Rgb(texels),
+        };
+        let all = [layer("", &light), layer(NOISE_LAYER, &noise)];
+        let field = HeightField::new(8, 8, &[0.0; 64], [1.0; 2], None).unwrap();
+        files::write_exr(&path, 8, 8, &all, &[]).unwrap();
+        let truth = Truth::read(&path, &field).unwrap();
+        assert!((truth.noise - 0.01).abs() < 1e-7, "{}", truth.noise);
+        let own = (0.02 * (2.0_f64 / 64.0).sqrt()).sqrt();
+        assert!((truth.own_error - own).abs() < 1e-7, "{}", truth.own_error);
+        files::write_exr(&path, 8, 8, &all[..1], &[]).unwrap();
+        let bare = Truth::read(&path, &field).unwrap();
+        assert_eq!((bare.noise, bare.own_error), (0.0, 0.0));
+        let other = HeightField::new(4, 16, &[0.0; 64], [1.0; 2], None).unwrap();
+        let error = Truth::read(&path, &other).err().unwrap().to_string();
+        assert!(error.contains("found 8 × 8, expected 16 × 4"), "{error}");
+    }
 }
