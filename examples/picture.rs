@@ -54,6 +54,7 @@ fn scene(args: &[String]) -> Result<Scene> {
             sky: None,
             environment: Some(files::read_environment(Path::new(flag(args, "--env")?), 0.0)?),
             suns: vec![sun],
+            ..Lights::default()
         },
     })
 }
@@ -63,9 +64,9 @@ fn unshadowed(scene: &Scene, quality: &Quality) -> Vec<[f32; 3]> {
     let Scene { field, lights, .. } = scene;
     let environment = lights.environment.as_ref().expect("the scene has one");
     let circle = azimuths::even(quality.azimuths, field.cell_m());
-    let rows = env_wedges::env_wedges(environment, &circle);
+    let rows = env_wedges::env_wedges(environment, Border::Plane, &circle);
     let nodes = quality.table_elevations as usize;
-    let tables = env_tables::env_tables(&rows, environment.height(), nodes, 0.0);
+    let tables = env_tables::env_tables(&rows, (environment.height(), circle.len()), nodes, 0.0);
     let sample = |row: usize, col: usize| {
         let normal = light::normal(field, Border::Plane, row, col);
         let mut sum = DVec3::ZERO;

@@ -30,4 +30,4 @@ pub use exr::{Channels, Layer, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use npy::{NpyWriter, write_npy_f32};
 pub use planes::{Planes, parse_planes, read_planes};
-pub use png::{Tone, write_png};
+pub use png::{Tone, encode_png, write_png};

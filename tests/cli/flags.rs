@@ -174,7 +174,6 @@ fn not_yet() {
         &folder,
         &[
             ("reference a.asc -o out.exr --spp 4", 2, &["reference", "not yet"]),
-            ("trade a.asc -o out", 2, &["trade", "not yet"]),
             ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
             ("view a.asc", 2, &["view", "not yet"]),
             ("nosuch a.asc", 2, &["nosuch"]),
@@ -298,8 +297,16 @@ fn help_says_units_and_defaults() {
         ("--pixels-per-degree", &["1..1000", "Default 67.02"]),
         ("--diff", &["difference.CHANNEL", "flip", "A - B"]),
     ];
+    let trade: &[(&str, &[&str])] = &[
+        ("--budget", &["Seconds", "[default: 120]"]),
+        ("--max-error", &["0.01 is 1 %"]),
+        ("--time-budget", &["<MS>"]),
+        ("--reference", &["Default: brute force"]),
+        ("--device", &["Default the first GPU"]),
+    ];
     for (command, tables) in [
-        ("render", &[shared, lit, render][..]),
+        ("trade", &[lit, trade][..]),
+        ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),

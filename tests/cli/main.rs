@@ -9,6 +9,7 @@ mod inputs;
 mod needs_vulkan;
 mod plan;
 mod signals;
+mod trade;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -30,12 +30,11 @@ pub enum Command {
     Compare(CompareArgs),
     /// What Vulkan offers here and what is missing
     Devices(DevicesArgs),
+    /// Speed against accuracy: measures settings and writes table, plot, frontier, recommendation
+    Trade(TradeArgs),
     /// The truth, slowly (not yet)
     #[command(hide = true)]
     Reference(NotYet),
-    /// Speed against accuracy (not yet)
-    #[command(hide = true)]
-    Trade(NotYet),
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),
@@ -150,6 +149,37 @@ pub struct BenchArgs {
     pub global: GlobalArgs,
     #[command(flatten)]
     pub later: LaterArgs,
+}
+
+#[derive(Args)]
+pub struct TradeArgs {
+    #[command(flatten)]
+    pub input: Input,
+    /// A folder, made where it is missing, for trade.html, trade.json and trade.csv; one that holds
+    /// anything else is refused
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub lights: LightArgs,
+    #[command(flatten)]
+    pub surface: SurfaceArgs,
+    /// The truth of this scene as .exr; its layer "standard_error" is taken off the errors. Default:
+    /// brute force in many azimuths, or dense sweeps where that is too dear
+    #[arg(long, value_name = "FILE")]
+    pub reference: Option<PathBuf>,
+    /// Seconds after which no further settings are tried
+    #[arg(long, value_name = "SECONDS", default_value_t = 120.0, allow_negative_numbers = true)]
+    pub budget: f64,
+    /// Recommend the cheapest settings of at most this relative RMSE (0.01 is 1 %); exit status 1
+    /// where none were found
+    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget")]
+    pub max_error: Option<f64>,
+    /// Recommend the most accurate settings of at most this time a frame; exit status 1 where none
+    /// were found
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    pub time_budget: Option<f64>,
+    #[command(flatten)]
+    pub global: GlobalArgs,
 }
 
 #[derive(Args)]

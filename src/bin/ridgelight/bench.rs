@@ -3,7 +3,7 @@
 mod forms;
 mod rows;
 mod sizes;
-mod verify;
+pub mod verify;
 
 use std::time::{Duration, Instant};
 

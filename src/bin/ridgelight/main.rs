@@ -17,6 +17,7 @@ mod horizon;
 mod plan;
 mod render;
 mod setup;
+mod trade;
 
 use clap::Parser as _;
 use std::io::Write as _;
@@ -55,7 +56,7 @@ fn main() -> ExitCode {
         args::Command::Compare(args) => compare::run(args),
         args::Command::Devices(args) => devices::run(args),
         args::Command::Reference(_) => not_yet("reference"),
-        args::Command::Trade(_) => not_yet("trade"),
+        args::Command::Trade(args) => trade::run(args),
         args::Command::Bake(_) => not_yet("bake"),
         args::Command::View(_) => not_yet("view"),
     };
@@ -73,6 +74,6 @@ fn main() -> ExitCode {
 }
 
 fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {
-    let expected = "render, horizon, plan, bench, compare or devices: it is not yet there";
+    let expected = "render, horizon, plan, bench, trade, compare or devices: it is not yet there";
     Err(ridgelight::Error::setting("command", command, expected))
 }

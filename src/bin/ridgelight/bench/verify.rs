@@ -80,7 +80,7 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 3], f64) {
         Albedo::Map(map) => map[place],
     };
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns } = &scene.lights;
+    let Lights { sky, environment, suns, .. } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
@@ -189,7 +189,7 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
 }
 
 /// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
-fn piece(scene: &Scene) -> Result<Scene> {
+pub fn piece(scene: &Scene) -> Result<Scene> {
     let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
     if rows <= WHOLE && cols <= WHOLE {
