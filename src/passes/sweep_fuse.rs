@@ -30,15 +30,17 @@ pub(crate) fn plan(
     border: Border,
     batch: &Batch,
     part: &str,
-    lattice: Option<ResourceId>,
-    [lane_heights, azimuths, angles]: [ResourceId; 3],
+    [lane_heights, lattice, azimuths, angles]: [ResourceId; 4],
     distances: Option<ResourceId>,
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
-    let mut bound =
-        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("horizon_angles", angles)];
-    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        (sweep.lattice_binding(), lattice),
+        ("azimuths", azimuths),
+        ("horizon_angles", angles),
+    ];
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     builder.pass(
         &shaders::SWEEP_FUSE,

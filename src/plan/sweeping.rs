@@ -42,7 +42,8 @@ impl Sweeping {
         lattice.slopes.or(lattice.occluders)
     }
 
-    fn written(&self, batch: &Batch) -> ResourceId {
+    /// The same of a sweep that there is.
+    pub fn written(&self, batch: &Batch) -> ResourceId {
         self.lattice(batch).expect("a sweep stores something")
     }
 

@@ -328,7 +328,11 @@ fn help_says_units_and_defaults() {
         }
         assert!(!help.out.contains("--bounces"), "{command} offers what is not yet there");
         let has_albedo = help.out.contains("--albedo");
-        assert_eq!(has_albedo, ["render", "plan"].contains(&command), "{command} --albedo");
+        assert_eq!(
+            has_albedo,
+            ["render", "plan", "trade"].contains(&command),
+            "{command} --albedo"
+        );
     }
     for args in [&["--help"][..], &["--version"]] {
         let run = folder.run_without_driver(args);
