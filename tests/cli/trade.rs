@@ -101,7 +101,7 @@ fn gpu_trade_of_a_small_field() {
     let front = monotone(&report);
     let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
     assert!(own > 0.0 && own < 0.02, "{own}");
-    assert!(report["truth"]["what"].as_str().unwrap().contains("method brute"));
+    assert!(report["truth"]["what"].as_str().unwrap().contains("sky by method brute"));
     for point in points {
         let error = point["relative_rmse"].as_f64().unwrap();
         assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
