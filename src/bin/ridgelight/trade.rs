@@ -211,8 +211,8 @@ fn walk(
     let mut slow = Vec::new();
     let walked = loop {
         let Some(place) = walk.search.next() else { break Ok(()) };
-        if frame.is_some() && rig.left() <= 0.0 {
-            walk.out_of_time = true;
+        walk.out_of_time |= frame.is_some() && rig.left() <= 0.0;
+        if walk.out_of_time {
             break Ok(());
         }
         bar.set_message(format!(
@@ -258,14 +258,18 @@ fn visit(
     if baseline.is_some() {
         // Two draws at least: one to warm up, one that counts.
         let needs = 2.0 * expected_s(rig, walk, place, quality, plan.azimuths.len(), slow)?;
-        let most = rig.left().min(DEAREST * rig.budget.as_secs_f64());
+        let most = DEAREST * rig.budget.as_secs_f64();
         if needs > most {
             let why = format!(
-                "would take about {} s, more than {} s: a tenth of the budget, or what was left",
+                "would take about {} s, more than {} s, a tenth of the budget",
                 truth::digits(needs),
-                truth::digits(most.max(0.0))
+                truth::digits(most)
             );
             give_up(walk, why, true);
+            return Ok(());
+        }
+        if needs > rig.left() {
+            walk.out_of_time = true;
             return Ok(());
         }
     }

@@ -159,7 +159,7 @@ impl Truth {
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
              halves as counts double; {probes} samples are {} (RMSE) off the oracle in f64; the \
-             larger counts",
+             larger of the two is taken",
             percent(steps),
             percent(off)
         );
