@@ -36,7 +36,7 @@ pub struct Fineness {
     pub azimuths: usize,
     /// Parts that each side of a cell is cut into; the surface stays the same.
     pub divisions: usize,
-    /// Azimuths across a sun or a ball.
+    /// Azimuths across a sun, a ball, or one texel of an environment.
     pub strips: usize,
 }
 
@@ -56,8 +56,9 @@ pub type Picture = Vec<[f64; 3]>;
 pub struct Truth {
     /// Exit radiance with all bounces up to the index.
     pub radiance: Vec<Picture>,
-    /// The difference to half the fineness at each sample and channel: at least the error wherever a
-    /// doubling halves it, and more where it does better.
+    /// The difference to half the fineness at each sample and channel. Where a doubling halves the
+    /// error this is the error, where it does better, as in smooth light, more; single samples may do
+    /// worse by chance, so judge many by its rms.
     pub error: Vec<Picture>,
 }
 
@@ -295,7 +296,7 @@ fn arriving(
         }
     };
     if let Some(environment) = &lights.environment {
-        add(environment_on(oracle, row, col, receivers, environment));
+        add(environment_on(oracle, row, col, receivers, environment, strips));
     }
     for sun in &lights.suns {
         add(sun_on(oracle, row, col, receivers, sun, strips));

@@ -63,7 +63,7 @@ impl Oracle<'_> {
         let [_, across] = self.cells();
         let (row, col) = (triangle / 2 / across, triangle / 2 % across);
         let (below, right) = ((row + 1) % self.field().rows(), (col + 1) % self.field().cols());
-        let between = if triangle % 2 == 0 { [row, right] } else { [below, col] };
+        let between = if triangle.is_multiple_of(2) { [row, right] } else { [below, col] };
         [[row, col], between, [below, right]]
     }
 
@@ -89,9 +89,11 @@ impl Oracle<'_> {
         let per_line = [cols_per_m, rows_per_m, rows_per_m - cols_per_m].map(|p| 1.0 / p.abs());
         let mut lines = [1.0; 3];
         let (mut near, mut best) = (0.0, f64::NEG_INFINITY);
-        while !(periodic && near > cap_m)
-            && !(near > 0.0 && (self.highest_m - own_m) / near <= best)
-        {
+        loop {
+            let nothing_higher = near > 0.0 && (self.highest_m - own_m) / near <= best;
+            if nothing_higher || (periodic && near > cap_m) {
+                break;
+            }
             let crossings = [0, 1, 2].map(|i| lines[i] * per_line[i]);
             let far = crossings.into_iter().fold(f64::INFINITY, f64::min);
             for i in 0..3 {
