@@ -1,9 +1,11 @@
 // Computes: one light's share of the picture: its sum times its colour and the surface's albedo.
-// Reads: scalar_sum or colour_sum, albedo_map. Reads and writes: radiance (or radiance_grey). Writes:
+// Reads: scalar_sum or colour_sum, albedo_map, dirty_samples. Reads and writes: radiance (or radiance_grey). Writes:
 // layer (or layer_grey).
 // One invocation is one sample.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared/dirty.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -13,6 +15,8 @@ layout(constant_id = 2) const bool ADDS_TO_RADIANCE = true;
 layout(constant_id = 3) const bool WRITES_LAYER = false;
 // All colours are grey: pictures of one channel.
 layout(constant_id = 4) const bool GREY = false;
+// Only the samples marked in dirty_samples.
+layout(constant_id = 5) const bool RELIGHTS = false;
 
 layout(binding = 0) uniform texture2D scalar_sum;
 layout(binding = 1) uniform texture2D colour_sum;
@@ -21,6 +25,7 @@ layout(binding = 3, rgba32f) uniform image2D radiance;
 layout(binding = 4, rgba32f) uniform writeonly image2D layer;
 layout(binding = 5, r32f) uniform image2D radiance_grey;
 layout(binding = 6, r32f) uniform writeonly image2D layer_grey;
+layout(binding = 7) readonly buffer DirtySamples { uint dirty_samples[]; };
 
 layout(push_constant) uniform LightResolvePush {
     int cols;
@@ -33,6 +38,9 @@ layout(push_constant) uniform LightResolvePush {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= cols || at.y >= rows) {
+        return;
+    }
+    if (RELIGHTS && (dirty_samples[dirty_word(at, cols)] & dirty_bit(at)) == 0u) {
         return;
     }
     vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;

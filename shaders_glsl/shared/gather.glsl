@@ -1,7 +1,10 @@
 #include "shared/fuse.glsl"
+#include "shared/dirty.glsl"
 
-// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and
-// defines add_light.
+// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
+// constant RELIGHTS and defines add_light.
+
+layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
 
 layout(push_constant) uniform ShadePush {
     int cols;
@@ -13,6 +16,18 @@ layout(push_constant) uniform ShadePush {
     uint azimuth_count;
     uint clears;         // 1 in the first batch
 };
+
+// Which of the four samples from a lane on are lit: after an edit only those that it reaches. Every
+// batch decides alike, so that sums begin and end whole.
+bvec4 lit_samples(int lane, int march) {
+    if (!RELIGHTS) {
+        return bvec4(true);
+    }
+    uint word = dirty_samples[dirty_word(texel_at(lane, march), cols)];
+    uvec4 bits = uvec4(dirty_bit(texel_at(lane, march)), dirty_bit(texel_at(lane + 1, march)),
+                       dirty_bit(texel_at(lane + 2, march)), dirty_bit(texel_at(lane + 3, march)));
+    return notEqual(word & bits, uvec4(0));
+}
 
 // `east` and `north` are the field's slopes at the samples.
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {

@@ -32,6 +32,8 @@ pub(crate) struct Light {
     pub radiance: Option<(ResourceId, bool)>,
     pub layer: Option<ResourceId>,
     pub grey: bool,
+    /// Marks of the samples that an edit reaches, where only they are resolved.
+    pub dirty: Option<ResourceId>,
 }
 
 /// Adds one light to the picture, and writes its own layer where asked.
@@ -42,6 +44,7 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
         light.radiance.map(|r| (if light.grey { "radiance_grey" } else { "radiance" }, r.0)),
     );
     bound.extend(light.layer.map(|l| (if light.grey { "layer_grey" } else { "layer" }, l)));
+    bound.extend(light.dirty.map(|d| ("dirty_samples", d)));
     let samples = u64::from(cols) * u64::from(rows);
     let texel = if light.grey { 4 } else { 16 };
     let written = u64::from(light.radiance.is_some()) * 2 + u64::from(light.layer.is_some());
@@ -56,6 +59,7 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
             (2, u32::from(light.radiance.is_some())),
             (3, u32::from(light.layer.is_some())),
             (4, u32::from(light.grey)),
+            (5, u32::from(light.dirty.is_some())),
         ],
         &LightResolvePush {
             cols: cols as i32,

@@ -12,6 +12,8 @@ pub(crate) struct Images {
     pub sky_sum: Option<ResourceId>,
     /// The sum, and the tables it is made of.
     pub environment: Option<[ResourceId; 2]>,
+    /// Marks of the samples that an edit reaches, where only they are lit.
+    pub dirty: Option<ResourceId>,
 }
 
 /// Light of a uniform sky and of an environment through the horizons of a batch.
@@ -34,6 +36,7 @@ pub(crate) fn plan(
     if let Some([sum, tables]) = images.environment {
         bound.extend([("env_sum", sum), ("env_tables", tables)]);
     }
+    bound.extend(images.dirty.map(|d| ("dirty_samples", d)));
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 };
     builder.pass(
@@ -53,6 +56,7 @@ pub(crate) fn plan(
             (4, u32::from(images.sky_sum.is_some())),
             (5, u32::from(images.environment.is_some())),
             (6, u32::from(axis.marches_rows)),
+            (7, u32::from(images.dirty.is_some())),
         ],
         &ShadePush::of(batch, cell_m),
         &bound,

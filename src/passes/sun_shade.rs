@@ -15,8 +15,16 @@ pub(crate) fn plan(
     part: &str,
     is_point: bool,
     [lane_heights, lattice, azimuths, sun_sum]: [ResourceId; 4],
+    dirty: Option<ResourceId>,
 ) {
     let axis = batch.axis;
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        (sweep.lattice_binding(), lattice),
+        ("azimuths", azimuths),
+        ("sun_sum", sun_sum),
+    ];
+    bound.extend(dirty.map(|d| ("dirty_samples", d)));
     builder.pass(
         &shaders::SUN_SHADE,
         part,
@@ -33,14 +41,10 @@ pub(crate) fn plan(
             (3, border as u32),
             (4, u32::from(is_point)),
             (5, u32::from(axis.marches_rows)),
+            (6, u32::from(dirty.is_some())),
         ],
         &ShadePush::of(batch, cell_m),
-        &[
-            ("lane_heights", lane_heights),
-            (sweep.lattice_binding(), lattice),
-            ("azimuths", azimuths),
-            ("sun_sum", sun_sum),
-        ],
+        &bound,
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );

@@ -176,6 +176,15 @@ impl Sweep {
         }))
     }
 
+    /// The lines of a sweep whose occluders an edit can go on from: stored, and in lines that begin
+    /// at an edge.
+    pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
+        match self {
+            Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
+            _ => None,
+        }
+    }
+
     /// The shaders' FUSE.
     pub(crate) fn fuse_mode(&self) -> u32 {
         match self {

@@ -3,6 +3,7 @@
 
 mod analytic;
 mod change;
+mod edits;
 mod contract;
 mod extremes;
 mod forms;
