@@ -1,5 +1,15 @@
 # shellcheck shell=bash
-# What tools/setup and tools/test both ask of a machine. Sourced, never run; changes nothing.
+# What the tools share: the scene that they show, and what they ask of a machine. Sourced, never run;
+# changes nothing.
+
+# The bundled mountain: one count of the PNG is one metre; a cell is 3 arc-seconds at 44.3 degrees
+# north. Under the bundled sky and a low sun, ten degrees high.
+# shellcheck disable=SC2034 # used where this is sourced
+demo_field=(assets/mt_washington_256.png --cell "66,92.6")
+# shellcheck disable=SC2034
+demo_scene=("${demo_field[@]}" --env assets/sky_512x256.hdr --sun "300,10,0.53,15" --azimuths 64)
+# shellcheck disable=SC2034
+demo_exposure=0.2
 
 # Non-root users of Debian have no sbin on their PATH, and ldconfig lives there.
 PATH=$PATH:/usr/sbin:/sbin
@@ -35,7 +45,7 @@ driver_manifests() {
         # The two variables replace the search, they do not add to it.
         IFS=: read -ra entries <<<"$listed"
     else
-        IFS=: read -ra entries <<<"${XDG_CONFIG_HOME:-$HOME/.config}/vulkan/icd.d:/etc/xdg/vulkan/icd.d:/etc/vulkan/icd.d:${XDG_DATA_HOME:-$HOME/.local/share}/vulkan/icd.d:/usr/local/share/vulkan/icd.d:/usr/share/vulkan/icd.d"
+        IFS=: read -ra entries <<<"${XDG_CONFIG_HOME:-${HOME:-}/.config}/vulkan/icd.d:/etc/xdg/vulkan/icd.d:/etc/vulkan/icd.d:${XDG_DATA_HOME:-${HOME:-}/.local/share}/vulkan/icd.d:/usr/local/share/vulkan/icd.d:/usr/share/vulkan/icd.d"
     fi
     for entry in "${entries[@]}"; do
         if [ -d "$entry" ]; then

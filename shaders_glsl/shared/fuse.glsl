@@ -13,6 +13,8 @@ const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the sample's own line whe
                                      // occluder stands; and the first crossings of its own line
 const uint FUSE_AIMED = 5u;          // the same with both lines' proposals, the higher one
 
+const uint FUSE_CROSSINGS = 6u;      // no lattice: the first crossings alone
+
 const uint LATTICE_OCCLUDERS = 0u;
 const uint LATTICE_SLOPES_F32 = 1u;
 const uint LATTICE_SLOPES_F16 = 2u;
@@ -162,6 +164,9 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
             met.steps[k] = LATTICE_HAS_DISTANCES ? uintBitsToFloat(lattice_at(texel).x) : 0.0;
         }
         return met;
+    }
+    if (FUSE == FUSE_CROSSINGS) {
+        return first_crossings(azimuth, q, lanes, steps);
     }
     // Line 0 here, and the lines that are on the field here: none where `last` lies before `first`.
     int spacing = 1 << LINE_SHIFT;

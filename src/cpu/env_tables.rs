@@ -24,6 +24,19 @@ impl EnvTables {
     pub fn at(&self, azimuth: usize, moment: usize, node: usize) -> DVec3 {
         self.texels[(azimuth * 3 + moment) * self.nodes + node]
     }
+
+    /// Exit radiance of albedo 1 from one azimuth's wedge, above the direction of slope `lowest`.
+    ///
+    /// # Panics
+    /// Outside the tables.
+    pub fn light(&self, azimuth: usize, lowest: f64, normal: DVec3) -> DVec3 {
+        let (nodes, bottom) = (self.nodes, self.bottom_rad);
+        let place = (lowest.atan() - bottom) / (FRAC_PI_2 - bottom) * (nodes - 1) as f64;
+        let node = (place.max(0.0) as usize).min(nodes - 2);
+        let t = (place - node as f64).clamp(0.0, 1.0);
+        let moment = |m| self.at(azimuth, m, node).lerp(self.at(azimuth, m, node + 1), t);
+        normal.x * moment(0) + normal.y * moment(1) + normal.z * moment(2)
+    }
 }
 
 /// Elevation of node 0 under a border: -π/2 where light may come from below horizontal.

@@ -4,6 +4,7 @@
 //! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
 //! bits; light is summed in f64 and compared within a tolerance.
 
+pub mod bounce;
 pub mod env_tables;
 pub mod env_wedges;
 pub mod height_transpose;
@@ -13,8 +14,10 @@ pub mod lattice;
 pub mod light;
 pub mod light_resolve;
 pub mod oracle;
+pub mod profile;
 pub mod shared;
 pub mod sky_shade;
+pub mod sphere;
 pub mod sun_shade;
 pub mod surface_sweep;
 pub mod sweep_fuse;

@@ -50,7 +50,7 @@ pub struct Horizon {
 pub struct Oracle<'a> {
     field: &'a HeightField,
     border: Border,
-    highest_m: f64,
+    pub(super) highest_m: f64,
 }
 
 impl<'a> Oracle<'a> {
@@ -185,7 +185,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Height at a sample given by whole numbers, repeated under `periodic`.
-    fn vertex(&self, row: f64, col: f64) -> f64 {
+    pub(super) fn vertex(&self, row: f64, col: f64) -> f64 {
         let (rows, cols) = (self.field.rows(), self.field.cols());
         let at = |x: f64, count: usize| match self.border {
             Border::Periodic => (x as i64).rem_euclid(count as i64) as usize,

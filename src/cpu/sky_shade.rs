@@ -3,7 +3,7 @@
 use super::env_tables::EnvTables;
 use super::shared::gather::{Swept, elevation_moments};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// Exit radiance of one sample of albedo 1 under a sky of radiance 1.
 ///
@@ -29,13 +29,7 @@ pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
 pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> [f64; 3] {
     let mut environment = DVec3::ZERO;
     swept.add_all(col, row, |index, _, lowest, normal| {
-        let nodes = tables.nodes;
-        let bottom = tables.bottom_rad;
-        let place = (lowest.atan() - bottom) / (FRAC_PI_2 - bottom) * (nodes - 1) as f64;
-        let node = (place.max(0.0) as usize).min(nodes - 2);
-        let t = (place - node as f64).clamp(0.0, 1.0);
-        let moment = |m| tables.at(index, m, node).lerp(tables.at(index, m, node + 1), t);
-        environment += normal.x * moment(0) + normal.y * moment(1) + normal.z * moment(2);
+        environment += tables.light(index, lowest, normal);
     });
     environment.to_array()
 }

@@ -5,7 +5,26 @@ use crate::{Error, Result};
 use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::TempPath;
+
+/// Temporary files of this process. Locked while one is made, renamed or removed.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every file that this process has begun and not finished; for a handler of signals, which
+/// ends the process next. Whoever begins or finishes a file from here on waits for that end.
+pub fn abandon_unfinished() {
+    let files = unfinished();
+    for path in files.iter() {
+        // What cannot be removed stays: there is no one left to tell.
+        let _ = fs::remove_file(path);
+    }
+    std::mem::forget(files);
+}
 
 /// A file under a temporary name beside its destination; dropped unfinished, it is removed.
 #[derive(Debug)]
@@ -14,7 +33,9 @@ pub(super) struct Temporary {
     path: PathBuf,
     /// Where it goes: `path`, or what `path` links to.
     destination: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    stream: BufWriter<fs::File>,
+    /// Gone once it is renamed or removed.
+    name: Option<TempPath>,
 }
 
 impl Temporary {
@@ -42,30 +63,54 @@ impl Temporary {
         // Temporary files are private by default; a result is as readable as any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let mut files = unfinished();
         let file = builder.tempfile_in(directory).map_err(|e| {
             // The system's reason without the temporary name, which would only puzzle.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
             Error::io(path, std::io::Error::new(e.kind(), reason))
         })?;
-        Ok(Self { path: path.to_owned(), destination, file: BufWriter::new(file) })
+        files.push(file.path().to_owned());
+        let (file, name) = file.into_parts();
+        let stream = BufWriter::new(file);
+        Ok(Self { path: path.to_owned(), destination, stream, name: Some(name) })
     }
 
     /// Appends bytes.
     pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
-        self.file.write_all(bytes).map_err(|e| Error::io(&self.path, e))
+        self.stream.write_all(bytes).map_err(|e| Error::io(&self.path, e))
     }
 
     /// The stream itself, for encoders.
-    pub fn stream(&mut self) -> &mut BufWriter<NamedTempFile> {
-        &mut self.file
+    pub fn stream(&mut self) -> &mut BufWriter<fs::File> {
+        &mut self.stream
+    }
+
+    /// Its name until it is finished, for reading back what has been flushed.
+    pub fn name(&self) -> &Path {
+        self.name.as_deref().expect("it has one until it is finished")
     }
 
     /// Flushes and renames.
-    pub fn finish(self) -> Result<()> {
-        let Self { path, destination, file } = self;
-        let file = file.into_inner().map_err(|e| Error::io(&path, e.into_error()))?;
-        file.persist(&destination).map_err(|e| Error::io(&path, e.error))?;
-        Ok(())
+    pub fn finish(mut self) -> Result<()> {
+        self.stream.flush().map_err(|e| Error::io(&self.path, e))?;
+        let destination = self.destination.clone();
+        self.end(|name| name.persist(destination).map_err(|e| e.error))
+            .map_err(|e| Error::io(&self.path, e))
+    }
+
+    /// Has the temporary name taken away, with the list of such names locked.
+    fn end(&mut self, take: impl FnOnce(TempPath) -> std::io::Result<()>) -> std::io::Result<()> {
+        let Some(name) = self.name.take() else { return Ok(()) };
+        let mut files = unfinished();
+        files.retain(|path| **path != *name);
+        take(name)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // As for any temporary file, what cannot be removed stays.
+        let _ = self.end(TempPath::close);
     }
 }
 

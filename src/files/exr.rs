@@ -322,7 +322,7 @@ pub fn write_exr(
     // An attribute with a reserved name and the wrong type would make the file unreadable: what
     // cannot be read back is not delivered.
     std::io::Write::flush(file.stream()).map_err(|e| Error::io(path, e))?;
-    MetaData::read_from_file(file.stream().get_ref().path(), true).map_err(wrong)?;
+    MetaData::read_from_file(file.name(), true).map_err(wrong)?;
     file.finish()
 }
 

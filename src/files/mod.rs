@@ -24,10 +24,10 @@ mod planes;
 mod png;
 mod tif;
 
-pub use atomic::{check_writable, write_json, write_text};
+pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
 pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use npy::{NpyWriter, write_npy_f32};
 pub use planes::{Planes, parse_planes, read_planes};
-pub use png::{Tone, write_png};
+pub use png::{Tone, encode_png, write_png};

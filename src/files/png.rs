@@ -155,8 +155,7 @@ impl Tone {
 /// radiance is not looked at.
 ///
 /// # Errors
-/// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (named by row and column);
-/// an exposure out of range; a destination that cannot be written to.
+/// As [`encode_png`]; a destination that cannot be written to.
 pub fn write_png(
     path: &Path,
     rows: usize,
@@ -165,6 +164,25 @@ pub fn write_png(
     transparent: Option<&[bool]>,
     tone: Tone,
 ) -> Result<()> {
+    // By way of memory: the encoder loses the error of writing its last chunk.
+    let png = encode_png(rows, cols, rgb, transparent, tone)?;
+    let mut file = Temporary::create(path)?;
+    file.write(&png)?;
+    file.finish()
+}
+
+/// What [`write_png`] writes, as bytes.
+///
+/// # Errors
+/// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (named by row and column);
+/// an exposure out of range.
+pub fn encode_png(
+    rows: usize,
+    cols: usize,
+    rgb: &[[f32; 3]],
+    transparent: Option<&[bool]>,
+    tone: Tone,
+) -> Result<Vec<u8>> {
     let count = rows.checked_mul(cols).filter(|n| *n > 0);
     if count != Some(rgb.len()) || transparent.is_some_and(|t| t.len() != rgb.len()) {
         let found = format!("{} pixels for {rows} × {cols}", rgb.len());
@@ -193,14 +211,11 @@ pub fn write_png(
     }
     let colour =
         if transparent.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
-    // By way of memory: the encoder loses the error of writing its last chunk.
     let mut png = Vec::new();
     PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
         .write_image(&samples, width, height, colour)
-        .map_err(|e| Error::file(path, "PNG encoder", open::reason(e), "a picture it can write"))?;
-    let mut file = Temporary::create(path)?;
-    file.write(&png)?;
-    file.finish()
+        .map_err(|e| Error::setting("picture", open::reason(e), "one that PNG can hold"))?;
+    Ok(png)
 }
 
 #[cfg(test)]

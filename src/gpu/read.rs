@@ -5,11 +5,16 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 
 use super::frame::Owned;
-use super::{Frame, Headless, ImageArg, ImageState, failed, memory};
+use super::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
 use crate::plan::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 
 impl Frame {
+    /// What draws it: to be recorded into command buffers beside others.
+    pub fn renderer(&mut self) -> &mut Renderer {
+        self.renderer.as_mut().expect("alive until ended")
+    }
+
     /// The plan's inputs, in its order: in GENERAL, where they are to stay.
     pub fn inputs(&self) -> Vec<ImageArg> {
         self.inputs.iter().map(Owned::arg).collect()

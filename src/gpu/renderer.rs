@@ -566,10 +566,7 @@ impl Renderer {
         let passes = slot.recorded.iter().zip(ticks.windows(2));
         let timings = passes.map(|(&index, pair)| {
             let elapsed = pair[1][0].wrapping_sub(pair[0][0]) & self.timestamp_mask;
-            Timing {
-                label: self.pass(index).label(),
-                ns: elapsed as f64 * self.timestamp_ns,
-            }
+            Timing { label: self.pass(index).label(), ns: elapsed as f64 * self.timestamp_ns }
         });
         Some(timings.collect())
     }

@@ -6,3 +6,4 @@ pub mod fractal;
 pub mod scalar_sweep;
 pub mod statistics;
 pub mod tolerance;
+pub mod trade;

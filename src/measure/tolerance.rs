@@ -135,13 +135,14 @@ pub fn twin_wedge_row(brightest: f64, wedge_rad: f64, columns: f64) -> f64 {
     EPSILON * brightest * (2.0 * 140.0 * 2.0_f64.sqrt() + wedge_rad * (185.0 + columns))
 }
 
-/// A texel of `env_tables`, of `rows` wedge rows of at most `largest` in `nodes` nodes.
+/// A texel of `env_tables`, from wedge rows whose magnitudes sum to `sum` and reach `largest`, in `pieces`:
+/// rows and nodes.
 ///
 /// Elevations, sums, products and quotients within π, err by 25 ε, moments from them by 6 ε: a row by
-/// 62 ε between its two ends. A piece of a row, one a node or row, costs a difference, a product and a
-/// sum: 1.6 ε each. All over π.
-pub fn twin_table(largest: f64, rows: f64, nodes: f64) -> f64 {
-    EPSILON * largest * (20.0 * rows + 0.6 * (rows + nodes) + 2.0)
+/// 62 ε between its two ends. A piece of a row costs a difference, a product and a sum: 1.6 ε each. All
+/// over π.
+pub fn twin_table(sum: f64, largest: f64, pieces: f64) -> f64 {
+    EPSILON * (20.0 * sum + (0.6 * pieces + 2.0) * largest)
 }
 
 /// What the light that a sample gets through its horizons errs by.
@@ -191,6 +192,19 @@ impl ShadeError {
         brightest * (3.5 * place + 5.5 * self.normal + rest)
     }
 
+    /// The environment's sum of at most `brightest`, from an image of `columns` × `rows` by tables of `nodes`
+    /// made on the device.
+    ///
+    /// As [`environment`](Self::environment); and three components of every table, √3 at most, that err
+    /// themselves and by their rows, over moments of at most π/2, over π.
+    pub fn whole_environment(&self, brightest: f64, [columns, rows, nodes]: [f64; 3]) -> f64 {
+        let wedge = std::f64::consts::TAU / self.count;
+        let row = twin_wedge_row(brightest, wedge, columns / self.count + 2.0);
+        let largest = brightest * wedge;
+        let table = twin_table(rows * largest, largest, rows + nodes) + 0.5 * row;
+        self.environment(brightest) + 3.0_f64.sqrt() * self.count * table
+    }
+
     /// `sun_shade`, of slices whose weights sum to `weights`, where both agree on what is lit.
     ///
     /// As [`sky`](Self::sky), between two slopes, with weights over π instead of wedges.
@@ -208,4 +222,9 @@ impl ShadeError {
 /// `light_resolve` from given sums: two products a light, and a sum for each of `lights`.
 pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
     (2.0 + lights as f64) * EPSILON * radiance.abs()
+}
+
+/// Two devices: each as far from the twin as it may be, on either side.
+pub fn two_devices(twin: f64) -> f64 {
+    2.0 * twin
 }

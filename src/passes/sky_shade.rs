@@ -7,7 +7,7 @@ use crate::scene::Border;
 /// What the shading of a batch reads and writes.
 pub(crate) struct Images {
     pub lane_heights: ResourceId,
-    pub lattice: ResourceId,
+    pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub sky_sum: Option<ResourceId>,
     /// The sum, and the tables it is made of.
@@ -27,11 +27,8 @@ pub(crate) fn plan(
     images: &Images,
 ) {
     let axis = batch.axis;
-    let mut bound = vec![
-        ("lane_heights", images.lane_heights),
-        (sweep.lattice_binding(), images.lattice),
-        ("azimuths", images.azimuths),
-    ];
+    let mut bound = vec![("lane_heights", images.lane_heights), ("azimuths", images.azimuths)];
+    bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
     if let Some([sum, tables]) = images.environment {
         bound.extend([("env_sum", sum), ("env_tables", tables)]);

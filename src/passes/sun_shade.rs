@@ -14,16 +14,14 @@ pub(crate) fn plan(
     batch: &Batch,
     part: &str,
     is_point: bool,
-    [lane_heights, lattice, azimuths, sun_sum]: [ResourceId; 4],
+    lattice: Option<ResourceId>,
+    [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
     dirty: Option<ResourceId>,
 ) {
     let axis = batch.axis;
-    let mut bound = vec![
-        ("lane_heights", lane_heights),
-        (sweep.lattice_binding(), lattice),
-        ("azimuths", azimuths),
-        ("sun_sum", sun_sum),
-    ];
+    let mut bound =
+        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
+    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(dirty.map(|d| ("dirty_samples", d)));
     builder.pass(
         &shaders::SUN_SHADE,

@@ -71,44 +71,47 @@ pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {
     order
 }
 
-/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattice takes, at
-/// `layer_bytes` a layer, at most what `fixed_bytes` for all else leave of the memory budget, and
-/// gives each azimuth its layer.
+/// Memory that a lattice may take, by axis: marching columns, rows.
+pub(crate) struct Room {
+    /// All of it; enough for one azimuth.
+    pub lattice_bytes: [u64; 2],
+    /// A layer.
+    pub layer_bytes: [u64; 2],
+}
+
+/// Cuts sorted azimuths, beginning at `first` of the buffer, into batches whose lattices have room,
+/// and gives each azimuth its layer.
 ///
 /// # Errors
-/// One azimuth that does not fit alone.
+/// One azimuth that does not fit alone on the device.
 pub(crate) fn cut(
     azimuths: &mut [Azimuth],
     first: u32,
-    size: [u32; 2],
-    border: Border,
+    axes: &[Option<Axis>; 2],
     sweep: &Sweep,
     limits: &Limits,
-    (fixed_bytes, layer_bytes): (u64, u64),
+    room: &Room,
 ) -> Result<Vec<Batch>> {
-    let lattice_bytes = limits.memory_budget.saturating_sub(fixed_bytes);
-    let most_layers = u64::from(limits.image_layers)
-        .min(lattice_bytes.min(limits.allocation_bytes) / layer_bytes.max(1))
-        as u32;
     let mut batches: Vec<Batch> = Vec::new();
     for (i, azimuth) in azimuths.iter_mut().enumerate() {
-        let axis = Axis::of(azimuth.marches_rows(), size, border);
+        let marches_rows = usize::from(azimuth.marches_rows());
+        let axis = axes[marches_rows].expect("an axis for every azimuth");
+        let layer_bytes = room.layer_bytes[marches_rows];
+        let bytes = room.lattice_bytes[marches_rows].min(limits.allocation_bytes);
+        let most_layers = u64::from(limits.image_layers).min(bytes / layer_bytes.max(1)) as u32;
         let layers = sweep.layers(azimuth, axis);
         if layers > most_layers {
-            let what = format!("horizons of one azimuth of a {} × {} field", size[0], size[1]);
+            let [cols, rows] = axis.size();
+            let what = format!("horizons of one azimuth of a {cols} × {rows} field");
             let bytes = u64::from(layers) * layer_bytes;
             let (needs, limit) = if layers > limits.image_layers {
                 (
                     format!("an image of {layers} layers"),
                     format!("{} on this device", limits.image_layers),
                 )
-            } else if bytes > limits.allocation_bytes {
+            } else {
                 let limit = bytes_text(limits.allocation_bytes);
                 (bytes_text(bytes), format!("{limit} in one allocation on this device"))
-            } else {
-                let (all, budget) =
-                    (bytes_text(fixed_bytes + bytes), bytes_text(limits.memory_budget));
-                (format!("{all} with all else"), format!("{budget} of --memory-budget"))
             };
             return Err(Error::Limit { what, needs, limit });
         }

@@ -55,8 +55,8 @@ pub fn horizons(
     for batch in batches {
         let part = part("", batch, batches);
         sweeping.record(&mut builder, batch, &part);
-        let ids =
-            [sweeping.lane_heights(batch), sweeping.lattice(batch), sweeping.azimuths, angles];
+        let written = sweeping.written(batch);
+        let ids = [sweeping.lane_heights(batch), written, sweeping.azimuths, angles];
         passes::sweep_fuse::plan(
             &mut builder,
             &sweeping.sweep,

@@ -21,6 +21,8 @@ pub struct Picture {
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
     /// then also take edits ([`Plan::edit_passes`]). Memory: an eighth of a byte a sample.
     pub keeps_horizons: bool,
+    /// The heights will stay those of the scene: what these cannot show is left out.
+    pub still: bool,
 }
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
@@ -40,7 +42,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let size = check_size(field, limits)?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, wanted, &mut notes)?;
-    let sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
+        notes.push("no sweep: nothing rises above anything else, the field is concave".into());
+        sweep = Sweep::Crossings;
+    }
     if matches!(sweep, Sweep::Surface { .. }) && !shining.suns.is_empty() {
         return Err(Error::setting(
             "--lines exact with --sun",
@@ -59,9 +65,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if tables.is_none() && shining.sky.is_some() {
         notes.push("no environment: no table".into());
     }
-    let takes_edits = wanted.keeps_horizons && sweep.editable(surface.border).is_some();
+    let keeps = wanted.keeps_horizons;
+    let takes_edits = keeps && !wanted.still && sweep.editable(surface.border).is_some();
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
-    let held = (limits, wanted.keeps_horizons);
+    let held = (limits, keeps);
     let (sweeping, lists) =
         prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
@@ -296,10 +303,12 @@ impl Drawing<'_> {
                     sweeping.record(builder, batch, &part);
                 }
                 let lanes = sweeping.lane_heights(batch);
-                let ids = [lanes, sweeping.lattice(batch), sweeping.azimuths, sum];
+                let ids = [lanes, sweeping.azimuths, sum];
+                let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, is_point, ids, self.dirty,
+                    builder, sweep, border, cell_m, batch, &part, is_point, lattice, ids,
+                    self.dirty,
                 );
             }
             self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);

@@ -53,6 +53,8 @@ pub enum Sweep {
         /// Whether distances are stored beside slopes.
         distances: bool,
     },
+    /// None: on a concave field a sample's horizon is the first crossing of its own line.
+    Crossings,
     /// Brute force, all crossings.
     March {
         /// Whether distances are stored beside slopes.
@@ -185,10 +187,16 @@ impl Sweep {
         }
     }
 
+    /// Whether a sample's own first crossings are among its candidates.
+    pub(crate) fn sees_own_crossings(&self) -> bool {
+        matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest))
+    }
+
     /// The shaders' FUSE.
     pub(crate) fn fuse_mode(&self) -> u32 {
         match self {
             Sweep::Lines(lines) => 1 + lines.fuse as u32,
+            Sweep::Crossings => 6,
             _ => 0,
         }
     }
@@ -197,6 +205,7 @@ impl Sweep {
     pub(crate) fn lattice_content(&self) -> u32 {
         match self {
             Sweep::Lines(lines) => lines.slope_format,
+            Sweep::Crossings => 0,
             _ => 1,
         }
     }
@@ -215,13 +224,14 @@ impl Sweep {
                 Fuse::AimedNearest => 2 + 8,
                 Fuse::Own | Fuse::Aimed => 4 + 16,
             },
+            Sweep::Crossings => 0,
             _ => 4,
         }
     }
 
     pub(crate) fn lattice_has_distances(&self) -> bool {
         match self {
-            Sweep::Lines(_) => false,
+            Sweep::Lines(_) | Sweep::Crossings => false,
             Sweep::Surface { distances, .. } | Sweep::March { distances } => *distances,
         }
     }
@@ -241,7 +251,7 @@ impl Sweep {
         let (unit, shear) = match self {
             Sweep::Lines(lines) => (1_u64 << lines.line_shift, azimuth.shear as u64),
             Sweep::Surface { .. } => (1, azimuth.vector_lane as u64),
-            Sweep::March { .. } => return axis.lanes,
+            Sweep::March { .. } | Sweep::Crossings => return axis.lanes,
         };
         let cell = match self {
             Sweep::Lines(_) => CELL as u64,
@@ -265,6 +275,7 @@ impl Sweep {
             }
             Sweep::Surface { .. } => axis.samples() * azimuth.vector_march as u64,
             Sweep::March { .. } => axis.samples(),
+            Sweep::Crossings => 0,
         }
     }
 
@@ -272,6 +283,7 @@ impl Sweep {
     pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
         match self {
             Sweep::Lines(_) => self.lines(azimuth, axis).div_ceil(32),
+            Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),
         }
     }

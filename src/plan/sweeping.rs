@@ -1,9 +1,9 @@
 use super::azimuths::{self, Azimuth};
-use super::batch::{self, Axis, Batch};
+use super::batch::{self, Axis, Batch, bytes_text};
 use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Builder, Format, Limits, Owner, ResourceId};
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
-use crate::{Result, passes};
+use crate::{Error, Result, passes};
 
 /// What every sweep of a plan shares.
 pub(super) struct Sweeping {
@@ -14,7 +14,7 @@ pub(super) struct Sweeping {
     lane_heights: [Option<ResourceId>; 2],
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
-    /// One for all batches in turn, or one a batch.
+    /// Each batch's; several may have the same in turn.
     lattices: Vec<Lattice>,
 }
 
@@ -33,13 +33,18 @@ impl Sweeping {
     }
 
     fn lattice_of(&self, batch: &Batch) -> Lattice {
-        self.lattices[batch.number as usize % self.lattices.len()]
+        self.lattices[batch.number as usize]
     }
 
     /// What a batch's sweep leaves for the samples: slopes where they are stored, else occluders.
-    pub fn lattice(&self, batch: &Batch) -> ResourceId {
+    pub fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
         let lattice = self.lattice_of(batch);
-        lattice.slopes.or(lattice.occluders).expect("a sweep stores something")
+        lattice.slopes.or(lattice.occluders)
+    }
+
+    /// The same of a sweep that there is.
+    pub fn written(&self, batch: &Batch) -> ResourceId {
+        self.lattice(batch).expect("a sweep stores something")
     }
 
     /// Passes that bring heights by lanes and lattices up to an edit, and mark what it reaches.
@@ -84,12 +89,13 @@ impl Sweeping {
                 };
                 passes::horizon_sweep::plan(builder, lines, batch, part, &images);
             }
+            Sweep::Crossings => {}
             Sweep::Surface { hull_depth, distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice(batch)];
+                let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
             }
             Sweep::March { distances } => {
-                let ids = [self.heights, self.azimuths, self.lattice(batch)];
+                let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::horizon_march::plan(builder, batch, part, *distances, ids);
             }
         }
@@ -103,6 +109,7 @@ pub(super) struct Lists {
 }
 
 /// Layers that a sweep writes: their formats, width and height; their number is the batches'.
+#[derive(Clone, Copy, PartialEq)]
 struct LatticeShape {
     occluders: Option<Format>,
     slopes: Option<Format>,
@@ -111,8 +118,7 @@ struct LatticeShape {
 }
 
 impl LatticeShape {
-    fn of(sweep: &Sweep, axes: &[Option<Axis>; 2]) -> Self {
-        let used = || axes.iter().flatten();
+    fn of(sweep: &Sweep, axis: Axis) -> Self {
         match sweep {
             Sweep::Lines(lines) => Self {
                 occluders: lines.writes_occluders.then_some(Format::Rg32Uint),
@@ -122,13 +128,14 @@ impl LatticeShape {
                     _ => None,
                 },
                 width: 8,
-                height: used().map(|a| a.steps + a.warm_up).max().unwrap_or(1),
+                height: axis.steps + axis.warm_up,
             },
+            Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
             Sweep::Surface { .. } | Sweep::March { .. } => Self {
                 occluders: None,
                 slopes: Some(Format::R32Uint),
-                width: used().map(|a| a.lanes).max().unwrap_or(1),
-                height: used().map(|a| a.steps).max().unwrap_or(1),
+                width: axis.lanes,
+                height: axis.steps,
             },
         }
     }
@@ -157,11 +164,14 @@ pub(super) fn prepare(
         used.then(|| Axis::of(marches_rows, size, border))
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
-    let shape = LatticeShape::of(&sweep, &axes);
-    let batches = cut_lists(&mut lists, builder.bytes(), &shape, size, border, &sweep, limits)?;
+    let shapes = shapes(&lists, &axes, &sweep);
+    let batches = cut_lists(&mut lists, builder.bytes(), &axes, &shapes, &sweep, limits)?;
+    let shape_of =
+        |axis: Axis| shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used");
     let can_lose =
         matches!(&sweep, Sweep::Lines(l) if !l.holds_line && l.hull != HullPlace::Occluders);
-    let mut make = |layers: u32, suffix: &str| {
+    let mut make = |axis: Axis, layers: u32, suffix: &str| {
+        let shape = shape_of(axis);
         let extent = [shape.width, shape.height, layers];
         let mut image = |name: &str, format: Option<Format>| {
             format
@@ -174,11 +184,24 @@ pub(super) fn prepare(
             can_lose.then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
     };
-    let all = || batches.iter().flatten();
+    let all: Vec<Batch> = batches.iter().flatten().copied().collect();
     let lattices = if keeps {
-        all().map(|b| make(b.layers, &format!("_{}", b.number))).collect()
+        all.iter().map(|b| make(b.axis, b.layers, &format!("_{}", b.number))).collect()
     } else {
-        vec![make(all().map(|b| b.layers).max().unwrap_or(1), "")]
+        let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
+        let mut lattice_of = |batch: &Batch| {
+            let shape = shape_of(batch.axis);
+            if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
+                return *known;
+            }
+            let alike = all.iter().filter(|b| shape_of(b.axis) == shape);
+            let layers = alike.map(|b| b.layers).max().unwrap_or(1);
+            let suffix = if shared.is_empty() { "" } else { "_across" };
+            let made = make(batch.axis, layers, suffix);
+            shared.push((shape, made));
+            made
+        };
+        all.iter().map(&mut lattice_of).collect()
     };
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
@@ -199,22 +222,72 @@ fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
     builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
 }
 
+/// Bytes of the lattice of one azimuth, of those along each axis that need most.
+fn least_bytes(
+    lists: &[Vec<Azimuth>],
+    axes: &[Option<Axis>; 2],
+    sweep: &Sweep,
+    layer_bytes: [u64; 2],
+) -> [u64; 2] {
+    let mut least = [0_u64; 2];
+    for azimuth in lists.iter().flatten() {
+        let along = usize::from(azimuth.marches_rows());
+        let axis = axes[along].expect("an axis for every azimuth");
+        let bytes = u64::from(sweep.layers(azimuth, axis)) * layer_bytes[along];
+        least[along] = least[along].max(bytes);
+    }
+    least
+}
+
+/// Shapes of the lattices along each axis: one that holds both, used in turn, where it takes no more
+/// than one for each.
+fn shapes(
+    lists: &[Vec<Azimuth>],
+    axes: &[Option<Axis>; 2],
+    sweep: &Sweep,
+) -> [Option<LatticeShape>; 2] {
+    let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis)));
+    let [Some(a), Some(b)] = own else { return own };
+    let both = LatticeShape { width: a.width.max(b.width), height: a.height.max(b.height), ..a };
+    let bytes = |shapes: [LatticeShape; 2]| {
+        least_bytes(lists, axes, sweep, shapes.map(|s| s.layer_bytes()))
+    };
+    let (in_turn, apart) = (bytes([both; 2]), bytes([a, b]));
+    if in_turn[0].max(in_turn[1]) <= apart[0] + apart[1] { [Some(both); 2] } else { own }
+}
+
 /// Sorts every list and cuts it into batches; `fixed_bytes` are taken whatever the cut.
 fn cut_lists(
     lists: &mut [Vec<Azimuth>],
     fixed_bytes: u64,
-    shape: &LatticeShape,
-    size: [u32; 2],
-    border: Border,
+    axes: &[Option<Axis>; 2],
+    shapes: &[Option<LatticeShape>; 2],
     sweep: &Sweep,
     limits: &Limits,
 ) -> Result<Vec<Vec<Batch>>> {
-    let bytes = (fixed_bytes, shape.layer_bytes());
+    let layer_bytes = shapes.map(|shape| shape.map_or(0, |s| s.layer_bytes()));
+    // Axes of one shape use one lattice in turn; others share what the budget leaves, by need.
+    let least = least_bytes(lists, axes, sweep, layer_bytes);
+    let differ = matches!(shapes, [Some(a), Some(b)] if a != b);
+    let all = if differ { least[0] + least[1] } else { least[0].max(least[1]) };
+    if fixed_bytes + all > limits.memory_budget {
+        let [cols, rows] = axes.iter().flatten().next().map_or([0, 0], |axis| axis.size());
+        return Err(Error::Limit {
+            what: format!("horizons of one azimuth of a {cols} × {rows} field"),
+            needs: format!("{} with all else", bytes_text(fixed_bytes + all)),
+            limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
+        });
+    }
+    let budget = u128::from(limits.memory_budget - fixed_bytes);
+    let share =
+        |need: u64| if differ { budget * u128::from(need) / u128::from(all) } else { budget };
+    let lattice_bytes = least.map(|need| share(need) as u64);
+    let room = batch::Room { lattice_bytes, layer_bytes };
     let mut all: Vec<Vec<Batch>> = Vec::new();
     let mut first = 0;
     for list in lists {
         batch::sort(list);
-        let mut batches = batch::cut(list, first, size, border, sweep, limits, bytes)?;
+        let mut batches = batch::cut(list, first, axes, sweep, limits, &room)?;
         let before = all.iter().map(Vec::len).sum::<usize>() as u32;
         batches.iter_mut().for_each(|b| b.number += before);
         all.push(batches);
@@ -269,6 +342,7 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
             add("method", "sweep".into());
             add("lines", "exact".into());
         }
+        Sweep::Crossings => add("method", "first crossings".into()),
         Sweep::March { .. } => add("method", "brute".into()),
     }
     all

@@ -1,3 +1,4 @@
+use super::Border;
 use crate::{Error, Result};
 
 /// The largest magnitude of a height that is accepted, in the field's length unit.
@@ -113,6 +114,45 @@ impl HeightField {
     /// One mark a sample, true where the input held no data; `None` where it held data everywhere.
     pub fn voids(&self) -> Option<&[bool]> {
         self.voids.as_deref()
+    }
+
+    /// Whether no edge between two of the surface's triangles is a valley: then nothing on the field
+    /// rises above the plane of any triangle, and a sample's horizon along an azimuth is the slope of
+    /// the triangle that it stands on. A `periodic` field is concave only where it is level.
+    ///
+    /// An edge and the two vertices across it form a parallelogram on the map, so it is no valley
+    /// where its ends together are at least as high as those two, whatever the cell.
+    pub fn is_concave(&self, border: Border) -> bool {
+        let (rows, cols) = (self.rows, self.cols);
+        let h = |r: usize, c: usize| f64::from(self.heights_m[r * cols + c]);
+        if border == Border::Periodic {
+            return self.heights_m.iter().all(|height| *height == self.heights_m[0]);
+        }
+        // A field one sample wide is a line.
+        if rows == 1 || cols == 1 {
+            let heights = &self.heights_m;
+            return heights
+                .windows(3)
+                .all(|w| 2.0 * f64::from(w[1]) >= f64::from(w[0]) + f64::from(w[2]));
+        }
+        let no_valley =
+            |ends: [f64; 2], across: [f64; 2]| ends[0] + ends[1] >= across[0] + across[1];
+        (0..rows).all(|r| {
+            (0..cols).all(|c| {
+                let along_row = r == 0
+                    || r + 1 == rows
+                    || c + 1 == cols
+                    || no_valley([h(r, c), h(r, c + 1)], [h(r - 1, c), h(r + 1, c + 1)]);
+                let along_col = c == 0
+                    || c + 1 == cols
+                    || r + 1 == rows
+                    || no_valley([h(r, c), h(r + 1, c)], [h(r, c - 1), h(r + 1, c + 1)]);
+                let diagonal = r + 1 == rows
+                    || c + 1 == cols
+                    || no_valley([h(r, c), h(r + 1, c + 1)], [h(r, c + 1), h(r + 1, c)]);
+                along_row && along_col && diagonal
+            })
+        })
     }
 }
 

@@ -83,7 +83,7 @@ fn surface() {
             ("--albedo grey", 1, &["grey"]),
         ],
     );
-    refused(&folder, &[("horizon a.asc -o out.npy --albedo 0.5", 2, &["--albedo", "horizons"])]);
+    refused(&folder, &[("horizon a.asc -o out.npy --albedo 0.5", 2, &["--albedo", "unexpected"])]);
     // Everything void: a field of one height with that height as no data.
     folder.write("level.asc", b"ncols 2 nrows 2 cellsize 1 7 7 7 7");
     refused(&folder, &[("plan level.asc --nodata 7", 1, &["level.asc", "no-data"])]);
@@ -135,7 +135,7 @@ fn everywhere() {
         &folder,
         &[
             ("--memory-budget 0", 1, &["needs ", "0 bytes of --memory-budget"]),
-            ("--memory-budget 0.5KiB", 1, &["needs ", "512 bytes of --memory-budget"]),
+            ("--memory-budget 0.25KiB", 1, &["needs ", "256 bytes of --memory-budget"]),
             ("--memory-budget 5XB", 2, &["--memory-budget", "XB", "MiB"]),
             ("--memory-budget -1", 2, &["--memory-budget"]),
             ("--memory-budget lots", 2, &["--memory-budget", "no size"]),
@@ -174,7 +174,6 @@ fn not_yet() {
         &folder,
         &[
             ("reference a.asc -o out.exr --spp 4", 2, &["reference", "not yet"]),
-            ("trade a.asc -o out", 2, &["trade", "not yet"]),
             ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
             ("view a.asc", 2, &["view", "not yet"]),
             ("nosuch a.asc", 2, &["nosuch"]),
@@ -298,8 +297,16 @@ fn help_says_units_and_defaults() {
         ("--pixels-per-degree", &["1..1000", "Default 67.02"]),
         ("--diff", &["difference.CHANNEL", "flip", "A - B"]),
     ];
+    let trade: &[(&str, &[&str])] = &[
+        ("--budget", &["Seconds", "[default: 120]"]),
+        ("--max-error", &["0.01 is 1 %"]),
+        ("--time-budget", &["<MS>"]),
+        ("--reference", &["Default: brute force"]),
+        ("--device", &["Default the first GPU"]),
+    ];
     for (command, tables) in [
-        ("render", &[shared, lit, render][..]),
+        ("trade", &[lit, trade][..]),
+        ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),
@@ -320,6 +327,12 @@ fn help_says_units_and_defaults() {
             }
         }
         assert!(!help.out.contains("--bounces"), "{command} offers what is not yet there");
+        let has_albedo = help.out.contains("--albedo");
+        assert_eq!(
+            has_albedo,
+            ["render", "plan", "trade"].contains(&command),
+            "{command} --albedo"
+        );
     }
     for args in [&["--help"][..], &["--version"]] {
         let run = folder.run_without_driver(args);

@@ -8,6 +8,8 @@ mod flags;
 mod inputs;
 mod needs_vulkan;
 mod plan;
+mod signals;
+mod trade;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

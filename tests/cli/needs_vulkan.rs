@@ -26,7 +26,7 @@ fn plane<'a>(planes: &'a Planes, name: &str) -> &'a [f32] {
 }
 
 /// A square field of f32 heights, unit cells.
-fn write_field(folder: &Folder, side: usize, height: impl Fn(usize, usize) -> f32) {
+pub fn write_field(folder: &Folder, side: usize, height: impl Fn(usize, usize) -> f32) {
     let data: Vec<u8> =
         (0..side * side).flat_map(|i| height(i / side, i % side).to_le_bytes()).collect();
     folder.write("field.npy", &npy("<f4", false, &format!("({side}, {side})"), &data));
@@ -314,4 +314,32 @@ fn gpu_devices_are_listed_and_chosen() {
         assert!(run.err.contains("nosuch") && run.err.contains(name), "{}", run.err);
     }
     assert!(folder.contents() == before);
+}
+
+/// Azimuths are taken together as far as a budget lets them, down to one: more memory is never refused
+/// where less did, and the horizons are the same.
+#[test]
+fn gpu_tight_budgets_are_met_with_fewer_azimuths_at_a_time() {
+    let folder = Folder::new();
+    write_field(&folder, 64, |r, c| ((7 * r + 3 * c) % 11) as f32);
+    let args = "horizon field.npy -o h.npy --distances d.npy --azimuths 5 --method brute --quiet";
+    done(&folder, args);
+    let whole = [read(&folder.path("h.npy")), read(&folder.path("d.npy"))];
+    let mut refused = 0;
+    let mut met = 0;
+    // One azimuth takes six planes of 64² f32, 16 KiB each, and its own few bytes: heights as they
+    // are and by lanes, angles, distances, and a lattice of two layers.
+    for kib in (96..=224).step_by(8) {
+        let budgeted = format!("{args} --memory-budget {kib}KiB");
+        let run = folder.run(&budgeted.split(' ').collect::<Vec<_>>());
+        if run.status == Some(0) {
+            met += 1;
+            assert!([read(&folder.path("h.npy")), read(&folder.path("d.npy"))] == whole, "{kib}");
+        } else {
+            refused += 1;
+            assert_eq!(met, 0, "{kib} KiB refused, less was not: {}", run.err);
+            assert!(run.err.contains("--memory-budget"), "{}", run.err);
+        }
+    }
+    assert!(refused > 0 && met > 0, "{refused} refused, {met} met");
 }

@@ -50,7 +50,7 @@ fn plateaus(rows: usize, cols: usize) -> HeightField {
 }
 
 fn planned(gpu: &Headless, scene: &Scene, quality: &Quality, keeps_horizons: bool) -> Plan {
-    let wanted = Picture { keeps_horizons, light_layers: true, sky_view: true };
+    let wanted = Picture { keeps_horizons, light_layers: true, sky_view: true, still: false };
     plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
 }
 
@@ -146,7 +146,8 @@ fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, se
 #[test]
 fn edits_give_the_bits_of_all() {
     let mut device = Device::new();
-    let base = Quality { azimuths: 12, sun_azimuths: 3, table_elevations: 16, ..Quality::default() };
+    let base =
+        Quality { azimuths: 12, sun_azimuths: 3, table_elevations: 16, ..Quality::default() };
     let (plane, open) = (Border::Plane, Border::Open);
     let cases = [
         (rough(70, 90, [30.0, 20.0]), plane, base),

@@ -3,10 +3,12 @@
 
 mod analytic;
 mod change;
-mod edits;
 mod contract;
+mod edits;
+mod embedding;
 mod extremes;
 mod forms;
+mod goldens;
 mod pruned;
 mod real;
 mod twins;

@@ -30,12 +30,11 @@ pub enum Command {
     Compare(CompareArgs),
     /// What Vulkan offers here and what is missing
     Devices(DevicesArgs),
+    /// Speed against accuracy: measures settings and writes table, plot, frontier, recommendation
+    Trade(TradeArgs),
     /// The truth, slowly (not yet)
     #[command(hide = true)]
     Reference(NotYet),
-    /// Speed against accuracy (not yet)
-    #[command(hide = true)]
-    Trade(NotYet),
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),
@@ -86,7 +85,7 @@ pub struct HorizonArgs {
     #[arg(long, value_name = "OUT.npy")]
     pub distances: Option<PathBuf>,
     #[command(flatten)]
-    pub surface: SurfaceArgs,
+    pub surface: FieldArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]
@@ -153,6 +152,37 @@ pub struct BenchArgs {
 }
 
 #[derive(Args)]
+pub struct TradeArgs {
+    #[command(flatten)]
+    pub input: Input,
+    /// A folder, made where it is missing, for trade.html, trade.json and trade.csv; one that holds
+    /// anything else is refused
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub lights: LightArgs,
+    #[command(flatten)]
+    pub surface: SurfaceArgs,
+    /// The truth of this scene as .exr; its layer "standard_error" is taken off the errors. Default:
+    /// brute force in many azimuths, or dense sweeps where that is too dear
+    #[arg(long, value_name = "FILE")]
+    pub reference: Option<PathBuf>,
+    /// Seconds after which no further settings are tried
+    #[arg(long, value_name = "SECONDS", default_value_t = 120.0, allow_negative_numbers = true)]
+    pub budget: f64,
+    /// Recommend the cheapest settings of at most this relative RMSE (0.01 is 1 %); exit status 1
+    /// where none were found
+    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget")]
+    pub max_error: Option<f64>,
+    /// Recommend the most accurate settings of at most this time a frame; exit status 1 where none
+    /// were found
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    pub time_budget: Option<f64>,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+#[derive(Args)]
 pub struct DevicesArgs {
     /// The same for machines
     #[arg(long, value_name = "FILE")]
@@ -191,8 +221,23 @@ pub struct LightArgs {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Surface")]
 pub struct SurfaceArgs {
+    #[command(flatten)]
+    pub field: FieldArgs,
+    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
+    #[arg(
+        long,
+        value_name = "VALUE|FILE",
+        default_value = "1",
+        allow_negative_numbers = true,
+        help_heading = "Surface"
+    )]
+    pub albedo: String,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Surface")]
+pub struct FieldArgs {
     /// Spacing of columns and of rows in the heights' unit (metres), where the file has none or a
     /// wrong one. Default the file's, else 1
     #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true)]
@@ -200,9 +245,6 @@ pub struct SurfaceArgs {
     /// Multiplies heights; not 0
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub z_scale: f64,
-    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
-    #[arg(long, value_name = "VALUE|FILE", default_value = "1", allow_negative_numbers = true)]
-    pub albedo: String,
     /// Beyond the edge: the ground goes on level (plane), nothing (open), the field repeats (periodic)
     #[arg(long, default_value = "plane")]
     pub border: BorderName,

@@ -3,7 +3,7 @@
 mod forms;
 mod rows;
 mod sizes;
-mod verify;
+pub mod verify;
 
 use std::time::{Duration, Instant};
 
@@ -36,7 +36,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let quality = setup::quality(&args.quality)?;
     let field = match &args.input {
-        Some(path) => setup::field(path, &args.surface)?,
+        Some(path) => setup::field(path, &args.surface.field)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;

@@ -19,6 +19,24 @@ fn at_once(field: &HeightField, limits: &Limits) -> u32 {
     (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
 }
 
+/// Horizons from azimuth `first` on: of `most`, or of as many fewer as the limits ask for.
+fn plan_from(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    (first, most): (u32, u32),
+    distances: bool,
+) -> Result<Plan> {
+    let mut count = most.min(quality.azimuths - first);
+    loop {
+        match plan::horizons(field, border, quality, limits, (first, count), distances) {
+            Err(Error::Limit { .. }) if count > 1 => count /= 2,
+            planned => return planned,
+        }
+    }
+}
+
 /// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
 /// of all passes and the last plan.
 pub fn for_each(
@@ -31,13 +49,14 @@ pub fn for_each(
     each: &mut Each<'_>,
 ) -> Result<(Vec<Timing>, Plan)> {
     let plane = field.rows() * field.cols();
-    let at_once = at_once(field, limits);
+    let mut at_once = at_once(field, limits);
     let mut times = Vec::new();
     let mut first = 0;
     loop {
-        let count = at_once.min(quality.azimuths - first);
-        let plan = plan::horizons(field, border, quality, limits, (first, count), distances)?;
+        let plan = plan_from(field, border, quality, limits, (first, at_once), distances)?;
         let order = plan.layer_azimuths.clone();
+        let count = order.len() as u32;
+        at_once = count;
         let kept = plan.clone();
         let mut frame = gpu.frame(plan, &[field.heights_m()])?;
         times.extend(gpu.draw(&mut frame)?);
@@ -70,14 +89,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         ("--distances", args.distances.as_deref()),
         ("--json", args.global.json.as_deref()),
     ];
-    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, None, &args.surface))?;
-    if args.surface.albedo != "1" {
-        return Err(Error::setting(
-            "--albedo",
-            &args.surface.albedo,
-            "nothing: horizons have no colour",
-        ));
-    }
+    setup::check_distinct(&outputs, &[&args.input.path])?;
     let quality = setup::quality(&args.quality)?;
     let is_npy = setup::extension(&args.output) == "npy";
     if quality.lines == Lines::Exact && is_npy && args.global.json.is_none() {
@@ -89,9 +101,10 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     }
     let field = setup::field(&args.input.path, &args.surface)?;
     let border = setup::border(&args.surface);
+    let distances = args.distances.is_some();
     setup::check_plan(&args.global, |limits| {
-        let count = at_once(&field, limits).min(quality.azimuths);
-        plan::horizons(&field, border, &quality, limits, (0, count), args.distances.is_some())
+        let most = at_once(&field, limits);
+        plan_from(&field, border, &quality, limits, (0, most), distances)
     })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let shape = [quality.azimuths as usize, field.rows(), field.cols()];
@@ -107,7 +120,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         border,
         &quality,
         &limits,
-        args.distances.is_some(),
+        distances,
         &mut |k, angles, distances| {
             bar.set_message(format!("horizons: azimuth {} of {}", k + 1, shape[0]));
             let mut angles = angles.to_vec();

@@ -17,10 +17,26 @@ mod horizon;
 mod plan;
 mod render;
 mod setup;
+mod trade;
 
 use clap::Parser as _;
 use std::io::Write as _;
 use std::process::ExitCode;
+
+/// What shells report of a command that Ctrl-C ended.
+const INTERRUPTED: i32 = 130;
+
+/// Leaves no unfinished file behind when the user, the terminal or the system asks to end.
+fn end_cleanly_on_signals() {
+    let end = || {
+        ridgelight::files::abandon_unfinished();
+        let _ = writeln!(std::io::stderr(), "ridgelight: interrupted");
+        std::process::exit(INTERRUPTED);
+    };
+    // Where one of the signals is ignored (nohup, jobs in the background of a script) it stays so,
+    // and the others do what they do by default: no more than tidiness is lost.
+    let _ = ctrlc::try_set_handler(end);
+}
 
 fn main() -> ExitCode {
     let command = match args::Cli::try_parse() {
@@ -31,6 +47,7 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    end_cleanly_on_signals();
     let done = match &command {
         args::Command::Render(args) => render::run(args),
         args::Command::Horizon(args) => horizon::run(args),
@@ -39,7 +56,7 @@ fn main() -> ExitCode {
         args::Command::Compare(args) => compare::run(args),
         args::Command::Devices(args) => devices::run(args),
         args::Command::Reference(_) => not_yet("reference"),
-        args::Command::Trade(_) => not_yet("trade"),
+        args::Command::Trade(args) => trade::run(args),
         args::Command::Bake(_) => not_yet("bake"),
         args::Command::View(_) => not_yet("view"),
     };
@@ -57,6 +74,6 @@ fn main() -> ExitCode {
 }
 
 fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {
-    let expected = "render, horizon, plan, bench, compare or devices: it is not yet there";
+    let expected = "render, horizon, plan, bench, trade, compare or devices: it is not yet there";
     Err(ridgelight::Error::setting("command", command, expected))
 }

@@ -9,11 +9,11 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     args.later.check()?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
-        let inputs = setup::inputs(&args.input.path, Some(&args.lights), &args.surface);
+        let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface)?;
+    let field = setup::field(&args.input.path, &args.surface.field)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     // Planned for the device that would run it; without one, for the software driver everyone has.
     let devices = gpu::devices();

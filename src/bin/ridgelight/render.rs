@@ -14,10 +14,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         setup::check_output("--json", json, &["json"])?;
     }
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
-    setup::check_distinct(
-        &outputs,
-        &setup::inputs(&args.input.path, Some(&args.lights), &args.surface),
-    )?;
+    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(ridgelight::Error::setting(
             "--exposure",
@@ -41,11 +38,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         ));
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface)?;
+    let field = setup::field(&args.input.path, &args.surface.field)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let wanted = Picture {
         light_layers: args.layers.contains(&Layer::Lights),
         sky_view: args.layers.contains(&Layer::SkyView),
+        still: true,
         ..Picture::default()
     };
     let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
@@ -63,7 +61,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         pixels.push(gpu.pixels(&frame, output)?);
     }
     let mut metadata = setup::metadata(&gpu, &scene.field, frame.plan(), &times);
-    metadata.extend(setup::asked(&args.input.path, &args.surface, Some((&args.lights, &scene))));
+    metadata.extend(setup::asked(
+        &args.input.path,
+        &args.surface.field,
+        Some((&args.lights, &args.surface, &scene)),
+    ));
     gpu.end(frame);
     let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =
@@ -122,7 +124,7 @@ fn mean_horizon(
     crate::horizon::for_each(
         gpu,
         field,
-        setup::border(&args.surface),
+        setup::border(&args.surface.field),
         &quality,
         limits,
         false,

@@ -11,8 +11,8 @@ use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FuseName, GlobalArgs, HullName, LightArgs, LinesName, MethodName, PrecisionName,
-    QualityArgs, SurfaceArgs, albedo_colour,
+    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, LightArgs, LinesName, MethodName,
+    PrecisionName, QualityArgs, SurfaceArgs, albedo_colour,
 };
 
 /// How a command ended that did not fail.
@@ -22,7 +22,7 @@ pub enum Outcome {
     Beyond,
 }
 
-pub fn field(path: &Path, surface: &SurfaceArgs) -> Result<HeightField> {
+pub fn field(path: &Path, surface: &FieldArgs) -> Result<HeightField> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
@@ -44,7 +44,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
     };
     let none = lights.sky.is_none() && environment.is_none() && lights.sun.is_empty();
     Ok(Scene {
-        surface: Surface { albedo, border: border(surface), phong: None },
+        surface: Surface { albedo, border: border(&surface.field), phong: None },
         lights: Lights {
             sky: if none { Some([1.0; 3]) } else { lights.sky },
             environment,
@@ -55,7 +55,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
     })
 }
 
-pub fn border(surface: &SurfaceArgs) -> Border {
+pub fn border(surface: &FieldArgs) -> Border {
     match surface.border {
         BorderName::Plane => Border::Plane,
         BorderName::Open => Border::Open,
@@ -176,8 +176,8 @@ pub fn metadata(
 /// What was asked for that no plan knows.
 pub fn asked(
     input: &Path,
-    surface: &SurfaceArgs,
-    lights: Option<(&LightArgs, &Scene)>,
+    surface: &FieldArgs,
+    lit: Option<(&LightArgs, &SurfaceArgs, &Scene)>,
 ) -> Vec<(String, String)> {
     let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
     let mut all = vec![
@@ -187,7 +187,7 @@ pub fn asked(
     if let Some(nodata) = surface.nodata {
         all.push(("nodata".to_owned(), nodata.to_string()));
     }
-    let Some((args, scene)) = lights else { return all };
+    let Some((args, surface, scene)) = lit else { return all };
     all.push(("albedo".to_owned(), surface.albedo.clone()));
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
@@ -210,11 +210,11 @@ pub fn asked(
 /// The files that a command reads.
 pub fn inputs<'a>(
     field: &'a Path,
-    lights: Option<&'a LightArgs>,
+    lights: &'a LightArgs,
     surface: &'a SurfaceArgs,
 ) -> Vec<&'a Path> {
     let albedo = albedo_colour(&surface.albedo).is_none().then_some(Path::new(&surface.albedo));
-    [Some(field), lights.and_then(|l| l.env.as_deref()), albedo].into_iter().flatten().collect()
+    [Some(field), lights.env.as_deref(), albedo].into_iter().flatten().collect()
 }
 
 pub fn as_json(metadata: &[(String, String)], times: &[Timing]) -> serde_json::Value {

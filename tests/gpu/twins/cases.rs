@@ -113,7 +113,8 @@ pub(super) fn sweeps() -> Vec<Case> {
             "shared packed",
             rough(29, 19, 4),
             Border::Plane,
-            Quality { hull: Hull::Shared, fuse: Fuse::Nearest, ..packed },
+            // Between lines two cells apart, every second sample is equally near to both.
+            Quality { hull: Hull::Shared, lines: Lines::TwoCells, fuse: Fuse::Nearest, ..packed },
             false,
         ),
         horizons(

@@ -50,7 +50,9 @@ pub(super) fn env_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let (k, row) = (i / rows, i % rows);
         let wedge = f64::from(azimuths[k].wedge_rad);
         let columns = wedge / std::f64::consts::TAU * environment.width() as f64 + 2.0;
-        let tolerance = twin_wedge_row(brightest(environment), wedge, columns);
+        let texels = environment.texels().chunks_exact(environment.width()).nth(row);
+        let of_row = texels.into_iter().flatten().flatten().fold(0.0_f32, |m, v| m.max(*v));
+        let tolerance = twin_wedge_row(of_row.into(), wedge, columns);
         for (moment, (got, want)) in got.iter().zip(want).enumerate() {
             let at = [k, row, moment];
             pairs.extend((0..3).map(|c| Pair { got: got[c], want: want[c], tolerance, at }));
@@ -76,12 +78,16 @@ pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let azimuths = pushed(pass, offsets::env_tables_push::AZIMUTH_COUNT) as usize;
     let want = tables_twin::env_tables(&rows, (height, azimuths), got.nodes, got.bottom_rad);
     assert_eq!(got.texels.len(), want.texels.len());
-    let largest = rows.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs().max_element()));
-    let tolerance = twin_table(largest, height as f64, got.nodes as f64);
-    let nodes = got.nodes;
+    let (nodes, pieces) = (got.nodes, (height + got.nodes) as f64);
     let pairs = got.texels.iter().zip(&want.texels).enumerate().flat_map(|(i, (got, want))| {
-        let at = [i / (3 * nodes), i / nodes % 3, i % nodes];
-        (0..3).map(move |c| Pair { got: got[c], want: want[c], tolerance, at })
+        let (k, moment) = (i / (3 * nodes), i / nodes % 3);
+        let summed = rows[k * height..(k + 1) * height].iter().map(|row| row[moment].abs());
+        let sum: Rgb = summed.clone().sum();
+        let largest = summed.fold(Rgb::ZERO, Rgb::max);
+        let tolerance = |c| twin_table(sum[c], largest[c], pieces);
+        let at = [k, moment, i % nodes];
+        let pair = |c| Pair { got: got[c], want: want[c], tolerance: tolerance(c), at };
+        [pair(0), pair(1), pair(2)]
     });
     pairs.collect()
 }

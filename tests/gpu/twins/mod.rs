@@ -224,7 +224,10 @@ fn check(device: &mut Device, case: &Case) -> usize {
         let Some(worst) = worst(&pairs) else { continue };
         println!("{}: {label}: {:.3} of {} values", case.name, worst.ratio(), pairs.len());
         if worst.ratio() > 1.0 {
-            failed.push(format!("{label}: error/tolerance {:e}: {worst:?}", worst.ratio()));
+            let Pair { got, want, tolerance, at } = worst;
+            let ratio = worst.ratio();
+            failed
+                .push(format!("{label} at {at:?}: {got} against {want}, {ratio} of {tolerance:e}"));
         }
     }
     assert!(failed.is_empty(), "{}:\n{}", case.name, failed.join("\n"));

@@ -1,0 +1,266 @@
+//! Puts the figures of benches/results into README.md, between `<!-- begin NAME -->` and
+//! `<!-- end NAME -->`: what stands there is made, never typed. See `tools/readme`.
+//!
+//! `cargo run --example readme` writes README.md; with `-- --check` it changes nothing and fails where
+//! README.md is not what would be written.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use ridgelight::files;
+use serde_json::Value;
+
+/// Or a sentence for the user.
+type Result<T> = std::result::Result<T, String>;
+
+const RESULTS: &str = "benches/results";
+
+fn text(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn wrong(path: &Path, found: &str, expected: &str) -> String {
+    format!("{}: found {found}, expected {expected}", path.display())
+}
+
+/// A JSON file of the results, with readers that name what is missing.
+struct Figures {
+    path: PathBuf,
+    all: Value,
+}
+
+impl Figures {
+    fn read(name: &str) -> Result<Self> {
+        let path = Path::new(RESULTS).join(format!("{name}.json"));
+        let all = serde_json::from_str(&text(&path)?)
+            .map_err(|e| wrong(&path, &e.to_string(), "JSON, as tools/bench writes it"))?;
+        Ok(Self { path, all })
+    }
+
+    fn number(&self, of: &Value, key: &str) -> Result<f64> {
+        let missing =
+            || wrong(&self.path, &format!("no number {key}"), "one, as tools/bench writes it");
+        of[key].as_f64().ok_or_else(missing)
+    }
+
+    fn word<'a>(&self, of: &'a Value, key: &str) -> Result<&'a str> {
+        let missing =
+            || wrong(&self.path, &format!("no text {key}"), "one, as tools/bench writes it");
+        of[key].as_str().ok_or_else(missing)
+    }
+
+    fn rows(&self) -> &[Value] {
+        self.all["rows"].as_array().map_or(&[], Vec::as_slice)
+    }
+
+    /// Device and driver, and when, where and at which commit it was measured.
+    fn caption(&self) -> Result<String> {
+        let device =
+            format!("{}, {}", self.word(&self.all, "device")?, self.word(&self.all, "driver")?);
+        let made = made(&self.path.with_extension("txt"))?;
+        Ok(format!("*{device}{made}*"))
+    }
+}
+
+/// The line with which tools/bench begins a text: date, cores, load, commit.
+fn made(path: &Path) -> Result<String> {
+    let text = text(path)?;
+    let first = text.lines().next().unwrap_or_default();
+    let is_dated = first.starts_with(|c: char| c.is_ascii_digit()) && first.contains("load");
+    Ok(if is_dated { format!("; {first}") } else { String::new() })
+}
+
+/// What is not known is not 0.
+fn percent(value: Option<f64>) -> String {
+    value.map_or_else(|| "error not measured".to_owned(), |v| format!("{:.2} %", 100.0 * v))
+}
+
+fn picture() -> Result<String> {
+    let figures = Figures::read("picture")?;
+    let of = |key| figures.number(&figures.all, key);
+    let mut out = String::from(
+        "![A mountain without shadows, as Ridgelight lights it, and its reference](docs/demo.png)\n\n",
+    );
+    let (azimuths, true_azimuths) = (of("azimuths")?, of("reference_azimuths")?);
+    writeln!(out, "| without shadows | Ridgelight, {azimuths} azimuths | brute force, {true_azimuths} azimuths |").unwrap();
+    writeln!(out, "|:-:|:-:|:-:|").unwrap();
+    writeln!(out, "| | {:.1} ms | {:.1} ms |", of("ours_ms")?, of("reference_ms")?).unwrap();
+    let (off, ours) = (of("off_error")?, of("ours_error")?);
+    writeln!(out, "| {} off | {} off | the reference |", percent(Some(off)), percent(Some(ours)))
+        .unwrap();
+    writeln!(
+        out,
+        "\n{} × {} samples (SRTM) under the bundled sky and a sun ten degrees high; off: RMSE relative to the mean.",
+        of("cols")?,
+        of("rows")?
+    )
+    .unwrap();
+    writeln!(out, "{}", figures.caption()?).unwrap();
+    Ok(out)
+}
+
+fn sizes() -> Result<String> {
+    let figures = Figures::read("sizes")?;
+    let key = |row: &Value, key| figures.number(row, key).map(|v| v as u64);
+    let (mut sides, mut counts) = (Vec::new(), Vec::new());
+    for row in figures.rows() {
+        sides.push(key(row, "cols")?);
+        counts.push(key(row, "azimuths")?);
+    }
+    for all in [&mut sides, &mut counts] {
+        all.sort_unstable();
+        all.dedup();
+    }
+    let mut out = String::from("| field |");
+    counts.iter().for_each(|m| write!(out, " {m} azimuths |").unwrap());
+    writeln!(out, "\n|---|{}", "---|".repeat(counts.len())).unwrap();
+    for side in &sides {
+        write!(out, "| {side}² |").unwrap();
+        for count in &counts {
+            let is = |row: &&Value| row["cols"] == *side && row["azimuths"] == *count;
+            let Some(row) = figures.rows().iter().find(is) else {
+                write!(out, " not measured |").unwrap();
+                continue;
+            };
+            let settings = &row["settings"];
+            let setting = |name: &str| settings[name].as_str().and_then(|v| v.parse::<f64>().ok());
+            let mb = setting("device_bytes").ok_or_else(|| {
+                wrong(&figures.path, "no device_bytes", "one, as tools/bench writes it")
+            })? * 1e-6;
+            let ms = figures.number(row, "median_ns")? * 1e-6;
+            write!(out, " {ms:.1} ms, {mb:.1} MB, {} |", percent(setting("light_error"))).unwrap();
+        }
+        out.push('\n');
+    }
+    writeln!(
+        out,
+        "\nA whole frame under a uniform sky, memory of all images and buffers, RMSE of the light beside the f64 oracle."
+    )
+    .unwrap();
+    writeln!(out, "{}", figures.caption()?).unwrap();
+    Ok(out)
+}
+
+fn forms() -> Result<String> {
+    let figures = Figures::read("forms_1024")?;
+    let mut out = String::from(
+        "| form | azimuths | ms an azimuth | × scalar sweep on all cores |\n|---|---|---|---|\n",
+    );
+    let an_azimuth = |row: &Value| -> Result<f64> {
+        Ok(figures.number(row, "median_ns")? * 1e-6 / figures.number(row, "azimuths")?)
+    };
+    for row in figures.rows() {
+        let Some(beside) = row["settings"]["scalar_beside"].as_str() else { continue };
+        let scalar = figures.rows().iter().find(|r| r["pass"] == beside);
+        let scalar = scalar
+            .ok_or_else(|| wrong(&figures.path, &format!("no row {beside}"), "the scalar's row"))?;
+        let (ms, azimuths) = (an_azimuth(row)?, figures.number(row, "azimuths")?);
+        let pass = figures.word(row, "pass")?;
+        writeln!(out, "| {pass} | {azimuths} | {ms:.3} | {:.3} |", ms / an_azimuth(scalar)?)
+            .unwrap();
+    }
+    writeln!(out, "\n{}", figures.caption()?).unwrap();
+    Ok(out)
+}
+
+/// The first table of every accuracy_*.txt, without its times.
+fn accuracy() -> Result<String> {
+    let folder = Path::new(RESULTS);
+    let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
+    paths.retain(|p| {
+        let name = p.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("accuracy_") && name.ends_with(".txt")
+    });
+    paths.sort();
+    if paths.is_empty() {
+        return Err(wrong(folder, "no accuracy_*.txt", "one, as tools/bench writes it"));
+    }
+    let mut parts = Vec::new();
+    for path in &paths {
+        let text = text(path)?;
+        let table: Vec<Vec<&str>> = text
+            .lines()
+            .skip_while(|l| !l.starts_with('|'))
+            .take_while(|l| l.starts_with('|'))
+            .map(|l| l.trim_matches('|').split('|').map(str::trim).collect())
+            .collect();
+        let about = text.lines().find(|l| l.contains(" samples, "));
+        let (Some(head), Some(about)) = (table.first(), about) else {
+            return Err(wrong(path, "no table", "the text of examples/accuracy"));
+        };
+        let kept = head.iter().take_while(|name| !name.ends_with(" ms")).count();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let name = name.trim_start_matches("accuracy_");
+        let mut part = format!("{name}: {about}{}\n\n", made(path)?);
+        for row in &table {
+            let cells = row.get(..kept).ok_or_else(|| wrong(path, "a short row", "a whole one"))?;
+            writeln!(part, "| {} |", cells.join(" | ")).unwrap();
+        }
+        parts.push(part);
+    }
+    Ok(parts.join("\n"))
+}
+
+/// `readme` with what stands between the marks of `name` replaced.
+fn with(readme: &str, name: &str, new: &str) -> Result<String> {
+    let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
+    let missing = || {
+        let expected = format!("{} and {end}, once each", begin.trim_end());
+        wrong(Path::new("README.md"), "no marks", &expected)
+    };
+    let (before, rest) = readme.split_once(&begin).ok_or_else(missing)?;
+    let (_, after) = rest.split_once(&end).ok_or_else(missing)?;
+    if after.contains(&begin) {
+        return Err(missing());
+    }
+    Ok(format!("{before}{begin}\n{new}\n{end}{after}"))
+}
+
+fn run(check: bool) -> Result<bool> {
+    let path = Path::new("README.md");
+    let mut readme = text(path)?;
+    let mut stale = Vec::new();
+    type Section = (&'static str, fn() -> Result<String>);
+    let sections: [Section; 4] =
+        [("picture", picture), ("sizes", sizes), ("accuracy", accuracy), ("forms", forms)];
+    for (name, section) in sections {
+        let new = with(&readme, name, &section()?)?;
+        if new != readme {
+            stale.push(name);
+        }
+        readme = new;
+    }
+    if check && !stale.is_empty() {
+        eprintln!(
+            "README.md is not what {RESULTS} says (section {}): run tools/readme",
+            stale.join(", ")
+        );
+        return Ok(false);
+    }
+    if !check {
+        files::write_text(path, &readme).map_err(|e| e.to_string())?;
+    }
+    Ok(true)
+}
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let check = match args.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        [] => false,
+        ["--check"] => true,
+        _ => {
+            eprintln!("usage: readme [--check]");
+            return ExitCode::from(2);
+        }
+    };
+    match run(check) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("readme: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Time against error on log axes, as SVG.
+
+use super::html::escaped;
+use super::report::Report;
+
+const WIDTH: f64 = 860.0;
+const HEIGHT: f64 = 500.0;
+/// Left, top, right, bottom.
+const MARGIN: [f64; 4] = [78.0, 16.0, 18.0, 52.0];
+/// Decimal logarithms that stand free at each end of an axis.
+const AIR: f64 = 0.08;
+
+/// A log axis from one place on the page to another.
+struct Axis {
+    low: f64,
+    high: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Axis {
+    fn of(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
+        let (low, high) =
+            values.filter(|v| *v > 0.0).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v.log10()), h.max(v.log10()))
+            });
+        let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
+        // Half a decade at least, so that ticks fall into it.
+        let more = AIR.max(0.25 - (high - low) / 2.0);
+        Self { low: low - more, high: high + more, from, to }
+    }
+
+    /// Where a value stands; 0 and what is below the axis at its low end.
+    fn at(&self, value: f64) -> f64 {
+        let log = if value > 0.0 { value.log10() } else { self.low };
+        self.from + (self.to - self.from) * ((log - self.low) / (self.high - self.low)).max(0.0)
+    }
+
+    /// 1, 2 and 5 in each decade, all of whose numbers are shown where the axis is short.
+    fn ticks(&self) -> Vec<(f64, bool)> {
+        let short = self.high - self.low < 2.5;
+        (self.low.floor() as i32..=self.high.ceil() as i32)
+            .flat_map(|d| [1.0, 2.0, 5.0].map(|m| (m * 10_f64.powi(d), m == 1.0 || short)))
+            .filter(|(v, _)| (self.low..=self.high).contains(&v.log10()))
+            .collect()
+    }
+}
+
+/// A power of ten times 1, 2 or 5, without digits that say nothing.
+fn number(value: f64) -> String {
+    let places = (-value.log10().floor()).max(0.0) as usize;
+    if places > 6 { format!("{value:.0e}") } else { format!("{value:.places$}") }
+}
+
+pub fn svg(report: &Report) -> String {
+    let points = &report.walk.points;
+    let own = report.truth.own_error;
+    let [left, top, right, bottom] = MARGIN;
+    let x = Axis::of(points.iter().map(|p| report.time_ns(p) * 1e-6), left, WIDTH - right);
+    let errors = points.iter().map(|p| 100.0 * report.error(p)).chain([100.0 * own]);
+    let y = Axis::of(errors, HEIGHT - bottom, top);
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"time against error\">\n"
+    );
+    for (value, shown) in x.ticks() {
+        let at = x.at(value);
+        svg +=
+            &format!("<line class=grid x1={at:.1} x2={at:.1} y1={} y2={top} />", HEIGHT - bottom);
+        if shown {
+            let text = number(value);
+            let low = HEIGHT - bottom + 18.0;
+            svg += &format!("<text x={at:.1} y={low} text-anchor=middle>{text}</text>\n");
+        }
+    }
+    for (value, shown) in y.ticks() {
+        let at = y.at(value);
+        svg += &format!("<line class=grid x1={left} x2={} y1={at:.1} y2={at:.1} />", WIDTH - right);
+        if shown {
+            let text = number(value);
+            let (x, y) = (left - 8.0, at + 4.0);
+            svg += &format!("<text x={x} y={y:.1} text-anchor=end>{text}</text>\n");
+        }
+    }
+    let (middle, low) = ((left + WIDTH - right) / 2.0, HEIGHT - 12.0);
+    svg += &format!("<text class=name x={middle} y={low} text-anchor=middle>ms a frame</text>\n");
+    let half = (top + HEIGHT - bottom) / 2.0;
+    svg += &format!(
+        "<text class=name transform=\"translate(16 {half}) rotate(-90)\" text-anchor=middle>relative \
+         RMSE, %</text>\n"
+    );
+    if own > 0.0 {
+        let (at, end) = (y.at(100.0 * own), WIDTH - right);
+        svg += &format!(
+            "<line class=own x1={left} x2={end} y1={at:.1} y2={at:.1} /><text class=small x={end} \
+             y={:.1} text-anchor=end>the truth's own error</text>\n",
+            at + 14.0
+        );
+    }
+    let place = |p: &super::Point| (x.at(report.time_ns(p) * 1e-6), y.at(100.0 * report.error(p)));
+    let front = report.frontier();
+    let mut path = String::new();
+    for (i, point) in front.iter().enumerate() {
+        let (px, py) = place(point);
+        // Steps: between two points the cheaper one's error holds.
+        path += &if i == 0 { format!("M{px:.1} {py:.1}") } else { format!("H{px:.1}V{py:.1}") };
+    }
+    svg += &format!("<path class=front d=\"{path}\" />\n");
+    let is_front = |p: &super::Point| front.iter().any(|f| f.place == p.place);
+    // The frontier on top.
+    let mut order: Vec<&super::Point> = points.iter().collect();
+    order.sort_by_key(|p| is_front(p));
+    for point in order {
+        let (px, py) = place(point);
+        let (kind, size) = if is_front(point) { ("on", 5.5) } else { ("off", 4.0) };
+        let label = format!(
+            "{}: {}, {}",
+            report.flags(point.place),
+            report.time_text(point),
+            report.error_text(point)
+        );
+        if point.place == report.recommended().place {
+            svg += &format!("<circle class=ring cx={px:.1} cy={py:.1} r=11 />");
+        }
+        svg += &format!(
+            "<circle class=\"point {kind}\" cx={px:.1} cy={py:.1} r={size} tabindex=0><title>{}</title></circle>\n",
+            escaped(&label)
+        );
+    }
+    svg + "</svg>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_logarithmic() {
+        let axis = Axis::of([1.0, 10.0, 100.0].into_iter(), 0.0, 216.0);
+        let [a, b, c] = [1.0, 10.0, 100.0].map(|v| axis.at(v));
+        assert!((a - 8.0).abs() < 1e-9 && (b - 108.0).abs() < 1e-9 && (c - 208.0).abs() < 1e-9);
+        let upwards = Axis::of([1.0, 100.0].into_iter(), 216.0, 0.0);
+        assert!(upwards.at(100.0) < upwards.at(1.0) && upwards.at(0.0) == 216.0);
+        let ticks: Vec<f64> = axis.ticks().iter().map(|t| t.0).collect();
+        assert_eq!(ticks, [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+    }
+
+    /// One value, none, and nothing above 0 still are an axis with a tick.
+    #[test]
+    fn an_axis_is_never_empty() {
+        for values in [vec![3.0], vec![], vec![0.0]] {
+            let axis = Axis::of(values.iter().copied(), 0.0, 1.0);
+            assert!(axis.high > axis.low && !axis.ticks().is_empty(), "{values:?}");
+            assert!(axis.at(3.0).is_finite());
+        }
+    }
+
+    #[test]
+    fn ticks_read_as_written() {
+        let shown = [0.001, 0.05, 1.0, 20.0, 500.0, 1e-8].map(number);
+        assert_eq!(shown, ["0.001", "0.05", "1", "20", "500", "1e-8"]);
+    }
+}

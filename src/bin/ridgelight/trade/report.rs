@@ -1,0 +1,373 @@
+//! What a walk found, for people, for spreadsheets and for machines.
+
+use std::collections::BTreeMap;
+
+use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side, Skip};
+use serde_json::{Value, json};
+
+use super::Walk;
+use super::point::Point;
+use super::truth::{Truth, digits, percent};
+
+pub struct Report<'a> {
+    /// Device, driver, field and lights, as (name, value).
+    pub about: Vec<(String, String)>,
+    pub truth: &'a Truth,
+    pub truth_s: f64,
+    pub truth_png: Vec<u8>,
+    pub knobs: &'a [Knob],
+    pub places: &'a [Place],
+    pub walk: &'a Walk,
+    pub rule: Rule,
+    /// Its point is a position in the walk's points.
+    pub recommended: Recommendation,
+    pub budget_s: f64,
+    pub spent_s: f64,
+}
+
+pub fn ms(ns: f64) -> String {
+    format!("{} ms", digits(ns * 1e-6))
+}
+
+/// Places without a measurement that share a reason.
+pub struct Group {
+    pub why: String,
+    pub places: Vec<usize>,
+}
+
+impl Report<'_> {
+    pub fn flags(&self, place: usize) -> String {
+        self.places[place].flags(self.knobs)
+    }
+
+    /// Points that no other covers, from cheap to dear.
+    pub fn frontier(&self) -> Vec<&Point> {
+        let front = self.walk.search.frontier().iter();
+        front.filter_map(|f| self.walk.points.iter().find(|p| p.place == *f)).collect()
+    }
+
+    pub fn recommended(&self) -> &Point {
+        &self.walk.points[self.recommended.point]
+    }
+
+    /// Whether the truth cannot tell a point's error from none.
+    pub fn is_at_most(&self, point: &Point) -> bool {
+        point.distance.rmse <= self.truth.own_error
+    }
+
+    /// Nanoseconds of a frame, had the machine been throughout as it was in the middle of the run.
+    pub fn time_ns(&self, point: &Point) -> f64 {
+        point.ratio * self.walk.baseline_ns()
+    }
+
+    pub fn time_text(&self, point: &Point) -> String {
+        ms(self.time_ns(point))
+    }
+
+    /// A point's error, the truth's own at least.
+    pub fn error(&self, point: &Point) -> f64 {
+        point.distance.rmse.max(self.truth.own_error)
+    }
+
+    pub fn error_text(&self, point: &Point) -> String {
+        let sign = if self.is_at_most(point) && self.truth.own_error > 0.0 { "≤ " } else { "" };
+        format!("{sign}{}", percent(self.error(point)))
+    }
+
+    /// The recommendation in sentences.
+    pub fn why(&self) -> Vec<String> {
+        let point = self.recommended();
+        let (front, mut all) = (self.frontier(), Vec::new());
+        let time = |cost: f64| ms(cost * self.walk.baseline_ns());
+        all.push(match (self.rule, self.recommended.holds) {
+            (Rule::Knee, _) => "Of the frontier it has the least product of time and error: from \
+                 here, twice the time at best halves the error, and half the time at least doubles \
+                 it."
+            .to_owned(),
+            (Rule::MaxError(most), true) => {
+                format!("The cheapest measured of at most {}, as --max-error asks.", percent(most))
+            }
+            (Rule::MaxError(most), false) => format!(
+                "Nothing measured is within the {} of --max-error: this is the most accurate.",
+                percent(most)
+            ),
+            (Rule::MaxCost(most), true) => {
+                format!("The most accurate measured within {}, as --time-budget asks.", time(most))
+            }
+            (Rule::MaxCost(most), false) => {
+                format!(
+                    "Nothing measured is within the {} of --time-budget: this is the fastest.",
+                    ms(most)
+                )
+            }
+        });
+        let here = front.iter().position(|p| p.place == point.place).unwrap_or(0);
+        let step = |name: &str, other: &Point| {
+            format!(
+                "The next {name} on the frontier, {}, takes {} × the time for {} × the error.",
+                self.flags(other.place),
+                digits(other.ratio / point.ratio),
+                digits(self.error(other) / self.error(point).max(f64::MIN_POSITIVE))
+            )
+        };
+        if let Some(cheaper) = here.checked_sub(1).and_then(|i| front.get(i)) {
+            all.push(step("cheaper", cheaper));
+        }
+        if let Some(dearer) = front.get(here + 1) {
+            all.push(step("dearer", dearer));
+        }
+        if self.is_at_most(point) {
+            all.push("Its error is not told apart from the truth's own.".to_owned());
+        }
+        all
+    }
+
+    /// What the drift means, in a sentence.
+    pub fn drift_text(&self) -> String {
+        let Some(s) = self.walk.drift() else { return String::new() };
+        let spread = s.p90 / s.p10.max(f64::MIN_POSITIVE) - 1.0;
+        let meaning = if spread > 0.1 {
+            "the machine was busy or changed its clock, so times were taken as ratios to draws of the \
+             baseline beside them"
+        } else {
+            "the machine was steady"
+        };
+        format!(
+            "The baseline ({}), drawn in turn with every point: {} in the middle, {} to {} four \
+             fifths of the time, {} to {} in all; {meaning}.",
+            self.flags(self.walk.baseline),
+            ms(s.median),
+            ms(s.p10),
+            ms(s.p90),
+            ms(s.min),
+            ms(s.max)
+        )
+    }
+
+    pub fn break_text(&self, found: &Break) -> String {
+        let names: Vec<&str> = found.knobs.iter().map(|k| self.knobs[*k].name).collect();
+        let value = |i: usize| {
+            let value = self.walk.search.value(i);
+            value.map_or_else(String::new, |v| match found.side {
+                Side::Cost => ms(v.cost * self.walk.baseline_ns()),
+                Side::Error => percent(v.error),
+            })
+        };
+        let what = match found.side {
+            Side::Cost => "dearer steps were faster",
+            Side::Error => "dearer steps were less accurate",
+        };
+        format!(
+            "{}: {what}: {} ({}) against {} ({})",
+            names.join(", "),
+            self.flags(found.lower),
+            value(found.lower),
+            self.flags(found.higher),
+            value(found.higher)
+        )
+    }
+
+    fn skip_text(&self, skip: &Skip) -> String {
+        match skip {
+            Skip::Covered { by, dearer_than, worse_than } => {
+                let error = match worse_than {
+                    Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
+                    None => "no more accurate than the truth can tell".to_owned(),
+                };
+                let dearer = self.flags(*dearer_than);
+                format!("no cheaper than {dearer} and {error}: {} is both", self.flags(*by))
+            }
+            Skip::TooDear { than } => {
+                format!("dearer than {}, which was too dear", self.flags(*than))
+            }
+        }
+    }
+
+    /// Places ruled out, by reason, the largest groups first.
+    pub fn skipped(&self) -> Vec<Group> {
+        let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for place in 0..self.places.len() {
+            if let Some(skip) = self.walk.search.skip(place) {
+                groups.entry(self.skip_text(&skip)).or_default().push(place);
+            }
+        }
+        for (place, why) in &self.walk.given_up {
+            groups.entry(why.clone()).or_default().push(*place);
+        }
+        let mut all: Vec<Group> =
+            groups.into_iter().map(|(why, places)| Group { why, places }).collect();
+        all.sort_by_key(|g| std::cmp::Reverse(g.places.len()));
+        all
+    }
+
+    /// Places that the budget left open, the most promising first.
+    pub fn not_tried(&self) -> Vec<usize> {
+        let search = &self.walk.search;
+        let mut open: Vec<usize> = (0..self.places.len()).filter(|i| search.is_open(*i)).collect();
+        open.sort_by(|a, b| search.merit(*b).total_cmp(&search.merit(*a)));
+        open
+    }
+
+    pub fn expected_text(&self, place: usize) -> String {
+        let value = self.walk.search.predicted(place);
+        let time = ms(value.cost * self.walk.baseline_ns());
+        format!("{time}, {}", percent(value.error))
+    }
+
+    pub fn summary(&self) -> String {
+        let skipped: usize = self.skipped().iter().map(|g| g.places.len()).sum();
+        let open = self.not_tried().len();
+        let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
+        format!(
+            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {} s \
+             of {} s, {} s of them for the truth.",
+            self.walk.points.len(),
+            digits(self.spent_s),
+            digits(self.budget_s),
+            digits(self.truth_s)
+        )
+    }
+
+    pub fn truth_text(&self) -> String {
+        format!(
+            "Truth: {}. Its own error: at most {} of its mean (relative RMSE): {}.",
+            self.truth.about,
+            percent(self.truth.own_error),
+            self.truth.quality_of
+        )
+    }
+
+    pub fn assumption() -> String {
+        format!(
+            "Ruled out: what costs at least as much as one measured point and errs at least as much \
+             as another, where a third is better than both, if a dearer step never costs less and is \
+             never less accurate. Every measured pair is held against that; a ladder that broke it by \
+             more than {} rules nothing out.",
+            percent(SLACK)
+        )
+    }
+
+    pub fn print(&self) {
+        crate::say!("{}", self.truth_text());
+        crate::say!("{:>12}  {:>12}  settings", "time", "error");
+        for point in self.frontier() {
+            let mark = if point.place == self.recommended().place { " <- recommended" } else { "" };
+            crate::say!(
+                "{:>12}  {:>12}  {}{mark}",
+                self.time_text(point),
+                self.error_text(point),
+                self.flags(point.place)
+            );
+        }
+        self.why().iter().for_each(|line| crate::say!("{line}"));
+        crate::say!("{}", self.drift_text());
+        crate::say!("{}", self.summary());
+    }
+
+    pub fn csv(&self) -> String {
+        let names = self.knobs.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
+        let mut text = format!(
+            "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
+             worst,worst_row,worst_col,bytes,baseline_ms,frontier,recommended\n",
+            names.join(",")
+        );
+        let front = self.walk.search.frontier();
+        for point in &self.walk.points {
+            let (t, d) = (&point.total_ns, &point.distance);
+            let place = &self.places[point.place];
+            let steps = self.knobs.iter().zip(&place.steps).map(|(knob, step)| {
+                let spelt = step.map_or("", |s| knob.steps[s].as_str());
+                spelt.split(' ').next_back().unwrap_or_default()
+            });
+            let mut row = vec![self.flags(point.place)];
+            row.extend(steps.map(str::to_owned));
+            row.extend(
+                [self.time_ns(point), t.median, t.p10, t.p90, t.min]
+                    .map(|ns| format!("{:.6}", ns * 1e-6)),
+            );
+            row.push(point.draws.to_string());
+            row.push(format!("{:e}", self.error(point)));
+            row.push(self.is_at_most(point).to_string());
+            row.extend([d.mean_shift, d.p99, d.worst].map(|x| format!("{x:e}")));
+            row.extend([d.worst_row, d.worst_col].map(|x| x.to_string()));
+            row.push(point.bytes.to_string());
+            row.push(format!("{:.6}", point.baseline_median() * 1e-6));
+            row.push(front.contains(&point.place).to_string());
+            row.push((point.place == self.recommended().place).to_string());
+            text += &row.join(",");
+            text.push('\n');
+        }
+        text
+    }
+
+    fn point_json(&self, point: &Point) -> Value {
+        let (t, d) = (&point.total_ns, &point.distance);
+        let settings: serde_json::Map<_, _> =
+            point.settings.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
+        let passes: Vec<Value> = point
+            .passes
+            .iter()
+            .map(|(pass, ns)| json!({ "pass": pass, "median_ns": ns }))
+            .collect();
+        json!({
+            "flags": self.flags(point.place), "settings": settings,
+            "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
+            "draws": point.draws, "passes": passes, "bytes": point.bytes,
+            "relative_rmse": self.error(point), "at_most": self.is_at_most(point),
+            "mean_shift": d.mean_shift, "p99": d.p99, "worst": d.worst,
+            "worst_row": d.worst_row, "worst_col": d.worst_col,
+            "begun_s": point.at_s[0], "done_s": point.at_s[1], "baseline_ns": point.baseline_median(),
+        })
+    }
+
+    pub fn json(&self) -> Value {
+        let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
+        let front: Vec<usize> =
+            self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
+        let about: serde_json::Map<_, _> =
+            self.about.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
+        let knobs: Vec<Value> = self
+            .knobs
+            .iter()
+            .map(|k| json!({ "name": k.name, "cheap_to_dear": k.steps, "dearer": k.dearer }))
+            .collect();
+        let skipped: Vec<Value> = self
+            .skipped()
+            .iter()
+            .map(|g| {
+                let settings: Vec<String> = g.places.iter().map(|i| self.flags(*i)).collect();
+                json!({ "why": g.why, "settings": settings })
+            })
+            .collect();
+        let open: Vec<Value> = self
+            .not_tried()
+            .iter()
+            .map(|i| {
+                let expected = self.walk.search.predicted(*i);
+                json!({
+                    "flags": self.flags(*i), "expected_ns": expected.cost * self.walk.baseline_ns(),
+                    "expected_relative_rmse": expected.error,
+                })
+            })
+            .collect();
+        let breaks: Vec<String> =
+            self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
+        json!({
+            "ridgelight": env!("CARGO_PKG_VERSION"), "about": about,
+            "truth": {
+                "what": self.truth.about, "own_relative_rmse": self.truth.own_error,
+                "how": self.truth.quality_of, "seconds": self.truth_s,
+            },
+            "budget_s": self.budget_s, "spent_s": self.spent_s,
+            "knobs": knobs,
+            "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
+            "frontier": front,
+            "recommendation": {
+                "point": self.recommended.point, "flags": self.flags(self.recommended().place),
+                "holds": self.recommended.holds, "why": self.why(),
+            },
+            "drift": self.drift_text(), "ladders_broken": breaks,
+            "ruled_out": skipped, "not_tried": open,
+        })
+    }
+}

@@ -1,0 +1,338 @@
+//! What settings are held against, and how good that is itself.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use ridgelight::cpu::{light, oracle::Oracle};
+use ridgelight::files::{self, Planes};
+use ridgelight::measure::error::ImageError;
+use ridgelight::scene::{Albedo, Fuse, HeightField, Lines, Method, Quality, Scene};
+use ridgelight::{Error, Result};
+
+use super::rig::Rig;
+
+/// Share of the budget that drawing the truth may take, and probing it.
+const DRAWING: f64 = 0.35;
+const PROBING: f64 = 0.1;
+/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, elevations.
+const MOST: [u32; 3] = [512, 128, 4096];
+/// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
+const BRUTE_HALVINGS: u32 = 1;
+const HALVINGS: u32 = 3;
+/// The oracle's: azimuths of the sky, strips across a sun; probes at most, and at least.
+const TRUE_AZIMUTHS: usize = 720;
+const TRUE_STRIPS: usize = 128;
+const PROBES: usize = 400;
+const FEWEST_PROBES: usize = 16;
+/// The layer of a reference that holds one standard deviation of its noise.
+const NOISE_LAYER: &str = "standard_error";
+
+pub struct Truth {
+    /// One plane or three, row-major, NaN at voids.
+    pub planes: Vec<Vec<f32>>,
+    cols: usize,
+    rows: usize,
+    /// What it is, and how its own error was found.
+    pub about: String,
+    pub quality_of: String,
+    /// Relative RMSE that it may have itself: what is below cannot be told apart.
+    pub own_error: f64,
+    /// Mean variance of its noise over the square of its mean.
+    noise: f64,
+}
+
+/// How far settings are from the truth. Relative to the truth's mean, over all channels.
+#[derive(Clone, Copy, Debug)]
+pub struct Distance {
+    /// RMSE, the truth's noise taken off.
+    pub rmse: f64,
+    pub mean_shift: f64,
+    pub p99: f64,
+    pub worst: f64,
+    pub worst_row: usize,
+    pub worst_col: usize,
+}
+
+impl Truth {
+    /// A file's.
+    pub fn read(path: &Path, field: &HeightField) -> Result<Self> {
+        let Planes { rows, cols, names, mut planes } = files::read_planes(path)?;
+        let wrong = |place: &str, found: String, expected: String| {
+            Err(Error::File { path: path.to_owned(), place: place.to_owned(), found, expected })
+        };
+        if (rows, cols) != (field.rows(), field.cols()) {
+            let expected = format!("{} × {}, as the field", field.cols(), field.rows());
+            return wrong("size", format!("{cols} × {rows}"), expected);
+        }
+        let mut take = |wanted: &[String]| -> Option<Vec<Vec<f32>>> {
+            let at: Option<Vec<usize>> =
+                wanted.iter().map(|w| names.iter().position(|n| n == w)).collect();
+            Some(at?.into_iter().map(|i| std::mem::take(&mut planes[i])).collect())
+        };
+        let colour = |layer: &str| ["R", "G", "B"].map(|c| format!("{layer}{c}"));
+        let radiance = take(&colour("")).or_else(|| take(&["Y".to_owned()]));
+        let errors =
+            take(&colour(&format!("{NOISE_LAYER}."))).or_else(|| take(&[NOISE_LAYER.to_owned()]));
+        let Some(planes) = radiance else {
+            return wrong("channels", names.join(" "), "R, G and B, or Y".to_owned());
+        };
+        let known = |v: &&f32| !v.is_nan();
+        let count = planes[0].iter().filter(known).count().max(1) as f64;
+        let mean = planes.iter().flatten().filter(known).map(|v| f64::from(*v)).sum::<f64>()
+            / (count * planes.len() as f64);
+        let mut truth = Self {
+            planes,
+            cols,
+            rows,
+            about: path.display().to_string(),
+            quality_of: format!("it has no layer {NOISE_LAYER} and is taken as it is"),
+            own_error: 0.0,
+            noise: 0.0,
+        };
+        if let Some(errors) = errors {
+            // A texel's channels come of the same paths: they waver together.
+            let variance = |i: usize| {
+                errors.iter().map(|e| f64::from(e[i]).powi(2)).sum::<f64>() / errors.len() as f64
+            };
+            let known: Vec<f64> = (0..rows * cols).map(variance).filter(|v| !v.is_nan()).collect();
+            let relative = mean.powi(2).max(f64::MIN_POSITIVE);
+            truth.noise = known.iter().sum::<f64>() / count / relative;
+            // The mean of squared normal noise wavers by √(2 Σσ⁴) / n: twice that is left of it.
+            let fourth: f64 = known.iter().map(|v| v * v).sum();
+            truth.own_error = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
+            truth.quality_of = format!(
+                "its noise, {} of the mean by its layer {NOISE_LAYER}, is taken off each RMSE (not \
+                 off percentiles); what is left of it is twice the wavering of its mean square",
+                percent(truth.noise.sqrt())
+            );
+        }
+        Ok(truth)
+    }
+
+    /// Our own: brute force where it fits into its share of the budget, else the densest sweep.
+    pub fn draw(rig: &mut Rig) -> Result<Self> {
+        let share = DRAWING * rig.budget.as_secs_f64();
+        let dense = Quality {
+            method: Method::Sweep,
+            lines: Lines::QuarterCell,
+            fuse: Fuse::Aimed,
+            ..Quality::default()
+        };
+        let brute = Quality { method: Method::Brute, ..dense };
+        let (quality, half) = match fitting(rig, &brute, BRUTE_HALVINGS, share)? {
+            Some(fits) => fits,
+            None => fitting(rig, &dense, HALVINGS, share)?
+                .unwrap_or((counts(&dense, HALVINGS), counts(&dense, HALVINGS + 1))),
+        };
+        let planes = rig.draw_once(&quality)?;
+        let field = &rig.scene.field;
+        let mut truth = Self {
+            planes,
+            cols: field.cols(),
+            rows: field.rows(),
+            about: about(rig, &quality)?,
+            quality_of: String::new(),
+            own_error: 0.0,
+            noise: 0.0,
+        };
+        let halved = rig.draw_once(&half)?;
+        let steps = truth.distance(&halved)?.rmse;
+        let (probes, off) = truth.probe(rig.scene, rig.budget.mul_f64(PROBING));
+        truth.own_error = steps.max(off);
+        truth.quality_of = format!(
+            "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
+             halves as counts double; {probes} samples are {} (RMSE) off the oracle in f64; the \
+             larger counts",
+            percent(steps),
+            percent(off)
+        );
+        Ok(truth)
+    }
+
+    /// How far planes are from it.
+    pub fn distance(&self, planes: &[Vec<f32>]) -> Result<Distance> {
+        let channels = planes.len().max(self.planes.len());
+        let all = |planes: &[Vec<f32>]| -> Vec<f32> {
+            (0..channels).flat_map(|c| planes[c.min(planes.len() - 1)].iter().copied()).collect()
+        };
+        let e = ImageError::of(&all(planes), &all(&self.planes), self.cols)?;
+        if e.mismatched > 0 {
+            let found = format!("{} texels with data where the other has none", e.mismatched);
+            return Err(Error::setting("--reference", found, "the same scene, voids alike"));
+        }
+        let relative = |x: f64| if x == 0.0 { 0.0 } else { x / e.mean_reference.abs() };
+        Ok(Distance {
+            rmse: (e.relative_rmse.powi(2) - self.noise).max(0.0).sqrt(),
+            mean_shift: e.relative_mean_shift,
+            p99: relative(e.p99),
+            worst: relative(e.worst),
+            worst_row: e.worst_row % self.rows,
+            worst_col: e.worst_col,
+        })
+    }
+
+    /// Samples all over the field against the oracle: how many, and their relative RMSE.
+    fn probe(&self, scene: &Scene, most: Duration) -> (usize, f64) {
+        let (count, oracle) =
+            (self.rows * self.cols, Oracle::new(&scene.field, scene.surface.border));
+        let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
+        // Multiples of the golden ratio's share of the field: no two near each other.
+        let place = |k: usize| ((k as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize;
+        let places: Vec<usize> =
+            (1..=PROBES.min(count)).map(place).filter(|i| !is_void(*i)).collect();
+        let begun = Instant::now();
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let probe = |first: usize| {
+            let mine = places.iter().skip(first).step_by(threads).enumerate();
+            mine.take_while(|(i, _)| i * threads < FEWEST_PROBES || begun.elapsed() < most)
+                .map(|(_, &i)| (i, light_at(&oracle, scene, i / self.cols, i % self.cols)))
+                .collect::<Vec<_>>()
+        };
+        let probed: Vec<(usize, [f64; 3])> = std::thread::scope(|scope| {
+            let all: Vec<_> = (0..threads).map(|first| scope.spawn(move || probe(first))).collect();
+            all.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
+        });
+        let last = self.planes.len() - 1;
+        let (mut squares, mut sum) = (0.0, 0.0);
+        for (i, expected) in &probed {
+            for (c, light) in expected.iter().enumerate() {
+                squares += (f64::from(self.planes[c.min(last)][*i]) - light).powi(2);
+                sum += light;
+            }
+        }
+        let values = (3 * probed.len()).max(1) as f64;
+        let rmse = (squares / values).sqrt();
+        (probed.len(), if rmse == 0.0 { 0.0 } else { rmse / (sum / values) })
+    }
+}
+
+/// Exit radiance by the oracle, linear RGB.
+fn light_at(oracle: &Oracle, scene: &Scene, row: usize, col: usize) -> [f64; 3] {
+    let mut all = [0.0; 3];
+    let mut add = |light: [f64; 3]| all.iter_mut().zip(light).for_each(|(a, l)| *a += l);
+    if let Some(sky) = scene.lights.sky {
+        let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
+        add(sky.map(|c| f64::from(c) * share));
+    }
+    if let Some(environment) = &scene.lights.environment {
+        add(light::environment_of(oracle, row, col, environment));
+    }
+    for sun in &scene.lights.suns {
+        add(light::sun_of(oracle, row, col, sun, TRUE_STRIPS));
+    }
+    let albedo = match &scene.surface.albedo {
+        Albedo::Constant(c) => *c,
+        Albedo::Map(map) => map[row * scene.field.cols() + col],
+    };
+    [0, 1, 2].map(|c| all[c] * f64::from(albedo[c]))
+}
+
+/// All counts of the truth, halved so many times.
+fn counts(quality: &Quality, halvings: u32) -> Quality {
+    let [azimuths, sun_azimuths, table_elevations] = MOST.map(|m| m >> halvings);
+    Quality { azimuths, sun_azimuths, table_elevations, ..*quality }
+}
+
+/// The largest counts, and half of them, that can be drawn in so many seconds.
+fn fitting(
+    rig: &mut Rig,
+    quality: &Quality,
+    most_halvings: u32,
+    seconds: f64,
+) -> Result<Option<(Quality, Quality)>> {
+    // A device that cannot do this at all says so here.
+    if rig.plan(&counts(quality, most_halvings)).is_err() {
+        return Ok(None);
+    }
+    let each = rig.seconds_per_azimuth(quality)?;
+    for halvings in 0..=most_halvings {
+        let (whole, half) = (counts(quality, halvings), counts(quality, halvings + 1));
+        if let (Ok(a), Ok(b)) = (rig.plan(&whole), rig.plan(&half))
+            && each * (a.azimuths.len() + b.azimuths.len()) as f64 <= seconds
+        {
+            return Ok(Some((whole, half)));
+        }
+    }
+    Ok(None)
+}
+
+fn about(rig: &Rig, quality: &Quality) -> Result<String> {
+    let used = rig.plan(quality)?.settings;
+    let wanted = ["method", "lines", "fuse", "azimuths", "sun_azimuths", "table_elevations"];
+    let used = used.iter().filter(|(name, _)| wanted.contains(&name.as_str()));
+    Ok(used.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
+}
+
+/// Three significant digits.
+pub fn percent(share: f64) -> String {
+    format!("{} %", digits(100.0 * share))
+}
+
+/// Three significant digits, as few zeros as that takes.
+pub fn digits(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return x.to_string();
+    }
+    let places = (2 - x.abs().log10().floor() as i32).max(0) as usize;
+    if places > 9 { format!("{x:.2e}") } else { format!("{x:.places$}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_are_shown() {
+        let shown = [0.0, 0.001_234_5, 0.5, 12.345, 999.4, 123_456.0, 1e-12].map(digits);
+        assert_eq!(shown, ["0", "0.00123", "0.500", "12.3", "999", "123456", "1.00e-12"]);
+    }
+
+    fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
+        let (about, quality_of) = (String::new(), String::new());
+        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: 0.0, noise }
+    }
+
+    /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of a
+    /// variance of 0.0036 means² leaves √(0.01 - 0.0036) = 0.08.
+    #[test]
+    fn noise_is_taken_off_and_grey_is_compared_with_colour() {
+        let colour = vec![vec![2.0; 4]; 3];
+        let grey = [vec![2.0, 2.0, 2.0, 2.4]];
+        let found = truth(colour.clone(), 0.0).distance(&grey).unwrap();
+        assert!((found.rmse - 0.1).abs() < 1e-7, "{found:?}");
+        assert!((found.mean_shift - 0.05).abs() < 1e-7 && (found.worst - 0.2).abs() < 1e-7);
+        assert_eq!([found.worst_row, found.worst_col], [1, 1]);
+        let less = truth(colour.clone(), 0.0036).distance(&grey).unwrap();
+        assert!((less.rmse - 0.08).abs() < 1e-7, "{less:?}");
+        assert_eq!(truth(colour, 0.02).distance(&grey).unwrap().rmse, 0.0);
+        let holed = [vec![2.0, f32::NAN, 2.0, 2.0]];
+        let error = truth(vec![vec![2.0; 4]], 0.0).distance(&holed).unwrap_err();
+        assert!(error.to_string().contains("1 texels"), "{error}");
+    }
+
+    /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², which wavers by
+    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)).
+    #[test]
+    fn a_references_noise_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("truth.exr");
+        let (light, noise) = (vec![[2.0; 3]; 64], vec![[0.2; 3]; 64]);
+        let layer = |name: &str, texels| files::Layer {
+            name: name.to_owned(),
+            channels: files::Channels::Rgb(texels),
+        };
+        let all = [layer("", &light), layer(NOISE_LAYER, &noise)];
+        let field = HeightField::new(8, 8, &[0.0; 64], [1.0; 2], None).unwrap();
+        files::write_exr(&path, 8, 8, &all, &[]).unwrap();
+        let truth = Truth::read(&path, &field).unwrap();
+        assert!((truth.noise - 0.01).abs() < 1e-7, "{}", truth.noise);
+        let own = (0.02 * (2.0_f64 / 64.0).sqrt()).sqrt();
+        assert!((truth.own_error - own).abs() < 1e-7, "{}", truth.own_error);
+        files::write_exr(&path, 8, 8, &all[..1], &[]).unwrap();
+        let bare = Truth::read(&path, &field).unwrap();
+        assert_eq!((bare.noise, bare.own_error), (0.0, 0.0));
+        let other = HeightField::new(4, 16, &[0.0; 64], [1.0; 2], None).unwrap();
+        let error = Truth::read(&path, &other).err().unwrap().to_string();
+        assert!(error.contains("found 8 × 8, expected 16 × 4"), "{error}");
+    }
+}

@@ -1,0 +1,147 @@
+//! What nothing beats, and which of it to take.
+
+/// What settings cost and how far they are from the truth. Both finite, 0 or more; less is better.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// Time, in any unit.
+    pub cost: f64,
+    /// Error, in any unit.
+    pub error: f64,
+}
+
+impl Value {
+    /// Whether this is no dearer and no less accurate: whoever has this needs no `other`.
+    pub fn covers(&self, other: &Value) -> bool {
+        self.cost <= other.cost && self.error <= other.error
+    }
+
+    /// Natural logarithms of cost and error, 0 as the smallest number there is.
+    pub(super) fn logs(&self) -> [f64; 2] {
+        [self.cost, self.error].map(|x| x.max(f64::MIN_POSITIVE).ln())
+    }
+}
+
+/// Positions of the values that no other covers, from cheap to dear: costs rise, errors fall. Of
+/// equal ones the first.
+pub fn frontier(values: &[Value]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    let key = |i: usize| (values[i].cost, values[i].error);
+    order.sort_by(|&a, &b| {
+        let ((ca, ea), (cb, eb)) = (key(a), key(b));
+        ca.total_cmp(&cb).then(ea.total_cmp(&eb))
+    });
+    let mut least = f64::INFINITY;
+    order.retain(|&i| {
+        let better = values[i].error < least;
+        least = least.min(values[i].error);
+        better
+    });
+    order
+}
+
+/// How one of the frontier is picked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// The least product of cost and error: the tangent of slope -1 on log axes. From there, twice
+    /// the cost nowhere buys half the error, and half the cost nowhere comes for twice the error.
+    Knee,
+    /// The cheapest of at most this error.
+    MaxError(f64),
+    /// The most accurate of at most this cost.
+    MaxCost(f64),
+}
+
+/// One of the frontier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recommendation {
+    /// Its position in the values.
+    pub point: usize,
+    /// Whether it keeps the rule's bound; where none does it is the one nearest to it.
+    pub holds: bool,
+}
+
+/// Picks by `rule`; nothing where there is nothing to pick from.
+pub fn recommend(values: &[Value], rule: Rule) -> Option<Recommendation> {
+    let front = frontier(values);
+    let [first, last] = [*front.first()?, *front.last()?];
+    let found = match rule {
+        Rule::Knee => front
+            .iter()
+            .copied()
+            .min_by(|&a, &b| {
+                let sum = |i: usize| values[i].logs().iter().sum::<f64>();
+                sum(a).total_cmp(&sum(b))
+            })
+            .map(|point| (point, true)),
+        Rule::MaxError(most) => Some(
+            front
+                .iter()
+                .find(|&&i| values[i].error <= most)
+                .map_or((last, false), |&point| (point, true)),
+        ),
+        Rule::MaxCost(most) => Some(
+            front
+                .iter()
+                .rev()
+                .find(|&&i| values[i].cost <= most)
+                .map_or((first, false), |&point| (point, true)),
+        ),
+    };
+    found.map(|(point, holds)| Recommendation { point, holds })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(all: &[(f64, f64)]) -> Vec<Value> {
+        all.iter().map(|&(cost, error)| Value { cost, error }).collect()
+    }
+
+    /// By hand: (1, 9), (2, 4), (4, 3) and (9, 0) are covered by none; (2, 5) and (5, 3) are; of the
+    /// two (4, 3) the first stays.
+    #[test]
+    fn a_frontier_is_what_nothing_covers() {
+        let all = values(&[
+            (9.0, 0.0),
+            (4.0, 3.0),
+            (2.0, 5.0),
+            (1.0, 9.0),
+            (4.0, 3.0),
+            (5.0, 3.0),
+            (2.0, 4.0),
+        ]);
+        let front = frontier(&all);
+        assert_eq!(front, [3, 6, 1, 0]);
+        for i in 0..all.len() {
+            let covered = (0..all.len()).any(|j| all[j] != all[i] && all[j].covers(&all[i]));
+            assert_eq!(front.iter().any(|&f| all[f] == all[i]), !covered, "{i}");
+        }
+        assert!(frontier(&[]).is_empty());
+    }
+
+    /// Products 8, 6, 7.5, 8: the knee is the second. Halving both units changes nothing.
+    #[test]
+    fn the_knee_is_the_least_product() {
+        let all = values(&[(1.0, 8.0), (2.0, 3.0), (3.0, 2.5), (8.0, 1.0)]);
+        assert_eq!(recommend(&all, Rule::Knee), Some(Recommendation { point: 1, holds: true }));
+        let halved: Vec<Value> =
+            all.iter().map(|v| Value { cost: v.cost / 2.0, error: v.error / 2.0 }).collect();
+        assert_eq!(recommend(&halved, Rule::Knee), recommend(&all, Rule::Knee));
+        // A result without error is worth any time; of several the cheapest.
+        let exact = values(&[(1.0, 8.0), (5.0, 0.0), (9.0, 0.0)]);
+        assert_eq!(recommend(&exact, Rule::Knee).unwrap().point, 1);
+        assert_eq!(recommend(&[], Rule::Knee), None);
+    }
+
+    #[test]
+    fn bounds_are_kept_or_said_to_be_broken() {
+        let all = values(&[(1.0, 8.0), (2.0, 3.0), (3.0, 2.5), (8.0, 1.0), (4.0, 2.6)]);
+        let pick = |rule| recommend(&all, rule).map(|r| (r.point, r.holds)).unwrap();
+        assert_eq!(pick(Rule::MaxError(2.7)), (2, true));
+        assert_eq!(pick(Rule::MaxError(2.5)), (2, true));
+        assert_eq!(pick(Rule::MaxError(0.5)), (3, false));
+        assert_eq!(pick(Rule::MaxCost(7.9)), (2, true));
+        assert_eq!(pick(Rule::MaxCost(0.5)), (0, false));
+    }
+}

@@ -1,0 +1,200 @@
+//! The settings that trade speed for accuracy, each as a ladder from cheap to dear.
+
+use crate::scene::{Fuse, Lines, Method, Precision, Quality, Scene};
+
+/// One setting, or two that exclude each other, and the values that are walked.
+#[derive(Clone, Debug)]
+pub struct Knob {
+    /// What it is called.
+    pub name: &'static str,
+    /// Its values as the command line spells them, flag and all, from cheap to dear.
+    pub steps: Vec<String>,
+    /// Which way is dearer, and what that is thought to buy.
+    pub dearer: &'static str,
+    /// Gives a quality the value of a step.
+    set: fn(&mut Quality, usize),
+    /// Whether all its values do the same beside the others.
+    idle: fn(&Quality) -> bool,
+}
+
+const AZIMUTHS: [u32; 6] = [8, 16, 32, 64, 128, 256];
+const SUN_AZIMUTHS: [u32; 6] = [1, 2, 4, 8, 16, 32];
+const TABLE_ELEVATIONS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
+const LINES: [(Lines, &str); 6] = [
+    (Lines::FourCells, "4"),
+    (Lines::TwoCells, "2"),
+    (Lines::Cell, "1"),
+    (Lines::HalfCell, "1/2"),
+    (Lines::QuarterCell, "1/4"),
+    (Lines::Exact, "exact"),
+];
+const FUSES: [Fuse; 5] = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed];
+const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
+
+fn has_no_lines(quality: &Quality) -> bool {
+    quality.method == Method::Brute || quality.lines == Lines::Exact
+}
+
+/// The knobs that change how a scene is lit: no azimuths without a sky, no table without an
+/// environment.
+pub fn knobs(scene: &Scene) -> Vec<Knob> {
+    let lights = &scene.lights;
+    let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
+    let mut all = vec![
+        Knob {
+            name: "sweep",
+            steps: LINES
+                .iter()
+                .map(|(_, name)| format!("--lines {name}"))
+                .chain(["--method brute".to_owned()])
+                .collect(),
+            dearer: "closer lines, then every sample on a line, then brute force: small occluders",
+            set: |quality, step| match LINES.get(step) {
+                Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
+                None => quality.method = Method::Brute,
+            },
+            idle: |_| false,
+        },
+        Knob {
+            name: "fuse",
+            steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
+            dearer: "more of the lines' results, then the surface itself: horizons of each sample",
+            set: |quality, step| quality.fuse = FUSES[step],
+            idle: has_no_lines,
+        },
+        Knob {
+            name: "precision",
+            steps: PRECISIONS.iter().map(|p| format!("--precision {}", p.name())).collect(),
+            dearer: "more bits: heights on the hull, stored slopes",
+            set: |quality, step| quality.precision = PRECISIONS[step],
+            idle: has_no_lines,
+        },
+    ];
+    if lights.sky.is_some() || lights.environment.is_some() {
+        all.push(Knob {
+            name: "azimuths",
+            steps: spell("--azimuths", &AZIMUTHS),
+            dearer: "more azimuths: sharp silhouettes",
+            set: |quality, step| quality.azimuths = AZIMUTHS[step],
+            idle: |_| false,
+        });
+    }
+    if lights.suns.iter().any(|s| s.diameter_rad > 0.0) {
+        all.push(Knob {
+            name: "sun azimuths",
+            steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
+            dearer: "more slices of a sun's disc: soft shadows",
+            set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
+            idle: |_| false,
+        });
+    }
+    if lights.environment.is_some() {
+        all.push(Knob {
+            name: "table elevations",
+            steps: spell("--table-elevations", &TABLE_ELEVATIONS),
+            dearer: "more elevations a table: small bright places",
+            set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
+            idle: |_| false,
+        });
+    }
+    all
+}
+
+/// Settings, and where they stand on each knob's ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The settings.
+    pub quality: Quality,
+    /// A step for each knob; none where the knob is idle.
+    pub steps: Vec<Option<usize>>,
+}
+
+impl Place {
+    /// As the command line spells it.
+    pub fn flags(&self, knobs: &[Knob]) -> String {
+        let each = knobs.iter().zip(&self.steps).filter_map(|(k, s)| Some(k.steps[(*s)?].as_str()));
+        each.collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Every combination of steps that does something of its own, from cheap to dear, the others of
+/// `start`'s settings as they are.
+pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
+    let mut all = Vec::new();
+    let mut steps = vec![0; knobs.len()];
+    'next: loop {
+        let mut quality = *start;
+        knobs.iter().zip(&steps).for_each(|(k, s)| (k.set)(&mut quality, *s));
+        let idle: Vec<bool> = knobs.iter().map(|k| (k.idle)(&quality)).collect();
+        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
+        // Where no slopes are stored, f16 is f32.
+        let is_other = quality.precision == Precision::F16 && !stores_slopes;
+        let is_repeated = idle.iter().zip(&steps).any(|(idle, s)| *idle && *s > 0);
+        if !is_repeated && (!is_other || has_no_lines(&quality)) {
+            let mut quality = *start;
+            for ((knob, step), _) in knobs.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
+            {
+                (knob.set)(&mut quality, *step);
+            }
+            let steps = steps.iter().zip(&idle).map(|(s, idle)| (!idle).then_some(*s)).collect();
+            all.push(Place { quality, steps });
+        }
+        for (step, knob) in steps.iter_mut().zip(knobs) {
+            *step += 1;
+            if *step < knob.steps.len() {
+                continue 'next;
+            }
+            *step = 0;
+        }
+        return all;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{HeightField, Lights, Sun, Surface};
+
+    fn scene(lights: Lights) -> Scene {
+        let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
+        Scene { field, surface: Surface::default(), lights }
+    }
+
+    fn sky() -> Lights {
+        Lights { sky: Some([1.0; 3]), ..Lights::default() }
+    }
+
+    fn sun(diameter_rad: f64) -> Lights {
+        let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad, irradiance: [1.0; 3] };
+        Lights { suns: vec![sun], ..Lights::default() }
+    }
+
+    #[test]
+    fn only_knobs_that_change_something_are_walked() {
+        let names = |lights| knobs(&scene(lights)).iter().map(|k| k.name).collect::<Vec<_>>();
+        assert_eq!(names(sky()), ["sweep", "fuse", "precision", "azimuths"]);
+        assert_eq!(names(sun(0.01)), ["sweep", "fuse", "precision", "sun azimuths"]);
+        assert_eq!(names(sun(0.0)), ["sweep", "fuse", "precision"]);
+    }
+
+    /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone, each
+    /// with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
+    #[test]
+    fn places_are_all_that_differ() {
+        let knobs = knobs(&scene(sky()));
+        let start = Quality { method: Method::Sweep, ..Quality::default() };
+        let all = places(&knobs, &start);
+        assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2) * 6);
+        for (i, place) in all.iter().enumerate() {
+            place.quality.check().unwrap();
+            assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
+        }
+        let default = all.iter().find(|p| p.quality == start).unwrap();
+        let flags = "--lines 1 --fuse aimed-nearest --precision f32 --azimuths 64";
+        assert_eq!(default.flags(&knobs), flags);
+        let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
+        assert_eq!(brute.len(), 6);
+        assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
+        assert_eq!(brute[0].steps, [Some(6), None, None, Some(0)]);
+    }
+}

@@ -1,0 +1,12 @@
+//! Speed against accuracy: which settings are worth measuring next, which are the frontier, which to
+//! take. Pure: the caller measures.
+
+mod frontier;
+mod knobs;
+mod search;
+#[cfg(test)]
+mod tests;
+
+pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
+pub use knobs::{Knob, Place, knobs, places};
+pub use search::{Break, SLACK, Search, Side, Skip};

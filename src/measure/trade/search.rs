@@ -1,0 +1,301 @@
+//! The walk over the ladders: what to measure next, and what need not be.
+//!
+//! First each knob alone from the start, outwards; then, of what is left, the settings that are
+//! expected to lie farthest beyond the frontier. What is left out is left out by proof, under one
+//! assumption: a dearer step never costs less and is never less accurate. Then the dearest measured
+//! settings below a place bound its cost, the most inaccurate above it its error, and where one
+//! measured point is within both, the place has nothing to add. Every measured pair tests the
+//! assumption; a knob that breaks it bounds nothing any more, and what it had ruled out is open again.
+
+use super::frontier::{Value, frontier};
+
+/// A dearer step that is worse by no more than this share is taken to be no worse: times waver, and
+/// errors that other settings dominate do, too. A place left out may be better by as much a step.
+pub const SLACK: f64 = 0.05;
+
+/// What a knob bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Dearer steps cost no less.
+    Cost,
+    /// Dearer steps are no less accurate.
+    Error,
+}
+
+/// Two measured places that a ladder has the wrong way round.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Break {
+    /// The knobs in which they differ.
+    pub knobs: Vec<usize>,
+    /// What is the wrong way round.
+    pub side: Side,
+    /// The place that should be the cheaper and less accurate.
+    pub lower: usize,
+    /// The place that should be the dearer and more accurate.
+    pub higher: usize,
+}
+
+/// Why a place need not be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skip {
+    /// It costs at least what `dearer_than` does and errs at least as `worse_than` does (none: as the
+    /// truth itself), which `by` undercuts.
+    Covered {
+        /// The measured place that is better.
+        by: usize,
+        /// The measured place below.
+        dearer_than: usize,
+        /// The measured place above.
+        worse_than: Option<usize>,
+    },
+    /// It costs at least what `than` does, which was given up.
+    TooDear {
+        /// The place given up.
+        than: usize,
+    },
+}
+
+/// Steps on every ladder; none where the knob is idle.
+type Steps = Vec<Option<usize>>;
+
+/// What is known of places so far.
+#[derive(Clone, Debug)]
+pub struct Search {
+    steps: Vec<Steps>,
+    start: usize,
+    /// The error that the truth itself may have: nothing can be told apart below it.
+    floor: f64,
+    values: Vec<Option<Value>>,
+    given_up: Vec<bool>,
+    /// Measured places, in order.
+    measured: Vec<usize>,
+    /// Given up for their cost.
+    too_dear: Vec<usize>,
+    /// Whether each knob bounds cost, and error.
+    trusted: [Vec<bool>; 2],
+    breaks: Vec<Break>,
+    /// For each place the largest bound from below and whose it is: cost, error.
+    bounds: Vec<[Option<(f64, usize)>; 2]>,
+    front: Vec<usize>,
+}
+
+impl Search {
+    /// A walk over `steps` from number `start` on; errors below `floor` are all the same.
+    ///
+    /// # Panics
+    /// When `start` is not one of the places, or they are not of one number of knobs.
+    pub fn new(steps: Vec<Steps>, start: usize, floor: f64) -> Self {
+        let knobs = steps[start].len();
+        assert!(steps.iter().all(|s| s.len() == knobs), "one step a knob");
+        let count = steps.len();
+        Self {
+            steps,
+            start,
+            floor,
+            values: vec![None; count],
+            given_up: vec![false; count],
+            measured: Vec::new(),
+            too_dear: Vec::new(),
+            trusted: [vec![true; knobs], vec![true; knobs]],
+            breaks: Vec::new(),
+            bounds: vec![[None; 2]; count],
+            front: Vec::new(),
+        }
+    }
+
+    /// The place to measure next; none where every place is measured, given up or ruled out.
+    pub fn next(&self) -> Option<usize> {
+        if self.is_open(self.start) {
+            return Some(self.start);
+        }
+        let open: Vec<usize> = (0..self.steps.len()).filter(|&i| self.is_open(i)).collect();
+        let alone = open.iter().copied().filter(|&i| self.differing(i, self.start).count() == 1);
+        if let Some(place) = alone.min_by_key(|&i| self.distance(i, self.start)) {
+            return Some(place);
+        }
+        let scored = open.into_iter().map(|i| (self.merit(i), i));
+        scored.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, i)| i)
+    }
+
+    /// Takes in what was measured at a place.
+    pub fn measured(&mut self, place: usize, value: Value) {
+        let value = Value { cost: value.cost, error: value.error.max(self.floor) };
+        self.values[place] = Some(value);
+        self.measured.push(place);
+        if self.find_breaks(place) {
+            self.bounds.fill([None; 2]);
+            for i in self.measured.clone() {
+                self.bound_by(i);
+            }
+        } else {
+            self.bound_by(place);
+        }
+        let values: Vec<Value> = self.measured.iter().filter_map(|&i| self.values[i]).collect();
+        self.front = frontier(&values).into_iter().map(|i| self.measured[i]).collect();
+    }
+
+    /// Takes in that a place cannot be measured; `too_dear`: and nothing that costs more.
+    pub fn give_up(&mut self, place: usize, too_dear: bool) {
+        self.given_up[place] = true;
+        if too_dear {
+            self.too_dear.push(place);
+        }
+    }
+
+    /// What was measured at a place, its error at least the truth's own.
+    pub fn value(&self, place: usize) -> Option<Value> {
+        self.values[place]
+    }
+
+    /// Measured places that no other covers, from cheap to dear.
+    pub fn frontier(&self) -> &[usize] {
+        &self.front
+    }
+
+    /// Measured places, in the order in which they were.
+    pub fn order(&self) -> &[usize] {
+        &self.measured
+    }
+
+    /// Where a ladder was found the wrong way round.
+    pub fn breaks(&self) -> &[Break] {
+        &self.breaks
+    }
+
+    /// Whether a place is neither measured, nor given up, nor ruled out.
+    pub fn is_open(&self, place: usize) -> bool {
+        self.values[place].is_none() && !self.given_up[place] && self.skip(place).is_none()
+    }
+
+    /// Why a place that was neither measured nor given up need not be; none where it should.
+    pub fn skip(&self, place: usize) -> Option<Skip> {
+        if self.values[place].is_some() || self.given_up[place] {
+            return None;
+        }
+        let than = self.too_dear.iter().copied().find(|&p| self.is_below(p, place, Side::Cost));
+        if let Some(than) = than {
+            return Some(Skip::TooDear { than });
+        }
+        let [cost, error] = self.bounds[place];
+        let (cost, dearer_than) = cost?;
+        let (error, worse_than) = error.map_or((self.floor, None), |(e, by)| (e, Some(by)));
+        let best = Value { cost, error };
+        let by =
+            self.front.iter().copied().find(|&i| self.values[i].is_some_and(|v| v.covers(&best)));
+        by.map(|by| Skip::Covered { by, dearer_than, worse_than })
+    }
+
+    /// What a place is expected to have: the nearest measured one's value, changed as each knob that
+    /// differs changes it at the start. Costs multiply; squares of errors add, as those of
+    /// independent causes do.
+    pub fn predicted(&self, place: usize) -> Value {
+        let near = self.measured.iter().copied().min_by_key(|&i| {
+            (self.differing(i, place).count(), self.distance(i, place), usize::MAX - i)
+        });
+        let Some((near, value)) = near.and_then(|i| Some((i, self.values[i]?))) else {
+            return Value { cost: 0.0, error: self.floor };
+        };
+        let (mut cost, mut squared) = (value.cost, value.error.powi(2));
+        for knob in self.differing(near, place) {
+            let at = |i: usize| self.alone(knob, self.steps[i][knob]);
+            if let (Some(from), Some(to)) = (at(near), at(place)) {
+                cost *= to.cost / from.cost.max(f64::MIN_POSITIVE);
+                squared += to.error.powi(2) - from.error.powi(2);
+            }
+        }
+        // Where causes do not add up, no more than a tenfold gain is believed.
+        let error = squared.max((0.1 * value.error).powi(2)).sqrt().max(self.floor);
+        Value { cost, error }
+    }
+
+    /// How far a place is expected to lie beyond the frontier: the natural logarithm of the factor by
+    /// which some point of it would have to be better, in cost or in error, to cover it. Below 0:
+    /// covered.
+    pub fn merit(&self, place: usize) -> f64 {
+        let [cost, error] = self.predicted(place).logs();
+        let past = |i: &usize| {
+            let [c, e] = self.values[*i].map_or([f64::INFINITY; 2], |v| v.logs());
+            (c - cost).max(e - error)
+        };
+        self.front.iter().map(past).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What was measured with all but one knob as at the start.
+    fn alone(&self, knob: usize, step: Option<usize>) -> Option<Value> {
+        let is_it = |&&i: &&usize| {
+            self.steps[i][knob] == step && self.differing(i, self.start).all(|k| k == knob)
+        };
+        self.values[*self.measured.iter().find(is_it)?]
+    }
+
+    /// Knobs on different steps in two places; an idle one is on every step.
+    fn differing(&self, a: usize, b: usize) -> impl Iterator<Item = usize> + '_ {
+        let pairs = self.steps[a].iter().zip(&self.steps[b]).enumerate();
+        pairs.filter(|(_, (a, b))| matches!((a, b), (Some(a), Some(b)) if a != b)).map(|(k, _)| k)
+    }
+
+    fn distance(&self, a: usize, b: usize) -> usize {
+        let pairs = self.steps[a].iter().zip(&self.steps[b]);
+        pairs.map(|(a, b)| a.zip(*b).map_or(0, |(a, b)| a.abs_diff(b))).sum()
+    }
+
+    /// Whether no knob of `a` is on a dearer step than in `b`, and none that is not trusted on
+    /// another.
+    fn is_below(&self, a: usize, b: usize, side: Side) -> bool {
+        let trusted = &self.trusted[side as usize];
+        let pairs = self.steps[a].iter().zip(&self.steps[b]).zip(trusted);
+        let mut compared = pairs.map(|((a, b), trusted)| match (a, b) {
+            (Some(a), Some(b)) => a == b || (*trusted && a < b),
+            _ => true,
+        });
+        compared.all(|below| below)
+    }
+
+    /// Bounds all places by a measured one.
+    fn bound_by(&mut self, from: usize) {
+        let Some(value) = self.values[from] else { return };
+        for place in 0..self.steps.len() {
+            let below =
+                [self.is_below(from, place, Side::Cost), self.is_below(place, from, Side::Error)];
+            let bounds = &mut self.bounds[place];
+            for ((bound, new), _) in
+                bounds.iter_mut().zip([value.cost, value.error]).zip(below).filter(|(_, b)| *b)
+            {
+                if bound.is_none_or(|(old, _)| new > old) {
+                    *bound = Some((new, from));
+                }
+            }
+        }
+    }
+
+    /// Holds a new value against all others; whether a knob has lost its trust.
+    fn find_breaks(&mut self, new: usize) -> bool {
+        let mut any = false;
+        // Nearest pairs first: they say best which knob it is.
+        let mut others = self.measured.clone();
+        others.sort_by_key(|&i| self.differing(i, new).count());
+        for other in others {
+            for (lower, higher) in [(new, other), (other, new)] {
+                for side in [Side::Cost, Side::Error] {
+                    let knobs: Vec<usize> = self.differing(lower, higher).collect();
+                    let (Some(low), Some(high)) = (self.values[lower], self.values[higher]) else {
+                        continue;
+                    };
+                    let is_broken = match side {
+                        Side::Cost => low.cost > high.cost * (1.0 + SLACK),
+                        Side::Error => high.error > low.error * (1.0 + SLACK),
+                    };
+                    if !is_broken || knobs.is_empty() || !self.is_below(lower, higher, side) {
+                        continue;
+                    }
+                    for knob in &knobs {
+                        self.trusted[side as usize][*knob] = false;
+                    }
+                    self.breaks.push(Break { knobs, side, lower, higher });
+                    any = true;
+                }
+            }
+        }
+        any
+    }
+}

@@ -1,0 +1,57 @@
+//! Commands that are told to end before they are done.
+
+// `env` sets signals back that a script in the background has ignored: coreutils' does.
+#![cfg(target_os = "linux")]
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::Folder;
+use crate::needs_vulkan::write_field;
+
+/// Longer than anything here takes, on a busy machine too.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Waits until `is_so`; false where it never is.
+fn wait_until(mut is_so: impl FnMut() -> bool) -> bool {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        if is_so() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    false
+}
+
+/// Brute force in 1,024 azimuths of 256², half a gigabyte of results: seconds on any device.
+#[test]
+fn gpu_an_interrupted_command_leaves_no_file() {
+    let folder = Folder::new();
+    write_field(&folder, 256, |r, c| ((7 * r + 3 * c) % 11) as f32);
+    folder.write("out.npy", b"what was here before");
+    let before = folder.contents();
+    for signal in ["INT", "TERM"] {
+        let args =
+            "horizon field.npy -o out.npy --distances far.npy --azimuths 1024 --method brute";
+        let mut command = Command::new("env");
+        command.args(["--default-signal=INT,TERM,HUP", env!("CARGO_BIN_EXE_ridgelight")]);
+        command.current_dir(folder.path("")).args(args.split(' '));
+        let mut child = command.stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        // Both files are begun: the comparison below has something to see.
+        let began = wait_until(|| folder.contents().len() == before.len() + 2);
+        assert!(began, "no file was begun");
+        let pid = child.id().to_string();
+        assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
+        let ended = wait_until(|| child.try_wait().unwrap().is_some());
+        if !ended {
+            child.kill().unwrap();
+        }
+        let output = child.wait_with_output().unwrap();
+        assert!(ended, "{signal} is not heard");
+        assert_eq!(output.status.code(), Some(130), "{signal}");
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "ridgelight: interrupted\n");
+        assert!(output.stdout.is_empty());
+        assert!(folder.contents() == before, "{signal} left files");
+    }
+}

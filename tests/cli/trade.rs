@@ -1,0 +1,180 @@
+//! Speed against accuracy: what is refused, and what a small field's report holds.
+
+use std::path::Path;
+
+use crate::common::npy;
+use crate::{Folder, refused};
+
+#[test]
+fn wrong_trades_are_refused() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("taken")).unwrap();
+    folder.write("taken/trade.csv", b"an earlier report's");
+    folder.write("taken/notes.txt", b"mine");
+    refused(
+        &folder,
+        &[
+            ("trade a.asc", 2, &["--output"]),
+            ("trade a.asc -o a.npy", 2, &["-o: found the file a.npy", "a folder"]),
+            ("trade a.asc -o taken", 2, &["taken with notes.txt in it", "an earlier report"]),
+            ("trade a.asc -o no/such", 2, &["-o: found no/such", "a folder no that exists"]),
+            ("trade a.asc -o out --budget 0", 2, &["--budget: found 0", "1 to 1000000"]),
+            ("trade a.asc -o out --budget -5", 2, &["--budget: found -5"]),
+            ("trade a.asc -o out --budget nan", 2, &["--budget: found NaN"]),
+            ("trade a.asc -o out --budget soon", 2, &["--budget", "'soon'"]),
+            ("trade a.asc -o out --max-error 0", 2, &["--max-error: found 0", "above 0"]),
+            ("trade a.asc -o out --max-error inf", 2, &["--max-error: found inf"]),
+            ("trade a.asc -o out --time-budget -1", 2, &["--time-budget: found -1"]),
+            ("trade a.asc -o out --max-error 1 --time-budget 1", 2, &["cannot be used"]),
+            ("trade a.asc -o out --azimuths 8", 2, &["--azimuths"]),
+            ("trade a.asc -o out --json out.txt", 2, &["--json: found out.txt", ".json"]),
+            ("trade a.asc -o out --json a.asc", 2, &["--json"]),
+            ("trade a.asc -o out --sky -1", 2, &["--sky"]),
+            ("trade none.asc -o out", 1, &["none.asc"]),
+            ("trade a.asc -o out --reference none.exr", 1, &["none.exr"]),
+            ("trade a.asc -o out --reference a.npy", 1, &["a.npy: channels", "R, G and B, or Y"]),
+            ("trade a.asc -o out", 1, &["driver"]),
+        ],
+    );
+    // No folder can be made in /proc, not even by root.
+    #[cfg(target_os = "linux")]
+    refused(&folder, &[("trade a.asc -o /proc/out", 1, &["/proc/out"])]);
+}
+
+/// A field of 16² with two peaks.
+fn write_peaks(folder: &Folder) {
+    let height = |i: usize| {
+        let (r, c) = ((i / 16) as f32, (i % 16) as f32);
+        let peak = |y: f32, x: f32, h: f32| (h - (r - y).hypot(c - x)).max(0.0);
+        peak(4.0, 5.0, 6.0).max(peak(11.0, 10.0, 4.5))
+    };
+    let data: Vec<u8> = (0..256).flat_map(|i| height(i).to_le_bytes()).collect();
+    folder.write("field.npy", &npy("<f4", false, "(16, 16)", &data));
+}
+
+fn text(path: &Path) -> String {
+    String::from_utf8(std::fs::read(path).unwrap()).unwrap()
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&text(path)).unwrap()
+}
+
+/// Time and error of the frontier, in its order; each rises, falls.
+fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
+    let points = report["points"].as_array().unwrap();
+    let of = |i: &serde_json::Value| {
+        let point = &points[i.as_u64().unwrap() as usize];
+        (point["time_ns"].as_f64().unwrap(), point["relative_rmse"].as_f64().unwrap())
+    };
+    let front: Vec<_> = report["frontier"].as_array().unwrap().iter().map(of).collect();
+    assert!(!front.is_empty());
+    for two in front.windows(2) {
+        assert!(two[0].0 < two[1].0 && two[0].1 > two[1].1, "{front:?}");
+    }
+    for point in points {
+        let (time, error) =
+            (point["time_ns"].as_f64().unwrap(), point["relative_rmse"].as_f64().unwrap());
+        assert!(front.iter().any(|f| f.0 <= time && f.1 <= error), "{point}");
+    }
+    front
+}
+
+#[test]
+fn gpu_trade_of_a_small_field() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let args = ["trade", "field.npy", "-o", "report", "--budget", "6", "--json", "copy.json"];
+    let run = folder.run(&args);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    assert_eq!(run.out.matches("<- recommended").count(), 1, "{}", run.out);
+    let names: Vec<_> = std::fs::read_dir(folder.path("report"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(names.len(), 3, "{names:?}");
+
+    let report = json(&folder.path("report/trade.json"));
+    assert_eq!(report, json(&folder.path("copy.json")));
+    let points = report["points"].as_array().unwrap();
+    assert!(points.len() >= 3, "{} points", points.len());
+    let front = monotone(&report);
+    let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
+    assert!(own > 0.0 && own < 0.02, "{own}");
+    assert!(report["truth"]["what"].as_str().unwrap().contains("method brute"));
+    for point in points {
+        let error = point["relative_rmse"].as_f64().unwrap();
+        assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
+        assert!(!point["passes"].as_array().unwrap().is_empty());
+    }
+    // Every setting is accounted for, once.
+    let ruled_out: usize = report["ruled_out"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|g| g["settings"].as_array().unwrap().len())
+        .sum();
+    let open = report["not_tried"].as_array().unwrap().len();
+    assert_eq!(points.len() + ruled_out + open, (5 * (2 * 3 + 3 * 2) + 2) * 6);
+    let recommended = report["recommendation"]["point"].as_u64().unwrap();
+    assert!(report["frontier"].as_array().unwrap().iter().any(|i| i.as_u64() == Some(recommended)));
+    // The knee: no other has a smaller product of time and error.
+    let product = |f: &(f64, f64)| f.0 * f.1;
+    let point = &points[recommended as usize];
+    let best = point["time_ns"].as_f64().unwrap() * point["relative_rmse"].as_f64().unwrap();
+    assert!(front.iter().all(|f| product(f) >= best * (1.0 - 1e-9)), "{front:?}");
+
+    let csv = text(&folder.path("report/trade.csv"));
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert_eq!(csv.lines().count(), points.len() + 1);
+    assert!(csv.lines().all(|l| l.split(',').count() == columns), "{csv}");
+
+    let page = text(&folder.path("report/trade.html"));
+    for none in ["http", "src=\"/", "<link", "url(", "@import", "{{"] {
+        assert!(!page.contains(none), "{none}");
+    }
+    assert_eq!(page.matches("<circle class=\"point").count(), points.len());
+    assert_eq!(page.matches("<figure").count(), front.len() + 1);
+    assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
+    let flags = point["flags"].as_str().unwrap();
+    assert!(page.contains(flags) && run.out.contains(flags), "{flags}");
+}
+
+/// A truth from a file; a bound that nothing keeps is said and ends with status 1, the report written
+/// over the earlier one all the same.
+#[test]
+fn gpu_trade_against_a_reference() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let truth = "render field.npy -o truth.exr --method brute --azimuths 256 --quiet";
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let trade = |more: &str| {
+        let args = format!("trade field.npy -o out --budget 2 --reference truth.exr {more}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.err, "", "{args}");
+        (run, json(&folder.path("out/trade.json")))
+    };
+    let (run, report) = trade("--max-error 0.5");
+    assert_eq!(run.status, Some(0));
+    monotone(&report);
+    assert!(report["truth"]["what"].as_str().unwrap().contains("truth.exr"));
+    // The cheapest of all is within a half.
+    assert_eq!(report["recommendation"]["point"], report["frontier"][0]);
+    let (run, report) = trade("--max-error 1e-9 --quiet");
+    assert_eq!((run.status, run.out.as_str()), (Some(1), ""));
+    assert_eq!(report["recommendation"]["holds"], false);
+    let why = report["recommendation"]["why"][0].as_str().unwrap();
+    assert!(why.contains("--max-error"), "{why}");
+    let (run, report) = trade("--time-budget 1e-6");
+    assert_eq!((run.status, &report["recommendation"]["holds"]), (Some(1), &false.into()));
+    // Another field's truth is refused, and nothing is written.
+    let before = folder.contents();
+    let args = "trade a.asc -o other --reference truth.exr";
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert!(
+        run.status == Some(1) && run.err.contains("truth.exr: size: found 16 × 16"),
+        "{}",
+        run.err
+    );
+    assert!(folder.contents() == before);
+}

@@ -1,0 +1,324 @@
+//! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
+
+use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
+use ridgelight::scene::{
+    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Precision,
+    Quality, Scene, Sun, Surface,
+};
+
+fn flat(rows: usize, cols: usize) -> HeightField {
+    HeightField::new(rows, cols, &vec![0.0; rows * cols], [1.0, 1.0], None).expect("a good field")
+}
+
+fn under_sky(field: HeightField) -> Scene {
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    Scene { field, surface: Surface::default(), lights }
+}
+
+/// Sky, environment, a point and a disc over a map of colours.
+fn under_everything(field: HeightField, border: Border) -> Scene {
+    let map = vec![[0.5, 0.4, 0.3]; field.rows() * field.cols()];
+    let sun = |diameter_rad| Sun {
+        azimuth_rad: 2.0,
+        elevation_rad: 0.5,
+        diameter_rad,
+        irradiance: [1.0, 0.9, 0.8],
+    };
+    let environment = Environment::new(8, 4, vec![[0.5, 0.4, 0.3]; 32], 0.3);
+    let lights = Lights {
+        sky: Some([1.0; 3]),
+        environment: Some(environment.expect("an environment")),
+        suns: vec![sun(0.0), sun(0.02)],
+        ..Lights::default()
+    };
+    Scene {
+        field,
+        surface: Surface { border, albedo: Albedo::Map(map), ..Surface::default() },
+        lights,
+    }
+}
+
+/// One line a pass: `|` where a barrier stands before it, label, workgroups. Then the plan's own images
+/// and buffers: columns × rows × layers, or bytes.
+fn short(plan: &Plan) -> String {
+    let passes = plan.passes.iter().map(|pass| {
+        let mark = if pass.barrier_before { '|' } else { ' ' };
+        let [x, y, z] = pass.groups;
+        format!("{mark} {} {x}×{y}×{z}\n", pass.label())
+    });
+    let own = plan.resources.iter().filter(|r| r.owner == Owner::Internal);
+    let resources = own.map(|r| match r.kind {
+        Kind::Image { width, height, layers, .. } => {
+            format!("{} {width}×{height}×{layers}\n", r.name)
+        }
+        Kind::Buffer { bytes, .. } => format!("{} {bytes}\n", r.name),
+    });
+    passes.chain(resources).collect()
+}
+
+fn sky(rows: usize, cols: usize, azimuths: u32, limits: &Limits) -> Plan {
+    let quality = Quality { azimuths, ..Quality::default() };
+    let scene = under_sky(flat(rows, cols));
+    plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan")
+}
+
+fn is(plan: &Plan, text: &str) {
+    let lines: Vec<&str> = text.lines().map(|l| l.strip_prefix("        ").unwrap_or(l)).collect();
+    let kept = lines[1..lines.len() - 1].join("\n") + "\n";
+    assert_eq!(short(plan), kept, "now:\n{}", short(plan));
+    assert_eq!(missing_barriers(&plan.passes), []);
+}
+
+#[test]
+fn a_single_sample() {
+    is(
+        &sky(1, 1, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 1×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 1×1×1
+        | light_resolve sky 1×1×1
+        sky_sum 1×1×1
+        azimuths 256
+        lane_heights_cols 1×1×1
+        lane_heights_rows 1×1×1
+        lattice_occluders 8×1×2
+        ",
+    );
+}
+
+#[test]
+fn one_row_and_one_column() {
+    is(
+        &sky(1, 9, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×2×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 2×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 1×1×1
+        | light_resolve sky 2×1×1
+        sky_sum 9×1×1
+        azimuths 256
+        lane_heights_cols 1×9×1
+        lane_heights_rows 3×1×1
+        lattice_occluders 8×9×2
+        ",
+    );
+    is(
+        &sky(9, 1, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×2×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 1×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 2×1×1
+        | light_resolve sky 1×2×1
+        sky_sum 1×9×1
+        azimuths 256
+        lane_heights_cols 3×1×1
+        lane_heights_rows 1×9×1
+        lattice_occluders 8×9×2
+        ",
+    );
+}
+
+#[test]
+fn two_by_three() {
+    is(
+        &sky(2, 3, 8, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+4 1×1×4
+        | sky_shade sky 0+4 1×1×1
+        | horizon_sweep sky 4+4 1×1×4
+        | sky_shade sky 4+4 1×1×1
+        | light_resolve sky 1×1×1
+        sky_sum 3×2×1
+        azimuths 512
+        lane_heights_cols 1×3×1
+        lane_heights_rows 1×2×1
+        lattice_occluders 8×3×4
+        ",
+    );
+}
+
+#[test]
+fn primes() {
+    is(
+        &sky(31, 37, 12, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×5×1
+          height_transpose rows 2×4×1
+        | horizon_sweep sky 0+6 2×1×6
+        | sky_shade sky 0+6 5×1×1
+        | horizon_sweep sky 6+6 2×1×6
+        | sky_shade sky 6+6 4×1×1
+        | light_resolve sky 5×4×1
+        sky_sum 37×31×1
+        azimuths 768
+        lane_heights_cols 8×37×1
+        lane_heights_rows 10×31×1
+        lattice_occluders 8×37×12
+        ",
+    );
+}
+
+#[test]
+fn long_and_thin() {
+    is(
+        &sky(3, 8191, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1024×1
+          height_transpose rows 256×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | horizon_sweep sky 0+2 again 1×1×2
+        | sky_shade sky 0+2 1024×1×1
+          horizon_sweep sky 2+2 256×1×2
+        | horizon_sweep sky 2+2 again 256×1×2
+        | sky_shade sky 2+2 1×128×1
+        | light_resolve sky 1024×1×1
+        sky_sum 8191×3×1
+        azimuths 256
+        lane_heights_cols 1×8191×1
+        lane_heights_rows 2048×3×1
+        lattice_occluders 8×8191×2
+        lost_lines 64
+        lattice_occluders_across 8×3×512
+        lost_lines_across 16384
+        ",
+    );
+    is(
+        &sky(8191, 3, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 256×1×1
+          height_transpose rows 1×1024×1
+        | horizon_sweep sky 0+2 256×1×2
+        | horizon_sweep sky 0+2 again 256×1×2
+        | sky_shade sky 0+2 1×128×1
+          horizon_sweep sky 2+2 1×1×2
+        | horizon_sweep sky 2+2 again 1×1×2
+        | sky_shade sky 2+2 1024×1×1
+        | light_resolve sky 1×1024×1
+        sky_sum 3×8191×1
+        azimuths 256
+        lane_heights_cols 2048×3×1
+        lane_heights_rows 1×8191×1
+        lattice_occluders 8×3×512
+        lost_lines 16384
+        lattice_occluders_across 8×8191×2
+        lost_lines_across 64
+        ",
+    );
+}
+
+/// Five images of 64 MiB leave 120 MiB for lattices, of 32 MiB an azimuth along an axis and 64 MiB along a
+/// diagonal.
+#[test]
+fn a_large_field_in_bands() {
+    let limits = Limits { memory_budget: 440 << 20, ..Limits::lavapipe() };
+    let plan = sky(4096, 4096, 8, &limits);
+    assert!(plan.bytes() <= limits.memory_budget, "{} bytes", plan.bytes());
+    is(
+        &plan,
+        "
+          height_transpose cols 128×512×1
+          height_transpose rows 128×512×1
+        | horizon_sweep sky 0+2 128×1×2
+        | horizon_sweep sky 0+2 again 128×1×2
+        | sky_shade sky 0+2 512×64×1
+        | horizon_sweep sky 2+1 256×1×1
+        | horizon_sweep sky 2+1 again 256×1×1
+        | sky_shade sky 2+1 512×64×1
+        | horizon_sweep sky 3+1 256×1×1
+        | horizon_sweep sky 3+1 again 256×1×1
+        | sky_shade sky 3+1 512×64×1
+        | horizon_sweep sky 4+2 256×1×2
+        | horizon_sweep sky 4+2 again 256×1×2
+        | sky_shade sky 4+2 512×64×1
+        | horizon_sweep sky 6+2 256×1×2
+        | horizon_sweep sky 6+2 again 256×1×2
+        | sky_shade sky 6+2 512×64×1
+        | light_resolve sky 512×512×1
+        sky_sum 4096×4096×1
+        azimuths 512
+        lane_heights_cols 1024×4096×1
+        lane_heights_rows 1024×4096×1
+        lattice_occluders 8×4096×384
+        lost_lines 12288
+        ",
+    );
+}
+
+/// Plans of every form of every pass, at sizes that make groups, lanes and layers odd.
+fn plans() -> Vec<Plan> {
+    let base = Quality { azimuths: 12, ..Quality::default() };
+    let qualities = [
+        base,
+        Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base },
+        Quality { hull: Hull::List, fuse: Fuse::Own, ..base },
+        Quality { lines: Lines::TwoCells, fuse: Fuse::Aimed, ..base },
+        Quality { fuse: Fuse::Nearest, precision: Precision::F16, ..base },
+        Quality { precision: Precision::Packed, ..base },
+        Quality { method: Method::Brute, ..base },
+        Quality { lines: Lines::Exact, ..base },
+    ];
+    let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let mut all = Vec::new();
+    for (rows, cols) in [(1, 1), (1, 7), (7, 1), (2, 3), (31, 37), (3, 1021), (1021, 3)] {
+        for border in [Border::Plane, Border::Open, Border::Periodic] {
+            for quality in &qualities {
+                let mut scene = under_everything(flat(rows, cols), border);
+                if quality.lines == Lines::Exact {
+                    scene.lights.suns.clear();
+                }
+                let wanted = Picture { light_layers: true, sky_view: true, ..Picture::default() };
+                let mut plan = |limits: &Limits| {
+                    let picture = plan::picture(&scene, quality, limits, wanted);
+                    let circle = (0, quality.azimuths);
+                    let horizons =
+                        plan::horizons(&scene.field, border, quality, limits, circle, false);
+                    let bytes = picture.as_ref().map_or(0, Plan::bytes);
+                    let count = all.len();
+                    all.extend(picture.into_iter().chain(horizons));
+                    (all.len() - count, bytes)
+                };
+                let (count, bytes) = plan(&Limits::lavapipe());
+                assert_eq!((count, plan(&graphics).0), (2, 2));
+                // Less than the whole: in bands, where one azimuth still fits.
+                plan(&Limits { memory_budget: bytes * 9 / 10, ..Limits::lavapipe() });
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn every_plan_has_all_its_barriers_and_needs_each() {
+    let plans = plans();
+    let batches = |plan: &Plan| plan.passes.iter().filter(|p| p.name() == "sky_shade").count();
+    assert!(plans.iter().any(|p| batches(p) > 2), "some plan is cut into bands");
+    let (mut audited, mut removed) = (0, 0);
+    for plan in &plans {
+        assert_eq!(missing_barriers(&plan.passes), [], "{plan}");
+        audited += 1;
+        for i in 0..plan.passes.len() {
+            let mut passes = plan.passes.clone();
+            if std::mem::take(&mut passes[i].barrier_before) {
+                let missing = missing_barriers(&passes);
+                assert!(
+                    missing.iter().any(|m| m.1 >= i),
+                    "none seen missing before {i} of\n{plan}"
+                );
+                removed += 1;
+            }
+        }
+    }
+    println!("{audited} plans, {removed} barriers removed, each missed");
+}

@@ -1,0 +1,128 @@
+//! Small scenes on which two truths must agree: the f64 quadrature and the path tracer.
+
+use ridgelight::measure::fractal::fractal;
+use ridgelight::scene::{
+    Albedo, Border, Environment, HeightField, Lights, Phong, Scene, SphereLight, Sun, Surface,
+};
+
+/// A scene and its name. Its channels are lit apart: red by the sky, green by a sun, blue by a ball of
+/// light, so that each light is judged alone; an environment shines in all three.
+pub fn scenes() -> Vec<(&'static str, Scene)> {
+    let ball =
+        |x, y, z| SphereLight { position_m: [x, y, z], radius_m: 1.5, radiance: [0.0, 0.0, 9.0] };
+    let apart = |place| Lights {
+        sky: Some([1.0, 0.0, 0.0]),
+        environment: None,
+        suns: vec![Sun {
+            azimuth_rad: 2.0,
+            elevation_rad: 0.7,
+            diameter_rad: 0.3,
+            irradiance: [0.0, 3.0, 0.0],
+        }],
+        spheres: vec![place],
+    };
+    let grey = |border| Surface { albedo: Albedo::Constant([0.7; 3]), border, phong: None };
+    let cone =
+        || field(9, 9, [1.0, 1.0], |r, c| 6.0 - 1.2 * (r as f64 - 4.0).hypot(c as f64 - 4.0));
+    let environment = Environment::new(
+        8,
+        4,
+        (0..32_u8).map(|i| [f32::from(i % 5), f32::from(i % 3), 1.0]).collect(),
+        0.4,
+    )
+    .unwrap();
+    let mountains = fractal(12, 3).unwrap();
+    let steep =
+        field(12, 12, [1.0, 1.0], |r, c| 3.0 * f64::from(mountains.heights_m()[r * 12 + c]));
+    let map: Vec<[f32; 3]> = (0..144_u8).map(|i| [f32::from(i % 9) / 8.0; 3]).collect();
+    vec![
+        (
+            "flat, plane",
+            Scene {
+                field: field(4, 5, [1.0, 2.0], |_, _| 7.0),
+                surface: grey(Border::Plane),
+                lights: apart(ball(8.0, 3.0, 13.0)),
+            },
+        ),
+        (
+            "tilted plane, open",
+            Scene {
+                field: field(6, 6, [1.0, 1.0], |_, c| 0.8 * c as f64),
+                surface: grey(Border::Open),
+                lights: apart(ball(0.0, 2.0, 4.0)),
+            },
+        ),
+        (
+            "wall, plane",
+            Scene {
+                field: field(9, 10, [1.0, 1.0], |_, c| if c == 6 { 3.0 } else { 0.0 }),
+                surface: grey(Border::Plane),
+                lights: apart(ball(2.0, 4.0, 5.0)),
+            },
+        ),
+        (
+            "groove, periodic",
+            Scene {
+                field: field(6, 8, [1.0, 1.0], |_, c| (c as f64 - 4.0).abs()),
+                surface: grey(Border::Periodic),
+                lights: apart(ball(4.0, 2.0, 4.0)),
+            },
+        ),
+        (
+            "cone, plane",
+            Scene {
+                field: cone(),
+                surface: grey(Border::Plane),
+                lights: apart(ball(8.0, 8.0, 4.0)),
+            },
+        ),
+        (
+            "cone, open, environment and lobe",
+            Scene {
+                field: cone(),
+                surface: Surface {
+                    phong: Some(Phong { exponent: 12.0, scale: 0.3 }),
+                    ..grey(Border::Open)
+                },
+                lights: Lights { environment: Some(environment), ..Lights::default() },
+            },
+        ),
+        (
+            "spherical pit, plane",
+            Scene {
+                field: field(13, 13, [1.0, 1.0], |r, c| {
+                    let away = (r as f64 - 6.0).hypot(c as f64 - 6.0).min(4.5);
+                    -(5.0_f64 * 5.0 - away * away).sqrt()
+                }),
+                surface: Surface { albedo: Albedo::Constant([0.9; 3]), ..grey(Border::Plane) },
+                lights: apart(ball(6.0, 6.0, -1.0)),
+            },
+        ),
+        (
+            "fractal, plane, albedo map",
+            Scene {
+                field: steep,
+                surface: Surface { albedo: Albedo::Map(map), ..grey(Border::Plane) },
+                lights: apart(ball(6.0, 6.0, 12.0)),
+            },
+        ),
+        (
+            "spikes, periodic",
+            Scene {
+                field: field(6, 6, [1.0, 1.5], |r, c| if (r * 6 + c) % 7 == 0 { 3.0 } else { 0.0 }),
+                surface: grey(Border::Periodic),
+                lights: apart(ball(2.5, 4.0, 9.0)),
+            },
+        ),
+    ]
+}
+
+fn field(
+    rows: usize,
+    cols: usize,
+    cell_m: [f64; 2],
+    h: impl Fn(usize, usize) -> f64,
+) -> HeightField {
+    let heights: Vec<f64> = (0..rows * cols).map(|i| h(i / cols, i % cols)).collect();
+    HeightField::new(rows, cols, &heights, cell_m, None).unwrap()
+}
