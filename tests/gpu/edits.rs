@@ -4,8 +4,8 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
 use ridgelight::scene::{
-    Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Precision, Quality, Scene, Sun,
-    Surface,
+    Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Precision, Quality, Scene,
+    Sun, Surface,
 };
 
 use crate::{Device, field, random};
@@ -76,7 +76,7 @@ fn any_rectangle(next: &mut impl FnMut() -> f64, [cols, rows]: [usize; 2]) -> Re
         let count = match (next() * 6.0) as usize {
             0 => 1,
             1 => all,
-            _ => 1 + (next() * next() * all as f64) as usize,
+            _ => 1 + (next().powi(3) * all as f64) as usize,
         };
         let free = all - count.min(all);
         let first = match (next() * 4.0) as usize {
@@ -115,7 +115,7 @@ fn change(
 }
 
 /// Draws edits one after the other, and each time everything in another frame whose horizons are not
-/// kept; returns (steps of edits by fours of lines, the same of all lines).
+/// kept: outputs must have equal bits.
 fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, seed: u64) {
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, scene, quality, true);
@@ -143,6 +143,7 @@ fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, se
     gpu.end(whole);
 }
 
+/// Eight edits a case, or RIDGELIGHT_EDITS.
 #[test]
 fn edits_give_the_bits_of_all() {
     let mut device = Device::new();
@@ -156,8 +157,82 @@ fn edits_give_the_bits_of_all() {
         (rough(50, 83, [1.0, 3.0]), open, Quality { lines: Lines::TwoCells, ..base }),
         (rough(33, 9, [2.0, 2.0]), plane, Quality { precision: Precision::Packed, ..base }),
     ];
+    let asked = std::env::var("RIDGELIGHT_EDITS").ok();
+    let count = asked.map_or(8, |n| n.parse().expect("RIDGELIGHT_EDITS is a whole number"));
     for (i, (field, border, quality)) in cases.into_iter().enumerate() {
         let scene = scene(field, border);
-        edits(&mut device, &scene, &quality, 8, i as u64);
+        edits(&mut device, &scene, &quality, count, i as u64);
+    }
+}
+
+/// The comparison is not deaf: an edit that is told one row or column too few leaves other bits.
+#[test]
+fn an_edit_told_too_small_a_rectangle_is_seen() {
+    let mut device = Device::new();
+    let quality = Quality { azimuths: 8, table_elevations: 16, ..Quality::default() };
+    let scene = scene(rough(40, 40, [2.0, 2.0]), Border::Plane);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let plan = planned(gpu, &scene, &quality, true);
+    let mut frame = made(gpu, &scene, plan);
+    let told = Rectangle { col: 9, row: 9, cols: 10, rows: 10 };
+    for (wide, high) in [(10, 10), (11, 10), (10, 11)] {
+        let mut heights = scene.field.heights_m().to_vec();
+        (9..9 + high)
+            .for_each(|r| heights[r * 40 + 9..][..wide].iter_mut().for_each(|h| *h += 9.0));
+        gpu.refill(&frame, 0, scene.field.heights_m()).expect("refilled");
+        gpu.draw(&mut frame).expect("drawn");
+        gpu.refill(&frame, 0, &heights).expect("refilled");
+        gpu.draw_edit(&mut frame, told).expect("drawn");
+        let edited = bits(gpu, &frame);
+        gpu.draw(&mut frame).expect("drawn");
+        assert_eq!(edited == bits(gpu, &frame), (wide, high) == (10, 10), "{wide} × {high}");
+    }
+    gpu.end(frame);
+}
+
+#[test]
+fn edits_that_cannot_be_are_refused() {
+    let mut device = Device::new();
+    let quality = Quality { azimuths: 8, table_elevations: 16, ..Quality::default() };
+    let scene = scene(rough(24, 20, [1.0, 1.0]), Border::Plane);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let all = Rectangle { col: 0, row: 0, cols: 20, rows: 24 };
+    let plan = planned(gpu, &scene, &quality, true);
+    let mut frame = made(gpu, &scene, plan.clone());
+    let before = bits(gpu, &frame);
+    for beyond in [
+        Rectangle { cols: 21, ..all },
+        Rectangle { row: 1, ..all },
+        Rectangle { cols: 0, ..all },
+        Rectangle { col: u32::MAX, ..all },
+    ] {
+        let error = gpu.draw_edit(&mut frame, beyond).expect_err("not within the field");
+        assert!(error.to_string().contains("within 20 × 24"), "{error}");
+    }
+    assert!(bits(gpu, &frame) == before, "after an error nothing has been recorded");
+    gpu.draw_edit(&mut frame, all).expect("drawn");
+    assert!(bits(gpu, &frame) == before, "nothing was edited");
+    gpu.end(frame);
+
+    let undrawn = gpu.frame(plan, &[scene.field.heights_m(), &[0.5; 32 * 16 * 4]]);
+    let mut undrawn = undrawn.expect("a frame");
+    let error = gpu.draw_edit(&mut undrawn, all).expect_err("nothing to go on from");
+    assert!(error.to_string().contains("recording of all passes"), "{error}");
+    gpu.end(undrawn);
+
+    // Horizons not kept; slopes instead of occluders; lines without a beginning; no lines.
+    let periodic = Scene {
+        surface: Surface { border: Border::Periodic, ..Surface::default() },
+        ..scene.clone()
+    };
+    for (scene, quality, keeps) in [
+        (&scene, quality, false),
+        (&scene, Quality { fuse: Fuse::Slopes, ..quality }, true),
+        (&periodic, quality, true),
+        (&scene, Quality { method: Method::Brute, ..quality }, true),
+    ] {
+        let plan = planned(gpu, scene, &quality, keeps);
+        let error = plan.check_edit(all).expect_err("no passes for edits");
+        assert!(error.to_string().contains("keeps_horizons"), "{error}");
     }
 }
