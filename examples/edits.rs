@@ -4,6 +4,7 @@
 //! `cargo run --release --example edits -- [SIDE [BRUSH [EDITS [SEED]]]]`: samples a side of the field
 //! (4096), of the brush (64), how many edits at random places (10), and the generator's seed (1).
 
+use ridgelight::gpu::shaders::offsets;
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Timing};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
@@ -98,7 +99,8 @@ fn run() -> Result<()> {
         brush(&mut heights, side, at, if i % 2 == 0 { 1.0 } else { -1.0 });
         gpu.refill(&frame, 0, &heights)?;
         let times = gpu.draw_edit(&mut frame, at)?;
-        let swept = 4.0 * f64::from(words(&mut gpu, &frame, "edit_counts")?[0]);
+        let swept = 4.0
+            * f64::from(words(&mut gpu, &frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
         let marks = words(&mut gpu, &frame, "dirty_samples")?;
         let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
         let lit = marked / (side * side) as f64;

@@ -1,6 +1,6 @@
 // Computes: which samples an edited rectangle changes by itself: its own and their neighbours, whose
-// normals and first crossings it shapes. Clears the marks and the count of the last edit.
-// Reads: nothing. Writes: dirty_samples, edit_counts.
+// normals and first crossings it shapes. Clears what the last edit marked, listed and counted.
+// Reads: nothing. Writes: dirty_samples, edit_list.
 // One invocation is one word: eight columns of four rows.
 #version 460
 
@@ -9,7 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) writeonly buffer DirtySamples { uint dirty_samples[]; };
-layout(binding = 1) writeonly buffer EditCounts { uint edit_counts[]; };
+layout(binding = 1) writeonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform DirtyMarkPush {
     int cols;
@@ -23,7 +23,12 @@ layout(push_constant) uniform DirtyMarkPush {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) * ivec2(8, 4);
     if (at == ivec2(0)) {
-        edit_counts[0] = 0u;
+        swept_steps = 0u;
+        word_count = 0u;
+        for (int i = 0; i < 3; i++) {
+            light_groups[i] = i < 2 ? 0u : 1u;
+            resolve_groups[i] = i < 2 ? 0u : 1u;
+        }
     }
     if (at.x >= cols || at.y >= rows) {
         return;

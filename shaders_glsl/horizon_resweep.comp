@@ -1,7 +1,7 @@
 // Computes: what horizon_sweep would now find on the lines that an edited rectangle can reach, to the
 // bit: from where a line meets the rectangle to where its hull has left it behind for good.
 // Reads: heights, azimuths. Reads and writes: occluders (of each line a linked list: what a hull vertex
-// met when it was new lies under it), dirty_samples. Writes: edit_counts (steps, by four lines each).
+// met when it was new lies under it), dirty_samples. Writes: edit_list (steps, by four lines each).
 // One invocation is four neighbouring lines.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -25,7 +25,7 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rg32ui) uniform uimage2DArray occluders;
 layout(binding = 3) buffer DirtySamples { uint dirty_samples[]; };
-layout(binding = 4) buffer EditCounts { uint edit_counts[]; };
+layout(binding = 4) buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform HorizonResweepPush {
     int lanes;
@@ -186,5 +186,5 @@ void main() {
         swept++;
         going = subgroupAny(stays);
     }
-    atomicAdd(edit_counts[0], swept);
+    atomicAdd(swept_steps, swept);
 }

@@ -5,6 +5,7 @@
 // constant RELIGHTS and defines add_light.
 
 layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform ShadePush {
     int cols;
@@ -16,6 +17,20 @@ layout(push_constant) uniform ShadePush {
     uint azimuth_count;
     uint clears;         // 1 in the first batch
 };
+
+// The first lane and the march position of this invocation's four samples: its place in the field, or
+// after an edit one of the eight fours of a word of the list. Beyond the list none is on the field.
+ivec2 place_of_four() {
+    if (!RELIGHTS) {
+        return ivec2(gl_GlobalInvocationID.yx) * ivec2(4, 1);
+    }
+    uint group = gl_WorkGroupID.y * GROUPS_ACROSS + gl_WorkGroupID.x;
+    uint four = group * (8u * LIGHT_GROUP_WORDS) + gl_LocalInvocationIndex;
+    ivec2 corner = word_corner(dirty_words[min(four >> 3, word_count - 1u)], cols);
+    int i = int(four & 7u);
+    ivec2 place = MARCHES_ROWS ? corner + ivec2((i & 1) * 4, i >> 1) : ivec2(corner.y, corner.x + i);
+    return (four >> 3) < word_count ? place : ivec2(0x7fffffff);
+}
 
 // Which of the four samples from a lane on are lit: after an edit only those that it reaches. Every
 // batch decides alike, so that sums begin and end whole.

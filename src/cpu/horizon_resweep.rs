@@ -99,8 +99,9 @@ pub fn horizon_resweep(
             hull.push(vertex(step));
             swept += 1;
             let (slot, position, layer) = texel(step);
-            let before = &mut lattice.occluders[lattice.texel(slot, position, layer)];
-            let changed = i32::from(std::mem::replace(before, back as u16)) != back;
+            let at = lattice.texel(slot, position, layer);
+            let changed =
+                i32::from(std::mem::replace(&mut lattice.occluders[at], back as u16)) != back;
             let met = if back > 0 { step - back } else { -1 };
             if changed || (met >= 0 && reach.has(y - back * shear, met)) {
                 mark(&march, y, step, spacing, dirty);

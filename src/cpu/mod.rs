@@ -5,6 +5,7 @@
 //! bits; light is summed in f64 and compared within a tolerance.
 
 pub mod bounce;
+pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;
 pub mod env_wedges;

@@ -369,11 +369,13 @@ impl Renderer {
             entry.push(transition(backed.image, backed.layers, from, ImageState::WRITTEN));
         }
         let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
+        // Passes of an edit may find their workgroups in a buffer.
+        let stages = compute | vk::PipelineStageFlags2::DRAW_INDIRECT;
         let memory = [vk::MemoryBarrier2::default()
-            .src_stage_mask(compute)
+            .src_stage_mask(stages)
             .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
-            .dst_stage_mask(compute)
-            .dst_access_mask(ImageState::WRITTEN.access)];
+            .dst_stage_mask(stages)
+            .dst_access_mask(ImageState::WRITTEN.access | vk::AccessFlags2::INDIRECT_COMMAND_READ)];
         let between = vk::DependencyInfo::default().memory_barriers(&memory);
         let first =
             vk::DependencyInfo::default().image_memory_barriers(&entry).memory_barriers(&memory);
@@ -401,7 +403,10 @@ impl Renderer {
                     None => (pass.groups, pass.push.clone()),
                 };
                 device.cmd_push_constants(commands, pipeline.layout, stages, 0, &push);
-                device.cmd_dispatch(commands, groups[0], groups[1], groups[2]);
+                match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
+                    Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
+                    None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+                }
                 self.label(commands, None);
                 device.cmd_write_timestamp2(commands, compute, queries, query as u32 + 1);
             }

@@ -17,7 +17,7 @@ pub(crate) fn words([cols, rows]: [u32; 2]) -> [u32; 2] {
 }
 
 /// Which samples an edit changes by itself; sweeps add those that see it.
-pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, counts]: [ResourceId; 2]) {
+pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [ResourceId; 2]) {
     let [across, down] = words(size);
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
@@ -28,7 +28,7 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, counts]: [Reso
         [across.div_ceil(8), down.div_ceil(8), 1],
         &[],
         &DirtyMarkPush { cols, rows, rectangle: Rectangle::whole(size).words() },
-        &[("dirty_samples", dirty), ("edit_counts", counts)],
+        &[("dirty_samples", dirty), ("edit_list", list)],
         4 * all,
         32 * all,
     );

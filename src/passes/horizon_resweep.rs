@@ -28,7 +28,7 @@ pub(crate) struct Images {
     pub azimuths: ResourceId,
     pub occluders: ResourceId,
     pub dirty: ResourceId,
-    pub counts: ResourceId,
+    pub list: ResourceId,
 }
 
 /// The lines of a batch that an edited rectangle can reach, again.
@@ -58,7 +58,7 @@ pub(crate) fn plan(
             ("azimuths", images.azimuths),
             ("occluders", images.occluders),
             ("dirty_samples", images.dirty),
-            ("edit_counts", images.counts),
+            ("edit_list", images.list),
         ],
         batch.line_samples * 8,
         batch.line_samples,

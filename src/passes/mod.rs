@@ -1,6 +1,7 @@
 //! One file a pass: what it binds, how large it is, and why it is there; `push` has what
 //! several push alike.
 
+pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
 pub(crate) mod env_wedges;

@@ -94,6 +94,7 @@ impl Builder {
             bytes,
             samples,
             reach: None,
+            indirect: None,
             barrier_before: false,
         });
         passes.last_mut().expect("pushed above")

@@ -19,7 +19,7 @@ pub struct Picture {
     /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
-    /// then also take edits ([`Plan::edit_passes`]). Memory: an eighth of a byte a sample.
+    /// then also take edits ([`Plan::edit_passes`]). Memory: a quarter of a byte a sample.
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
@@ -72,8 +72,16 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let (sweeping, lists) =
         prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
-    let mut drawing =
-        Drawing { builder, scene, shining, images, tables, sweeping, dirty: None, is_begun: false };
+    let mut drawing = Drawing {
+        builder,
+        scene,
+        shining,
+        images,
+        tables,
+        sweeping,
+        edited: None,
+        is_begun: false,
+    };
     drawing.fill_tables(quality);
     drawing.light(&lists)?;
     if let Some(edits) = edits {
@@ -184,11 +192,11 @@ impl Tables {
     }
 }
 
-/// What edits keep: marks of the samples that they reach, and how many steps they swept.
+/// What edits keep: marks of the samples that they reach, and the list of those.
 #[derive(Clone, Copy)]
 struct Edits {
     dirty: ResourceId,
-    counts: ResourceId,
+    list: ResourceId,
 }
 
 impl Edits {
@@ -196,7 +204,7 @@ impl Edits {
         let [across, down] = passes::dirty_mark::words(size).map(u64::from);
         Self {
             dirty: builder.buffer("dirty_samples", 4 * across * down, false),
-            counts: builder.buffer("edit_counts", 4, false),
+            list: builder.buffer("edit_list", passes::dirty_list::bytes(size), false),
         }
     }
 }
@@ -209,8 +217,8 @@ struct Drawing<'a> {
     images: Images,
     tables: Option<Tables>,
     sweeping: Sweeping,
-    /// Marks of the samples to be lit, while passes of an edit are added.
-    dirty: Option<ResourceId>,
+    /// Marks of the samples to be lit and their list, while passes of an edit are added.
+    edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
     is_begun: bool,
 }
@@ -247,13 +255,14 @@ impl Drawing<'_> {
 
     /// From here on passes are those of an edit: first all horizons, as every batch lights the same
     /// samples.
-    fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, counts }: Edits) {
+    fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
         self.builder.begin_edits();
-        self.dirty = Some(dirty);
-        let (border, ids) = (self.border(), [dirty, counts]);
+        let (border, ids) = (self.border(), [dirty, list]);
+        self.edited = Some(ids);
         passes::dirty_mark::plan(&mut self.builder, size, ids);
         let batches = lists.batches.iter().flatten();
         self.sweeping.record_edit(&mut self.builder, border, batches, ids);
+        passes::dirty_list::plan(&mut self.builder, size, ids);
     }
 
     fn sky_and_environment(&mut self, lists: &Lists) {
@@ -266,7 +275,7 @@ impl Drawing<'_> {
         for batch in batches {
             let part = part("sky", batch, batches);
             let (builder, sweeping) = (&mut self.builder, &self.sweeping);
-            if self.dirty.is_none() {
+            if self.edited.is_none() {
                 sweeping.record(builder, batch, &part);
             }
             let images = passes::sky_shade::Images {
@@ -275,7 +284,7 @@ impl Drawing<'_> {
                 azimuths: sweeping.azimuths,
                 sky_sum,
                 environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
-                dirty: self.dirty,
+                edited: self.edited,
             };
             let sweep = &sweeping.sweep;
             passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
@@ -299,7 +308,7 @@ impl Drawing<'_> {
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
-                if self.dirty.is_none() {
+                if self.edited.is_none() {
                     sweeping.record(builder, batch, &part);
                 }
                 let lanes = sweeping.lane_heights(batch);
@@ -307,8 +316,16 @@ impl Drawing<'_> {
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, is_point, lattice, ids,
-                    self.dirty,
+                    builder,
+                    sweep,
+                    border,
+                    cell_m,
+                    batch,
+                    &part,
+                    is_point,
+                    lattice,
+                    ids,
+                    self.edited,
                 );
             }
             self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);
@@ -337,7 +354,7 @@ impl Drawing<'_> {
             radiance: Some((self.images.radiance, is_first)),
             layer,
             grey: self.shining.is_grey,
-            dirty: self.dirty,
+            edited: self.edited,
         };
         self.light_resolve(name, &light);
     }
@@ -357,7 +374,7 @@ impl Drawing<'_> {
                 radiance: None,
                 layer: Some(layer),
                 grey: true,
-                dirty: self.dirty,
+                edited: self.edited,
             };
             self.light_resolve("sky_view", &light);
         }

@@ -53,7 +53,7 @@ impl Sweeping {
         builder: &mut Builder,
         border: Border,
         batches: impl Iterator<Item = &'a Batch> + Clone,
-        [dirty, counts]: [ResourceId; 2],
+        [dirty, list]: [ResourceId; 2],
     ) {
         for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
             let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
@@ -68,7 +68,7 @@ impl Sweeping {
                 azimuths: self.azimuths,
                 occluders: self.lattice_of(batch).occluders.expect("edits go on from occluders"),
                 dirty,
-                counts,
+                list,
             };
             let part = format!("{}+{}", batch.first, batch.count);
             passes::horizon_resweep::plan(builder, sweep, batch, &part, &images);

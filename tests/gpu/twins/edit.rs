@@ -1,6 +1,7 @@
 //! The passes that follow an edit up to its horizons. What light they leave is compared with that of
 //! all passes, bit by bit, in `edits`.
 
+use ridgelight::cpu::dirty_list as list_twin;
 use ridgelight::cpu::dirty_mark as mark_twin;
 use ridgelight::cpu::horizon_resweep as resweep_twin;
 use ridgelight::cpu::horizon_sweep::{self as sweep_twin, SweepOptions};
@@ -100,16 +101,34 @@ fn lines_of(
     all.filter(on_field).map(pair).collect()
 }
 
-/// All marks of the edit, once the twins have made theirs.
-pub(super) fn marks(run: &mut Run) -> Vec<Pair> {
-    let id = run.plan.find("dirty_samples").expect("a plan with edits has it");
-    let got = run.gpu.read(&run.frame, id).expect("read back");
-    let want = &run.edit.as_ref().expect("drawn").dirty;
-    let pair = |(i, (got, want)): (usize, (&u32, &u32))| Pair {
-        got: (*got).into(),
-        want: (*want).into(),
-        tolerance: 0.0,
-        at: [0, 0, i],
+/// All marks, now that the twins have made theirs; and the list of their words, in any order, with
+/// just enough workgroups.
+pub(super) fn dirty_list(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let got = run.words(pass, "dirty_samples").expect("written");
+    let want = run.edit.as_ref().expect("drawn").dirty.clone();
+    let words = run.words(pass, "edit_list").expect("written");
+    let at = |offset: usize| words[offset / 4] as usize;
+    let mut listed =
+        words[offsets::edit_list::DIRTY_WORDS / 4..][..at(offsets::edit_list::WORD_COUNT)].to_vec();
+    listed.sort_unstable();
+    let listed_by_twin = list_twin::dirty_list(&want);
+    let groups = |a: usize| [at(a), at(a + 4), at(a + 8)];
+    // Sixteen words a group that lights, two a group that resolves; fewer groups than a row holds.
+    for (at, words) in
+        [(offsets::edit_list::LIGHT_GROUPS, 16), (offsets::edit_list::RESOLVE_GROUPS, 2)]
+    {
+        assert_eq!(groups(at), [listed_by_twin.len().div_ceil(words), 1, 1]);
+    }
+    assert_eq!(listed.len(), listed_by_twin.len(), "words that mark anything");
+    let pairs = |got: Vec<u32>, want: Vec<u32>, of: usize| {
+        let words = got.into_iter().zip(want).enumerate();
+        let pair = move |(i, (got, want)): (usize, (u32, u32))| Pair {
+            got: got.into(),
+            want: want.into(),
+            tolerance: 0.0,
+            at: [of, 0, i],
+        };
+        words.map(pair)
     };
-    got.iter().zip(want).enumerate().map(pair).collect()
+    pairs(got, want, 0).chain(pairs(listed, listed_by_twin, 1)).collect()
 }

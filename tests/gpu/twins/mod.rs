@@ -51,6 +51,7 @@ type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
 
 /// The twin of every pass, by name.
 const TWINS: &[(&str, Twin)] = &[
+    ("dirty_list", edit::dirty_list),
     ("dirty_mark", edit::dirty_mark),
     ("height_transpose", sweep::height_transpose),
     ("horizon_resweep", edit::horizon_resweep),
@@ -119,12 +120,12 @@ impl<'a> Run<'a> {
         }
         if !self.plan.edit_passes.is_empty() {
             self.edit = Some(edit::draw(self));
-            let finds_horizons = ["dirty_mark", "height_transpose", "horizon_resweep"];
+            let finds_horizons =
+                ["dirty_mark", "height_transpose", "horizon_resweep", "dirty_list"];
             let passes = self.plan.edit_passes.clone();
             for pass in passes.iter().filter(|p| finds_horizons.contains(&p.name())) {
                 all.push((format!("edit: {}", pass.label()), twin_of(pass)(self, pass)));
             }
-            all.push(("edit: all marks".into(), edit::marks(self)));
         }
         all
     }
