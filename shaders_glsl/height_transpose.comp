@@ -1,4 +1,5 @@
-// Computes: the heights laid out for an axis, four neighbouring lanes a texel.
+// Computes: a rectangle of the heights (all, or what was edited) laid out for an axis, four neighbouring
+// lanes a texel.
 // Reads: heights (one texel a sample). Writes: lane_heights at [march position][lane / 4]; beyond the
 // last lane it is held, or follows the first where the field repeats.
 // One invocation is four lanes of one march position.
@@ -16,12 +17,18 @@ layout(binding = 1, rgba32f) uniform writeonly image2D lane_heights;
 layout(push_constant) uniform HeightTransposePush {
     int lanes;
     int steps;
+    int first_col;  // of the rectangle
+    int first_row;
+    int last_col;
+    int last_row;
 };
 
 void main() {
-    int group = int(gl_GlobalInvocationID.x);
-    int march = int(gl_GlobalInvocationID.y);
-    if (4 * group >= lanes || march >= steps) {
+    ivec2 first = MARCHES_ROWS ? ivec2(first_col, first_row) : ivec2(first_row, first_col);
+    ivec2 last = MARCHES_ROWS ? ivec2(last_col, last_row) : ivec2(last_row, last_col);
+    int group = first.x / 4 + int(gl_GlobalInvocationID.x);
+    int march = first.y + int(gl_GlobalInvocationID.y);
+    if (4 * group > last.x || march > last.y) {
         return;
     }
     vec4 four;

@@ -1,9 +1,11 @@
 // Computes: one light's share of the picture: its sum times its colour and the surface's albedo.
-// Reads: scalar_sum or colour_sum, albedo_map. Reads and writes: radiance (or radiance_grey). Writes:
+// Reads: scalar_sum or colour_sum, albedo_map, dirty_samples, edit_list. Reads and writes: radiance (or radiance_grey). Writes:
 // layer (or layer_grey).
 // One invocation is one sample.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+
+#include "shared/dirty.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -13,6 +15,8 @@ layout(constant_id = 2) const bool ADDS_TO_RADIANCE = true;
 layout(constant_id = 3) const bool WRITES_LAYER = false;
 // All colours are grey: pictures of one channel.
 layout(constant_id = 4) const bool GREY = false;
+// Only the samples marked in dirty_samples, by the list of their words.
+layout(constant_id = 5) const bool RELIGHTS = false;
 
 layout(binding = 0) uniform texture2D scalar_sum;
 layout(binding = 1) uniform texture2D colour_sum;
@@ -21,6 +25,8 @@ layout(binding = 3, rgba32f) uniform image2D radiance;
 layout(binding = 4, rgba32f) uniform writeonly image2D layer;
 layout(binding = 5, r32f) uniform image2D radiance_grey;
 layout(binding = 6, r32f) uniform writeonly image2D layer_grey;
+layout(binding = 7) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
 
 layout(push_constant) uniform LightResolvePush {
     int cols;
@@ -32,6 +38,15 @@ layout(push_constant) uniform LightResolvePush {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (RELIGHTS) {
+        uint group = gl_WorkGroupID.y * GROUPS_ACROSS + gl_WorkGroupID.x;
+        uint sample_of_list = group * (32u * RESOLVE_GROUP_WORDS) + gl_LocalInvocationIndex;
+        uint word = dirty_words[min(sample_of_list >> 5, word_count - 1u)];
+        uint i = sample_of_list & 31u;
+        bool is_marked = (dirty_samples[word] >> i & 1u) != 0u;
+        at = (sample_of_list >> 5) < word_count && is_marked ? word_corner(word, cols) + ivec2(i & 7u, i >> 3)
+                                                             : ivec2(0x7fffffff);
+    }
     if (at.x >= cols || at.y >= rows) {
         return;
     }

@@ -1,6 +1,7 @@
 // Computes: what a uniform sky and an environment give to every sample through its horizons in the
 // azimuths of a batch, added to what earlier batches gave.
-// Reads: lane_heights, azimuths, lattice, env_tables. Reads and writes: sky_sum (exit
+// Reads: lane_heights, azimuths, lattice, env_tables, dirty_samples,
+// edit_list. Reads and writes: sky_sum (exit
 // radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
@@ -18,6 +19,8 @@ const bool LATTICE_HAS_DISTANCES = false;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
+// Only the samples marked in dirty_samples, by the list of their words.
+layout(constant_id = 7) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // One of these, by LATTICE.
@@ -76,9 +79,14 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
 void main() {
     int lanes = MARCHES_ROWS ? cols : rows;
     int steps = MARCHES_ROWS ? rows : cols;
-    int lane = int(gl_GlobalInvocationID.y) * 4;
-    int march = int(gl_GlobalInvocationID.x);
+    ivec2 place = place_of_four();
+    int lane = place.x;
+    int march = place.y;
     if (lane >= lanes || march >= steps) {
+        return;
+    }
+    bvec4 lit = lit_samples(lane, march);
+    if (!any(lit)) {
         return;
     }
     Quad q = quad_at(lane, march, lanes, steps);
@@ -109,10 +117,10 @@ void main() {
     add_all(q, lanes, steps, east, north);
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
         ivec2 at = texel_at(lane + k, march);
-        if (HAS_SKY) {
+        if (HAS_SKY && lit[k]) {
             imageStore(sky_sum, at, vec4(sky[k]));
         }
-        if (HAS_ENVIRONMENT) {
+        if (HAS_ENVIRONMENT && lit[k]) {
             imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
         }
     }

@@ -1,6 +1,6 @@
 // Computes: what a sun gives to every sample through its horizons in the azimuths that its disc
 // covers, added to what earlier batches gave.
-// Reads: lane_heights, azimuths, lattice. Reads and writes: sun_sum (exit radiance for
+// Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list. Reads and writes: sun_sum (exit radiance for
 // irradiance 1 and albedo 1).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
@@ -18,6 +18,8 @@ const bool LATTICE_HAS_DISTANCES = false;
 // A point: lit or not. Else the part of each chord of the disc that the horizon leaves free.
 layout(constant_id = 4) const bool POINT = false;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
+// Only the samples marked in dirty_samples, by the list of their words.
+layout(constant_id = 6) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 // One of these, by LATTICE.
@@ -57,9 +59,14 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
 void main() {
     int lanes = MARCHES_ROWS ? cols : rows;
     int steps = MARCHES_ROWS ? rows : cols;
-    int march = int(gl_GlobalInvocationID.x);
-    int lane = int(gl_GlobalInvocationID.y) * 4;
+    ivec2 place = place_of_four();
+    int lane = place.x;
+    int march = place.y;
     if (lane >= lanes || march >= steps) {
+        return;
+    }
+    bvec4 lit = lit_samples(lane, march);
+    if (!any(lit)) {
         return;
     }
     Quad q = quad_at(lane, march, lanes, steps);
@@ -77,6 +84,8 @@ void main() {
     }
     add_all(q, lanes, steps, east, north);
     for (int k = 0; k < 4 && lane + k < lanes; k++) {
-        imageStore(sun_sum, texel_at(lane + k, march), vec4(sun[k]));
+        if (lit[k]) {
+            imageStore(sun_sum, texel_at(lane + k, march), vec4(sun[k]));
+        }
     }
 }

@@ -49,7 +49,7 @@ pub fn line_height(march: &March, y: i32, step: i32) -> f32 {
 }
 
 /// What a height becomes by being packed.
-fn stored(h: f32, packed: Option<f32>) -> f32 {
+pub(super) fn stored(h: f32, packed: Option<f32>) -> f32 {
     packed.map_or(h, |scale| f16::from_f32(h * scale).to_f32() / scale)
 }
 

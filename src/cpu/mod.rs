@@ -5,10 +5,13 @@
 //! bits; light is summed in f64 and compared within a tolerance.
 
 pub mod bounce;
+pub mod dirty_list;
+pub mod dirty_mark;
 pub mod env_tables;
 pub mod env_wedges;
 pub mod height_transpose;
 pub mod horizon_march;
+pub mod horizon_resweep;
 pub mod horizon_sweep;
 pub mod lattice;
 pub mod light;

@@ -1,6 +1,6 @@
 use super::memory::Backed;
 use super::{Headless, ImageArg, ImageState, Renderer, Timing};
-use crate::plan::{Format, Kind, Plan, Resource};
+use crate::plan::{Format, Kind, Plan, Rectangle, Resource};
 use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
@@ -152,6 +152,18 @@ impl Headless {
         let (inputs, outputs) = (frame.inputs(), frame.outputs());
         let renderer = frame.renderer.as_mut().expect("alive until ended");
         self.run(|commands| renderer.record_passes(commands, 0, &inputs, &outputs, passes))?;
+        Ok(renderer.timings(0).unwrap_or_default())
+    }
+
+    /// Runs what an edit of a rectangle of heights needs, and waits: [`Renderer::record_edit`]. The
+    /// frame has been drawn, and its heights have been refilled.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn draw_edit(&self, frame: &mut Frame, rectangle: Rectangle) -> Result<Vec<Timing>> {
+        let (inputs, outputs) = (frame.inputs(), frame.outputs());
+        let renderer = frame.renderer.as_mut().expect("alive until ended");
+        self.run(|commands| renderer.record_edit(commands, 0, &inputs, &outputs, rectangle))?;
         Ok(renderer.timings(0).unwrap_or_default())
     }
 

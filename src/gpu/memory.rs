@@ -73,7 +73,7 @@ impl Memory {
                 let usage = if texels {
                     vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER
                 } else {
-                    vk::BufferUsageFlags::STORAGE_BUFFER
+                    vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER
                 };
                 let usage = usage | vk::BufferUsageFlags::TRANSFER_SRC;
                 let mut backed =

@@ -31,7 +31,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 }
 
 impl Pipelines {
-    pub fn new(host: &Host, passes: &[Pass]) -> Result<Self> {
+    pub fn new<'a>(host: &Host, passes: impl Iterator<Item = &'a Pass>) -> Result<Self> {
         let mut all = Self { made: Vec::new(), of_pass: Vec::new() };
         let mut known = HashMap::<_, usize>::new();
         for pass in passes {

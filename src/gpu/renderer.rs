@@ -4,7 +4,7 @@ use super::memory::{Backed, Memory, whole};
 use super::pipelines::{Pipelines, descriptor_type};
 use super::shaders::BindingKind;
 use super::{Host, failed};
-use crate::plan::{Format, Kind, Owner, Pass, Plan, Resource, ResourceId};
+use crate::plan::{Format, Kind, Owner, Pass, Plan, Rectangle, Resource, ResourceId};
 use crate::{Error, Result};
 
 /// What an image is being used for at a point of a command buffer.
@@ -78,6 +78,8 @@ pub struct Renderer {
     pipelines: Pipelines,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
+    /// Whether all passes have been recorded: what an edit goes on from.
+    is_drawn: bool,
     timestamp_ns: f64,
     timestamp_mask: u64,
     destroyed: bool,
@@ -115,9 +117,10 @@ impl Renderer {
             memory: Memory::new(host)?,
             resources: Vec::new(),
             unused: Vec::new(),
-            pipelines: Pipelines::new(host, &plan.passes)?,
+            pipelines: Pipelines::new(host, plan.every_pass())?,
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
+            is_drawn: false,
             timestamp_ns: f64::from(report.timestamp_period_ns),
             timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             plan,
@@ -143,7 +146,7 @@ impl Renderer {
         self.write_azimuths()?;
         // What a shader might write is its pass's alone: two passes that "write" one unused image
         // would need a barrier for nothing.
-        for (index, pass) in self.plan.passes.iter().enumerate() {
+        for (index, pass) in self.plan.every_pass().enumerate() {
             for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
                 let writer = binding.written.then_some(index);
                 let known =
@@ -174,14 +177,14 @@ impl Renderer {
     fn make_slots(&mut self, slots: usize) -> Result<()> {
         let device = &self.host.device;
         let mut sizes: Vec<vk::DescriptorPoolSize> = Vec::new();
-        for binding in self.plan.passes.iter().flat_map(|p| p.shader.bindings) {
+        for binding in self.plan.every_pass().flat_map(|p| p.shader.bindings) {
             let ty = descriptor_type(binding.kind);
             match sizes.iter_mut().find(|s| s.ty == ty) {
                 Some(size) => size.descriptor_count += slots as u32,
                 None => sizes.push(vk::DescriptorPoolSize { ty, descriptor_count: slots as u32 }),
             }
         }
-        let passes = self.plan.passes.len();
+        let passes = self.plan.every_pass().count();
         let info = vk::DescriptorPoolCreateInfo::default()
             .max_sets((slots * passes) as u32)
             .pool_sizes(&sizes);
@@ -273,8 +276,76 @@ impl Renderer {
         outputs: &[ImageArg],
         passes: &[usize],
     ) -> Result<()> {
-        let whole_plan = passes.len() == self.plan.passes.len();
-        self.check(slot, inputs, outputs, passes)?;
+        self.check(slot, inputs, outputs)?;
+        if let Some(pass) = passes.iter().find(|p| **p >= self.plan.passes.len()) {
+            return Err(Error::setting(
+                "pass",
+                pass.to_string(),
+                format!("less than {}", self.plan.passes.len()),
+            ));
+        }
+        self.append(commands, slot, inputs, outputs, passes, None);
+        self.is_drawn |= passes.len() == self.plan.passes.len();
+        Ok(())
+    }
+
+    /// Appends what must run where only the heights in `rectangle` are others than in the last
+    /// recording: the lines that can reach it, from where they meet it to where it no longer stands on
+    /// their hulls, and the light of the samples that see it ([`Plan::edit_passes`]). Leaves the same
+    /// bits in every output as [`record`](Self::record) would.
+    ///
+    /// The outputs must hold, in the state that they come in, what the last recording left in them;
+    /// every earlier change must have been recorded.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record); a plan without passes for edits; a rectangle beyond the field; a
+    /// renderer that has not yet recorded all; an output whose contents are not kept.
+    pub fn record_edit(
+        &mut self,
+        commands: vk::CommandBuffer,
+        slot: usize,
+        inputs: &[ImageArg],
+        outputs: &[ImageArg],
+        rectangle: Rectangle,
+    ) -> Result<()> {
+        self.plan.check_edit(rectangle)?;
+        self.check(slot, inputs, outputs)?;
+        if !self.is_drawn {
+            return Err(Error::setting("an edit", "nothing recorded", "a recording of all passes"));
+        }
+        let names = self.plan.outputs().map(|(_, r)| &r.name);
+        for (name, arg) in names.zip(outputs) {
+            if is_without_contents(arg.before.layout) {
+                return Err(Error::setting(
+                    format!("{name}: layout before an edit"),
+                    format!("{:?}", arg.before.layout),
+                    "a layout with the contents of the last recording",
+                ));
+            }
+        }
+        let first = self.plan.passes.len();
+        let passes: Vec<usize> = (first..first + self.plan.edit_passes.len()).collect();
+        self.append(commands, slot, inputs, outputs, &passes, Some(rectangle));
+        Ok(())
+    }
+
+    /// A pass by position: those of a whole recording, then those of an edit.
+    fn pass(&self, index: usize) -> &Pass {
+        let all = self.plan.passes.len();
+        if index < all { &self.plan.passes[index] } else { &self.plan.edit_passes[index - all] }
+    }
+
+    /// Records passes, all arguments checked.
+    fn append(
+        &mut self,
+        commands: vk::CommandBuffer,
+        slot: usize,
+        inputs: &[ImageArg],
+        outputs: &[ImageArg],
+        passes: &[usize],
+        edited: Option<Rectangle>,
+    ) {
+        let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
         let bound = self.bind(inputs, outputs);
         self.write_sets(slot, &bound);
         let device = self.host.device.clone();
@@ -298,11 +369,13 @@ impl Renderer {
             entry.push(transition(backed.image, backed.layers, from, ImageState::WRITTEN));
         }
         let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
+        // Passes of an edit may find their workgroups in a buffer.
+        let stages = compute | vk::PipelineStageFlags2::DRAW_INDIRECT;
         let memory = [vk::MemoryBarrier2::default()
-            .src_stage_mask(compute)
+            .src_stage_mask(stages)
             .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
-            .dst_stage_mask(compute)
-            .dst_access_mask(ImageState::WRITTEN.access)];
+            .dst_stage_mask(stages)
+            .dst_access_mask(ImageState::WRITTEN.access | vk::AccessFlags2::INDIRECT_COMMAND_READ)];
         let between = vk::DependencyInfo::default().memory_barriers(&memory);
         let first =
             vk::DependencyInfo::default().image_memory_barriers(&entry).memory_barriers(&memory);
@@ -314,7 +387,7 @@ impl Renderer {
             device.cmd_pipeline_barrier2(commands, &first);
             device.cmd_write_timestamp2(commands, compute, queries, 0);
             for (query, &index) in passes.iter().enumerate() {
-                let pass = &self.plan.passes[index];
+                let pass = self.pass(index);
                 if query > 0 && self.must_wait(passes[query - 1], index) {
                     device.cmd_pipeline_barrier2(commands, &between);
                 }
@@ -325,8 +398,15 @@ impl Renderer {
                 let sets = [self.slots[slot].sets[index]];
                 device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
                 let stages = vk::ShaderStageFlags::COMPUTE;
-                device.cmd_push_constants(commands, pipeline.layout, stages, 0, &pass.push);
-                device.cmd_dispatch(commands, pass.groups[0], pass.groups[1], pass.groups[2]);
+                let (groups, push) = match edited {
+                    Some(rectangle) => pass.for_edit(rectangle),
+                    None => (pass.groups, pass.push.clone()),
+                };
+                device.cmd_push_constants(commands, pipeline.layout, stages, 0, &push);
+                match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
+                    Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
+                    None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+                }
                 self.label(commands, None);
                 device.cmd_write_timestamp2(commands, compute, queries, query as u32 + 1);
             }
@@ -346,13 +426,11 @@ impl Renderer {
             device.cmd_pipeline_barrier2(commands, &last);
         }
         self.slots[slot].recorded = passes.to_vec();
-        Ok(())
     }
 
     /// Whether a barrier stands between two passes recorded one after the other.
     fn must_wait(&self, last: usize, next: usize) -> bool {
-        let between = self.plan.passes.get(last + 1..=next);
-        between.is_none_or(|passes| passes.iter().any(|p| p.barrier_before))
+        last >= next || (last + 1..=next).any(|p| self.pass(p).barrier_before)
     }
 
     fn label(&self, commands: vk::CommandBuffer, pass: Option<&Pass>) {
@@ -376,25 +454,12 @@ impl Renderer {
         }
     }
 
-    fn check(
-        &self,
-        slot: usize,
-        inputs: &[ImageArg],
-        outputs: &[ImageArg],
-        passes: &[usize],
-    ) -> Result<()> {
+    fn check(&self, slot: usize, inputs: &[ImageArg], outputs: &[ImageArg]) -> Result<()> {
         if slot >= self.slots.len() {
             return Err(Error::setting(
                 "slot",
                 slot.to_string(),
                 format!("less than {}", self.slots.len()),
-            ));
-        }
-        if let Some(pass) = passes.iter().find(|p| **p >= self.plan.passes.len()) {
-            return Err(Error::setting(
-                "pass",
-                pass.to_string(),
-                format!("less than {}", self.plan.passes.len()),
             ));
         }
         let check_all = |what: &str, args: &[ImageArg], wanted: Vec<(ResourceId, &Resource)>| {
@@ -429,8 +494,7 @@ impl Renderer {
     }
 
     fn write_sets(&self, slot: usize, bound: &[Option<&ImageArg>]) {
-        for (index, (pass, set)) in self.plan.passes.iter().zip(&self.slots[slot].sets).enumerate()
-        {
+        for (index, (pass, set)) in self.plan.every_pass().zip(&self.slots[slot].sets).enumerate() {
             let mut images = Vec::new();
             let mut buffers = Vec::new();
             let mut texels = Vec::new();
@@ -507,10 +571,7 @@ impl Renderer {
         let passes = slot.recorded.iter().zip(ticks.windows(2));
         let timings = passes.map(|(&index, pair)| {
             let elapsed = pair[1][0].wrapping_sub(pair[0][0]) & self.timestamp_mask;
-            Timing {
-                label: self.plan.passes[index].label(),
-                ns: elapsed as f64 * self.timestamp_ns,
-            }
+            Timing { label: self.pass(index).label(), ns: elapsed as f64 * self.timestamp_ns }
         });
         Some(timings.collect())
     }
@@ -571,6 +632,10 @@ fn smallest(kind: BindingKind) -> Kind {
     }
 }
 
+fn is_without_contents(layout: vk::ImageLayout) -> bool {
+    matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED)
+}
+
 fn check_image(arg: &ImageArg, resource: &Resource) -> Result<()> {
     let Kind::Image { format, width, height, layers, .. } = resource.kind else { return Ok(()) };
     let name = &resource.name;
@@ -591,16 +656,14 @@ fn check_image(arg: &ImageArg, resource: &Resource) -> Result<()> {
             format!("{:?} (columns, rows, layers)", [width, height, layers]),
         ));
     }
-    let unusable =
-        |layout| matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED);
-    if resource.owner == Owner::Input && unusable(arg.before.layout) {
+    if resource.owner == Owner::Input && is_without_contents(arg.before.layout) {
         return Err(Error::setting(
             format!("{name}: layout"),
             format!("{:?}", arg.before.layout),
             "a layout with contents",
         ));
     }
-    if resource.owner == Owner::Output && unusable(arg.after.layout) {
+    if resource.owner == Owner::Output && is_without_contents(arg.after.layout) {
         return Err(Error::setting(
             format!("{name}: layout after"),
             format!("{:?}", arg.after.layout),

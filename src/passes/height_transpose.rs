@@ -1,5 +1,5 @@
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Axis, Builder, ResourceId};
+use crate::plan::{Axis, Builder, Reach, Rectangle, ResourceId};
 use crate::scene::Border;
 
 #[repr(C)]
@@ -7,9 +7,16 @@ use crate::scene::Border;
 struct HeightTransposePush {
     lanes: i32,
     steps: i32,
+    rectangle: [i32; 4],
 }
 
-same_layout!(HeightTransposePush, height_transpose_push, lanes = LANES, steps = STEPS);
+same_layout!(
+    HeightTransposePush,
+    height_transpose_push,
+    lanes = LANES,
+    steps = STEPS,
+    rectangle = FIRST_COL,
+);
 
 /// Heights laid out for one axis, four lanes a texel.
 pub(crate) fn plan(
@@ -20,15 +27,20 @@ pub(crate) fn plan(
     lane_heights: ResourceId,
 ) {
     let quads = axis.lanes.div_ceil(4);
-    builder.pass(
+    let pass = builder.pass(
         &shaders::HEIGHT_TRANSPOSE,
         axis.name(),
         "four neighbouring lanes are read at once",
         [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
         &[(0, u32::from(axis.marches_rows)), (1, u32::from(border == Border::Periodic))],
-        &HeightTransposePush { lanes: axis.lanes as i32, steps: axis.steps as i32 },
+        &HeightTransposePush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            rectangle: Rectangle::whole(axis.size()).words(),
+        },
         &[("heights", heights), ("lane_heights", lane_heights)],
         8 * axis.samples(),
         axis.samples(),
     );
+    pass.reach = Some(Reach::Quads(axis));
 }

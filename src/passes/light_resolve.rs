@@ -1,3 +1,4 @@
+use super::dirty_list;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
 
@@ -32,6 +33,8 @@ pub(crate) struct Light {
     pub radiance: Option<(ResourceId, bool)>,
     pub layer: Option<ResourceId>,
     pub grey: bool,
+    /// Marks of the samples that an edit reaches, and their list, where only they are resolved.
+    pub edited: Option<[ResourceId; 2]>,
 }
 
 /// Adds one light to the picture, and writes its own layer where asked.
@@ -42,10 +45,13 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
         light.radiance.map(|r| (if light.grey { "radiance_grey" } else { "radiance" }, r.0)),
     );
     bound.extend(light.layer.map(|l| (if light.grey { "layer_grey" } else { "layer" }, l)));
+    if let Some([dirty, list]) = light.edited {
+        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+    }
     let samples = u64::from(cols) * u64::from(rows);
     let texel = if light.grey { 4 } else { 16 };
     let written = u64::from(light.radiance.is_some()) * 2 + u64::from(light.layer.is_some());
-    builder.pass(
+    let pass = builder.pass(
         &shaders::LIGHT_RESOLVE,
         part,
         "the light's sum, coloured, into the picture",
@@ -56,6 +62,7 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
             (2, u32::from(light.radiance.is_some())),
             (3, u32::from(light.layer.is_some())),
             (4, u32::from(light.grey)),
+            (5, u32::from(light.edited.is_some())),
         ],
         &LightResolvePush {
             cols: cols as i32,
@@ -68,4 +75,5 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
         samples * (if light.has_colour { 16 } else { 4 } + written * texel),
         samples,
     );
+    pass.indirect = light.edited.map(|[_, list]| (list, dirty_list::RESOLVE_GROUPS_AT));
 }

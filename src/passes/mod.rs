@@ -1,10 +1,13 @@
 //! One file a pass: what it binds, how large it is, and why it is there; `push` has what
 //! several push alike.
 
+pub(crate) mod dirty_list;
+pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
 pub(crate) mod env_wedges;
 pub(crate) mod height_transpose;
 pub(crate) mod horizon_march;
+pub(crate) mod horizon_resweep;
 pub(crate) mod horizon_sweep;
 pub(crate) mod light_resolve;
 mod push;

@@ -1,3 +1,4 @@
+use super::dirty_list;
 use super::push::ShadePush;
 use crate::gpu::shaders;
 use crate::plan::sweep::Sweep;
@@ -12,6 +13,8 @@ pub(crate) struct Images {
     pub sky_sum: Option<ResourceId>,
     /// The sum, and the tables it is made of.
     pub environment: Option<[ResourceId; 2]>,
+    /// Marks of the samples that an edit reaches, and their list, where only they are lit.
+    pub edited: Option<[ResourceId; 2]>,
 }
 
 /// Light of a uniform sky and of an environment through the horizons of a batch.
@@ -31,9 +34,12 @@ pub(crate) fn plan(
     if let Some([sum, tables]) = images.environment {
         bound.extend([("env_sum", sum), ("env_tables", tables)]);
     }
+    if let Some([dirty, list]) = images.edited {
+        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+    }
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 };
-    builder.pass(
+    let pass = builder.pass(
         &shaders::SKY_SHADE,
         part,
         match (images.sky_sum, images.environment) {
@@ -50,10 +56,12 @@ pub(crate) fn plan(
             (4, u32::from(images.sky_sum.is_some())),
             (5, u32::from(images.environment.is_some())),
             (6, u32::from(axis.marches_rows)),
+            (7, u32::from(images.edited.is_some())),
         ],
         &ShadePush::of(batch, cell_m),
         &bound,
         axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );
+    pass.indirect = images.edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));
 }

@@ -1,3 +1,4 @@
+use super::dirty_list;
 use super::push::ShadePush;
 use crate::gpu::shaders;
 use crate::plan::sweep::Sweep;
@@ -16,12 +17,16 @@ pub(crate) fn plan(
     is_point: bool,
     lattice: Option<ResourceId>,
     [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
+    edited: Option<[ResourceId; 2]>,
 ) {
     let axis = batch.axis;
     let mut bound =
         vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
-    builder.pass(
+    if let Some([dirty, list]) = edited {
+        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+    }
+    let pass = builder.pass(
         &shaders::SUN_SHADE,
         part,
         if is_point {
@@ -37,10 +42,12 @@ pub(crate) fn plan(
             (3, border as u32),
             (4, u32::from(is_point)),
             (5, u32::from(axis.marches_rows)),
+            (6, u32::from(edited.is_some())),
         ],
         &ShadePush::of(batch, cell_m),
         &bound,
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );
+    pass.indirect = edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));
 }

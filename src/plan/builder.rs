@@ -10,11 +10,18 @@ use crate::{Error, Result};
 pub(crate) struct Builder {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
+    /// Of an edit; none until [`edits`](Self::edits).
+    edit_passes: Option<Vec<Pass>>,
 }
 
 impl Builder {
     pub(super) fn new() -> Self {
-        Self { resources: Vec::new(), passes: Vec::new() }
+        Self { resources: Vec::new(), passes: Vec::new(), edit_passes: None }
+    }
+
+    /// From here on, passes are those of an edit.
+    pub(super) fn begin_edits(&mut self) {
+        self.edit_passes = Some(Vec::new());
     }
 
     pub(super) fn image(
@@ -55,7 +62,7 @@ impl Builder {
         bound: &[(&str, ResourceId)],
         bytes: u64,
         samples: u64,
-    ) {
+    ) -> &mut Pass {
         let push = bytemuck::bytes_of(push).to_vec();
         assert_eq!(push.len(), shader.push_bytes as usize, "{}: push constants", shader.name);
         for (name, id) in bound {
@@ -75,7 +82,8 @@ impl Builder {
             .iter()
             .map(|b| bound.iter().find(|(name, _)| b.name == *name).map(|(_, id)| *id))
             .collect();
-        self.passes.push(Pass {
+        let passes = self.edit_passes.as_mut().unwrap_or(&mut self.passes);
+        passes.push(Pass {
             shader,
             part: part.to_owned(),
             why: why.into(),
@@ -85,8 +93,11 @@ impl Builder {
             bindings,
             bytes,
             samples,
+            reach: None,
+            indirect: None,
             barrier_before: false,
         });
+        passes.last_mut().expect("pushed above")
     }
 
     pub(super) fn bytes(&self) -> u64 {
@@ -121,9 +132,20 @@ impl Plan {
         settings: Vec<(String, String)>,
         limits: &Limits,
     ) -> Result<Plan> {
-        let Builder { resources, mut passes } = builder;
+        let Builder { resources, mut passes, edit_passes } = builder;
+        let mut edit_passes = edit_passes.unwrap_or_default();
         place_barriers(&mut passes);
-        let plan = Plan { size, resources, passes, azimuths, layer_azimuths, notes, settings };
+        place_barriers(&mut edit_passes);
+        let plan = Plan {
+            size,
+            resources,
+            passes,
+            edit_passes,
+            azimuths,
+            layer_azimuths,
+            notes,
+            settings,
+        };
         if plan.bytes() > limits.memory_budget {
             return Err(Error::Limit {
                 what: "images and buffers of this picture".into(),

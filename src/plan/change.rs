@@ -32,7 +32,8 @@ impl Plan {
         let same = |(a, b): (&Pass, &Pass)| {
             a.name() == b.name() && a.constants == b.constants && a.bindings == b.bindings
         };
-        self.passes.len() == before.passes.len() && self.passes.iter().zip(&before.passes).all(same)
+        let alike = |a: &[Pass], b: &[Pass]| a.len() == b.len() && a.iter().zip(b).all(same);
+        alike(&self.passes, &before.passes) && alike(&self.edit_passes, &before.edit_passes)
     }
 
     /// Whether pass `i` must run because of those that do.

@@ -5,6 +5,7 @@ pub mod azimuths;
 mod batch;
 mod builder;
 mod change;
+mod edit;
 mod horizons;
 mod limits;
 mod pass;
@@ -18,6 +19,7 @@ mod sweeping;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use builder::Builder;
+pub use edit::{Reach, Rectangle};
 pub use horizons::horizons;
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
@@ -34,6 +36,9 @@ pub struct Plan {
     pub resources: Vec<Resource>,
     /// Dispatches, in order.
     pub passes: Vec<Pass>,
+    /// Dispatches, in order, that follow an edit of a rectangle of heights, with the barriers among
+    /// them; none where edits need all passes ([`Picture::keeps_horizons`]).
+    pub edit_passes: Vec<Pass>,
     /// Contents of the buffer "azimuths".
     pub azimuths: Vec<Azimuth>,
     /// For horizons: which azimuth k of the circle each layer of the outputs is.
@@ -53,6 +58,11 @@ impl Plan {
     /// Bytes of everything, inputs and outputs too: what counts against the memory budget.
     pub fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
+    }
+
+    /// Passes of a whole recording, then those of an edit.
+    pub(crate) fn every_pass(&self) -> impl Iterator<Item = &Pass> {
+        self.passes.iter().chain(&self.edit_passes)
     }
 
     /// The resource of this name.

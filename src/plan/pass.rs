@@ -1,3 +1,4 @@
+use super::Reach;
 use crate::gpu::shaders::Shader;
 
 /// A resource of a plan, by position in [`Plan::resources`](super::Plan::resources).
@@ -26,6 +27,10 @@ pub struct Pass {
     pub bytes: u64,
     /// Samples (or texels) it works on, for rates.
     pub samples: u64,
+    /// What of it an edit asks for, where it is told the edited rectangle.
+    pub reach: Option<Reach>,
+    /// The buffer, and the byte in it, that has its workgroups when it runs; `groups` are the most.
+    pub indirect: Option<(ResourceId, u64)>,
     /// Whether a barrier between compute and compute stands before it.
     pub barrier_before: bool,
 }

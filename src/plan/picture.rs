@@ -17,6 +17,9 @@ pub struct Picture {
     pub sky_view: bool,
     /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
     /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
+    ///
+    /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
+    /// then also take edits ([`Plan::edit_passes`]). Memory: a quarter of a byte a sample.
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
@@ -62,17 +65,29 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if tables.is_none() && shining.sky.is_some() {
         notes.push("no environment: no table".into());
     }
-    let held = (limits, wanted.keeps_horizons);
+    let keeps = wanted.keeps_horizons;
+    let takes_edits = keeps && !wanted.still && sweep.editable(surface.border).is_some();
+    let edits = takes_edits.then(|| Edits::make(&mut builder, size));
+    let held = (limits, keeps);
     let (sweeping, lists) =
         prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
-    let mut drawing =
-        Drawing { builder, scene, shining, images, tables, sweeping, is_begun: false };
+    let mut drawing = Drawing {
+        builder,
+        scene,
+        shining,
+        images,
+        tables,
+        sweeping,
+        edited: None,
+        is_begun: false,
+    };
     drawing.fill_tables(quality);
-    drawing.sky_and_environment(&lists);
-    drawing.suns(&lists);
-    drawing.sky_view();
-    drawing.dark()?;
+    drawing.light(&lists)?;
+    if let Some(edits) = edits {
+        drawing.edit(size, &lists, edits);
+        drawing.light(&lists)?;
+    }
     Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
 }
 
@@ -177,6 +192,23 @@ impl Tables {
     }
 }
 
+/// What edits keep: marks of the samples that they reach, and the list of those.
+#[derive(Clone, Copy)]
+struct Edits {
+    dirty: ResourceId,
+    list: ResourceId,
+}
+
+impl Edits {
+    fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
+        let [across, down] = passes::dirty_mark::words(size).map(u64::from);
+        Self {
+            dirty: builder.buffer("dirty_samples", 4 * across * down, false),
+            list: builder.buffer("edit_list", passes::dirty_list::bytes(size), false),
+        }
+    }
+}
+
 /// A picture while its passes are added.
 struct Drawing<'a> {
     builder: Builder,
@@ -185,6 +217,8 @@ struct Drawing<'a> {
     images: Images,
     tables: Option<Tables>,
     sweeping: Sweeping,
+    /// Marks of the samples to be lit and their list, while passes of an edit are added.
+    edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
     is_begun: bool,
 }
@@ -210,6 +244,27 @@ impl Drawing<'_> {
         passes::env_tables::plan(&mut self.builder, seen, nodes, count, ids);
     }
 
+    /// Passes from the field to the lit picture; of an edit, from its lattices.
+    fn light(&mut self, lists: &Lists) -> Result<()> {
+        self.is_begun = false;
+        self.sky_and_environment(lists);
+        self.suns(lists);
+        self.sky_view();
+        self.dark()
+    }
+
+    /// From here on passes are those of an edit: first all horizons, as every batch lights the same
+    /// samples.
+    fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
+        self.builder.begin_edits();
+        let (border, ids) = (self.border(), [dirty, list]);
+        self.edited = Some(ids);
+        passes::dirty_mark::plan(&mut self.builder, size, ids);
+        let batches = lists.batches.iter().flatten();
+        self.sweeping.record_edit(&mut self.builder, border, batches, ids);
+        passes::dirty_list::plan(&mut self.builder, size, ids);
+    }
+
     fn sky_and_environment(&mut self, lists: &Lists) {
         if !self.images.need_circle() {
             return;
@@ -220,13 +275,16 @@ impl Drawing<'_> {
         for batch in batches {
             let part = part("sky", batch, batches);
             let (builder, sweeping) = (&mut self.builder, &self.sweeping);
-            sweeping.record(builder, batch, &part);
+            if self.edited.is_none() {
+                sweeping.record(builder, batch, &part);
+            }
             let images = passes::sky_shade::Images {
                 lane_heights: sweeping.lane_heights(batch),
                 lattice: sweeping.lattice(batch),
                 azimuths: sweeping.azimuths,
                 sky_sum,
                 environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
+                edited: self.edited,
             };
             let sweep = &sweeping.sweep;
             passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
@@ -250,13 +308,24 @@ impl Drawing<'_> {
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
-                sweeping.record(builder, batch, &part);
+                if self.edited.is_none() {
+                    sweeping.record(builder, batch, &part);
+                }
                 let lanes = sweeping.lane_heights(batch);
                 let ids = [lanes, sweeping.azimuths, sum];
                 let lattice = sweeping.lattice(batch);
                 let sweep = &sweeping.sweep;
                 passes::sun_shade::plan(
-                    builder, sweep, border, cell_m, batch, &part, is_point, lattice, ids,
+                    builder,
+                    sweep,
+                    border,
+                    cell_m,
+                    batch,
+                    &part,
+                    is_point,
+                    lattice,
+                    ids,
+                    self.edited,
                 );
             }
             self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);
@@ -285,6 +354,7 @@ impl Drawing<'_> {
             radiance: Some((self.images.radiance, is_first)),
             layer,
             grey: self.shining.is_grey,
+            edited: self.edited,
         };
         self.light_resolve(name, &light);
     }
@@ -304,6 +374,7 @@ impl Drawing<'_> {
                 radiance: None,
                 layer: Some(layer),
                 grey: true,
+                edited: self.edited,
             };
             self.light_resolve("sky_view", &light);
         }

@@ -11,7 +11,10 @@ impl fmt::Display for Plan {
             writeln!(f, "  {name} {value}")?;
         }
         writeln!(f, "\n{:<34} {:>18} {:>11}  why", "pass", "groups", "traffic")?;
-        for pass in &self.passes {
+        for (i, pass) in self.every_pass().enumerate() {
+            if i == self.passes.len() {
+                writeln!(f, "after an edit, at most:")?;
+            }
             let groups = format!("{} × {} × {}", pass.groups[0], pass.groups[1], pass.groups[2]);
             let mark = if pass.barrier_before { "| " } else { "  " };
             writeln!(

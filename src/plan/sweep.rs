@@ -178,6 +178,15 @@ impl Sweep {
         }))
     }
 
+    /// The lines of a sweep whose occluders an edit can go on from: stored, and in lines that begin
+    /// at an edge.
+    pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
+        match self {
+            Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
+            _ => None,
+        }
+    }
+
     /// Whether a sample's own first crossings are among its candidates.
     pub(crate) fn sees_own_crossings(&self) -> bool {
         matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest))

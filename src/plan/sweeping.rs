@@ -47,6 +47,34 @@ impl Sweeping {
         self.lattice(batch).expect("a sweep stores something")
     }
 
+    /// Passes that bring heights by lanes and lattices up to an edit, and mark what it reaches.
+    pub fn record_edit<'a>(
+        &self,
+        builder: &mut Builder,
+        border: Border,
+        batches: impl Iterator<Item = &'a Batch> + Clone,
+        [dirty, list]: [ResourceId; 2],
+    ) {
+        for (marches_rows, lanes) in [false, true].into_iter().zip(self.lane_heights) {
+            let axis = batches.clone().map(|b| b.axis).find(|a| a.marches_rows == marches_rows);
+            if let (Some(axis), Some(lanes)) = (axis, lanes) {
+                passes::height_transpose::plan(builder, axis, border, self.heights, lanes);
+            }
+        }
+        let Some(sweep) = self.sweep.editable(border) else { return };
+        for batch in batches {
+            let images = passes::horizon_resweep::Images {
+                heights: self.heights,
+                azimuths: self.azimuths,
+                occluders: self.lattice_of(batch).occluders.expect("edits go on from occluders"),
+                dirty,
+                list,
+            };
+            let part = format!("{}+{}", batch.first, batch.count);
+            passes::horizon_resweep::plan(builder, sweep, batch, &part, &images);
+        }
+    }
+
     pub fn record(&self, builder: &mut Builder, batch: &Batch, part: &str) {
         let lattice = self.lattice_of(batch);
         match &self.sweep {

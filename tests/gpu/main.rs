@@ -4,6 +4,7 @@
 mod analytic;
 mod change;
 mod contract;
+mod edits;
 mod embedding;
 mod extremes;
 mod forms;

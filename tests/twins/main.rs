@@ -3,6 +3,7 @@
 mod fuse;
 mod light;
 mod march;
+mod resweep;
 mod surface;
 mod sweep;
 

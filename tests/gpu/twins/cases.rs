@@ -197,7 +197,12 @@ pub(super) fn pictures() -> Vec<Case> {
         name,
         scene,
         quality,
-        wanted: Wanted::Picture(Picture { light_layers, sky_view, ..Picture::default() }),
+        wanted: Wanted::Picture(Picture {
+            light_layers,
+            sky_view,
+            keeps_horizons: true,
+            ..Picture::default()
+        }),
         loses_lines: false,
     };
     vec![

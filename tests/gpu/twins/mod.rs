@@ -2,6 +2,7 @@
 //! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
 mod cases;
+mod edit;
 mod light;
 mod sweep;
 
@@ -50,7 +51,10 @@ type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
 
 /// The twin of every pass, by name.
 const TWINS: &[(&str, Twin)] = &[
+    ("dirty_list", edit::dirty_list),
+    ("dirty_mark", edit::dirty_mark),
     ("height_transpose", sweep::height_transpose),
+    ("horizon_resweep", edit::horizon_resweep),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
@@ -61,6 +65,11 @@ const TWINS: &[(&str, Twin)] = &[
     ("sun_shade", light::sun_shade),
     ("light_resolve", light::light_resolve),
 ];
+
+fn twin_of(pass: &Pass) -> Twin {
+    let twin = TWINS.iter().find(|t| t.0 == pass.name());
+    twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name())).1
+}
 
 /// A plan run pass by pass, and what its passes have left so far.
 struct Run<'a> {
@@ -77,6 +86,7 @@ struct Run<'a> {
     lights: usize,
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
+    edit: Option<edit::Edit>,
 }
 
 impl<'a> Run<'a> {
@@ -95,6 +105,7 @@ impl<'a> Run<'a> {
             radiance: Vec::new(),
             lights: 0,
             lost: 0,
+            edit: None,
             plan,
         }
     }
@@ -105,9 +116,16 @@ impl<'a> Run<'a> {
         let mut all = Vec::new();
         for (i, pass) in passes.iter().enumerate() {
             self.gpu.draw_passes(&mut self.frame, &[i]).expect("drawn");
-            let twin = TWINS.iter().find(|t| t.0 == pass.name());
-            let (_, twin) = twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name()));
-            all.push((pass.label(), twin(self, pass)));
+            all.push((pass.label(), twin_of(pass)(self, pass)));
+        }
+        if !self.plan.edit_passes.is_empty() {
+            self.edit = Some(edit::draw(self));
+            let finds_horizons =
+                ["dirty_mark", "height_transpose", "horizon_resweep", "dirty_list"];
+            let passes = self.plan.edit_passes.clone();
+            for pass in passes.iter().filter(|p| finds_horizons.contains(&p.name())) {
+                all.push((format!("edit: {}", pass.label()), twin_of(pass)(self, pass)));
+            }
         }
         all
     }
@@ -240,7 +258,8 @@ fn every_shader_has_a_twin_and_a_case() {
         [cases::sweeps(), cases::samples(), cases::pictures()].into_iter().flatten().collect();
     let planned: Vec<&str> = cases
         .iter()
-        .flat_map(|case| case.plan(&Limits::lavapipe()).passes)
+        .map(|case| case.plan(&Limits::lavapipe()))
+        .flat_map(|plan| plan.passes.into_iter().chain(plan.edit_passes))
         .map(|pass| pass.name())
         .collect();
     for shader in shaders::ALL {

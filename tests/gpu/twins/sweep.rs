@@ -44,7 +44,7 @@ pub(super) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// A lattice of lines as the device stores it: [layer][step][line], 32 lines a layer.
-struct Stored {
+pub(super) struct Stored {
     words: Vec<u32>,
     height: usize,
     /// Words of four lines: 4 of f32, 2 of halves.
@@ -52,7 +52,7 @@ struct Stored {
 }
 
 impl Stored {
-    fn bits(&self, layer: u32, line: i32, step: i32) -> u32 {
+    pub(super) fn bits(&self, layer: u32, line: i32, step: i32) -> u32 {
         let line = line as usize;
         let layer = layer as usize + line / 32;
         let texel = (layer * self.height + step as usize) * 8 + line % 32 / 4;
@@ -63,7 +63,7 @@ impl Stored {
     }
 }
 
-fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) -> Option<Stored> {
+pub(super) fn stored(run: &mut Run, pass: &Pass, binding: &str, texel: usize) -> Option<Stored> {
     let words = run.words(pass, binding)?;
     Some(Stored { words, height: run.extent(pass, binding)[1], texel })
 }

@@ -1,0 +1,142 @@
+//! Measures what an edit of a square brush costs against a whole recompute, and that both leave the
+//! same bits: a uniform sky in 32 azimuths over a fractal field.
+//!
+//! `cargo run --release --example edits -- [SIDE [BRUSH [EDITS [SEED]]]]`: samples a side of the field
+//! (4096), of the brush (64), how many edits at random places (10), and the generator's seed (1).
+
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Timing};
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
+use ridgelight::scene::{Lights, Quality, Scene, Surface};
+use ridgelight::{Error, Result};
+
+const AZIMUTHS: u32 = 32;
+/// Lattices of 32 azimuths of 4096² samples take 1.6 GiB.
+const MEMORY_BUDGET: u64 = 4 << 30;
+
+fn ms(times: &[Timing], name: &str) -> f64 {
+    let named = times.iter().filter(|t| t.label.starts_with(name));
+    named.map(|t| t.ns).sum::<f64>() / 1e6
+}
+
+/// Words of a buffer of the plan's.
+fn words(gpu: &mut Headless, frame: &Frame, name: &str) -> Result<Vec<u32>> {
+    let id = frame.plan().find(name).expect("a plan with edits has it");
+    gpu.read(frame, id)
+}
+
+fn pixels(gpu: &mut Headless, frame: &Frame) -> Result<Vec<u32>> {
+    Ok(gpu.pixels(frame, 0)?.values.into_iter().map(f32::to_bits).collect())
+}
+
+/// A round hill of half the brush's height, or a pit.
+fn brush(heights: &mut [f32], side: usize, at: Rectangle, sign: f32) {
+    let middle = (at.cols as f32 - 1.0) / 2.0;
+    for r in 0..at.rows {
+        for c in 0..at.cols {
+            let (x, y) = (c as f32 - middle, r as f32 - middle);
+            let rise = (1.0 - (x * x + y * y) / (middle * middle + 1.0)).max(0.0);
+            let i = (at.row + r) as usize * side + (at.col + c) as usize;
+            heights[i] += sign * 0.5 * at.cols as f32 * rise * rise;
+        }
+    }
+}
+
+struct Asked {
+    side: usize,
+    brush: usize,
+    edits: usize,
+    seed: u64,
+}
+
+fn asked() -> Result<Asked> {
+    let mut values = [4096, 64, 10, 1];
+    for (value, text) in values.iter_mut().zip(std::env::args().skip(1)) {
+        *value = text.parse().map_err(|_| Error::setting("edits", &text, "a whole number"))?;
+    }
+    let [side, brush, edits, seed] = values;
+    if brush == 0 || brush > side {
+        return Err(Error::setting("BRUSH", brush.to_string(), format!("1 to {side}")));
+    }
+    Ok(Asked { side, brush, edits, seed: seed as u64 })
+}
+
+fn planned(gpu: &Headless, side: usize, seed: u64) -> Result<(Scene, Plan)> {
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field: fractal(side, seed)?, surface: Surface::default(), lights };
+    let quality = Quality { azimuths: AZIMUTHS, ..Quality::default() };
+    let limits = Limits { memory_budget: MEMORY_BUDGET, ..gpu.report().limits };
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let plan = plan::picture(&scene, &quality, &limits, wanted)?;
+    Ok((scene, plan))
+}
+
+fn run() -> Result<()> {
+    let Asked { side, brush: width, edits, seed } = asked()?;
+    let mut gpu = Headless::new(&HeadlessOptions::default())?;
+    let (scene, plan) = planned(&gpu, side, seed)?;
+    let all = f64::from(AZIMUTHS) * (side * side) as f64;
+    println!("{}: {side}², {width}² brush, {AZIMUTHS} azimuths", gpu.report().name);
+    println!("memory: {:.1} MiB", plan.bytes() as f64 / 1_048_576.0);
+    let mut frame = gpu.frame(plan, &[scene.field.heights_m()])?;
+    gpu.draw(&mut frame)?;
+    // Drivers compile when a pass first runs: an edit of nothing new.
+    gpu.draw_edit(&mut frame, Rectangle { col: 0, row: 0, cols: 1, rows: 1 })?;
+    let mut heights = scene.field.heights_m().to_vec();
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut place = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 11) as usize % (side - width + 1)) as u32
+    };
+    println!("edit (row, column): samples swept, of all; samples lit; ms: sweep, light; whole");
+    let mut swept_of_all = 0.0;
+    for i in 0..edits {
+        let n = width as u32;
+        let at = Rectangle { col: place(), row: place(), cols: n, rows: n };
+        brush(&mut heights, side, at, if i % 2 == 0 { 1.0 } else { -1.0 });
+        gpu.refill(&frame, 0, &heights)?;
+        let times = gpu.draw_edit(&mut frame, at)?;
+        let swept = 4.0
+            * f64::from(words(&mut gpu, &frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
+        let marks = words(&mut gpu, &frame, "dirty_samples")?;
+        let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
+        let lit = marked / (side * side) as f64;
+        let edited = pixels(&mut gpu, &frame)?;
+        let whole = gpu.draw(&mut frame)?;
+        if pixels(&mut gpu, &frame)? != edited {
+            return Err(Error::setting("an edit", format!("{at:?}"), "the bits of all"));
+        }
+        println!(
+            "({}, {}): {swept:.0}, 1/{:.0}; {:.2} %; {:.2}, {:.2}, all {:.2}; {:.1}: {:.1} ×",
+            at.row,
+            at.col,
+            all / swept,
+            100.0 * lit,
+            ms(&times, "horizon_resweep"),
+            ms(&times, "sky_shade"),
+            ms(&times, ""),
+            ms(&whole, ""),
+            ms(&whole, "") / ms(&times, ""),
+        );
+        swept_of_all += swept / all / edits as f64;
+    }
+    println!(
+        "mean: 1/{:.0} of all samples swept; every edit's bits are those of all",
+        1.0 / swept_of_all
+    );
+    gpu.end(frame);
+    Ok(())
+}
+
+fn main() -> std::process::ExitCode {
+    match run() {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}

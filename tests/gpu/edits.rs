@@ -1,0 +1,239 @@
+//! Edits of a rectangle, drawn from where they begin: the same bits as everything drawn again.
+
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
+use ridgelight::scene::{
+    Border, Environment, Fuse, HeightField, Lights, Lines, Method, Precision, Quality, Scene, Sun,
+    Surface,
+};
+
+use crate::{Device, field, random};
+
+fn scene(field: HeightField, border: Border) -> Scene {
+    let mut next = random(5);
+    let texels = (0..32 * 16).map(|_| [next() as f32, next() as f32, 4.0 * next() as f32]);
+    let environment = Environment::new(32, 16, texels.collect(), 0.3).expect("an environment");
+    let sun = |azimuth_rad, diameter_rad| Sun {
+        azimuth_rad,
+        elevation_rad: 0.4,
+        diameter_rad,
+        irradiance: [2.0, 1.5, 1.0],
+    };
+    let lights = Lights {
+        sky: Some([1.0, 0.9, 0.8]),
+        environment: Some(environment),
+        suns: vec![sun(1.0, 0.05), sun(4.0, 0.0)],
+        ..Lights::default()
+    };
+    Scene { field, surface: Surface { border, ..Surface::default() }, lights }
+}
+
+fn rough(rows: usize, cols: usize, cell_m: [f64; 2]) -> HeightField {
+    let all = fractal(rows.max(cols).next_power_of_two(), 3).expect("a field");
+    let (side, heights) = (all.cols(), all.heights_m());
+    field(rows, cols, cell_m, |r, c| heights[r * side + c].into())
+}
+
+/// Every sample stays on the hull of a line across it: more than a sweep keeps in private memory.
+fn dome(rows: usize, cols: usize) -> HeightField {
+    let middle = (rows.max(cols) as f64 - 1.0) / 2.0;
+    field(rows, cols, [1.0, 1.0], |r, c| {
+        let (x, y) = ((c as f64 - middle) / middle, (r as f64 - middle) / middle);
+        (2.5 - x * x - y * y).sqrt() * middle
+    })
+}
+
+/// Few heights: everything ties.
+fn plateaus(rows: usize, cols: usize) -> HeightField {
+    field(rows, cols, [3.0, 2.0], |r, c| ((r / 9 * 5 + c / 7 * 3) % 4) as f64)
+}
+
+fn planned(gpu: &Headless, scene: &Scene, quality: &Quality, keeps_horizons: bool) -> Plan {
+    let wanted = Picture { keeps_horizons, light_layers: true, sky_view: true, still: false };
+    plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
+}
+
+fn made(gpu: &mut Headless, scene: &Scene, plan: Plan) -> Frame {
+    let environment = scene.lights.environment.as_ref().expect("one");
+    let texels: Vec<f32> =
+        environment.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+    let mut frame = gpu.frame(plan, &[scene.field.heights_m(), &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    frame
+}
+
+/// Every output's bits.
+fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
+    let count = frame.plan().outputs().count();
+    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
+    all.flatten().map(f32::to_bits).collect()
+}
+
+/// A rectangle of any size, often at an edge or in a corner, sometimes one sample or all.
+fn any_rectangle(next: &mut impl FnMut() -> f64, [cols, rows]: [usize; 2]) -> Rectangle {
+    let mut side = |all: usize| {
+        let count = match (next() * 6.0) as usize {
+            0 => 1,
+            1 => all,
+            _ => 1 + (next().powi(3) * all as f64) as usize,
+        };
+        let free = all - count.min(all);
+        let first = match (next() * 4.0) as usize {
+            0 => 0,
+            1 => free,
+            _ => (next() * (free + 1) as f64) as usize,
+        };
+        (first as u32, count.min(all) as u32)
+    };
+    let ((col, cols), (row, rows)) = (side(cols), side(rows));
+    Rectangle { col, row, cols, rows }
+}
+
+/// Raises, lowers, levels or roughens.
+fn change(
+    heights: &mut [f32],
+    width: usize,
+    rectangle: Rectangle,
+    relief: f32,
+    next: &mut impl FnMut() -> f64,
+) {
+    let kind = (next() * 5.0) as usize;
+    let by = relief * (next() as f32 - 0.5);
+    let Rectangle { col, row, cols, rows } = rectangle;
+    for r in row..row + rows {
+        for c in col..col + cols {
+            let h = &mut heights[r as usize * width + c as usize];
+            *h = match kind {
+                0 | 1 => *h + by,
+                2 => by,
+                3 => *h + 0.1 * relief * next() as f32,
+                _ => (*h * 0.5).floor(),
+            };
+        }
+    }
+}
+
+/// Draws edits one after the other; then every field they made from nothing: outputs must have equal
+/// bits.
+fn edits(device: &mut Device, scene: &Scene, quality: &Quality, count: usize, seed: u64) {
+    let gpu = device.gpu.as_mut().expect("alive");
+    let plan = planned(gpu, scene, quality, true);
+    assert_eq!(missing_barriers(&plan.edit_passes), []);
+    assert!(!plan.edit_passes.is_empty());
+    let mut frame = made(gpu, scene, plan);
+    let mut heights = scene.field.heights_m().to_vec();
+    let (low, high) = heights.iter().fold((f32::MAX, f32::MIN), |m, h| (m.0.min(*h), m.1.max(*h)));
+    let size = [scene.field.cols(), scene.field.rows()];
+    let mut next = random(seed);
+    let mut found = Vec::new();
+    for _ in 0..count {
+        let rectangle = any_rectangle(&mut next, size);
+        change(&mut heights, size[0], rectangle, (high - low).max(8.0), &mut next);
+        gpu.refill(&frame, 0, &heights).expect("refilled");
+        gpu.draw_edit(&mut frame, rectangle).expect("drawn");
+        found.push((rectangle, heights.clone(), bits(gpu, &frame)));
+    }
+    for (i, (rectangle, heights, got)) in found.iter().enumerate() {
+        gpu.refill(&frame, 0, heights).expect("refilled");
+        gpu.draw(&mut frame).expect("drawn");
+        let want = bits(gpu, &frame);
+        let differing = got.iter().zip(&want).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "edit {i}, {rectangle:?}, {size:?}, {quality:?}");
+    }
+    gpu.end(frame);
+}
+
+/// Eight edits a case, or RIDGELIGHT_EDITS.
+#[test]
+fn edits_give_the_bits_of_all() {
+    let mut device = Device::new();
+    let base =
+        Quality { azimuths: 12, sun_azimuths: 3, table_elevations: 16, ..Quality::default() };
+    let (plane, open) = (Border::Plane, Border::Open);
+    let cases = [
+        (rough(70, 90, [30.0, 20.0]), plane, base),
+        (dome(150, 140), plane, Quality { fuse: Fuse::Aimed, ..base }),
+        (plateaus(61, 50), open, Quality { fuse: Fuse::Own, lines: Lines::HalfCell, ..base }),
+        (rough(50, 83, [1.0, 3.0]), open, Quality { lines: Lines::TwoCells, ..base }),
+        (rough(33, 9, [2.0, 2.0]), plane, Quality { precision: Precision::Packed, ..base }),
+    ];
+    let asked = std::env::var("RIDGELIGHT_EDITS").ok();
+    let count = asked.map_or(8, |n| n.parse().expect("RIDGELIGHT_EDITS is a whole number"));
+    for (i, (field, border, quality)) in cases.into_iter().enumerate() {
+        let scene = scene(field, border);
+        edits(&mut device, &scene, &quality, count, i as u64);
+    }
+}
+
+/// The comparison is not deaf: an edit that is told one row or column too few leaves other bits.
+#[test]
+fn an_edit_told_too_small_a_rectangle_is_seen() {
+    let mut device = Device::new();
+    let quality = Quality { azimuths: 8, table_elevations: 16, ..Quality::default() };
+    let scene = scene(rough(40, 40, [2.0, 2.0]), Border::Plane);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let plan = planned(gpu, &scene, &quality, true);
+    let mut frame = made(gpu, &scene, plan);
+    let told = Rectangle { col: 9, row: 9, cols: 10, rows: 10 };
+    for (wide, high) in [(10, 10), (11, 10), (10, 11)] {
+        let mut heights = scene.field.heights_m().to_vec();
+        (9..9 + high)
+            .for_each(|r| heights[r * 40 + 9..][..wide].iter_mut().for_each(|h| *h += 9.0));
+        gpu.refill(&frame, 0, scene.field.heights_m()).expect("refilled");
+        gpu.draw(&mut frame).expect("drawn");
+        gpu.refill(&frame, 0, &heights).expect("refilled");
+        gpu.draw_edit(&mut frame, told).expect("drawn");
+        let edited = bits(gpu, &frame);
+        gpu.draw(&mut frame).expect("drawn");
+        assert_eq!(edited == bits(gpu, &frame), (wide, high) == (10, 10), "{wide} × {high}");
+    }
+    gpu.end(frame);
+}
+
+#[test]
+fn edits_that_cannot_be_are_refused() {
+    let mut device = Device::new();
+    let quality = Quality { azimuths: 8, table_elevations: 16, ..Quality::default() };
+    let scene = scene(rough(24, 20, [1.0, 1.0]), Border::Plane);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let all = Rectangle { col: 0, row: 0, cols: 20, rows: 24 };
+    let plan = planned(gpu, &scene, &quality, true);
+    let mut frame = made(gpu, &scene, plan.clone());
+    let before = bits(gpu, &frame);
+    for beyond in [
+        Rectangle { cols: 21, ..all },
+        Rectangle { row: 1, ..all },
+        Rectangle { cols: 0, ..all },
+        Rectangle { col: u32::MAX, ..all },
+    ] {
+        let error = gpu.draw_edit(&mut frame, beyond).expect_err("not within the field");
+        assert!(error.to_string().contains("within 20 × 24"), "{error}");
+    }
+    assert!(bits(gpu, &frame) == before, "after an error nothing has been recorded");
+    gpu.draw_edit(&mut frame, all).expect("drawn");
+    assert!(bits(gpu, &frame) == before, "nothing was edited");
+    gpu.end(frame);
+
+    let undrawn = gpu.frame(plan, &[scene.field.heights_m(), &[0.5; 32 * 16 * 4]]);
+    let mut undrawn = undrawn.expect("a frame");
+    let error = gpu.draw_edit(&mut undrawn, all).expect_err("nothing to go on from");
+    assert!(error.to_string().contains("recording of all passes"), "{error}");
+    gpu.end(undrawn);
+
+    // Horizons not kept; slopes instead of occluders; lines without a beginning; no lines.
+    let periodic = Scene {
+        surface: Surface { border: Border::Periodic, ..Surface::default() },
+        ..scene.clone()
+    };
+    for (scene, quality, keeps) in [
+        (&scene, quality, false),
+        (&scene, Quality { fuse: Fuse::Slopes, ..quality }, true),
+        (&periodic, quality, true),
+        (&scene, Quality { method: Method::Brute, ..quality }, true),
+    ] {
+        let plan = planned(gpu, scene, &quality, keeps);
+        let error = plan.check_edit(all).expect_err("no passes for edits");
+        assert!(error.to_string().contains("keeps_horizons"), "{error}");
+    }
+}
