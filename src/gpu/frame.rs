@@ -69,7 +69,7 @@ impl Headless {
         let inputs: Vec<Resource> = plan.inputs().map(|(_, r)| r.clone()).collect();
         let outputs: Vec<Resource> = plan.outputs().map(|(_, r)| r.clone()).collect();
         let mut frame = Frame {
-            renderer: Some(Renderer::new(self.host(), plan, 1)?),
+            renderer: Some(Renderer::sharing(self.host(), plan, 1, self.pipelines.clone())?),
             inputs: Vec::new(),
             outputs: Vec::new(),
         };

@@ -2,6 +2,7 @@ use ash::{ext, vk};
 
 use super::instance::{chosen, instance, load};
 use super::memory::Memory;
+use super::pipelines::Pipelines;
 use super::validation::{self, Listener, Messages};
 use super::{DeviceReport, Host, failed};
 use crate::Result;
@@ -25,6 +26,8 @@ pub struct Headless {
     pool: vk::CommandPool,
     report: DeviceReport,
     pub(super) memory: Memory,
+    /// Kept from frame to frame: making them is most of a small frame's time.
+    pub(super) pipelines: Pipelines,
 }
 
 /// A device with what [`missing`](super::missing) asks for, and the family of its one queue.
@@ -91,7 +94,8 @@ impl Headless {
         let debug_utils = listener.is_some().then(names);
         let host = Host { instance, physical_device, device, queue_family, debug_utils };
         let memory = Memory::new(&host)?;
-        Ok(Self { _entry: entry, listener, host, queue, pool, report, memory })
+        let pipelines = Pipelines::default();
+        Ok(Self { _entry: entry, listener, host, queue, pool, report, memory, pipelines })
     }
 
     /// What a renderer borrows.
@@ -148,6 +152,7 @@ impl Headless {
 impl Drop for Headless {
     fn drop(&mut self) {
         self.memory.end();
+        std::mem::take(&mut self.pipelines).end(&self.host);
         // SAFETY: every frame has been ended or leaks by its own word; the queue is idle (`run` waits).
         unsafe {
             self.host.device.destroy_command_pool(self.pool, None);

@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::vk;
 
@@ -15,11 +16,12 @@ pub(crate) struct Pipeline {
     pub set_layout: vk::DescriptorSetLayout,
 }
 
-/// Pipelines of a plan: one a shader and set of constants, shared by the passes that agree in both.
-pub(crate) struct Pipelines {
-    made: Vec<Pipeline>,
-    of_pass: Vec<usize>,
-}
+/// A shader's name and its constants.
+type Key = (&'static str, Vec<(u32, u32)>);
+
+/// Pipelines, one a shader and set of constants: of a renderer, or of all that share a clone of this.
+#[derive(Clone, Default)]
+pub(crate) struct Pipelines(Arc<Mutex<HashMap<Key, Pipeline>>>);
 
 pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
@@ -31,38 +33,36 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 }
 
 impl Pipelines {
-    pub fn new<'a>(host: &Host, passes: impl Iterator<Item = &'a Pass>) -> Result<Self> {
-        let mut all = Self { made: Vec::new(), of_pass: Vec::new() };
-        let mut known = HashMap::<_, usize>::new();
+    /// The pipeline of each pass; makes those that are not there yet.
+    pub fn of<'a>(
+        &self,
+        host: &Host,
+        passes: impl Iterator<Item = &'a Pass>,
+    ) -> Result<Vec<Pipeline>> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = Vec::new();
         for pass in passes {
-            let key = (pass.name(), pass.constants.as_slice());
-            let index = match known.get(&key) {
-                Some(&index) => index,
-                None => match make(host, pass.shader, &pass.constants) {
-                    Ok(pipeline) => {
-                        all.made.push(pipeline);
-                        known.insert(key, all.made.len() - 1);
-                        all.made.len() - 1
-                    }
-                    Err(error) => {
-                        all.destroy(host);
-                        return Err(error);
-                    }
-                },
+            let key = (pass.name(), pass.constants.clone());
+            let pipeline = match known.get(&key) {
+                Some(pipeline) => *pipeline,
+                None => {
+                    let made = make(host, pass.shader, &pass.constants)?;
+                    known.insert(key, made);
+                    made
+                }
             };
-            all.of_pass.push(index);
+            all.push(pipeline);
         }
         Ok(all)
     }
 
-    pub fn of(&self, pass: usize) -> Pipeline {
-        self.made[self.of_pass[pass]]
-    }
-
-    /// Destroys all. The device must be done with them.
-    pub fn destroy(&mut self, host: &Host) {
-        for pipeline in self.made.drain(..) {
-            // SAFETY: made by this host's device, and the caller says that nothing in flight uses them.
+    /// Lets go of them: the last of those that share them destroys them. The device must be done
+    /// with what this one used.
+    pub fn end(self, host: &Host) {
+        let Some(known) = Arc::into_inner(self.0) else { return };
+        for pipeline in known.into_inner().unwrap_or_else(PoisonError::into_inner).into_values() {
+            // SAFETY: made by this host's device; everyone who used them has let go of them, and
+            // says with that that nothing in flight uses them.
             unsafe {
                 host.device.destroy_pipeline(pipeline.pipeline, None);
                 host.device.destroy_pipeline_layout(pipeline.layout, None);

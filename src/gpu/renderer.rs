@@ -1,7 +1,7 @@
 use ash::vk;
 
 use super::memory::{Backed, Memory, whole};
-use super::pipelines::{Pipelines, descriptor_type};
+use super::pipelines::{Pipeline, Pipelines, descriptor_type};
 use super::shaders::BindingKind;
 use super::{Host, failed};
 use crate::plan::{Format, Kind, Owner, Pass, Plan, Rectangle, Resource, ResourceId};
@@ -76,6 +76,7 @@ pub struct Renderer {
     /// For bindings that a pass leaves unused: (kind, pass that alone may write it, resource).
     unused: Vec<(BindingKind, Option<usize>, Backed)>,
     pipelines: Pipelines,
+    pipeline_of_pass: Vec<Pipeline>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
     /// Whether all passes have been recorded: what an edit goes on from.
@@ -100,6 +101,16 @@ impl Renderer {
     /// # Errors
     /// A device that lacks something (named), or is out of memory.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
+        Self::sharing(host, plan, slots, Pipelines::default())
+    }
+
+    /// [`new`](Self::new) with pipelines that other renderers of the same device share.
+    pub(super) fn sharing(
+        host: &Host,
+        plan: Plan,
+        slots: usize,
+        pipelines: Pipelines,
+    ) -> Result<Self> {
         let report = super::requirements::report(&host.instance, host.physical_device);
         if !report.missing.is_empty() {
             return Err(Error::Device {
@@ -117,7 +128,8 @@ impl Renderer {
             memory: Memory::new(host)?,
             resources: Vec::new(),
             unused: Vec::new(),
-            pipelines: Pipelines::new(host, plan.every_pass())?,
+            pipelines,
+            pipeline_of_pass: Vec::new(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
             is_drawn: false,
@@ -136,6 +148,7 @@ impl Renderer {
     }
 
     fn make(&mut self, slots: usize) -> Result<()> {
+        self.pipeline_of_pass = self.pipelines.of(&self.host, self.plan.every_pass())?;
         for resource in &self.plan.resources {
             let backed = match resource.owner {
                 Owner::Internal => Some(self.memory.make(&resource.name, resource.kind)?),
@@ -192,7 +205,7 @@ impl Renderer {
         self.descriptor_pool = unsafe { device.create_descriptor_pool(&info, None) }
             .map_err(failed("making the descriptor pool"))?;
         for _ in 0..slots {
-            let layouts: Vec<_> = (0..passes).map(|p| self.pipelines.of(p).set_layout).collect();
+            let layouts: Vec<_> = self.pipeline_of_pass.iter().map(|p| p.set_layout).collect();
             let sets_info = vk::DescriptorSetAllocateInfo::default()
                 .descriptor_pool(self.descriptor_pool)
                 .set_layouts(&layouts);
@@ -392,7 +405,7 @@ impl Renderer {
                     device.cmd_pipeline_barrier2(commands, &between);
                 }
                 self.label(commands, Some(pass));
-                let pipeline = self.pipelines.of(index);
+                let pipeline = self.pipeline_of_pass[index];
                 let point = vk::PipelineBindPoint::COMPUTE;
                 device.cmd_bind_pipeline(commands, point, pipeline.pipeline);
                 let sets = [self.slots[slot].sets[index]];
@@ -594,7 +607,7 @@ impl Renderer {
         }
         // SAFETY: as above; null is allowed.
         unsafe { self.host.device.destroy_descriptor_pool(self.descriptor_pool, None) };
-        self.pipelines.destroy(&self.host);
+        std::mem::take(&mut self.pipelines).end(&self.host);
         self.memory.end();
         self.destroyed = true;
     }
