@@ -274,13 +274,14 @@ impl Renderer {
         self.record_passes(commands, slot, inputs, outputs, &all)
     }
 
-    /// Appends only some passes, by position in the plan: for timing them alone, or because no others
-    /// are needed ([`Plan::passes_after`]). What they read must have been left by an earlier recording
-    /// of this renderer; of outputs that they do not write the contents are kept where the caller's
-    /// state before keeps them.
+    /// Appends only some passes, by position in the plan, in its order: for timing them alone, or
+    /// because no others are needed ([`Plan::passes_after`]). What they read must have been left by an
+    /// earlier recording of this renderer; of outputs that they do not write the contents are kept
+    /// where the caller's state before keeps them.
     ///
     /// # Errors
-    /// As [`record`](Self::record); a pass that does not exist.
+    /// As [`record`](Self::record); a pass that does not exist, twice the same, or one before another
+    /// that precedes it in the plan; fewer than all by a renderer that has not yet recorded all.
     pub fn record_passes(
         &mut self,
         commands: vk::CommandBuffer,
@@ -290,15 +291,33 @@ impl Renderer {
         passes: &[usize],
     ) -> Result<()> {
         self.check(slot, inputs, outputs)?;
-        if let Some(pass) = passes.iter().find(|p| **p >= self.plan.passes.len()) {
+        self.check_passes(passes)?;
+        self.append(commands, slot, inputs, outputs, passes, None);
+        self.is_drawn = true;
+        Ok(())
+    }
+
+    /// In the plan's order, each once; so that as many as there are, are all. Fewer only after all: the
+    /// plan's own images would hold nothing.
+    fn check_passes(&self, passes: &[usize]) -> Result<()> {
+        let count = self.plan.passes.len();
+        if let Some(pass) = passes.iter().find(|p| **p >= count) {
+            return Err(Error::setting("pass", pass.to_string(), format!("less than {count}")));
+        }
+        if let Some(pair) = passes.windows(2).find(|pair| pair[0] >= pair[1]) {
             return Err(Error::setting(
-                "pass",
-                pass.to_string(),
-                format!("less than {}", self.plan.passes.len()),
+                "passes",
+                format!("{} after {}", pair[1], pair[0]),
+                "each once, in the plan's order",
             ));
         }
-        self.append(commands, slot, inputs, outputs, passes, None);
-        self.is_drawn |= passes.len() == self.plan.passes.len();
+        if passes.len() < count && !self.is_drawn {
+            return Err(Error::setting(
+                "passes",
+                format!("{} of {count}, nothing recorded", passes.len()),
+                "a recording of all passes before",
+            ));
+        }
         Ok(())
     }
 
@@ -443,7 +462,7 @@ impl Renderer {
 
     /// Whether a barrier stands between two passes recorded one after the other.
     fn must_wait(&self, last: usize, next: usize) -> bool {
-        last >= next || (last + 1..=next).any(|p| self.pass(p).barrier_before)
+        (last + 1..=next).any(|p| self.pass(p).barrier_before)
     }
 
     fn label(&self, commands: vk::CommandBuffer, pass: Option<&Pass>) {

@@ -212,16 +212,22 @@ fn refused(
     outputs: &[ImageArg],
 ) {
     let passes = renderer.plan().passes.len();
-    let mut refuse = |named: &str, slot, inputs: &[ImageArg], outputs: &[ImageArg], passes| {
-        let error: Error = match passes {
-            None => renderer.record(commands, slot, inputs, outputs),
-            Some(pass) => renderer.record_passes(commands, slot, inputs, outputs, &[0, pass]),
-        }
-        .expect_err(named);
-        assert!(error.to_string().contains(named), "{named}: {error}");
-    };
+    let mut refuse =
+        |named: &str, slot, inputs: &[ImageArg], outputs: &[ImageArg], passes: Option<&[usize]>| {
+            let error: Error = match passes {
+                None => renderer.record(commands, slot, inputs, outputs),
+                Some(passes) => renderer.record_passes(commands, slot, inputs, outputs, passes),
+            }
+            .expect_err(named);
+            assert!(error.to_string().contains(named), "{named}: {error}");
+        };
     refuse("slot", 1, inputs, outputs, None);
-    refuse("pass", 0, inputs, outputs, Some(passes));
+    refuse("pass", 0, inputs, outputs, Some(&[0, passes]));
+    refuse("order", 0, inputs, outputs, Some(&[1, 1]));
+    refuse("order", 0, inputs, outputs, Some(&[2, 1]));
+    // More than there are queries for; as many as there are, but not all.
+    refuse("order", 0, inputs, outputs, Some(&vec![0; 2 * passes]));
+    refuse("order", 0, inputs, outputs, Some(&vec![0; passes]));
     refuse("inputs", 0, &inputs[1..], outputs, None);
     refuse("outputs", 0, inputs, &outputs[1..], None);
     type Spoil = fn(&mut ImageArg);
@@ -278,5 +284,26 @@ fn an_error_leaves_the_command_buffer_untouched() {
     })
     .expect("recorded and run");
     assert_eq!(outputs(gpu, &frame), right);
+    gpu.end(frame);
+}
+
+/// The plan's own images hold nothing before all passes have run, and are in no layout.
+#[test]
+fn some_passes_are_refused_until_all_have_been_recorded() {
+    let mut device = Device::new();
+    let scene = scene();
+    let plan = picture(&device, &scene);
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    let contents = contents(&scene);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frame = frame(gpu, &plan, &contents);
+    for few in [&[][..], &[0], &all[1..]] {
+        let error = gpu.draw_passes(&mut frame, few).expect_err("nothing to go on from");
+        assert!(error.to_string().contains("recording of all passes"), "{error}");
+    }
+    gpu.draw_passes(&mut frame, &all).expect("all, by name");
+    let drawn = outputs(gpu, &frame);
+    gpu.draw_passes(&mut frame, &all[1..]).expect("some");
+    assert_eq!(outputs(gpu, &frame), drawn);
     gpu.end(frame);
 }
