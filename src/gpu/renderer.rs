@@ -81,6 +81,9 @@ pub struct Renderer {
     slots: Vec<Slot>,
     /// Whether all passes have been recorded: what an edit goes on from.
     is_drawn: bool,
+    /// By pass of a whole recording: whether it must run, as it has been told something new since it
+    /// was recorded last, or follows one that has.
+    pending: Vec<bool>,
     timestamp_ns: f64,
     timestamp_mask: u64,
     destroyed: bool,
@@ -133,6 +136,7 @@ impl Renderer {
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
             is_drawn: false,
+            pending: vec![true; plan.passes.len()],
             timestamp_ns: f64::from(report.timestamp_period_ns),
             timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             plan,
@@ -231,8 +235,9 @@ impl Renderer {
 
     /// Goes over to a plan that differs in what its passes are told, not in which there are nor in
     /// images and buffers: another colour of a light, a sun that has moved a little. Returns the
-    /// passes that must run next for inputs that are as they were ([`Plan::passes_after`]). The
-    /// device must be done with all that was recorded.
+    /// passes that must run next for inputs that are as they were ([`Plan::passes_after`]), with those
+    /// that earlier calls returned and that have not been recorded since. The device must be done with
+    /// all that was recorded.
     ///
     /// # Errors
     /// A plan that needs a renderer of its own; the old one stays.
@@ -244,10 +249,12 @@ impl Renderer {
                 "those of the plan that the renderer was made for",
             ));
         }
-        let passes = plan.passes_after(&self.plan, &[]);
+        for pass in plan.passes_after(&self.plan, &[]) {
+            self.pending[pass] = true;
+        }
         self.plan = plan;
         self.write_azimuths()?;
-        Ok(passes)
+        Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
     }
 
     /// An image or buffer of the renderer's own.
@@ -294,6 +301,8 @@ impl Renderer {
         self.check_passes(passes)?;
         self.append(commands, slot, inputs, outputs, passes, None);
         self.is_drawn = true;
+        passes.iter().for_each(|pass| self.pending[*pass] = false);
+        self.plan.add_followers(&mut self.pending);
         Ok(())
     }
 
@@ -331,7 +340,8 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`record`](Self::record); a plan without passes for edits; a rectangle beyond the field; a
-    /// renderer that has not yet recorded all; an output whose contents are not kept.
+    /// renderer that has not yet recorded all, or not all since its plan was replaced; an output whose
+    /// contents are not kept.
     pub fn record_edit(
         &mut self,
         commands: vk::CommandBuffer,
@@ -344,6 +354,14 @@ impl Renderer {
         self.check(slot, inputs, outputs)?;
         if !self.is_drawn {
             return Err(Error::setting("an edit", "nothing recorded", "a recording of all passes"));
+        }
+        let pending = self.pending.iter().filter(|p| **p).count();
+        if pending > 0 {
+            return Err(Error::setting(
+                "an edit",
+                format!("{pending} passes of the new plan not recorded"),
+                "a recording of what replace_plan returned",
+            ));
         }
         let names = self.plan.outputs().map(|(_, r)| &r.name);
         for (name, arg) in names.zip(outputs) {

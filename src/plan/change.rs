@@ -21,10 +21,15 @@ impl Plan {
                 pass.push != old.push || pass.groups != old.groups || pass.reads().any(is_new)
             })
             .collect();
-        while let Some(next) = (0..count).find(|i| !runs[*i] && self.follows(*i, &runs)) {
+        self.add_followers(&mut runs);
+        (0..count).filter(|i| runs[*i]).collect()
+    }
+
+    /// Adds to the passes that run those that must because of them.
+    pub(crate) fn add_followers(&self, runs: &mut [bool]) {
+        while let Some(next) = (0..runs.len()).find(|i| !runs[*i] && self.follows(*i, runs)) {
             runs[next] = true;
         }
-        (0..count).filter(|i| runs[*i]).collect()
     }
 
     /// Whether the same shaders with the same constants are bound to the same resources.

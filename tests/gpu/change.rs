@@ -125,3 +125,33 @@ fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
     assert!(bits(gpu, &frame) == before);
     gpu.end(frame);
 }
+
+#[test]
+fn two_changes_before_a_recording_are_both_drawn() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, true);
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
+    let all: Vec<usize> = (0..plan.passes.len()).collect();
+    assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), all, "nothing is drawn yet");
+    gpu.draw(&mut frame).expect("drawn");
+    // Half an environment's turn, which its wedges are told; then a colour, which they are not.
+    let environment = scene.lights.environment.take().expect("one");
+    let texels = environment.texels().to_vec();
+    scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();
+    let plan = planned(gpu, &scene, true);
+    let turned = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    scene.lights.suns[0].irradiance = [0.1, 0.2, 7.0];
+    let plan = planned(gpu, &scene, true);
+    let coloured = plan.passes_after(frame.plan(), &[]);
+    let both = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
+    assert!(turned.iter().any(|p| !coloured.contains(p)), "two changes");
+    assert!(turned.iter().chain(&coloured).all(|p| both.contains(p)) && both.len() < all.len());
+    gpu.draw_passes(&mut frame, &both).expect("drawn");
+    assert!(bits(gpu, &frame) == from_nothing(gpu, &scene, true));
+    let none: [usize; 0] = [];
+    assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
+    gpu.end(frame);
+}
