@@ -46,10 +46,12 @@ fn make_device(
     let core = vk::PhysicalDeviceFeatures::default()
         .shader_storage_image_write_without_format(true)
         .shader_storage_image_extended_formats(true);
+    let mut features12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
     let mut features13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_features(&core)
+        .push_next(&mut features12)
         .push_next(&mut features13);
     // SAFETY: the features were reported as present, the family as existing.
     let device = unsafe { instance.create_device(physical_device, &info, None) }

@@ -84,13 +84,14 @@ pub struct Renderer {
     /// By pass of a whole recording: whether it must run, as it has been told something new since it
     /// was recorded last, or follows one that has.
     pending: Vec<bool>,
-    timestamp_ns: f64,
-    timestamp_mask: u64,
+    /// Nanoseconds of a tick and a mask of the bits that count, where the host's queue has timestamps.
+    timestamps: Option<(f64, u64)>,
     destroyed: bool,
 }
 
 struct Slot {
     sets: Vec<vk::DescriptorSet>,
+    /// Null where there are no timestamps.
     queries: vk::QueryPool,
     recorded: Vec<usize>,
 }
@@ -121,11 +122,7 @@ impl Renderer {
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
-        // SAFETY: the physical device is the instance's.
-        let families = unsafe {
-            host.instance.get_physical_device_queue_family_properties(host.physical_device)
-        };
-        let bits = families.get(host.queue_family as usize).map_or(0, |f| f.timestamp_valid_bits);
+        let timestamps = super::requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
             memory: Memory::new(host)?,
@@ -137,8 +134,7 @@ impl Renderer {
             slots: Vec::new(),
             is_drawn: false,
             pending: vec![true; plan.passes.len()],
-            timestamp_ns: f64::from(report.timestamp_period_ns),
-            timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
+            timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
             plan,
             destroyed: false,
         };
@@ -219,7 +215,10 @@ impl Renderer {
             // SAFETY: the pool was sized for exactly these sets; the layouts are alive.
             let slot = unsafe {
                 device.allocate_descriptor_sets(&sets_info).and_then(|sets| {
-                    let queries = device.create_query_pool(&queries_info, None)?;
+                    let queries = match self.timestamps {
+                        Some(_) => device.create_query_pool(&queries_info, None)?,
+                        None => vk::QueryPool::null(),
+                    };
                     Ok(Slot { sets, queries, recorded: Vec::new() })
                 })
             };
@@ -429,13 +428,26 @@ impl Renderer {
         let between = vk::DependencyInfo::default().memory_barriers(&memory);
         let first =
             vk::DependencyInfo::default().image_memory_barriers(&entry).memory_barriers(&memory);
+        let timestamp = |query: usize| {
+            if queries != vk::QueryPool::null() {
+                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has a
+                // query more than the plan has passes, reset where the recording begins.
+                unsafe { device.cmd_write_timestamp2(commands, compute, queries, query as u32) };
+            }
+        };
         // SAFETY: the caller says that `commands` is being recorded for the host's family; every
-        // handle is alive, images are in the layouts that their arguments state, sets of this slot
-        // are not in use.
+        // handle is alive, images are in the layouts that their arguments state, sets and queries of
+        // this slot are not in use.
         unsafe {
-            device.cmd_reset_query_pool(commands, queries, 0, passes.len() as u32 + 1);
+            if queries != vk::QueryPool::null() {
+                let count = passes.len() as u32 + 1;
+                // At once, so that no earlier times are taken for these; and where it runs, in case it
+                // runs again.
+                device.reset_query_pool(queries, 0, count);
+                device.cmd_reset_query_pool(commands, queries, 0, count);
+            }
             device.cmd_pipeline_barrier2(commands, &first);
-            device.cmd_write_timestamp2(commands, compute, queries, 0);
+            timestamp(0);
             for (query, &index) in passes.iter().enumerate() {
                 let pass = self.pass(index);
                 if query > 0 && self.must_wait(passes[query - 1], index) {
@@ -458,7 +470,7 @@ impl Renderer {
                     None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
                 }
                 self.label(commands, None);
-                device.cmd_write_timestamp2(commands, compute, queries, query as u32 + 1);
+                timestamp(query + 1);
             }
             let exit: Vec<_> = bound
                 .iter()
@@ -602,11 +614,12 @@ impl Renderer {
         }
     }
 
-    /// GPU times of the passes that `slot` recorded last, in order; none while they are not all in.
-    /// Never waits.
+    /// GPU times of the passes that `slot` recorded last, in order; none while they are not all in, and
+    /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
         let slot = self.slots.get(slot)?;
-        if slot.recorded.is_empty() || self.timestamp_ns == 0.0 {
+        let (tick_ns, mask) = self.timestamps?;
+        if slot.recorded.is_empty() {
             return None;
         }
         // Each a value and whether it is there.
@@ -620,8 +633,8 @@ impl Renderer {
         }
         let passes = slot.recorded.iter().zip(ticks.windows(2));
         let timings = passes.map(|(&index, pair)| {
-            let elapsed = pair[1][0].wrapping_sub(pair[0][0]) & self.timestamp_mask;
-            Timing { label: self.pass(index).label(), ns: elapsed as f64 * self.timestamp_ns }
+            let elapsed = pair[1][0].wrapping_sub(pair[0][0]) & mask;
+            Timing { label: self.pass(index).label(), ns: elapsed as f64 * tick_ns }
         });
         Some(timings.collect())
     }
@@ -640,6 +653,7 @@ impl Renderer {
         }
         for slot in self.slots.drain(..) {
             // SAFETY: made by this device; the caller of `destroy` says that nothing in flight uses it.
+            // Null is allowed.
             unsafe { self.host.device.destroy_query_pool(slot.queries, None) };
         }
         // SAFETY: as above; null is allowed.

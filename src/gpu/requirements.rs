@@ -27,7 +27,7 @@ pub struct DeviceReport {
 
 /// What a device lacks: the features that its maker must enable are those named here.
 ///
-/// Vulkan 1.3 with `synchronization2` (1.3 features); `shaderStorageImageWriteWithoutFormat` and
+/// Vulkan 1.3 with `synchronization2` (1.3 features) and `hostQueryReset` (1.2 features); `shaderStorageImageWriteWithoutFormat` and
 /// `shaderStorageImageExtendedFormats` (core features); subgroup votes in compute shaders; a queue
 /// family with compute.
 pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Vec<String> {
@@ -37,6 +37,20 @@ pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) ->
 /// What a plan may count on; `memory_budget` is half of the largest device-local heap.
 pub fn limits(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Limits {
     report(instance, physical_device).limits
+}
+
+/// Nanoseconds of a timestamp's tick, and the bits that count; none where the host's queue family has
+/// no timestamps.
+pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
+    // SAFETY: the physical device is the instance's.
+    let (families, properties) = unsafe {
+        (
+            host.instance.get_physical_device_queue_family_properties(host.physical_device),
+            host.instance.get_physical_device_properties(host.physical_device),
+        )
+    };
+    let bits = families.get(host.queue_family as usize)?.timestamp_valid_bits;
+    (bits > 0).then(|| (f64::from(properties.limits.timestamp_period), bits))
 }
 
 pub(crate) fn report(
@@ -54,12 +68,13 @@ pub(crate) fn report(
     unsafe { instance.get_physical_device_properties2(physical_device, &mut properties) };
     let core = properties.properties;
     let is_13 = core.api_version >= vk::API_VERSION_1_3;
+    let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
     let mut features13 = vk::PhysicalDeviceVulkan13Features::default();
     let mut features = vk::PhysicalDeviceFeatures2::default();
     if is_13 {
-        features = features.push_next(&mut features13);
+        features = features.push_next(&mut features12).push_next(&mut features13);
     }
-    // SAFETY: as above; the 1.3 struct is chained only where the device knows it.
+    // SAFETY: as above; the structs of 1.2 and 1.3 are chained only where the device knows them.
     unsafe { instance.get_physical_device_features2(physical_device, &mut features) };
     let core_features = features.features;
     // SAFETY: the physical device is the instance's.
@@ -78,6 +93,7 @@ pub(crate) fn report(
     };
     need(is_13, "Vulkan 1.3");
     need(features13.synchronization2 == vk::TRUE, "synchronization2");
+    need(features12.host_query_reset == vk::TRUE, "hostQueryReset");
     need(
         core_features.shader_storage_image_write_without_format == vk::TRUE,
         "shaderStorageImageWriteWithoutFormat",

@@ -3,7 +3,7 @@
 
 use ash::vk;
 use ridgelight::Error;
-use ridgelight::gpu::{Frame, Headless, ImageArg, ImageState, Renderer};
+use ridgelight::gpu::{Frame, Headless, Host, ImageArg, ImageState, Renderer};
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Quality, Scene, Sun};
 
@@ -305,5 +305,36 @@ fn some_passes_are_refused_until_all_have_been_recorded() {
     let drawn = outputs(gpu, &frame);
     gpu.draw_passes(&mut frame, &all[1..]).expect("some");
     assert_eq!(outputs(gpu, &frame), drawn);
+    gpu.end(frame);
+}
+
+#[test]
+fn timings_are_those_of_the_last_recording_or_none() {
+    let mut device = Device::new();
+    let scene = scene();
+    let plan = picture(&device, &scene);
+    let contents = contents(&scene);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frame = frame(gpu, &plan, &contents);
+    let (inputs, written) = (frame.inputs(), frame.outputs());
+    gpu.draw(&mut frame).expect("drawn");
+    assert_eq!(frame.renderer().timings(0).map(|t| t.len()), Some(plan.passes.len()));
+    gpu.run(|commands| {
+        frame.renderer().record_passes(commands, 0, &inputs, &written, &[2])?;
+        assert_eq!(frame.renderer().timings(0), None, "recorded, but not run");
+        Ok(())
+    })
+    .expect("recorded and run");
+    let times = frame.renderer().timings(0).expect("run");
+    assert_eq!(times.iter().map(|t| &t.label).collect::<Vec<_>>(), [&plan.passes[2].label()]);
+    let drawn = outputs(gpu, &frame);
+
+    // No family of this number: none that has timestamps.
+    let host = Host { queue_family: u32::MAX, ..gpu.host().clone() };
+    let mut untimed = Renderer::new(&host, plan, 1).expect("a renderer");
+    gpu.run(|commands| untimed.record(commands, 0, &inputs, &written)).expect("recorded and run");
+    assert_eq!(untimed.timings(0), None);
+    assert_eq!(outputs(gpu, &frame), drawn);
+    untimed.destroy();
     gpu.end(frame);
 }
