@@ -89,14 +89,14 @@ fn picture(
         .map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
     let mut contents = vec![scene.field.heights_m()];
     contents.extend(env.as_deref());
-    let mut frame = gpu.frame(plan, &contents)?;
-    gpu.draw(&mut frame)?;
-    let mut runs = (0..3).map(|_| gpu.draw(&mut frame)).collect::<Result<Vec<_>>>()?;
+    let (mut runs, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        let runs = (0..3).map(|_| gpu.draw(frame)).collect::<Result<Vec<_>>>()?;
+        Ok((runs, gpu.pixels(frame, 0)?))
+    })?;
     let total = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
     runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
     let times = runs.swap_remove(1);
-    let pixels = gpu.pixels(&frame, 0)?;
-    gpu.end(frame);
     Ok((pixels.values, pixels.channels, times))
 }
 
@@ -116,10 +116,14 @@ fn horizons(
         let part = (first, count);
         let plan = plan::horizons(field, Border::Plane, quality, &limits, part, distances)?;
         let order = plan.layer_azimuths.clone();
-        let mut frame = gpu.frame(plan, &[field.heights_m()])?;
-        gpu.draw(&mut frame)?;
-        for (output, found) in found.iter_mut().enumerate().take(1 + usize::from(distances)) {
-            let values = gpu.pixels(&frame, output)?.values;
+        let outputs = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+            gpu.draw(frame)?;
+            (0..1 + usize::from(distances))
+                .map(|o| gpu.pixels(frame, o))
+                .collect::<Result<Vec<_>>>()
+        })?;
+        for (output, found) in outputs.iter().zip(&mut found) {
+            let values = &output.values;
             for (layer, k) in order.iter().enumerate() {
                 for (i, [r, c]) in picks.iter().enumerate() {
                     let at = layer * plane + r * field.cols() + c;
@@ -127,7 +131,6 @@ fn horizons(
                 }
             }
         }
-        gpu.end(frame);
     }
     Ok(found)
 }

@@ -73,16 +73,24 @@ fn planned(gpu: &Headless, side: usize, seed: u64) -> Result<(Scene, Plan)> {
 }
 
 fn run() -> Result<()> {
-    let Asked { side, brush: width, edits, seed } = asked()?;
+    let asked = asked()?;
+    let Asked { side, brush: width, seed, .. } = asked;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let (scene, plan) = planned(&gpu, side, seed)?;
-    let all = f64::from(AZIMUTHS) * (side * side) as f64;
     println!("{}: {side}², {width}² brush, {AZIMUTHS} azimuths", gpu.report().name);
     println!("memory: {:.1} MiB", plan.bytes() as f64 / 1_048_576.0);
-    let mut frame = gpu.frame(plan, &[scene.field.heights_m()])?;
-    gpu.draw(&mut frame)?;
+    gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
+        edit_all(gpu, frame, &scene, asked)
+    })
+}
+
+/// Draws a frame, then edits it again and again, and holds each edit against drawing it all.
+fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: Asked) -> Result<()> {
+    let Asked { side, brush: width, edits, seed } = asked;
+    let all = f64::from(AZIMUTHS) * (side * side) as f64;
+    gpu.draw(frame)?;
     // Drivers compile when a pass first runs: an edit of nothing new.
-    gpu.draw_edit(&mut frame, Rectangle { col: 0, row: 0, cols: 1, rows: 1 })?;
+    gpu.draw_edit(frame, Rectangle { col: 0, row: 0, cols: 1, rows: 1 })?;
     let mut heights = scene.field.heights_m().to_vec();
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     let mut place = || {
@@ -97,16 +105,16 @@ fn run() -> Result<()> {
         let n = width as u32;
         let at = Rectangle { col: place(), row: place(), cols: n, rows: n };
         brush(&mut heights, side, at, if i % 2 == 0 { 1.0 } else { -1.0 });
-        gpu.refill(&frame, 0, &heights)?;
-        let times = gpu.draw_edit(&mut frame, at)?;
-        let swept = 4.0
-            * f64::from(words(&mut gpu, &frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
-        let marks = words(&mut gpu, &frame, "dirty_samples")?;
+        gpu.refill(frame, 0, &heights)?;
+        let times = gpu.draw_edit(frame, at)?;
+        let swept =
+            4.0 * f64::from(words(gpu, frame, "edit_list")?[offsets::edit_list::SWEPT_STEPS / 4]);
+        let marks = words(gpu, frame, "dirty_samples")?;
         let marked: f64 = marks.iter().map(|w| f64::from(w.count_ones())).sum();
         let lit = marked / (side * side) as f64;
-        let edited = pixels(&mut gpu, &frame)?;
-        let whole = gpu.draw(&mut frame)?;
-        if pixels(&mut gpu, &frame)? != edited {
+        let edited = pixels(gpu, frame)?;
+        let whole = gpu.draw(frame)?;
+        if pixels(gpu, frame)? != edited {
             return Err(Error::setting("an edit", format!("{at:?}"), "the bits of all"));
         }
         println!(
@@ -127,7 +135,6 @@ fn run() -> Result<()> {
         "mean: 1/{:.0} of all samples swept; every edit's bits are those of all",
         1.0 / swept_of_all
     );
-    gpu.end(frame);
     Ok(())
 }
 

@@ -96,14 +96,14 @@ fn lit(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<(Vec<[f32
     let environment = scene.lights.environment.as_ref().expect("the scene has one");
     let texels: Vec<f32> =
         environment.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
-    let mut frame = gpu.frame(plan, &[scene.field.heights_m(), &texels])?;
-    // The first frame compiles and warms caches: little beside brute force, which is drawn once.
-    if quality.method != Method::Brute {
-        gpu.draw(&mut frame)?;
-    }
-    let times = gpu.draw(&mut frame)?;
-    let pixels = gpu.pixels(&frame, 0)?;
-    gpu.end(frame);
+    let contents = [scene.field.heights_m(), &texels];
+    let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        // The first frame compiles and warms caches: little beside brute force, which is drawn once.
+        if quality.method != Method::Brute {
+            gpu.draw(frame)?;
+        }
+        Ok((gpu.draw(frame)?, gpu.pixels(frame, 0)?))
+    })?;
     let light = pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect();
     Ok((light, times.iter().map(|t| t.ns).sum::<f64>() * 1e-6))
 }

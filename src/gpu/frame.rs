@@ -83,6 +83,22 @@ impl Headless {
         }
     }
 
+    /// Makes a frame ([`frame`](Self::frame)), hands it to `work` and frees it, whatever comes of it.
+    ///
+    /// # Errors
+    /// As there, or `work`'s own.
+    pub fn with_frame<T>(
+        &mut self,
+        plan: Plan,
+        contents: &[&[f32]],
+        work: impl FnOnce(&mut Self, &mut Frame) -> Result<T>,
+    ) -> Result<T> {
+        let mut frame = self.frame(plan, contents)?;
+        let done = work(self, &mut frame);
+        self.end(frame);
+        done
+    }
+
     fn fill(
         &mut self,
         frame: &mut Frame,

@@ -17,10 +17,47 @@ pub struct HeadlessOptions {
     pub validation: bool,
 }
 
+/// An instance and who listens to it; ends both.
+struct Started {
+    _entry: ash::Entry,
+    instance: ash::Instance,
+    listener: Option<Listener>,
+    /// Outlives the instance, which may speak while it ends.
+    _messages: Messages,
+}
+
+impl Started {
+    fn new(validation: bool) -> Result<Self> {
+        let entry = load()?;
+        if validation {
+            validation::require(&entry)?;
+        }
+        let messages = Messages::default();
+        let mut during = validation::messenger(&messages);
+        let instance = instance(&entry, validation.then_some(&mut during))?;
+        let mut started =
+            Self { _entry: entry, instance, listener: None, _messages: messages.clone() };
+        if validation {
+            let listener = Listener::new(&started._entry, &started.instance, messages)?;
+            started.listener = Some(listener);
+        }
+        Ok(started)
+    }
+}
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        if let Some(listener) = &self.listener {
+            listener.end();
+        }
+        // SAFETY: devices made of it have been destroyed: that of `Headless` before its fields go.
+        unsafe { self.instance.destroy_instance(None) };
+    }
+}
+
 /// A device of our own, for rendering offscreen: for programs that have none to lend.
 pub struct Headless {
-    _entry: ash::Entry,
-    listener: Option<Listener>,
+    started: Started,
     host: Host,
     queue: vk::Queue,
     pool: vk::CommandPool,
@@ -66,38 +103,34 @@ impl Headless {
     /// No loader, no driver, no device of that name, a device that lacks something, or no validation
     /// layer where it is required.
     pub fn new(options: &HeadlessOptions) -> Result<Self> {
-        let entry = load()?;
-        if options.validation {
-            validation::require(&entry)?;
-        }
-        let messages = Messages::default();
-        let mut during = validation::messenger(&messages);
-        let instance = instance(&entry, options.validation.then_some(&mut during))?;
-        let listener = match options.validation {
-            true => Some(Listener::new(&entry, &instance, messages)?),
-            false => None,
-        };
-        // Whatever fails below leaves the instance to the end of the process, which is where a
-        // failed start goes.
+        let started = Started::new(options.validation)?;
+        let instance = started.instance.clone();
         let (physical_device, report) = chosen(&instance, options.device.as_deref())?;
         let (device, queue_family) = make_device(&instance, physical_device, &report.name)?;
+        let names = || ext::debug_utils::Device::new(&instance, &device);
+        let debug_utils = started.listener.is_some().then(names);
+        let host = Host { instance, physical_device, device, queue_family, debug_utils };
         let pool_info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(queue_family)
             .flags(vk::CommandPoolCreateFlags::TRANSIENT);
-        // SAFETY: the device was made above with one queue of this family.
-        let (queue, pool) = unsafe {
-            let pool = device.create_command_pool(&pool_info, None);
-            (
-                device.get_device_queue(queue_family, 0),
-                pool.map_err(failed("making a command pool"))?,
-            )
-        };
-        let names = || ext::debug_utils::Device::new(&instance, &device);
-        let debug_utils = listener.is_some().then(names);
-        let host = Host { instance, physical_device, device, queue_family, debug_utils };
-        let memory = Memory::new(&host)?;
-        let pipelines = Pipelines::default();
-        Ok(Self { _entry: entry, listener, host, queue, pool, report, memory, pipelines })
+        let made = Memory::new(&host).and_then(|memory| {
+            // SAFETY: the device was made above with one queue of this family.
+            let pool = unsafe { host.device.create_command_pool(&pool_info, None) };
+            Ok((memory, pool.map_err(failed("making a command pool"))?))
+        });
+        match made {
+            Ok((memory, pool)) => {
+                // SAFETY: as above.
+                let queue = unsafe { host.device.get_device_queue(queue_family, 0) };
+                let pipelines = Pipelines::default();
+                Ok(Self { started, host, queue, pool, report, memory, pipelines })
+            }
+            Err(error) => {
+                // SAFETY: nothing is left that was made on it.
+                unsafe { host.device.destroy_device(None) };
+                Err(error)
+            }
+        }
     }
 
     /// What a renderer borrows.
@@ -112,7 +145,7 @@ impl Headless {
 
     /// What validation has said so far, oldest first; emptied by the call.
     pub fn take_messages(&self) -> Vec<String> {
-        self.listener.as_ref().map(Listener::take).unwrap_or_default()
+        self.started.listener.as_ref().map(Listener::take).unwrap_or_default()
     }
 
     /// Runs `record` in a command buffer of its own and waits for it.
@@ -159,11 +192,6 @@ impl Drop for Headless {
         unsafe {
             self.host.device.destroy_command_pool(self.pool, None);
             self.host.device.destroy_device(None);
-            // Its messages stay until after the instance, which may speak while it ends.
-            if let Some(listener) = &self.listener {
-                listener.end();
-            }
-            self.host.instance.destroy_instance(None);
         }
     }
 }

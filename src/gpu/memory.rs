@@ -225,6 +225,11 @@ impl Memory {
         self.allocator = None;
     }
 
+    /// Keeps all memory until the device goes: for images and buffers that may still be in use.
+    pub fn leak(&mut self) {
+        std::mem::forget(self.allocator.take());
+    }
+
     /// Frees what `make`, `image` or `buffer` returned. The device must be done with it.
     pub fn free(&mut self, backed: &mut Backed) {
         let device = &self.host.device;

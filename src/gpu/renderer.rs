@@ -670,6 +670,7 @@ impl Drop for Renderer {
             eprintln!(
                 "ridgelight: a renderer was dropped without destroy(): its Vulkan objects stay"
             );
+            self.memory.leak();
         }
     }
 }

@@ -338,3 +338,29 @@ fn timings_are_those_of_the_last_recording_or_none() {
     untimed.destroy();
     gpu.end(frame);
 }
+
+/// What was recorded still runs, on memory that nobody has freed; its objects stay, as it says.
+#[test]
+fn a_renderer_that_is_dropped_takes_no_memory_from_what_was_recorded() {
+    let mut device = Device::new();
+    let scene = scene();
+    let plan = picture(&device, &scene);
+    let contents = contents(&scene);
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frame = frame(gpu, &plan, &contents);
+    let (inputs, written) = (frame.inputs(), frame.outputs());
+    gpu.draw(&mut frame).expect("drawn");
+    let right = outputs(gpu, &frame);
+    gpu.refill(&frame, 0, &vec![1.0; contents[0].len()]).expect("other heights");
+    gpu.draw(&mut frame).expect("drawn");
+    gpu.refill(&frame, 0, &contents[0]).expect("the heights again");
+    let mut dropped = Renderer::new(gpu.host(), plan, 1).expect("a renderer");
+    gpu.run(|commands| {
+        let recorded = dropped.record(commands, 0, &inputs, &written);
+        drop(dropped);
+        recorded
+    })
+    .expect("recorded and run");
+    assert_eq!(outputs(gpu, &frame), right);
+    gpu.end(frame);
+}

@@ -58,11 +58,12 @@ pub fn for_each(
         let count = order.len() as u32;
         at_once = count;
         let kept = plan.clone();
-        let mut frame = gpu.frame(plan, &[field.heights_m()])?;
-        times.extend(gpu.draw(&mut frame)?);
-        let angles = gpu.pixels(&frame, 0)?.values;
-        let far = if distances { gpu.pixels(&frame, 1)?.values } else { Vec::new() };
-        gpu.end(frame);
+        let (angles, far) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+            times.extend(gpu.draw(frame)?);
+            let angles = gpu.pixels(frame, 0)?.values;
+            let far = if distances { gpu.pixels(frame, 1)?.values } else { Vec::new() };
+            Ok((angles, far))
+        })?;
         for k in first..first + count {
             let layer = order.iter().position(|o| *o == k).expect("every azimuth has its layer");
             let range = layer * plane..(layer + 1) * plane;

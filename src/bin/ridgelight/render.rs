@@ -54,19 +54,18 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
     let progress = progress(args.global.quiet, "lighting");
-    let mut frame = gpu.frame(plan, &contents)?;
-    let times = gpu.draw(&mut frame)?;
-    let mut pixels = Vec::new();
-    for output in 0..outputs {
-        pixels.push(gpu.pixels(&frame, output)?);
-    }
-    let mut metadata = setup::metadata(&gpu, &scene.field, frame.plan(), &times);
+    let (times, pixels, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        let times = gpu.draw(frame)?;
+        let pixels: Vec<Pixels> =
+            (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
+        let metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+        Ok((times, pixels, metadata))
+    })?;
     metadata.extend(setup::asked(
         &args.input.path,
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
-    gpu.end(frame);
     let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene.field, args, &limits)?) } else { None };
