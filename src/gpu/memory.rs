@@ -8,6 +8,10 @@ use super::{Host, failed};
 use crate::plan::{Format, Kind};
 use crate::{Error, Result};
 
+/// Memory is taken from the device in blocks of this size, and what is larger alone: the least that the
+/// allocator offers, so that what is held is near what a plan says.
+const BLOCK_BYTES: u64 = 4 << 20;
+
 /// An image or a buffer with its memory.
 pub(crate) struct Backed {
     pub image: vk::Image,
@@ -32,7 +36,7 @@ impl Memory {
             physical_device: host.physical_device,
             debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
             buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+            allocation_sizes: gpu_allocator::AllocationSizes::new(BLOCK_BYTES, BLOCK_BYTES),
         })
         .map_err(|e| Error::Device {
             doing: "starting the allocator".into(),
@@ -63,8 +67,13 @@ impl Memory {
             })
     }
 
-    /// An image or buffer of a plan, on the device; buffers also written by the host.
-    pub fn make(&mut self, name: &str, kind: Kind) -> Result<Backed> {
+    /// Bytes taken from the device.
+    pub fn bytes(&self) -> u64 {
+        self.allocator.as_ref().map_or(0, Allocator::capacity)
+    }
+
+    /// An image or buffer of a plan; buffers in memory of that kind, images in the device's.
+    pub fn make(&mut self, name: &str, kind: Kind, location: MemoryLocation) -> Result<Backed> {
         match kind {
             Kind::Image { format, width, height, layers, layered } => {
                 self.image(name, format, [width, height, layers], layered)
@@ -76,8 +85,7 @@ impl Memory {
                     vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER
                 };
                 let usage = usage | vk::BufferUsageFlags::TRANSFER_SRC;
-                let mut backed =
-                    self.buffer(name, bytes.max(16), usage, MemoryLocation::CpuToGpu)?;
+                let mut backed = self.buffer(name, bytes.max(16), usage, location)?;
                 if texels {
                     let info = vk::BufferViewCreateInfo::default()
                         .buffer(backed.buffer)

@@ -1,4 +1,5 @@
 use ash::vk;
+use gpu_allocator::MemoryLocation;
 
 use super::memory::{Backed, Memory, whole};
 use super::pipelines::{Pipeline, Pipelines, descriptor_type};
@@ -149,9 +150,18 @@ impl Renderer {
 
     fn make(&mut self, slots: usize) -> Result<()> {
         self.pipeline_of_pass = self.pipelines.of(&self.host, self.plan.every_pass())?;
-        for resource in &self.plan.resources {
+        let azimuths = self.plan.find("azimuths");
+        for (i, resource) in self.plan.resources.iter().enumerate() {
+            // The one that the host writes.
+            let location = if azimuths == Some(ResourceId(i)) {
+                MemoryLocation::CpuToGpu
+            } else {
+                MemoryLocation::GpuOnly
+            };
             let backed = match resource.owner {
-                Owner::Internal => Some(self.memory.make(&resource.name, resource.kind)?),
+                Owner::Internal => {
+                    Some(self.memory.make(&resource.name, resource.kind, location)?)
+                }
                 Owner::Input | Owner::Output => None,
             };
             self.resources.push(backed);
@@ -165,7 +175,8 @@ impl Renderer {
                 let known =
                     |u: &(BindingKind, Option<usize>, Backed)| u.0 == binding.kind && u.1 == writer;
                 if id.is_none() && !self.unused.iter().any(known) {
-                    let backed = self.memory.make("unused", smallest(binding.kind))?;
+                    let kind = smallest(binding.kind);
+                    let backed = self.memory.make("unused", kind, MemoryLocation::GpuOnly)?;
                     self.unused.push((binding.kind, writer, backed));
                 }
             }
@@ -254,6 +265,12 @@ impl Renderer {
         self.plan = plan;
         self.write_azimuths()?;
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
+    }
+
+    /// Bytes of memory that the renderer has taken from the device: [`Plan::internal_bytes`], and what
+    /// drivers round up to and blocks of 4 MiB leave over.
+    pub fn device_bytes(&self) -> u64 {
+        self.memory.bytes()
     }
 
     /// An image or buffer of the renderer's own.

@@ -1,5 +1,6 @@
 //! The embedding contract, as far as it stands: record only, check first, leave states as asked.
 
+use ridgelight::gpu::Renderer;
 use ridgelight::plan::{self, Picture, missing_barriers};
 use ridgelight::scene::{Border, Environment, Fuse, Hull, Lines, Method, Quality, Sun};
 
@@ -137,5 +138,26 @@ fn every_kind_of_plan_runs_silently_and_has_all_its_barriers() {
                 assert!(sum.is_finite() && sum >= 0.0);
             }
         }
+    }
+}
+
+/// Small plans share a block of 4 MiB in each kind of memory: the device's and the host's. What is
+/// larger has its own, and each block wastes less than what did not fit: at most half of what is held.
+#[test]
+fn memory_taken_is_near_what_the_plan_says() {
+    const BLOCK: u64 = 4 << 20;
+    let mut device = Device::new();
+    for side in [16, 512] {
+        let heights = field(side, side, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
+        let scene = under_sky(heights, Border::Plane);
+        let plan = plan::picture(&scene, &Quality::default(), &device.limits(), Picture::default())
+            .expect("a plan");
+        let needed = plan.internal_bytes();
+        let gpu = device.gpu.as_mut().expect("alive");
+        let renderer = Renderer::new(gpu.host(), plan, 1).expect("a renderer");
+        let taken = renderer.device_bytes();
+        renderer.destroy();
+        println!("{side}²: {needed} bytes needed, {taken} taken");
+        assert!(taken >= needed && taken <= 2 * needed + 2 * BLOCK, "{needed} {taken}");
     }
 }
