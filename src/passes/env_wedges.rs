@@ -29,7 +29,7 @@ pub(crate) fn plan(
     let kept = environment.rows_above_ground(border) as u32;
     let texels = u64::from(width) * u64::from(kept);
     let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
-    builder.pass(
+    let pass = builder.pass(
         &shaders::ENV_WEDGES,
         "",
         format!(
@@ -43,4 +43,5 @@ pub(crate) fn plan(
         texels * 16 + u64::from(azimuths) * u64::from(kept) * 48,
         texels,
     );
+    pass.azimuths = 0..azimuths;
 }

@@ -11,7 +11,7 @@ pub(crate) fn plan(
     [heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
-    builder.pass(
+    let pass = builder.pass(
         &shaders::HORIZON_MARCH,
         part,
         format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
@@ -22,4 +22,5 @@ pub(crate) fn plan(
         axis.samples() * u64::from(batch.count) * 8,
         axis.samples() * u64::from(batch.count),
     );
+    pass.azimuths = batch.azimuths();
 }

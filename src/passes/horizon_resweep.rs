@@ -63,5 +63,6 @@ pub(crate) fn plan(
         batch.line_samples * 8,
         batch.line_samples,
     );
+    pass.azimuths = batch.azimuths();
     pass.reach = Some(Reach::Lines(axis, sweep.line_shift));
 }

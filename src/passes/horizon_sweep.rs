@@ -76,7 +76,7 @@ fn run(
     let lines = batch.most_lines;
     let value_bytes = if images.occluders.is_some() { 2 } else { 0 }
         + if images.slopes.is_some() { u64::from(sweep.slope_format) * 4 % 6 } else { 0 };
-    builder.pass(
+    let pass = builder.pass(
         &shaders::HORIZON_SWEEP,
         part,
         if again {
@@ -121,4 +121,5 @@ fn run(
         if again { u64::from(batch.layers) * 32 } else { batch.line_samples * (4 + value_bytes) },
         if again { 0 } else { batch.line_samples },
     );
+    pass.azimuths = batch.azimuths();
 }

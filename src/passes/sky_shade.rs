@@ -63,5 +63,6 @@ pub(crate) fn plan(
         axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );
+    pass.azimuths = batch.azimuths();
     pass.indirect = images.edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));
 }

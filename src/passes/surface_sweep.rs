@@ -13,7 +13,7 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let group_size = 8;
-    builder.pass(
+    let pass = builder.pass(
         &shaders::SURFACE_SWEEP,
         part,
         format!("exact horizons of {} azimuths along {}", batch.count, axis.name()),
@@ -29,4 +29,5 @@ pub(crate) fn plan(
         batch.line_samples * 4 + axis.samples() * u64::from(batch.count) * 4,
         batch.line_samples,
     );
+    pass.azimuths = batch.azimuths();
 }

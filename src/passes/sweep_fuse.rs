@@ -42,7 +42,7 @@ pub(crate) fn plan(
         ("horizon_angles", angles),
     ];
     bound.extend(distances.map(|d| ("horizon_distances", d)));
-    builder.pass(
+    let pass = builder.pass(
         &shaders::SWEEP_FUSE,
         part,
         "from the lines back to the samples",
@@ -67,4 +67,5 @@ pub(crate) fn plan(
         axis.samples() * u64::from(batch.count) * (8 + sweep.lattice_bytes()),
         axis.samples() * u64::from(batch.count),
     );
+    pass.azimuths = batch.azimuths();
 }

@@ -62,6 +62,13 @@ pub struct Batch {
     pub is_first: bool,
 }
 
+impl Batch {
+    /// Their positions in the buffer "azimuths".
+    pub fn azimuths(&self) -> std::ops::Range<u32> {
+        self.first..self.first + self.count
+    }
+}
+
 /// Sorts azimuths by octant: one axis after the other, directions that share neighbours together.
 /// Returns the order, as positions in the list given.
 pub(crate) fn sort(azimuths: &mut Vec<Azimuth>) -> Vec<u32> {

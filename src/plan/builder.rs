@@ -91,6 +91,7 @@ impl Builder {
             constants: constants.to_vec(),
             push,
             bindings,
+            azimuths: 0..0,
             bytes,
             samples,
             reach: None,
@@ -133,6 +134,18 @@ impl Plan {
         limits: &Limits,
     ) -> Result<Plan> {
         let Builder { resources, mut passes, edit_passes } = builder;
+        let all = edit_passes.iter().flatten().chain(&passes);
+        for pass in all {
+            let binds = pass.shader.bindings.iter().zip(&pass.bindings);
+            let reads = binds.filter(|(b, id)| b.name == "azimuths" && id.is_some()).count() > 0;
+            assert!(
+                pass.azimuths.is_empty() != reads && pass.azimuths.end as usize <= azimuths.len(),
+                "{}: azimuths {:?} of {}",
+                pass.label(),
+                pass.azimuths,
+                azimuths.len()
+            );
+        }
         let mut edit_passes = edit_passes.unwrap_or_default();
         place_barriers(&mut passes);
         place_barriers(&mut edit_passes);

@@ -1,4 +1,6 @@
-use super::{Pass, Plan, ResourceId};
+use std::ops::Range;
+
+use super::{Azimuth, Pass, Plan, ResourceId};
 
 impl Plan {
     /// Passes that must run after a frame of `before`, by position, for the same outputs as if all
@@ -13,16 +15,23 @@ impl Plan {
         if self.resources != before.resources || !self.has_passes_of(before) {
             return (0..count).collect();
         }
-        let azimuths = self.find("azimuths").filter(|_| self.azimuths != before.azimuths);
-        let is_new = |id: ResourceId| changed.contains(&id) || azimuths == Some(id);
+        let is_new = |id: ResourceId| changed.contains(&id);
         let mut runs: Vec<bool> = (0..count)
             .map(|i| {
                 let (pass, old) = (&self.passes[i], &before.passes[i]);
-                pass.push != old.push || pass.groups != old.groups || pass.reads().any(is_new)
+                pass.push != old.push
+                    || pass.groups != old.groups
+                    || self.azimuths_of(pass) != before.azimuths_of(old)
+                    || pass.reads().any(is_new)
             })
             .collect();
         self.add_followers(&mut runs);
         (0..count).filter(|i| runs[*i]).collect()
+    }
+
+    fn azimuths_of(&self, pass: &Pass) -> Option<&[Azimuth]> {
+        let Range { start, end } = pass.azimuths;
+        self.azimuths.get(start as usize..end as usize)
     }
 
     /// Adds to the passes that run those that must because of them.
@@ -119,6 +128,23 @@ mod tests {
             names(&after, &needed),
             ["env_wedges", "env_tables", "sky_shade", "light_resolve"]
         );
+    }
+
+    #[test]
+    fn a_sun_that_moves_within_its_octant_is_swept_alone() {
+        let mut scene = scene();
+        let before = plan(&scene, true);
+        scene.lights.suns[0].azimuth_rad += 0.01;
+        let after = plan(&scene, true);
+        assert!(after.azimuths != before.azimuths);
+        let needed = after.passes_after(&before, &[]);
+        assert_eq!(
+            names(&after, &needed),
+            ["light_resolve", "horizon_sweep", "sun_shade", "light_resolve"]
+        );
+        for i in needed.iter().map(|i| &after.passes[*i]).filter(|p| p.name() == "horizon_sweep") {
+            assert!(i.part.starts_with("sun1"), "{}", i.label());
+        }
     }
 
     #[test]

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use super::Reach;
 use crate::gpu::shaders::Shader;
 
@@ -23,6 +25,8 @@ pub struct Pass {
     /// What each of the shader's bindings is, in their order; none where its constants leave the
     /// binding unused.
     pub bindings: Vec<Option<ResourceId>>,
+    /// Which of [`Plan::azimuths`](super::Plan::azimuths) it reads; none where it does not bind them.
+    pub azimuths: Range<u32>,
     /// Bytes that it must at least read and write.
     pub bytes: u64,
     /// Samples (or texels) it works on, for rates.

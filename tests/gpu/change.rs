@@ -155,3 +155,29 @@ fn two_changes_before_a_recording_are_both_drawn() {
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
     gpu.end(frame);
 }
+
+/// The sky's horizons and the environment's wedges have azimuths of their own in the same buffer.
+#[test]
+fn a_sun_that_moves_a_little_is_swept_alone() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, true);
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let before = bits(gpu, &frame);
+    scene.lights.suns[0].azimuth_rad += 0.01;
+    let plan = planned(gpu, &scene, true);
+    let passes = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    let labels: Vec<String> = passes.iter().map(|p| frame.plan().passes[*p].label()).collect();
+    assert!(labels.iter().any(|l| l.starts_with("horizon_sweep sun1")), "{labels:?}");
+    for not in ["horizon_sweep sky", "horizon_sweep sun2", "env_", "sky_shade"] {
+        assert!(!labels.iter().any(|l| l.starts_with(not)), "{not} in {labels:?}");
+    }
+    gpu.draw_passes(&mut frame, &passes).expect("drawn");
+    let moved = bits(gpu, &frame);
+    assert!(moved != before, "the sun has moved");
+    assert!(moved == from_nothing(gpu, &scene, true));
+    gpu.end(frame);
+}
