@@ -153,31 +153,46 @@ impl Headless {
     /// # Errors
     /// `record`'s own, or the device's.
     pub fn run(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
+        self.run_all([record])
+    }
+
+    /// Runs each of `records` in a command buffer of its own, in order but submitted as one, and waits
+    /// once, for all: frames in flight.
+    ///
+    /// # Errors
+    /// A record's own, before anything has run, or the device's.
+    pub fn run_all<R: FnOnce(vk::CommandBuffer) -> Result<()>>(
+        &self,
+        records: impl IntoIterator<Item = R, IntoIter: ExactSizeIterator>,
+    ) -> Result<()> {
         let device = &self.host.device;
+        let records = records.into_iter();
         let allocate = vk::CommandBufferAllocateInfo::default()
             .command_pool(self.pool)
-            .command_buffer_count(1);
+            .command_buffer_count(records.len() as u32);
         let begin = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: pool, queue and device are ours; the buffer is freed after the queue is idle.
+        // SAFETY: pool, queue and device are ours; the buffers are freed after the queue is idle.
         unsafe {
             let buffers = device
                 .allocate_command_buffers(&allocate)
                 .map_err(failed("taking a command buffer"))?;
-            let done = device
-                .begin_command_buffer(buffers[0], &begin)
-                .map_err(failed("recording"))
-                .and_then(|()| record(buffers[0]))
-                .and_then(|()| device.end_command_buffer(buffers[0]).map_err(failed("recording")))
-                .and_then(|()| {
-                    let commands =
-                        [vk::CommandBufferSubmitInfo::default().command_buffer(buffers[0])];
-                    let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
-                    device
-                        .queue_submit2(self.queue, &submit, vk::Fence::null())
-                        .and_then(|()| device.queue_wait_idle(self.queue))
-                        .map_err(failed("running commands"))
-                });
+            let recorded = records.zip(&buffers).try_for_each(|(record, &commands)| {
+                device.begin_command_buffer(commands, &begin).map_err(failed("recording"))?;
+                record(commands)?;
+                device.end_command_buffer(commands).map_err(failed("recording"))
+            });
+            let done = recorded.and_then(|()| {
+                let commands: Vec<_> = buffers
+                    .iter()
+                    .map(|b| vk::CommandBufferSubmitInfo::default().command_buffer(*b))
+                    .collect();
+                let submit = [vk::SubmitInfo2::default().command_buffer_infos(&commands)];
+                device
+                    .queue_submit2(self.queue, &submit, vk::Fence::null())
+                    .and_then(|()| device.queue_wait_idle(self.queue))
+                    .map_err(failed("running commands"))
+            });
             device.free_command_buffers(self.pool, &buffers);
             done
         }

@@ -65,7 +65,8 @@ pub struct Timing {
 }
 
 /// Records a plan into command buffers of a device that it borrows. Makes every resource when it is
-/// made; recording allocates nothing, submits nothing and waits for nothing.
+/// made; recording takes nothing from the device, submits nothing and waits for nothing. (It takes
+/// a little memory of the host, for barriers and descriptor writes, and gives it back.)
 ///
 /// The plan's internal images serve all slots: command buffers of different slots must run one after
 /// the other on one queue (which a queue does by itself: the recording begins with the barrier).

@@ -7,6 +7,7 @@ mod contract;
 mod edits;
 mod embedding;
 mod extremes;
+mod flight;
 mod forms;
 mod goldens;
 mod pruned;

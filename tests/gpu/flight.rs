@@ -1,0 +1,111 @@
+//! Frames in flight: several command buffers under way at once, waited for once. Synchronisation
+//! validation looks from one to the next.
+
+use ash::vk;
+use ridgelight::Result;
+use ridgelight::gpu::{Frame, Headless, Renderer};
+use ridgelight::measure::fractal::fractal;
+use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::{Border, Quality, Scene, Sun};
+
+use crate::{Device, under_sky};
+
+/// What a command buffer is to hold.
+type Record<'a> = Box<dyn FnOnce(vk::CommandBuffer) -> Result<()> + 'a>;
+
+fn scene(side: usize, seed: u64) -> Scene {
+    let mut scene = under_sky(fractal(side, seed).expect("a field"), Border::Plane);
+    scene.lights.suns = vec![Sun {
+        azimuth_rad: 2.0,
+        elevation_rad: 0.3,
+        diameter_rad: 0.02,
+        irradiance: [1.0, 0.9, 0.8],
+    }];
+    scene
+}
+
+fn planned(gpu: &Headless, scene: &Scene) -> Plan {
+    let quality = Quality { azimuths: 8, sun_azimuths: 2, ..Quality::default() };
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    plan::picture(scene, &quality, &gpu.report().limits, wanted).expect("a plan")
+}
+
+fn frame(gpu: &mut Headless, scene: &Scene) -> Frame {
+    let plan = planned(gpu, scene);
+    gpu.frame(plan, &[scene.field.heights_m()]).expect("a frame")
+}
+
+fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
+    let count = frame.plan().outputs().count();
+    let all = (0..count).map(|o| gpu.pixels(frame, o).expect("pixels").values);
+    all.flatten().map(f32::to_bits).collect()
+}
+
+#[test]
+fn two_slots_in_flight_draw_what_each_draws_alone() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let scenes = [scene(48, 1), scene(48, 2)];
+    let mut alone = Vec::new();
+    let mut frames = Vec::new();
+    for scene in &scenes {
+        let mut drawn = frame(gpu, scene);
+        gpu.draw(&mut drawn).expect("drawn");
+        alone.push(bits(gpu, &drawn));
+        gpu.end(drawn);
+        frames.push(frame(gpu, scene));
+    }
+    assert!(alone[0] != alone[1]);
+    // Heights alone differ: one plan does for both, and its own images serve both in turn.
+    let plan = planned(gpu, &scenes[0]);
+    let passes = plan.passes.len();
+    let mut renderer = Renderer::new(gpu.host(), plan, 2).expect("a renderer");
+    for _ in 0..2 {
+        let renderer = std::cell::RefCell::new(&mut renderer);
+        let records = [0, 1].map(|slot| {
+            let (inputs, outputs) = (frames[slot].inputs(), frames[slot].outputs());
+            let renderer = &renderer;
+            move |commands| renderer.borrow_mut().record(commands, slot, &inputs, &outputs)
+        });
+        gpu.run_all(records).expect("recorded and run");
+        let renderer = renderer.into_inner();
+        for (slot, (frame, alone)) in frames.iter().zip(&alone).enumerate() {
+            assert!(bits(gpu, frame) == *alone, "slot {slot}");
+            if gpu.report().timestamp_period_ns > 0.0 {
+                assert_eq!(renderer.timings(slot).map(|t| t.len()), Some(passes), "slot {slot}");
+            }
+        }
+    }
+    renderer.destroy();
+    frames.into_iter().for_each(|frame| gpu.end(frame));
+}
+
+/// A size that changes is a new plan: its renderer draws beside the old one, whose last frame is
+/// still under way, and goes on when that is gone.
+#[test]
+fn a_new_size_is_drawn_beside_the_old_one() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frames = [frame(gpu, &scene(40, 1)), frame(gpu, &scene(57, 1))];
+    let mut alone = Vec::new();
+    for frame in &mut frames {
+        gpu.draw(frame).expect("drawn");
+        alone.push(bits(gpu, frame));
+    }
+    frames.into_iter().for_each(|frame| gpu.end(frame));
+
+    let mut old = frame(gpu, &scene(40, 1));
+    let mut new = frame(gpu, &scene(57, 1));
+    let records = [&mut old, &mut new].map(|frame| -> Record<'_> {
+        Box::new(|commands| {
+            let (inputs, outputs) = (frame.inputs(), frame.outputs());
+            frame.renderer().record(commands, 0, &inputs, &outputs)
+        })
+    });
+    gpu.run_all(records).expect("recorded and run");
+    assert!([bits(gpu, &old), bits(gpu, &new)] == alone[..]);
+    gpu.end(old);
+    gpu.draw(&mut new).expect("drawn");
+    assert!(bits(gpu, &new) == alone[1]);
+    gpu.end(new);
+}
