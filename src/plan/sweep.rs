@@ -282,7 +282,11 @@ impl Sweep {
     /// Layers of the lattice that one azimuth takes.
     pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
         match self {
-            Sweep::Lines(_) => self.lines(azimuth, axis).div_ceil(32),
+            // Whole groups: those of a line beyond the last are swept, too.
+            Sweep::Lines(lines) => {
+                let group_lines = 4 * lines.group_size;
+                self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32
+            }
             Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),
         }

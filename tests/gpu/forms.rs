@@ -108,3 +108,22 @@ fn packed_entries_err_by_their_rounding() {
     let worst = exact.iter().zip(&half).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
     assert!(worst > 0.0 && worst <= 0.5 * 2.0_f32.powi(-11) * 1.01, "f16 {worst}");
 }
+
+/// A GPU's plans have groups of 32 invocations, 128 lines: on whatever driver this is, they give the
+/// same bits as a processor's, in every layer and for lines that are done again.
+#[test]
+fn wide_groups_and_narrow_ones_are_the_same_to_the_bit() {
+    let mut gpu = Device::new();
+    let limits = gpu.limits();
+    let narrow = Limits { is_cpu: true, ..limits };
+    let wide = Limits { is_cpu: false, ..limits };
+    let rough = fractal(150, 9).expect("a field");
+    let deep = dome_and_wall(150);
+    for (field, hull) in [(&rough, Hull::Auto), (&rough, Hull::Private), (&deep, Hull::Shared)] {
+        let quality = Quality { azimuths: 16, hull, ..Quality::default() };
+        let a = gpu.horizons_within(field, Border::Plane, &quality, &narrow);
+        let b = gpu.horizons_within(field, Border::Plane, &quality, &wide);
+        let differing = a.iter().zip(&b).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!(differing, 0, "{hull:?}");
+    }
+}
