@@ -15,6 +15,8 @@ use serde_json::Value;
 type Result<T> = std::result::Result<T, String>;
 
 const RESULTS: &str = "benches/results";
+/// A real field of more than a million samples; others lie beside it.
+const ACCURACY: &str = "accuracy_N44W072.txt";
 
 fn text(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
@@ -164,43 +166,16 @@ fn forms() -> Result<String> {
     Ok(out)
 }
 
-/// The first table of every accuracy_*.txt, without its times.
+/// The tables of [`ACCURACY`], as examples/accuracy printed them.
 fn accuracy() -> Result<String> {
-    let folder = Path::new(RESULTS);
-    let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
-    paths.retain(|p| {
-        let name = p.file_name().unwrap_or_default().to_string_lossy();
-        name.starts_with("accuracy_") && name.ends_with(".txt")
-    });
-    paths.sort();
-    if paths.is_empty() {
-        return Err(wrong(folder, "no accuracy_*.txt", "one, as tools/bench writes it"));
-    }
-    let mut parts = Vec::new();
-    for path in &paths {
-        let text = text(path)?;
-        let table: Vec<Vec<&str>> = text
-            .lines()
-            .skip_while(|l| !l.starts_with('|'))
-            .take_while(|l| l.starts_with('|'))
-            .map(|l| l.trim_matches('|').split('|').map(str::trim).collect())
-            .collect();
-        let about = text.lines().find(|l| l.contains(" samples, "));
-        let (Some(head), Some(about)) = (table.first(), about) else {
-            return Err(wrong(path, "no table", "the text of examples/accuracy"));
-        };
-        let kept = head.iter().take_while(|name| !name.ends_with(" ms")).count();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let name = name.trim_start_matches("accuracy_");
-        let mut part = format!("{name}: {about}{}\n\n", made(path)?);
-        for row in &table {
-            let cells = row.get(..kept).ok_or_else(|| wrong(path, "a short row", "a whole one"))?;
-            writeln!(part, "| {} |", cells.join(" | ")).unwrap();
-        }
-        parts.push(part);
-    }
-    Ok(parts.join("\n"))
+    let path = Path::new(RESULTS).join(ACCURACY);
+    let text = text(&path)?;
+    let (_, tables) = text
+        .split_once('\n')
+        .filter(|(_, tables)| tables.contains(" samples, ") && tables.contains("\n| "))
+        .ok_or_else(|| wrong(&path, "no table", "the text of examples/accuracy"))?;
+    let name = ACCURACY.trim_start_matches("accuracy_").trim_end_matches(".txt");
+    Ok(format!("{name}{}: {}\n", made(&path)?, tables.trim()))
 }
 
 /// `readme` with what stands between the marks of `name` replaced.

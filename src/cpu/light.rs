@@ -216,19 +216,21 @@ pub fn environment(
 /// # Panics
 /// When `row` or `col` lies outside the field.
 pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment) -> [f64; 3] {
-    environment_on(oracle, row, col, &[diffuse_at(oracle, row, col)], env)[0]
+    let parts = ENVIRONMENT_STRIPS.div_ceil(env.width());
+    environment_on(oracle, row, col, &[diffuse_at(oracle, row, col)], env, parts)[0]
 }
 
-/// [`environment`] on other receivers at the sample than the diffuse one of its normal.
+/// [`environment`] on other receivers at the sample than the diffuse one of its normal, each column of
+/// texels looked along at the centres of so many equal parts.
 pub(super) fn environment_on(
     oracle: &Oracle,
     row: usize,
     col: usize,
     receivers: &[Receiver],
     env: &Environment,
+    parts: usize,
 ) -> Vec<[f64; 3]> {
     let (width, height) = (env.width(), env.height());
-    let parts = ENVIRONMENT_STRIPS.div_ceil(width);
     let strips = width * parts;
     let mut sums = vec![[0.0; 3]; receivers.len()];
     for strip in 0..strips {

@@ -63,7 +63,7 @@ impl Oracle<'_> {
         let [_, across] = self.cells();
         let (row, col) = (triangle / 2 / across, triangle / 2 % across);
         let (below, right) = ((row + 1) % self.field().rows(), (col + 1) % self.field().cols());
-        let between = if triangle % 2 == 0 { [row, right] } else { [below, col] };
+        let between = if triangle.is_multiple_of(2) { [row, right] } else { [below, col] };
         [[row, col], between, [below, right]]
     }
 
@@ -77,21 +77,23 @@ impl Oracle<'_> {
     pub fn stretches(&self, row: usize, col: usize, azimuth_rad: f64, seen: &mut Vec<Stretch>) {
         seen.clear();
         let field = self.field();
-        assert!(row < field.rows() && col < field.cols(), "sample (row {row}, column {col})");
-        let [rows, cols] = [field.rows() as i64, field.cols() as i64];
-        let [cells_down, cells_across] = self.cells().map(|n| n as i64);
-        let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
-        let (row, col) = (row as f64, col as f64);
-        let own_m = self.vertex(row, col);
-        let periodic = self.border() == Border::Periodic;
+        let (rows, cols) = (field.rows(), field.cols());
+        assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
         let [cell_x, cell_y] = field.cell_m();
+        let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
+        let here = [row as f64, col as f64];
+        let above_m = self.highest_m - self.vertex(here[0], here[1]);
+        let periodic = self.border() == Border::Periodic;
         let cap_m = PERIOD_CAP as f64 * (cols as f64 * cell_x).max(rows as f64 * cell_y);
+        // Crossing j with columns, rows, diagonals lies at j metres a line.
         let per_line = [cols_per_m, rows_per_m, rows_per_m - cols_per_m].map(|p| 1.0 / p.abs());
         let mut lines = [1.0; 3];
-        let (mut near, mut best) = (0.0, f64::NEG_INFINITY);
-        while !(periodic && near > cap_m)
-            && !(near > 0.0 && (self.highest_m - own_m) / near <= best)
-        {
+        let (mut near, mut reached) = (0.0, -FRAC_PI_2);
+        loop {
+            let nothing_higher = near > 0.0 && above_m / near <= reached.tan();
+            if nothing_higher || (periodic && near > cap_m) {
+                break;
+            }
             let crossings = [0, 1, 2].map(|i| lines[i] * per_line[i]);
             let far = crossings.into_iter().fold(f64::INFINITY, f64::min);
             for i in 0..3 {
@@ -100,45 +102,13 @@ impl Oracle<'_> {
                     lines[i] += 1.0;
                 }
             }
-            let middle = 0.5 * (near + far);
-            let (r, c) = (row + rows_per_m * middle, col + cols_per_m * middle);
-            let (cell_r, cell_c) = (r.floor(), c.floor());
-            let (mut in_r, mut in_c) = (cell_r as i64, cell_c as i64);
-            if periodic {
-                (in_r, in_c) = (in_r.rem_euclid(rows), in_c.rem_euclid(cols));
-            } else if !(0..cells_down).contains(&in_r) || !(0..cells_across).contains(&in_c) {
+            let Some(piece) = self.piece(here, [rows_per_m, cols_per_m], [near, far]) else {
                 break;
-            }
-            let lower = r - cell_r > c - cell_c;
-            let along = |down: f64, right: f64| {
-                if lower {
-                    [1.0 - down, down - right, right]
-                } else {
-                    [1.0 - right, right - down, down]
-                }
             };
-            let at_0 = along(row - cell_r, col - cell_c);
-            let ahead = along(rows_per_m, cols_per_m);
-            let per_m = [ahead[0] - 1.0, ahead[1], ahead[2]];
-            let triangle = 2 * (in_r * cells_across + in_c) as usize + usize::from(lower);
-            let heights = self.corners(triangle).map(|[r, c]| self.vertex(r as f64, c as f64));
-            let sum = |w: [f64; 3]| w[0] * heights[0] + w[1] * heights[1] + w[2] * heights[2];
-            let slope = sum(per_m);
-            // The first piece holds the sample: no rounding may lift it off.
-            let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - own_m };
-            let top = slope + rise_m / far;
-            if top > best {
-                // The surface is continuous: no piece begins above the largest slope before it.
-                seen.push(Stretch {
-                    low_rad: seen.last().map_or(-FRAC_PI_2, |last| last.high_rad),
-                    high_rad: top.atan(),
-                    triangle,
-                    rise_m,
-                    slope,
-                    span_m: [near, far],
-                    weights: [at_0, per_m],
-                });
-                best = top;
+            // The surface is continuous: no piece begins above the largest slope before it.
+            if piece.high_rad > reached {
+                seen.push(Stretch { low_rad: reached, ..piece });
+                reached = piece.high_rad;
             }
             near = far;
         }
@@ -147,5 +117,49 @@ impl Oracle<'_> {
         {
             last.high_rad = last.high_rad.max(0.0);
         }
+    }
+
+    /// The piece of surface between two distances from a sample, all of it taken as visible; none
+    /// outside the field. Between them lies no crossing.
+    fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<Stretch> {
+        let [near, far] = span_m;
+        let middle = 0.5 * (near + far);
+        let cell = [0, 1].map(|i| (here[i] + per_m[i] * middle).floor());
+        let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
+        let lower = down > right;
+        let samples = [self.field().rows(), self.field().cols()];
+        let cells = self.cells();
+        let at = match self.border() {
+            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(samples[i] as i64)),
+            Border::Plane | Border::Open => [0, 1].map(|i| cell[i] as i64),
+        };
+        if (0..2).any(|i| !(0..cells[i] as i64).contains(&at[i])) {
+            return None;
+        }
+        let triangle = 2 * (at[0] as usize * cells[1] + at[1] as usize) + usize::from(lower);
+        let weights_at = |down: f64, right: f64| {
+            if lower {
+                [1.0 - down, down - right, right]
+            } else {
+                [1.0 - right, right - down, down]
+            }
+        };
+        let at_0 = weights_at(here[0] - cell[0], here[1] - cell[1]);
+        let ahead = weights_at(per_m[0], per_m[1]);
+        let change = [ahead[0] - 1.0, ahead[1], ahead[2]];
+        let heights = self.corners(triangle).map(|[r, c]| self.vertex(r as f64, c as f64));
+        let sum = |w: [f64; 3]| w[0] * heights[0] + w[1] * heights[1] + w[2] * heights[2];
+        let slope = sum(change);
+        // The first piece holds the sample: no rounding may lift it off.
+        let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - self.vertex(here[0], here[1]) };
+        Some(Stretch {
+            low_rad: -FRAC_PI_2,
+            high_rad: (slope + rise_m / far).atan(),
+            triangle,
+            rise_m,
+            slope,
+            span_m,
+            weights: [at_0, change],
+        })
     }
 }

@@ -9,7 +9,7 @@ use crate::Result;
 /// How a device of our own is made.
 #[derive(Clone, Debug, Default)]
 pub struct HeadlessOptions {
-    /// Part of the device's name, or its number in [`devices`]; else the first that will do,
+    /// Part of the device's name, or its number in [`devices`](super::devices); else the first that will do,
     /// graphics processors before software.
     pub device: Option<String>,
     /// Requires VK_LAYER_KHRONOS_validation with synchronisation validation, and keeps its messages.

@@ -11,7 +11,7 @@ use crate::{Error, Result, passes};
 /// [`Plan::layer_azimuths`]) and, where asked, "horizon_distances" (metres, 0 where nothing is met).
 ///
 /// # Errors
-/// As [`picture`].
+/// As [`picture`](super::picture()).
 pub fn horizons(
     field: &HeightField,
     border: Border,

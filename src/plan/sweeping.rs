@@ -312,8 +312,8 @@ pub(super) fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Vec<
     }
 }
 
-/// The azimuths that [`horizons`] sweeps for a quality, radians counter-clockwise from east: 2πk/M,
-/// or in exact mode the grid vectors' own.
+/// The azimuths that [`horizons`](super::horizons()) sweeps for a quality, radians counter-clockwise
+/// from east: 2πk/M, or in exact mode the grid vectors' own.
 pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Vec<f64> {
     let count = quality.azimuths;
     match (quality.method, quality.lines) {

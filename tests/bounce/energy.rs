@@ -1,6 +1,7 @@
 //! Nothing is gained or lost that should not be.
 
 use ridgelight::cpu::bounce::Fineness;
+use ridgelight::cpu::light::sky;
 use ridgelight::scene::{Albedo, Border, Environment, Lights};
 
 use crate::{BORDERS, COARSE, field, reds, rough, under_sky};
@@ -21,6 +22,23 @@ fn a_flat_furnace_is_one() {
                     assert!((v - 1.0).abs() < 1e-14, "{rows} × {cols} {border:?} {v}");
                 }
             }
+        }
+    }
+}
+
+/// Bounce 0 is the sky of `cpu::light`, which has its own way to a horizon. Its m azimuths begin at 0, these
+/// between them, so both together are its 2m: this = 2·sky(2m) - sky(m), but for the scale to a whole
+/// hemisphere, e^(-m·asinh(1/slope)) at slopes up to 3, below 1e-9 for 64.
+#[test]
+fn bounce_0_is_the_sky_of_light() {
+    for border in BORDERS {
+        let field = rough(6, 7, [1.0, 1.5], 1.5);
+        let scene = under_sky(field.clone(), border, 1.0);
+        let ours = reds(&scene, 0, Fineness { azimuths: 64, ..COARSE }).remove(0);
+        for (i, ours) in ours.iter().enumerate() {
+            let theirs = |m| sky(&field, border, i / 7, i % 7, m);
+            let expected = 2.0 * theirs(128) - theirs(64);
+            assert!((ours - expected).abs() < 1e-9, "{border:?} {i}: {ours} {expected}");
         }
     }
 }

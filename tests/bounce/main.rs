@@ -2,6 +2,7 @@
 
 mod energy;
 mod grooves;
+mod paths;
 mod pits;
 mod profile;
 #[path = "../scenes/mod.rs"]

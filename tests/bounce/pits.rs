@@ -40,7 +40,7 @@ fn pit(rim: f64, alpha: f64) -> HeightField {
 fn the_closed_form_is_the_quadrature() {
     for (alpha, albedo, bounces, radiance) in VALUES {
         assert!(
-            (closed_form(alpha, f64::from(albedo), bounces as i32) - radiance).abs() < 1e-7,
+            (closed_form(alpha, f64::from(albedo), bounces) - radiance).abs() < 1e-7,
             "f32 of 0.9"
         );
     }
@@ -70,8 +70,8 @@ fn sky_gained(away: f64, rim: f64, alpha: f64) -> f64 {
 
 /// Bounces 0, 1, 2 and the limit at every sample of the inner half, within what the rim's staircase can
 /// do: directions that turn from pit (radiance L of the bounces before) to sky change a bounce by
-/// ρ (1 - L) of them, and what the whole pit is off by on average comes back with ρ (1 - s). Halving
-/// the cells over the rim halves the error.
+/// ρ (1 - L) of them, and what the whole pit is off by on average comes back with ρ (1 - s). Half
+/// the cells, half the error: order 1, ± 0.3 as the staircase is another one.
 #[test]
 fn a_pit_is_lit_as_its_closed_form() {
     for (alpha, albedo, limit) in [(0.8, 0.5_f32, 10), (1.2, 0.9_f32, 50)] {
@@ -85,33 +85,32 @@ fn a_pit_is_lit_as_its_closed_form() {
                 ((i / side) as f64 - middle).hypot((i % side) as f64 - middle)
             };
             let scene = under_sky(field, Border::Plane, albedo);
-            let fineness = Fineness { azimuths: 24, divisions: 1, strips: 1 };
+            let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
             let pictures = reds(&scene, limit, fineness);
             let inside: Vec<usize> = (0..side * side).filter(|i| away(*i) < rim - 0.01).collect();
             // No place can gain more than all it does not see.
             let gained = |i: usize| sky_gained(away(i), rim, alpha).min(1.0 - share);
             let gained_mean = inside.iter().map(|i| gained(*i)).sum::<f64>() / inside.len() as f64;
             let (mut before, mut off) = (0.0, 0.0);
-            let mut worst = [0.0_f64; 2];
+            let (mut squares, mut count, mut worst) = (0.0, 0.0, 0.0_f64);
             for (b, picture) in pictures.iter().enumerate() {
                 let expected = closed_form(alpha, rho, b as i32);
                 for &i in inside.iter().filter(|i| away(**i) < 0.5 * rim) {
                     let tolerance = rho * (gained(i) * (1.0 - before) + (1.0 - share) * off);
                     let error = (picture[i] - expected).abs();
                     assert!(error < tolerance, "{alpha} {rim} {b} {i}: {error} > {tolerance}");
-                    worst[0] = worst[0].max(error);
-                    worst[1] = worst[1].max(error / tolerance);
+                    worst = worst.max(error / tolerance);
+                    squares += error * error;
+                    count += 1.0;
                 }
                 off = rho * (gained_mean * (1.0 - before) + (1.0 - share) * off);
                 before = expected;
             }
-            println!(
-                "α {alpha}, rim {rim} cells: worst {:.2e}, error/tolerance {:.2}",
-                worst[0], worst[1]
-            );
-            worst[0]
+            let rms = f64::sqrt(squares / count);
+            println!("α {alpha}, rim {rim} cells: rms {rms:.2e}, worst {worst:.2} of tolerance");
+            rms
         });
         let order = (errors[0] / errors[1]).ln() / (12.5_f64 / 6.5).ln();
-        assert!(order > 0.75, "{order}");
+        assert!((order - 1.0).abs() < 0.3, "{order}");
     }
 }

@@ -22,7 +22,7 @@ fn stretches_fill_what_is_below_the_horizon() {
             let mut reached = -FRAC_PI_2;
             for stretch in &seen {
                 assert_eq!(stretch.low_rad, reached);
-                assert!(stretch.high_rad >= stretch.low_rad);
+                assert!(stretch.high_rad > stretch.low_rad);
                 reached = stretch.high_rad;
                 for share in [0.1, 0.5, 0.9] {
                     let elevation = stretch.low_rad + share * (stretch.high_rad - stretch.low_rad);

@@ -98,13 +98,13 @@ fn a_wall_hides_only_what_is_behind() {
 /// and the ball met by formula. n² directions miss up to their rim's share, about 4/n of the answer.
 #[test]
 fn a_slope_cuts_a_ball() {
-    let ramp = || field(25, 16, [1.0, 1.0], |_, c| 2.0 * (c as f64 - 6.0).max(0.0));
-    // Sample (12, 3) stands at (3, 12, 0).
+    let ramp = || field(15, 16, [1.0, 1.0], |_, c| 2.0 * (c as f64 - 6.0).max(0.0));
+    // Sample (7, 3) stands at (3, 7, 0).
     for (centre, radius) in [([4.0, 0.0, 3.0], 1.5), ([5.0, 1.5, 3.0], 2.0), ([1.0, 0.0, 0.5], 3.5)]
     {
-        let place = [3.0 + centre[0], 12.0 + centre[1], centre[2]];
-        let answer = direct(&under_ball(ramp(), Border::Plane, place, radius))[12 * 16 + 3];
-        let n = 400;
+        let place = [3.0 + centre[0], 7.0 + centre[1], centre[2]];
+        let answer = direct(&under_ball(ramp(), Border::Plane, place, radius))[7 * 16 + 3];
+        let n = 300;
         let mut sum = 0.0;
         for i in 0..n * n {
             let azimuth = (f64::from(i / n) + 0.5) / f64::from(n) * 2.0 * PI;
@@ -129,7 +129,7 @@ fn a_slope_cuts_a_ball() {
 fn direct_light_does_not_depend_on_divisions() {
     for border in BORDERS {
         let scene = under_ball(rough(4, 5, [1.0, 2.0], 2.0), border, [2.0, 3.0, 5.0], 1.0);
-        let fine = light(&scene, 0, Fineness { divisions: 3, ..FINE }).unwrap();
+        let fine = light(&scene, 0, Fineness { divisions: 2, ..FINE }).unwrap();
         for (a, b) in direct(&scene).iter().zip(red(&fine[0])) {
             // Heights between samples are rounded to f32.
             assert!((a - b).abs() < 1e-6 * a.max(1e-2), "{border:?} {a} {b}");
@@ -154,7 +154,7 @@ fn a_lobe_has_closed_forms() {
     };
     let flat = || field(5, 5, [1.0, 1.0], |_, _| 0.0);
     let ramp = || field(5, 5, [1.0, 1.0], |_, c| 0.5 * c as f64);
-    for exponent in [0.0, 1.0, 7.5, 100.0, 1e4] {
+    for exponent in [0.0, 1.0, 7.5, 1e4] {
         let whole = of(under_sky(flat(), Border::Plane, 0.0), exponent);
         assert!((whole - 0.5).abs() < 1e-5, "{exponent} {whole}");
         let mut lit = under_sky(ramp(), Border::Plane, 0.0);
@@ -178,18 +178,17 @@ fn a_lobe_has_closed_forms() {
     assert!((cut - expected).abs() < 1e-3, "{cut} {expected}");
 }
 
-/// The stated error is that of the coarser answer, so a fineness four times as high stays within it
-/// almost everywhere; here everywhere to twice it.
+/// The stated error is about that of the coarser answer, so the finer one's, against twice its fineness
+/// again, stays within it: by rms, as at single samples two answers may meet by chance.
 #[test]
 fn the_stated_error_holds_the_error() {
-    let mut scene = under_sky(rough(6, 6, [1.0, 1.0], 3.0), Border::Plane, 0.8);
+    let scene = under_sky(rough(6, 6, [1.0, 1.0], 3.0), Border::Plane, 0.8);
     let stated = truth(&scene, 2, Fineness { azimuths: 16, divisions: 1, strips: 4 }).unwrap();
     let finest = Fineness { azimuths: 64, divisions: 4, strips: 16 };
-    scene.lights.suns = Vec::new();
     let exact = light(&scene, 2, finest).unwrap();
-    for b in 0..=2 {
+    for (b, exact) in exact.iter().enumerate() {
         let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len() as f64).sqrt();
-        let (got, want) = (red(&stated.radiance[b]), red(&exact[b]));
+        let (got, want) = (red(&stated.radiance[b]), red(exact));
         let off: Vec<f64> = got.iter().zip(&want).map(|(a, b)| a - b).collect();
         let error = red(&stated.error[b]);
         println!("bounce {b}: off {:.2e}, stated {:.2e}", rms(&off), rms(&error));

@@ -126,3 +126,58 @@ fn field(
     let heights: Vec<f64> = (0..rows * cols).map(|i| h(i / cols, i % cols)).collect();
     HeightField::new(rows, cols, &heights, cell_m, None).unwrap()
 }
+
+/// How a picture with standard errors stands to a truth with stated errors.
+///
+/// Of each sample and channel, z = (|difference| - stated error, at least 0) / standard error.
+#[derive(Clone, Copy, Debug)]
+pub struct Agreement {
+    /// √(mean z²); 1 or less where both tell the truth.
+    pub rms: f64,
+    /// The largest z.
+    pub worst: f64,
+    /// z of the channel whose mean differs most: one shared bias shows here first.
+    pub mean: f64,
+    /// How many z there are.
+    pub count: usize,
+}
+
+impl Agreement {
+    /// `rounding` is the share of a value that the picture's arithmetic may lose.
+    pub fn of(
+        picture: &[[f64; 3]],
+        standard_error: &[[f64; 3]],
+        truth: &[[f64; 3]],
+        stated: &[[f64; 3]],
+        rounding: f64,
+    ) -> Self {
+        let z = |off: f64, allowed: f64, sigma: f64| match (off.abs() - allowed).max(0.0) {
+            0.0 => 0.0,
+            beyond => beyond / sigma,
+        };
+        let (mut squares, mut worst, mut mean) = (0.0, 0.0_f64, 0.0_f64);
+        for i in 0..3 {
+            let (mut off_sum, mut allowed_sum, mut variance) = (0.0, 0.0, 0.0);
+            for (at, got) in picture.iter().enumerate() {
+                let off = got[i] - truth[at][i];
+                let allowed = stated[at][i] + rounding * truth[at][i].abs();
+                let here = z(off, allowed, standard_error[at][i]);
+                squares += here * here;
+                worst = worst.max(here);
+                off_sum += off;
+                allowed_sum += allowed;
+                variance += standard_error[at][i].powi(2);
+            }
+            mean = mean.max(z(off_sum, allowed_sum, variance.sqrt()));
+        }
+        let count = 3 * picture.len();
+        Self { rms: (squares / count as f64).sqrt(), worst, mean, count }
+    }
+
+    /// Whether chance explains it: rms within four of its own standard deviations 1/√(2·count) of 1 (noise
+    /// whose standard error is itself an estimate), the mean within 4 and the worst within 6.
+    pub fn holds(&self) -> bool {
+        let rms = 1.0 + 4.0 / (2.0 * self.count as f64).sqrt();
+        self.rms <= rms && self.worst <= 6.0 && self.mean <= 4.0
+    }
+}

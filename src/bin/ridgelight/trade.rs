@@ -26,6 +26,9 @@ use report::Report;
 use rig::Rig;
 use truth::Truth;
 
+/// Share of the budget that one setting may take.
+const DEAREST: f64 = 0.1;
+
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
 pub fn run(args: &TradeArgs) -> Result<Outcome> {
@@ -212,8 +215,8 @@ fn walk(
     let mut slow = Vec::new();
     let walked = loop {
         let Some(place) = walk.search.next() else { break Ok(()) };
-        if frame.is_some() && rig.left() <= 0.0 {
-            walk.out_of_time = true;
+        walk.out_of_time |= frame.is_some() && rig.left() <= 0.0;
+        if walk.out_of_time {
             break Ok(());
         }
         bar.set_message(format!(
@@ -248,7 +251,7 @@ fn visit(
         walk.search.give_up(place, too_dear);
         walk.given_up.push((place, why));
     };
-    let plan = match rig.plan(quality) {
+    let plan = match rig.plan(rig.scene, quality) {
         Ok(plan) => plan,
         Err(error) if baseline.is_some() => {
             give_up(walk, setup::in_flags(error).to_string(), false);
@@ -259,13 +262,18 @@ fn visit(
     if baseline.is_some() {
         // Two draws at least: one to warm up, one that counts.
         let needs = 2.0 * expected_s(rig, walk, place, quality, plan.azimuths.len(), slow)?;
-        if needs > rig.left() {
+        let most = DEAREST * rig.budget.as_secs_f64();
+        if needs > most {
             let why = format!(
-                "would take about {} s, {} s of the budget were left",
+                "would take about {} s, more than {} s, a tenth of the budget",
                 truth::digits(needs),
-                truth::digits(rig.left().max(0.0))
+                truth::digits(most)
             );
             give_up(walk, why, true);
+            return Ok(());
+        }
+        if needs > rig.left() {
+            walk.out_of_time = true;
             return Ok(());
         }
     }
@@ -310,7 +318,7 @@ fn expected_s(
     let each = match slow.iter().find(|(known, _)| *known == form) {
         Some((_, each)) => *each,
         None => {
-            let each = rig.seconds_per_azimuth(quality)?;
+            let each = rig.seconds_per_azimuth(rig.scene, quality)?;
             slow.push((form, each));
             each
         }

@@ -108,8 +108,7 @@ fn pruning_loses_no_point_of_a_monotone_frontier() {
         let search = walk(&steps, &model, floor, usize::MAX);
         assert_eq!(search.breaks(), [], "seed {seed}");
         assert_eq!(lost(&steps, &model, floor, &search), 0, "seed {seed}");
-        for place in 0..steps.len() {
-            let value = model(&steps[place]);
+        for (place, value) in steps.iter().map(&model).enumerate() {
             match search.skip(place) {
                 Some(Skip::Covered { by, dearer_than, worse_than }) => {
                     let of = |i: usize| search.value(i).unwrap();

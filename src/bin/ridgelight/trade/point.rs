@@ -13,9 +13,9 @@ use super::rig::Rig;
 use super::truth::{Distance, Truth};
 
 /// Draws after one that warms up: fewer, which is said, once they take this share of the budget.
-const DRAWS: usize = 9;
+const DRAWS: usize = 7;
 const FEWEST: usize = 3;
-const TIMING: f64 = 0.01;
+const TIMING: f64 = 0.005;
 const COMPILING_S: f64 = 20.0;
 /// Longest side of a picture in the report, pixels.
 const PICTURE_SIDE: usize = 240;

@@ -37,12 +37,12 @@ impl<'a> Rig<'a> {
         self.budget.as_secs_f64() - self.spent()
     }
 
-    pub fn plan(&self, quality: &Quality) -> Result<Plan> {
-        plan::picture(self.scene, quality, &self.limits, Picture::default())
+    pub fn plan(&self, scene: &Scene, quality: &Quality) -> Result<Plan> {
+        plan::picture(scene, quality, &self.limits, Picture::default())
     }
 
     pub fn frame(&mut self, quality: &Quality) -> Result<Frame> {
-        let plan = self.plan(quality)?;
+        let plan = self.plan(self.scene, quality)?;
         let contents: Vec<&[f32]> = self.contents.iter().map(Vec::as_slice).collect();
         self.gpu.frame(plan, &contents)
     }
@@ -58,9 +58,12 @@ impl<'a> Rig<'a> {
         Ok(planes)
     }
 
-    /// Draws once: the radiance.
-    pub fn draw_once(&mut self, quality: &Quality) -> Result<Vec<Vec<f32>>> {
-        let mut frame = self.frame(quality)?;
+    /// The radiance of another scene of the same field, drawn once.
+    pub fn draw_once(&mut self, scene: &Scene, quality: &Quality) -> Result<Vec<Vec<f32>>> {
+        let plan = self.plan(scene, quality)?;
+        let contents = setup::contents(scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let mut frame = self.gpu.frame(plan, &contents)?;
         let drawn = self.gpu.draw(&mut frame).and_then(|_| self.radiance(&frame));
         self.gpu.end(frame);
         drawn
@@ -68,10 +71,10 @@ impl<'a> Rig<'a> {
 
     /// Seconds that an azimuth of the whole field will take, from drawing a piece of its middle: in
     /// proportion to the samples, and by brute force to the length of the rays.
-    pub fn seconds_per_azimuth(&mut self, quality: &Quality) -> Result<f64> {
-        let piece = verify::piece(self.scene)?;
+    pub fn seconds_per_azimuth(&mut self, scene: &Scene, quality: &Quality) -> Result<f64> {
+        let piece = verify::piece(scene)?;
         let few = Quality { azimuths: 8, sun_azimuths: 2, ..*quality };
-        let plan = plan::picture(&piece, &few, &self.limits, Picture::default())?;
+        let plan = self.plan(&piece, &few)?;
         let azimuths = plan.azimuths.len() as f64;
         let contents = setup::contents(&piece);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();

@@ -12,10 +12,10 @@ use ridgelight::{Error, Result};
 use super::rig::Rig;
 
 /// Share of the budget that drawing the truth may take, and probing it.
-const DRAWING: f64 = 0.35;
+const DRAWING: f64 = 0.4;
 const PROBING: f64 = 0.1;
 /// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, elevations.
-const MOST: [u32; 3] = [512, 128, 4096];
+const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
@@ -109,40 +109,57 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Our own: brute force where it fits into its share of the budget, else the densest sweep.
+    /// Our own: the suns, then all else, each by brute force where that fits into its share of the
+    /// budget, else by the densest sweep. Light adds up.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
-        let share = DRAWING * rig.budget.as_secs_f64();
-        let dense = Quality {
-            method: Method::Sweep,
-            lines: Lines::QuarterCell,
-            fuse: Fuse::Aimed,
-            ..Quality::default()
+        let scene = rig.scene;
+        let without = |sky: bool| {
+            let mut lights = scene.lights.clone();
+            if sky {
+                (lights.sky, lights.environment) = (None, None);
+            } else {
+                lights.suns.clear();
+            }
+            Scene { lights, ..scene.clone() }
         };
-        let brute = Quality { method: Method::Brute, ..dense };
-        let (quality, half) = match fitting(rig, &brute, BRUTE_HALVINGS, share)? {
-            Some(fits) => fits,
-            None => fitting(rig, &dense, HALVINGS, share)?
-                .unwrap_or((counts(&dense, HALVINGS), counts(&dense, HALVINGS + 1))),
-        };
-        let planes = rig.draw_once(&quality)?;
-        let field = &rig.scene.field;
+        let lights = &scene.lights;
+        let has_sky = lights.sky.is_some() || lights.environment.is_some();
+        let mut parts = Vec::new();
+        if !lights.suns.is_empty() {
+            parts.push(("suns", without(true)));
+        }
+        if has_sky {
+            parts.push(("sky", without(false)));
+        }
+        let mut share = DRAWING * rig.budget.as_secs_f64();
+        let (mut whole, mut halved, mut about) = (Vec::new(), Vec::new(), Vec::new());
+        let last = parts.len() - 1;
+        for (i, (name, part)) in parts.iter().enumerate() {
+            let begun = Instant::now();
+            let [quality, half] =
+                affordable(rig, part, if i < last { 0.5 * share } else { share })?;
+            add(&mut whole, rig.draw_once(part, &quality)?);
+            add(&mut halved, rig.draw_once(part, &half)?);
+            about.push(format!("{name} by {}", used(rig, part, &quality)?));
+            share -= begun.elapsed().as_secs_f64();
+        }
+        let field = &scene.field;
         let mut truth = Self {
-            planes,
+            planes: whole,
             cols: field.cols(),
             rows: field.rows(),
-            about: about(rig, &quality)?,
+            about: about.join("; "),
             quality_of: String::new(),
             own_error: 0.0,
             noise: 0.0,
         };
-        let halved = rig.draw_once(&half)?;
         let steps = truth.distance(&halved)?.rmse;
-        let (probes, off) = truth.probe(rig.scene, rig.budget.mul_f64(PROBING));
+        let (probes, off) = truth.probe(scene, rig.budget.mul_f64(PROBING));
         truth.own_error = steps.max(off);
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
              halves as counts double; {probes} samples are {} (RMSE) off the oracle in f64; the \
-             larger counts",
+             larger of the two is taken",
             percent(steps),
             percent(off)
         );
@@ -233,34 +250,55 @@ fn counts(quality: &Quality, halvings: u32) -> Quality {
     Quality { azimuths, sun_azimuths, table_elevations, ..*quality }
 }
 
-/// The largest counts, and half of them, that can be drawn in so many seconds.
-fn fitting(
-    rig: &mut Rig,
-    quality: &Quality,
-    most_halvings: u32,
-    seconds: f64,
-) -> Result<Option<(Quality, Quality)>> {
-    // A device that cannot do this at all says so here.
-    if rig.plan(&counts(quality, most_halvings)).is_err() {
-        return Ok(None);
-    }
-    let each = rig.seconds_per_azimuth(quality)?;
-    for halvings in 0..=most_halvings {
-        let (whole, half) = (counts(quality, halvings), counts(quality, halvings + 1));
-        if let (Ok(a), Ok(b)) = (rig.plan(&whole), rig.plan(&half))
-            && each * (a.azimuths.len() + b.azimuths.len()) as f64 <= seconds
-        {
-            return Ok(Some((whole, half)));
+/// Settings for the truth, and the same with half the counts, that can be drawn in so many seconds;
+/// the least there are, where none can.
+fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
+    let dense = Quality {
+        method: Method::Sweep,
+        lines: Lines::QuarterCell,
+        fuse: Fuse::Aimed,
+        ..Quality::default()
+    };
+    let brute = Quality { method: Method::Brute, ..dense };
+    for (quality, most) in [(brute, BRUTE_HALVINGS), (dense, HALVINGS)] {
+        // A device that cannot do this at all says so here.
+        if rig.plan(scene, &counts(&quality, most)).is_err() {
+            continue;
+        }
+        let each = rig.seconds_per_azimuth(scene, &quality)?;
+        for halvings in 0..=most {
+            let two = [halvings, halvings + 1].map(|h| counts(&quality, h));
+            let azimuths = |q: &Quality| Ok::<_, Error>(rig.plan(scene, q)?.azimuths.len() as f64);
+            if each * (azimuths(&two[0])? + azimuths(&two[1])?) <= seconds {
+                return Ok(two);
+            }
         }
     }
-    Ok(None)
+    Ok([HALVINGS, HALVINGS + 1].map(|h| counts(&dense, h)))
 }
 
-fn about(rig: &Rig, quality: &Quality) -> Result<String> {
-    let used = rig.plan(quality)?.settings;
-    let wanted = ["method", "lines", "fuse", "azimuths", "sun_azimuths", "table_elevations"];
-    let used = used.iter().filter(|(name, _)| wanted.contains(&name.as_str()));
-    Ok(used.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
+/// Adds planes to a sum that may have none, one or three.
+fn add(sum: &mut Vec<Vec<f32>>, planes: Vec<Vec<f32>>) {
+    if sum.is_empty() {
+        *sum = planes;
+        return;
+    }
+    while sum.len() < planes.len() {
+        sum.push(sum[0].clone());
+    }
+    let last = planes.len() - 1;
+    for (c, plane) in sum.iter_mut().enumerate() {
+        plane.iter_mut().zip(&planes[c.min(last)]).for_each(|(s, v)| *s += v);
+    }
+}
+
+/// What a plan makes of settings of the truth.
+fn used(rig: &Rig, scene: &Scene, quality: &Quality) -> Result<String> {
+    const TOLD: [&str; 6] =
+        ["method", "lines", "fuse", "azimuths", "sun_azimuths", "table_elevations"];
+    let all = rig.plan(scene, quality)?.settings;
+    let told = all.iter().filter(|(name, _)| TOLD.contains(&name.as_str()));
+    Ok(told.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
 }
 
 /// Three significant digits.
@@ -285,6 +323,15 @@ mod tests {
     fn three_digits_are_shown() {
         let shown = [0.0, 0.001_234_5, 0.5, 12.345, 999.4, 123_456.0, 1e-12].map(digits);
         assert_eq!(shown, ["0", "0.00123", "0.500", "12.3", "999", "123456", "1.00e-12"]);
+    }
+
+    #[test]
+    fn grey_light_and_colour_add_up() {
+        let mut sum = Vec::new();
+        add(&mut sum, vec![vec![1.0, 2.0]]);
+        add(&mut sum, vec![vec![0.5, 0.0], vec![0.0, 1.0], vec![2.0, 2.0]]);
+        add(&mut sum, vec![vec![10.0, 10.0]]);
+        assert_eq!(sum, [[11.5, 12.0], [11.0, 13.0], [13.0, 14.0]]);
     }
 
     fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
