@@ -282,7 +282,11 @@ impl Sweep {
     /// Layers of the lattice that one azimuth takes.
     pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
         match self {
-            Sweep::Lines(_) => self.lines(azimuth, axis).div_ceil(32),
+            // Of 32 lines; all those of a group, which writes them whether they are on the field or not.
+            Sweep::Lines(lines) => {
+                let groups = self.lines(azimuth, axis).div_ceil(4 * lines.group_size);
+                groups * (lines.group_size / 8)
+            }
             Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),
         }

@@ -108,3 +108,19 @@ fn packed_entries_err_by_their_rounding() {
     let worst = exact.iter().zip(&half).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs()));
     assert!(worst > 0.0 && worst <= 0.5 * 2.0_f32.powi(-11) * 1.01, "f16 {worst}");
 }
+
+#[test]
+fn wide_groups_of_lines_are_narrow_ones_to_the_bit() {
+    let mut gpu = Device::new();
+    // Lines of an azimuth are no multiple of the 128 of a graphics processor's group.
+    let f = fractal(150, 7).expect("a field");
+    let quality = Quality { azimuths: 12, ..Quality::default() };
+    let wide = Limits { is_cpu: false, ..gpu.limits() };
+    for hull in [Hull::Private, Hull::List] {
+        let quality = Quality { hull, ..quality };
+        let narrow = gpu.horizons(&f, Border::Plane, &quality);
+        let wide = gpu.horizons_within(&f, Border::Plane, &quality, &wide);
+        let differing = narrow.iter().zip(&wide).filter(|(a, b)| a.to_bits() != b.to_bits());
+        assert_eq!(differing.count(), 0, "{hull:?}");
+    }
+}
