@@ -1,6 +1,6 @@
 //! Edits of a rectangle, drawn from where they begin: the same bits as everything drawn again.
 
-use ridgelight::gpu::{Frame, Headless};
+use ridgelight::gpu::{Frame, Headless, ImageArg, Renderer};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
 use ridgelight::scene::{
@@ -219,13 +219,22 @@ fn edits_that_cannot_be_are_refused() {
     assert!(bits(gpu, &frame) == before, "after an error nothing has been recorded");
     gpu.draw_edit(&mut frame, all).expect("drawn");
     assert!(bits(gpu, &frame) == before, "nothing was edited");
-    gpu.end(frame);
 
-    let undrawn = gpu.frame(plan, &[scene.field.heights_m()]);
-    let mut undrawn = undrawn.expect("a frame");
-    let error = gpu.draw_edit(&mut undrawn, all).expect_err("nothing to go on from");
-    assert!(error.to_string().contains("recording of all passes"), "{error}");
-    gpu.end(undrawn);
+    // Nothing to go on from: nothing recorded, or outputs whose contents are not kept.
+    let mut other = Renderer::new(gpu.host(), plan, 1).expect("a renderer");
+    let (inputs, mut outputs) = (frame.inputs(), frame.outputs());
+    let refused = |other: &mut Renderer, outputs: &[ImageArg]| {
+        let error = gpu.run(|commands| other.record_edit(commands, 0, &inputs, outputs, all));
+        error.expect_err("nothing to go on from").to_string()
+    };
+    let error = refused(&mut other, &outputs);
+    assert!(error.contains("a recording of all passes"), "{error}");
+    gpu.run(|commands| other.record(commands, 0, &inputs, &outputs)).expect("drawn");
+    outputs[0].before.layout = ash::vk::ImageLayout::UNDEFINED;
+    let error = refused(&mut other, &outputs);
+    assert!(error.contains("radiance") && error.contains("last recording"), "{error}");
+    other.destroy();
+    gpu.end(frame);
 
     // Horizons not kept; slopes instead of occluders; lines without a beginning; no lines.
     let periodic = Scene {
