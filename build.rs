@@ -3,7 +3,7 @@
 //! Every `shaders_glsl/*.comp` is compiled (files of `shaders_glsl/shared/` are included, never
 //! compiled alone), parsed back, and written to `$OUT_DIR/shaders.rs` as one constant a shader:
 //! words, bindings, push constant size, and the byte offsets of every struct with explicit layout,
-//! against which `gpu::layout` checks the host's structs at compile time. The first error of a
+//! against which `same_layout!` (src/gpu/shaders.rs) checks the host's structs at compile time. The first error of a
 //! shader stops the build with file and line.
 
 use std::collections::BTreeMap;

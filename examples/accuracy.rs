@@ -194,14 +194,14 @@ fn main() -> Result<()> {
     if megasamples * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::Brute, Lines::Cell, Fuse::AimedNearest));
     }
-    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m()), &picks);
+    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
         let quality = Quality { method, lines, fuse, ..Quality::default() };
         let is_exact = lines == Lines::Exact;
         let found = horizons(&mut gpu, &field, &quality, &picks, is_exact)?;
-        let own =
-            is_exact.then(|| truth(&oracle, &plan::circle_rad(&quality, field.cell_m()), &picks));
+        let circle = plan::circle_rad(&quality, field.cell_m())?;
+        let own = is_exact.then(|| truth(&oracle, &circle, &picks));
         let met = own.as_ref().unwrap_or(&even);
         let elevations: Vec<f32> =
             met.iter().map(|h| elevation_of(Border::Plane, *h) as f32).collect();

@@ -35,10 +35,11 @@ void main() {
     vec3 along = vec3(0.0);
     vec3 across = vec3(0.0);
     vec3 plain = vec3(0.0);
+    // From less than a width before the image to less than two past it.
     for (int x = int(floor(first)); x < int(ceil(last)); x++) {
         float low = max(float(x), first);
         float high = min(float(x + 1), last);
-        vec3 radiance = texelFetch(environment, ivec2(((x % width) + width) % width, row), 0).rgb;
+        vec3 radiance = texelFetch(environment, ivec2((x + 2 * width) % width, row), 0).rgb;
         // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
         float turn = (middle - 0.5 * (low + high)) / per_rad;
         float width_rad = (high - low) / per_rad;

@@ -328,3 +328,45 @@ fn every_plan_has_all_its_barriers_and_needs_each() {
     }
     println!("{audited} lists of passes, {removed} barriers removed, each missed");
 }
+
+/// A group of a GPU sweeps 128 lines, the last one of an azimuth too: what it writes beyond the lines
+/// there are must be the azimuth's own, four layers of 32 lines a group.
+#[test]
+fn an_azimuths_layers_are_whole_groups() {
+    let wide = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let plan = sky(256, 256, 64, &wide);
+    let sweeps: Vec<_> = plan.passes.iter().filter(|p| p.name() == "horizon_sweep").collect();
+    assert!(!sweeps.is_empty() && sweeps.iter().all(|p| p.constants.contains(&(0, 32))));
+    assert!(plan.azimuths.iter().all(|a| a.layer % 4 == 0));
+    let lattice = plan.find("lattice_occluders").expect("a lattice");
+    match plan.resources[lattice.0].kind {
+        Kind::Image { layers, .. } => assert_eq!(layers % 4, 0),
+        Kind::Buffer { .. } => unreachable!("an image"),
+    }
+}
+
+/// What a device cannot make or dispatch is refused by name, not handed to it.
+#[test]
+fn devices_limits_are_kept() {
+    let all = Limits::lavapipe();
+    let refused = |limits: &Limits, scene: &Scene, quality: &Quality| {
+        let plan = plan::picture(scene, quality, limits, Picture::default());
+        plan.expect_err("beyond the limits").to_string()
+    };
+    let quality = Quality { azimuths: 64, ..Quality::default() };
+    let scene = under_sky(flat(40, 50));
+    let groups = Limits { groups: 1, ..all };
+    assert!(refused(&groups, &scene, &quality).contains("workgroups"));
+    let texels = Limits { texels: 255, ..all };
+    let said = refused(&texels, &scene, &quality);
+    assert!(said.contains("azimuths") && said.contains("256 texels"), "{said}");
+    let wide = Environment::new(20_000, 10, vec![[1.0; 3]; 200_000], 0.0).expect("an environment");
+    let lights = Lights { environment: Some(wide), ..Lights::default() };
+    let said = refused(&all, &Scene { lights, ..scene }, &quality);
+    assert!(said.contains("environment") && said.contains("20000 texels a side"), "{said}");
+    let few = Limits { image_layers: 16, ..all };
+    let sky = Environment::new(8, 4, vec![[1.0; 3]; 32], 0.0).expect("an environment");
+    let lights = Lights { environment: Some(sky), ..Lights::default() };
+    let said = refused(&few, &Scene { lights, ..under_sky(flat(4, 4)) }, &quality);
+    assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
+}

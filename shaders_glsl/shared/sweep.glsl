@@ -12,9 +12,10 @@ int lane_position(Azimuth azimuth, int lane, int lanes) {
     return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? flipped : lane;
 }
 
+// Remainders of negative numbers are undefined in Vulkan.
 int wrapped(int i, int n) {
-    int r = i % n;
-    return r + (r < 0 ? n : 0);
+    int r = (i < 0 ? -1 - i : i) % n;
+    return i < 0 ? n - 1 - r : r;
 }
 
 // Whether a lane position lies on the field.

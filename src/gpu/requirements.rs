@@ -2,6 +2,7 @@ use std::ffi::CStr;
 
 use ash::vk;
 
+use super::shaders::{self, BindingKind, Shader};
 use crate::plan::Limits;
 
 /// What one device offers.
@@ -28,8 +29,8 @@ pub struct DeviceReport {
 /// What a device lacks: the features that its maker must enable are those named here.
 ///
 /// Vulkan 1.3 with `synchronization2` (1.3 features); `shaderStorageImageWriteWithoutFormat` and
-/// `shaderStorageImageExtendedFormats` (core features); subgroup votes in compute shaders; a queue
-/// family with compute.
+/// `shaderStorageImageExtendedFormats` (core features); subgroup votes in compute shaders; as many
+/// storage images in a shader as one has; a queue family with compute.
 pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Vec<String> {
     report(instance, physical_device).missing
 }
@@ -91,6 +92,15 @@ pub(crate) fn report(
             && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE),
         "subgroup votes in compute shaders",
     );
+    let storage_images = |shader: &Shader| {
+        let kinds = shader.bindings.iter().map(|b| b.kind);
+        kinds.filter(|kind| matches!(kind, BindingKind::StorageImage { .. })).count() as u32
+    };
+    let most = shaders::ALL.iter().map(storage_images).max().unwrap_or(0);
+    need(
+        core.limits.max_per_stage_descriptor_storage_images >= most,
+        &format!("{most} storage images in a shader"),
+    );
     need(compute.is_some(), "a queue family with compute");
     let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
     let local = heaps.iter().filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
@@ -122,6 +132,8 @@ pub(crate) fn report(
             image_layers: core.limits.max_image_array_layers,
             buffer_bytes: u64::from(core.limits.max_storage_buffer_range),
             allocation_bytes: maintenance.max_memory_allocation_size,
+            groups: core.limits.max_compute_work_group_count.into_iter().min().unwrap_or(0),
+            texels: core.limits.max_texel_buffer_elements,
             shared_bytes: core.limits.max_compute_shared_memory_size,
             is_cpu: core.device_type == vk::PhysicalDeviceType::CPU,
             memory_budget: heap / 2,

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::scene::Sun;
+use crate::{Error, Result};
 
 /// One lane cell in the units of [`Azimuth::shear`].
 pub const CELL: i32 = 1 << 15;
@@ -139,12 +140,15 @@ pub fn even(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
 ///
 /// Each even azimuth is replaced by the vector of the smallest components whose world direction
 /// lies within a quarter of its wedge; wedges then reach to the middle between neighbours.
-pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
+///
+/// # Errors
+/// Cells so unlike in width and height that a vector would be longer than 4096 cells.
+pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Result<Vec<Azimuth>> {
     let width = TAU / f64::from(count);
     let vectors: Vec<(Azimuth, f64)> = (0..count)
         .map(|k| {
             let phi = width * f64::from(k);
-            let (dcol, drow) = simplest_vector(phi, width / 4.0, cell_m);
+            let (dcol, drow) = simplest_vector(phi, width / 4.0, cell_m)?;
             let mut azimuth = swept(f64::from(dcol), f64::from(drow), cell_m);
             let (march, lane) = if azimuth.marches_rows() { (drow, dcol) } else { (dcol, drow) };
             azimuth.vector_march = march.abs();
@@ -158,25 +162,30 @@ pub fn along_grid_vectors(count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
             azimuth.step_m = march_cell.hypot(ratio * lane_cell) as f32;
             let exact = (f64::from(-drow) * cell_m[1]).atan2(f64::from(dcol) * cell_m[0]);
             // On the turn that φ_k is on.
-            (azimuth, exact + TAU * ((phi - exact) / TAU).round())
+            Ok((azimuth, exact + TAU * ((phi - exact) / TAU).round()))
         })
-        .collect();
-    (0..vectors.len())
+        .collect::<Result<_>>()?;
+    let all = (0..vectors.len())
         .map(|i| {
             let (azimuth, phi) = vectors[i];
             let before = if i == 0 { vectors[vectors.len() - 1].1 - TAU } else { vectors[i - 1].1 };
             let after = if i + 1 == vectors.len() { vectors[0].1 + TAU } else { vectors[i + 1].1 };
             with_wedge(azimuth, phi, [(before + phi) / 2.0, (phi + after) / 2.0])
         })
-        .collect()
+        .collect();
+    Ok(all)
 }
+
+/// Longest component of an exact azimuth's vector: what the shader's i32 lane positions and its margin
+/// around the field's edge are made for.
+const LONGEST_VECTOR: i32 = 4096;
 
 /// The vector (dcol, drow) of the least larger component whose world direction is within
 /// `tolerance_rad` of `phi_rad`; among those, the nearest.
-fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> (i32, i32) {
+fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> Result<(i32, i32)> {
     let (gx, gy) = grid_direction(phi_rad, cell_m);
     let larger = gx.abs().max(gy.abs());
-    for size in 1_i32.. {
+    for size in 1..=LONGEST_VECTOR {
         let near = |g: f64| (g / larger * f64::from(size)).round() as i32;
         let (nx, ny) = (near(gx), near(gy));
         let best = [(nx, ny), (nx + 1, ny), (nx - 1, ny), (nx, ny + 1), (nx, ny - 1)]
@@ -191,10 +200,14 @@ fn simplest_vector(phi_rad: f64, tolerance_rad: f64, cell_m: [f64; 2]) -> (i32, 
         if let Some((off, vector)) = best
             && off <= tolerance_rad
         {
-            return vector;
+            return Ok(vector);
         }
     }
-    unreachable!("a large enough vector is as near as asked")
+    Err(Error::Limit {
+        what: format!("--lines exact on cells of {} × {}", cell_m[0], cell_m[1]),
+        needs: format!("a grid vector near {:.2}°", phi_rad.to_degrees()),
+        limit: format!("{LONGEST_VECTOR} cells"),
+    })
 }
 
 /// The azimuths that a sun's disc covers, `count` even slices across it; one for a point.
@@ -216,7 +229,7 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
     };
     let radius = sun.diameter_rad / 2.0;
     let (azimuth, elevation) = (sun.azimuth_rad, sun.elevation_rad);
-    if radius == 0.0 {
+    if sun.is_point() {
         return vec![Azimuth { weight: 1.0, ..at(azimuth, [azimuth; 2], elevation, elevation) }];
     }
     // A disc that holds the zenith shines from everywhere; another within asin(sin r / cos e).
@@ -230,11 +243,16 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         let phi = azimuth + off;
         // cos of the angle to the centre = sin e sin ω + cos e cos off cos ω = r cos(ω - ψ).
         let (s, c) = (elevation.sin(), elevation.cos() * off.cos());
-        let (r, psi) = (s.hypot(c), s.atan2(c));
-        if r <= radius.cos() {
+        let psi = s.atan2(c);
+        // sin² of half the chord, from sin² of the radius, so that narrow discs keep their digits.
+        let beside = (elevation.cos() * off.sin()).powi(2);
+        let sin2_radius = radius.sin().powi(2);
+        let sin2_half = (sin2_radius - beside) / (1.0 - beside);
+        // What touches the disc by a rounding does not cross it.
+        if sin2_half <= 1e-12 * sin2_radius {
             continue;
         }
-        let half = (radius.cos() / r).acos();
+        let half = sin2_half.sqrt().min(1.0).asin();
         let low = (psi - half).max(-FRAC_PI_2);
         let high = (psi + half).min(FRAC_PI_2);
         if low >= high {
@@ -245,6 +263,10 @@ pub fn across_sun(sun: &Sun, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         let cossin = |w: f64| w.sin().powi(2) / 2.0;
         facing += width * (c * (cos2(high) - cos2(low)) + s * (cossin(high) - cossin(low)));
         slices.push(at(phi, [phi - width / 2.0, phi + width / 2.0], low, high));
+    }
+    // A disc that touches the zenith has no chord at a right angle to its centre.
+    if slices.is_empty() {
+        return across_sun(sun, 2 * count, cell_m);
     }
     for slice in &mut slices {
         slice.weight = (width / facing) as f32;
@@ -285,7 +307,7 @@ mod tests {
     fn grid_vectors_stay_in_their_wedges_and_cover_the_circle() {
         for cell in [[1.0, 1.0], [66.0, 92.6]] {
             for count in [4, 8, 16, 64, 100] {
-                let all = along_grid_vectors(count, cell);
+                let all = along_grid_vectors(count, cell).unwrap();
                 let sum: f64 = all.iter().map(|a| f64::from(a.wedge_rad)).sum();
                 assert!((sum - TAU).abs() < f64::from(count) * 1e-6);
                 for (k, a) in all.iter().enumerate() {
@@ -337,5 +359,37 @@ mod tests {
         assert!(
             slices.iter().all(|a| (a.low_slope + a.high_slope).abs() < 1e-6 && a.high_slope > 0.0)
         );
+    }
+
+    #[test]
+    fn every_sun_has_a_slice() {
+        let elevations = [0.0, 1e-9, 10.0, 30.0, 85.0, 89.999_999, 90.0_f64];
+        let diameters = [0.0, 1e-12, 1e-6, 1e-3, 0.01, 0.53, 10.0, 90.0_f64];
+        for (elevation, diameter) in elevations.into_iter().flat_map(|e| diameters.map(|d| (e, d)))
+        {
+            for count in [1, 2, 3, 8] {
+                let sun = Sun {
+                    azimuth_rad: 2.0,
+                    elevation_rad: elevation.to_radians(),
+                    diameter_rad: diameter.to_radians(),
+                    irradiance: [1.0; 3],
+                };
+                let slices = across_sun(&sun, count, [30.0, 90.0]);
+                assert!(!slices.is_empty(), "{elevation}° {diameter}° {count}");
+                assert!(
+                    slices.iter().all(|a| a.weight.is_finite() && a.weight > 0.0),
+                    "{elevation}° {diameter}° {count}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn cells_too_unlike_for_grid_vectors_are_refused() {
+        for cell in [[1.0, 1e4], [1e-9, 1.0], [1e9, 1.0]] {
+            let error = along_grid_vectors(64, cell).expect_err("no vector is near");
+            assert!(error.to_string().contains("cells of"), "{error}");
+        }
+        assert!(along_grid_vectors(64, [1.0, 20.0]).is_ok());
     }
 }

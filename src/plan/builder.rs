@@ -153,19 +153,51 @@ impl Plan {
                 limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
             });
         }
-        for resource in &plan.resources {
-            let limit = match resource.kind {
-                Kind::Image { .. } => limits.allocation_bytes,
-                Kind::Buffer { .. } => limits.allocation_bytes.min(limits.buffer_bytes),
-            };
-            if resource.bytes() > limit {
-                return Err(Error::Limit {
-                    what: resource.name.clone(),
-                    needs: bytes_text(resource.bytes()),
-                    limit: format!("{} on this device", bytes_text(limit)),
-                });
-            }
-        }
+        plan.resources.iter().try_for_each(|resource| check_resource(resource, limits))?;
+        plan.passes.iter().try_for_each(|pass| check_groups(pass, limits))?;
         Ok(plan)
+    }
+}
+
+/// Whether the device can make a resource.
+fn check_resource(resource: &Resource, limits: &Limits) -> Result<()> {
+    let beyond = |needs: String, limit: String| {
+        let limit = format!("{limit} on this device");
+        Err(Error::Limit { what: resource.name.clone(), needs, limit })
+    };
+    let bytes = match resource.kind {
+        Kind::Image { width, height, layers, .. } => {
+            let side = width.max(height);
+            if side > limits.image_side {
+                return beyond(format!("{side} texels a side"), limits.image_side.to_string());
+            }
+            if layers > limits.image_layers {
+                return beyond(format!("{layers} layers"), limits.image_layers.to_string());
+            }
+            limits.allocation_bytes
+        }
+        Kind::Buffer { texels: true, bytes } => {
+            if bytes / 16 > u64::from(limits.texels) {
+                return beyond(format!("{} texels", bytes / 16), limits.texels.to_string());
+            }
+            limits.allocation_bytes
+        }
+        Kind::Buffer { .. } => limits.allocation_bytes.min(limits.buffer_bytes),
+    };
+    if resource.bytes() > bytes {
+        return beyond(bytes_text(resource.bytes()), bytes_text(bytes));
+    }
+    Ok(())
+}
+
+/// Whether the device can dispatch a pass.
+fn check_groups(pass: &Pass, limits: &Limits) -> Result<()> {
+    match pass.groups.into_iter().find(|groups| *groups > limits.groups) {
+        Some(groups) => Err(Error::Limit {
+            what: pass.label(),
+            needs: format!("{groups} workgroups along an axis"),
+            limit: format!("{} on this device", limits.groups),
+        }),
+        None => Ok(()),
     }
 }

@@ -31,8 +31,8 @@ pub fn horizons(
             "a fuse that knows its occluders: own, aimed-nearest or aimed",
         ));
     }
-    let mut list = circle(quality, &sweep, field.cell_m());
-    let range = first as usize..(first + count) as usize;
+    let mut list = circle(quality, &sweep, field.cell_m())?;
+    let range = first as usize..first as usize + count as usize;
     list = list.get(range).map(<[Azimuth]>::to_vec).unwrap_or_default();
     if list.is_empty() {
         return Err(Error::setting(

@@ -9,6 +9,10 @@ pub struct Limits {
     pub buffer_bytes: u64,
     /// Largest single allocation, bytes.
     pub allocation_bytes: u64,
+    /// Most workgroups of a dispatch along any axis.
+    pub groups: u32,
+    /// Largest texel buffer, texels.
+    pub texels: u32,
     /// Shared memory of a workgroup, bytes.
     pub shared_bytes: u32,
     /// Whether the device is a processor: narrow groups, hulls in private memory.
@@ -25,6 +29,8 @@ impl Limits {
             image_layers: 2048,
             buffer_bytes: 128 << 20,
             allocation_bytes: 2 << 30,
+            groups: 65_535,
+            texels: 1 << 27,
             shared_bytes: 32 << 10,
             is_cpu: true,
             memory_budget: 2 << 30,
@@ -39,6 +45,8 @@ impl Limits {
             image_layers: 1 << 14,
             buffer_bytes: 1 << 50,
             allocation_bytes: 1 << 50,
+            groups: 1 << 30,
+            texels: 1 << 30,
             shared_bytes: 32 << 10,
             is_cpu,
             memory_budget,

@@ -60,7 +60,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
-    let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes);
+    let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes)?;
     let tables =
         shining.environment.map(|e| Tables::make(&mut builder, (e, surface.border), quality));
     if tables.is_none() && shining.sky.is_some() {
@@ -288,7 +288,7 @@ impl Drawing<'_> {
         for (s, batches) in batches_of_suns.iter().enumerate() {
             let (position, sun) = self.shining.suns[s];
             let name = sun_name(position);
-            let is_point = sun.diameter_rad == 0.0;
+            let is_point = sun.is_point();
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
@@ -395,7 +395,7 @@ fn used(
     if shining.environment.is_some() {
         used.push(("table_elevations".into(), quality.table_elevations.to_string()));
     }
-    if shining.suns.iter().any(|(_, s)| s.diameter_rad > 0.0) {
+    if shining.suns.iter().any(|(_, s)| !s.is_point()) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
     }
     used

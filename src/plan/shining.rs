@@ -37,6 +37,9 @@ impl<'a> Shining<'a> {
         for (i, _) in dark {
             notes.push(format!("sun {} dropped: its irradiance is 0", i + 1));
         }
+        for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
+            notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
+        }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
             && sky.is_none_or(|c| grey(&c))
@@ -53,16 +56,16 @@ impl<'a> Shining<'a> {
         sweep: &Sweep,
         cell_m: [f64; 2],
         notes: &mut Vec<String>,
-    ) -> Vec<Vec<Azimuth>> {
+    ) -> Result<Vec<Vec<Azimuth>>> {
         let mut lists = Vec::new();
         if need_circle {
-            lists.push(circle(quality, sweep, cell_m));
+            lists.push(circle(quality, sweep, cell_m)?);
         } else {
             notes.push("no sky, no environment: only the suns' azimuths are swept".into());
         }
         let across = |sun| azimuths::across_sun(sun, quality.sun_azimuths, cell_m);
         lists.extend(self.suns.iter().map(|(_, sun)| across(sun)));
-        lists
+        Ok(lists)
     }
 }
 

@@ -282,10 +282,10 @@ impl Sweep {
     /// Layers of the lattice that one azimuth takes.
     pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
         match self {
-            // Of 32 lines; all those of a group, which writes them whether they are on the field or not.
+            // Whole groups: those of a line beyond the last are swept, too.
             Sweep::Lines(lines) => {
-                let groups = self.lines(azimuth, axis).div_ceil(4 * lines.group_size);
-                groups * (lines.group_size / 8)
+                let group_lines = 4 * lines.group_size;
+                self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32
             }
             Sweep::Crossings => 0,
             _ => 1 + u32::from(self.lattice_has_distances()),

@@ -1,3 +1,5 @@
+use std::f64::consts::TAU;
+
 use super::azimuths::{self, Azimuth};
 use super::batch::{self, Axis, Batch, bytes_text};
 use super::sweep::{HullPlace, LineSweep, Sweep};
@@ -305,24 +307,30 @@ pub(super) fn part(light: &str, batch: &Batch, batches: &[Batch]) -> String {
 }
 
 /// Even azimuths, or the grid vectors near them.
-pub(super) fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Vec<Azimuth> {
+pub(super) fn circle(quality: &Quality, sweep: &Sweep, cell_m: [f64; 2]) -> Result<Vec<Azimuth>> {
     match sweep {
         Sweep::Surface { .. } => azimuths::along_grid_vectors(quality.azimuths, cell_m),
-        _ => azimuths::even(quality.azimuths, cell_m),
+        _ => Ok(azimuths::even(quality.azimuths, cell_m)),
     }
 }
 
 /// The azimuths that [`horizons`](super::horizons()) sweeps for a quality, radians counter-clockwise
 /// from east: 2πk/M, or in exact mode the grid vectors' own.
-pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Vec<f64> {
+///
+/// # Errors
+/// Cells too unlike in width and height for exact azimuths.
+pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Result<Vec<f64>> {
     let count = quality.azimuths;
-    match (quality.method, quality.lines) {
-        (Method::Auto | Method::Sweep, Lines::Exact) => azimuths::along_grid_vectors(count, cell_m)
-            .iter()
-            .map(|a| a.swept_rad(cell_m).rem_euclid(std::f64::consts::TAU))
-            .collect(),
-        _ => (0..count).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(count)).collect(),
-    }
+    let all = match (quality.method, quality.lines) {
+        (Method::Auto | Method::Sweep, Lines::Exact) => {
+            azimuths::along_grid_vectors(count, cell_m)?
+                .iter()
+                .map(|a| a.swept_rad(cell_m).rem_euclid(TAU))
+                .collect()
+        }
+        _ => (0..count).map(|k| TAU * f64::from(k) / f64::from(count)).collect(),
+    };
+    Ok(all)
 }
 
 /// The settings really used, for metadata and messages.

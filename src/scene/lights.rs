@@ -21,7 +21,7 @@ pub struct Sun {
     pub azimuth_rad: f64,
     /// Elevation of the centre above horizontal, radians, [0..π/2].
     pub elevation_rad: f64,
-    /// Angular diameter, radians, [0..π/2]; 0 is a point with hard shadows.
+    /// Angular diameter, radians, [0..π/2]; below [`POINT_DIAMETER_RAD`] a point with hard shadows.
     pub diameter_rad: f64,
     /// Irradiance on a surface that faces it, unoccluded, linear RGB.
     pub irradiance: [f32; 3],
@@ -45,6 +45,17 @@ pub struct SphereLight {
 
 /// The farthest that a local light may stand and the largest that it may be, as for heights.
 const PLACE_LIMIT: f64 = 1e15;
+
+/// Angular diameter below which a disc is lit as a point, radians: 0.01°. Its penumbra is 9 cm wide at
+/// half a kilometre, and the f32 slopes of its limbs would no longer tell its chords' widths.
+pub const POINT_DIAMETER_RAD: f64 = 1.75e-4;
+
+impl Sun {
+    /// Whether it is lit as a point: lit or not, nothing between.
+    pub fn is_point(&self) -> bool {
+        self.diameter_rad < POINT_DIAMETER_RAD
+    }
+}
 
 impl Lights {
     /// Checks every range.

@@ -8,7 +8,7 @@ mod surface;
 
 pub use environment::Environment;
 pub use field::HeightField;
-pub use lights::{Lights, SphereLight, Sun};
+pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{Fuse, Hull, Lines, Method, Precision, Quality};
 pub use surface::{Albedo, Border, Phong, Surface};
 

@@ -255,6 +255,16 @@ fn outputs() {
 
 /// Every flag with a range, a unit or a default says so.
 #[test]
+fn sizes_that_no_machine_holds_are_refused() {
+    let folder = Folder::new();
+    for args in [["bench", "--size", "1000000"], ["bench", "--sizes", "256,0"]] {
+        let run = folder.run_without_driver(&args);
+        assert_eq!(run.status, Some(2), "{args:?}: {}", run.err);
+        assert!(run.err.contains("1 to 32768"), "{args:?}: {}", run.err);
+    }
+}
+
+#[test]
 fn help_says_units_and_defaults() {
     let folder = Folder::new();
     let shared: &[(&str, &[&str])] = &[

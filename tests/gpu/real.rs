@@ -24,7 +24,7 @@ fn errors(
     samples: usize,
 ) -> HorizonError {
     let found = gpu.horizons(field, Border::Plane, quality);
-    let azimuths = plan::circle_rad(quality, field.cell_m());
+    let azimuths = plan::circle_rad(quality, field.cell_m()).expect("azimuths");
     let oracle = Oracle::new(field, Border::Plane);
     let mut next = random(1);
     let plane = field.rows() * field.cols();

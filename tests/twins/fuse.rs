@@ -92,8 +92,10 @@ fn on_axes_and_diagonals_every_mode_is_the_march() {
             let rough = field(rows, cols, [1.0, 2.0], |r, c| 9.0 * noise(5, r, c));
             let (largest, relief) = extent(&rough);
             // Axes of any cell; diagonals of the grid.
-            let mut azimuths = along_grid_vectors(4, rough.cell_m());
-            azimuths.extend(along_grid_vectors(8, [1.0, 1.0]).iter().skip(1).step_by(2));
+            let mut azimuths = along_grid_vectors(4, rough.cell_m()).expect("vectors");
+            azimuths.extend(
+                along_grid_vectors(8, [1.0, 1.0]).expect("vectors").iter().skip(1).step_by(2),
+            );
             let warm_up = warm_ups(&rough, border, 2);
             let unit = marched(&rough, border, &mut azimuths, warm_up, false);
             let all = marched(&rough, border, &mut azimuths.clone(), warm_up, true);
@@ -289,7 +291,7 @@ fn a_ramp_has_its_slope_up_to_the_edge() {
 #[test]
 fn direct_hands_on_slopes_and_distances() {
     let rough = field(8, 6, [1.0, 2.0], |r, c| 9.0 * noise(5, r, c));
-    let mut azimuths = along_grid_vectors(12, rough.cell_m());
+    let mut azimuths = along_grid_vectors(12, rough.cell_m()).expect("vectors");
     number_layers(&mut azimuths);
     let heights = Heights::of(&rough, Border::Open);
     let mut lattices = Lattices::new(&azimuths, [6, 8], 15, Border::Open);

@@ -153,9 +153,11 @@ fn tables(env: &Environment, azimuths: &[Azimuth], nodes: usize, border: Border)
 fn tables_of_all_azimuths_add_up_to_the_environment() {
     for env in environments() {
         for border in [Border::Plane, Border::Open] {
-            for azimuths in
-                [even(4, [1.0; 2]), even(23, [1.0; 2]), along_grid_vectors(16, [66.0, 92.6])]
-            {
+            for azimuths in [
+                even(4, [1.0; 2]),
+                even(23, [1.0; 2]),
+                along_grid_vectors(16, [66.0, 92.6]).expect("vectors"),
+            ] {
                 let nodes = 33;
                 let tables = tables(&env, &azimuths, nodes, border);
                 for node in [0, 7, nodes - 1] {

@@ -99,7 +99,7 @@ proptest! {
     ) {
         let rough =
             field(size.0, size.1, cell, |r, c| 10_f64.powi(steep) * noise(seed.into(), r, c));
-        let checked = check(&rough, border, &mut along_grid_vectors(count, cell), 1);
+        let checked = check(&rough, border, &mut along_grid_vectors(count, cell).expect("vectors"), 1);
         prop_assert!(checked.is_ok(), "{:?}", checked);
     }
 }
@@ -107,7 +107,7 @@ proptest! {
 #[test]
 fn a_fractal_field_within_a_ten_thousandth_of_a_degree() {
     let rough = fractal(96, 2).unwrap();
-    let mut azimuths = along_grid_vectors(16, rough.cell_m());
+    let mut azimuths = along_grid_vectors(16, rough.cell_m()).expect("vectors");
     let worst = check(&rough, Border::Plane, &mut azimuths, 7).unwrap();
     println!("worst {worst:e}°");
     assert!(worst <= 1e-4, "{worst}");

@@ -22,6 +22,8 @@ use verify::Verifier;
 /// Rows that would take longer have fewer samples, which they say; at least [`FEWEST`].
 const ROW_TIME: Duration = Duration::from_secs(10);
 const FEWEST: usize = 3;
+/// Largest side of a fractal field: 8 GiB of heights on the way.
+const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
     args.later.check()?;
@@ -33,6 +35,13 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if !(1..=100_000).contains(&args.samples) {
         let found = args.samples.to_string();
         return Err(Error::setting("--samples", found, "a whole number from 1 to 100000"));
+    }
+    for size in args.sizes.iter().chain(args.sizes.is_empty().then_some(&args.size)) {
+        if !(1..=LARGEST_SIZE).contains(size) {
+            let name = if args.sizes.is_empty() { "--size" } else { "--sizes" };
+            let expected = format!("a whole number from 1 to {LARGEST_SIZE}");
+            return Err(Error::setting(name, size.to_string(), expected));
+        }
     }
     let quality = setup::quality(&args.quality)?;
     let field = match &args.input {

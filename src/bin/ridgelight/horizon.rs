@@ -138,7 +138,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
         },
     )?;
     bar.finish_and_clear();
-    let azimuths = plan::circle_rad(&quality, field.cell_m());
+    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
     let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
     metadata.push(("azimuths".into(), quality.azimuths.to_string()));
     metadata.extend(setup::asked(&args.input.path, &args.surface, None));

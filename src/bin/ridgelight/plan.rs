@@ -1,6 +1,6 @@
 use ridgelight::Result;
 use ridgelight::gpu;
-use ridgelight::plan::{self, Limits, Picture, Plan};
+use ridgelight::plan::{self, Limits, Plan};
 
 use crate::args::{PlanArgs, PlanFormat};
 use crate::setup::{self, Outcome};
@@ -33,7 +33,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     if let Some(budget) = args.global.memory_budget {
         limits.memory_budget = budget;
     }
-    let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+    let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {

@@ -1,7 +1,7 @@
 use ridgelight::Result;
 use ridgelight::files::{self, Channels, Layer as FileLayer, Tone};
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan::{self, Picture};
+use ridgelight::plan;
 use ridgelight::scene::HeightField;
 
 use crate::args::{Layer, RenderArgs};
@@ -40,12 +40,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let wanted = Picture {
-        light_layers: args.layers.contains(&Layer::Lights),
-        sky_view: args.layers.contains(&Layer::SkyView),
-        still: true,
-        ..Picture::default()
-    };
+    let wanted = setup::wanted(&args.layers);
     let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
     setup::check_plan(&args.global, picture)?;
     let (mut gpu, limits) = setup::device(&args.global)?;

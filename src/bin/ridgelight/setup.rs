@@ -2,7 +2,7 @@
 
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
-use ridgelight::plan::{Limits, Plan};
+use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Fuse, HeightField, Hull, Lights, Lines, Method, Precision, Quality, Scene,
     Surface,
@@ -11,7 +11,7 @@ use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, LightArgs, LinesName, MethodName,
+    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LightArgs, LinesName, MethodName,
     PrecisionName, QualityArgs, SurfaceArgs, albedo_colour,
 };
 
@@ -205,6 +205,16 @@ pub fn asked(
         all.push((format!("sun{}", i + 1), text));
     }
     all
+}
+
+/// What a picture of one frame holds.
+pub fn wanted(layers: &[Layer]) -> Picture {
+    Picture {
+        light_layers: layers.contains(&Layer::Lights),
+        sky_view: layers.contains(&Layer::SkyView),
+        still: true,
+        ..Picture::default()
+    }
 }
 
 /// The files that a command reads.

@@ -79,7 +79,7 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: |_| false,
         });
     }
-    if lights.suns.iter().any(|s| s.diameter_rad > 0.0) {
+    if lights.suns.iter().any(|s| !s.is_point()) {
         all.push(Knob {
             name: "sun azimuths",
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),

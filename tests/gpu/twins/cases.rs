@@ -183,6 +183,12 @@ pub(super) fn pictures() -> Vec<Case> {
         };
         Scene { field, surface, lights }
     };
+    // Of an odd number of rows the middle one lies on both sides of the ground.
+    let on_a_plane = {
+        let environment = noisy_environment(15);
+        let lights = Lights { environment: Some(environment), ..Lights::default() };
+        Scene { field: rough(13, 11, 16), surface: Surface::default(), lights }
+    };
     let grey = {
         let surface = Surface {
             border: Border::Plane,
@@ -207,6 +213,7 @@ pub(super) fn pictures() -> Vec<Case> {
     };
     vec![
         picture("colours", colourful, quality, true, false),
+        picture("environment on a plane", on_a_plane, quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
     ]
 }
