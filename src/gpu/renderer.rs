@@ -478,11 +478,10 @@ impl Renderer {
                 let sets = [self.slots[slot].sets[index]];
                 device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
                 let stages = vk::ShaderStageFlags::COMPUTE;
-                let (groups, push) = match edited {
-                    Some(rectangle) => pass.for_edit(rectangle),
-                    None => (pass.groups, pass.push.clone()),
-                };
-                device.cmd_push_constants(commands, pipeline.layout, stages, 0, &push);
+                let of_edit = edited.map(|rectangle| pass.for_edit(rectangle));
+                let (groups, push) =
+                    of_edit.as_ref().map_or((pass.groups, &pass.push), |(g, p)| (*g, p));
+                device.cmd_push_constants(commands, pipeline.layout, stages, 0, push);
                 match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
                     Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
                     None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),

@@ -1,7 +1,7 @@
 use super::azimuths::CELL;
 use super::batch::Axis;
-use super::{Pass, Plan};
-use crate::{Error, Result};
+use super::{Builder, Pass, Plan, ResourceId};
+use crate::{Error, Result, passes};
 
 /// A rectangle of a field's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Rectangle {
 }
 
 /// What part of a pass an edited rectangle asks for. The pass is told the rectangle in the last four
-/// words of its push constants ([`Rectangle::words`]).
+/// words of its push constants: its first column and row, its last column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// All its workgroups.
@@ -49,6 +49,23 @@ pub enum Reach {
     /// Those with lines, 32 each and 2^line_shift / 32768 cells apart, that some sample which sees the
     /// rectangle may look along.
     Lines(Axis, u32),
+}
+
+/// What edits keep: marks of the samples that they reach, and the list of those.
+#[derive(Clone, Copy)]
+pub(super) struct Edits {
+    pub dirty: ResourceId,
+    pub list: ResourceId,
+}
+
+impl Edits {
+    pub fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
+        let [across, down] = passes::dirty_mark::words(size).map(u64::from);
+        Self {
+            dirty: builder.buffer("dirty_samples", 4 * across * down, false),
+            list: builder.buffer("edit_list", passes::dirty_list::bytes(size), false),
+        }
+    }
 }
 
 /// Invocations of a group of quads, along either side.

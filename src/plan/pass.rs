@@ -33,7 +33,8 @@ pub struct Pass {
     pub samples: u64,
     /// What of it an edit asks for, where it is told the edited rectangle.
     pub reach: Option<Reach>,
-    /// The buffer, and the byte in it, that has its workgroups when it runs; `groups` are the most.
+    /// The buffer, bound too, and the byte in it that has its workgroups when it runs; `groups` are
+    /// then the most.
     pub indirect: Option<(ResourceId, u64)>,
     /// Whether a barrier between compute and compute stands before it.
     pub barrier_before: bool,

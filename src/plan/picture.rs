@@ -1,4 +1,5 @@
 use super::builder::check_size;
+use super::edit::Edits;
 use super::shining::{Shining, sun_name};
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
@@ -189,23 +190,6 @@ impl Tables {
         let format = Format::Rgba32Float;
         let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
         Self { wedge_rows, tables }
-    }
-}
-
-/// What edits keep: marks of the samples that they reach, and the list of those.
-#[derive(Clone, Copy)]
-struct Edits {
-    dirty: ResourceId,
-    list: ResourceId,
-}
-
-impl Edits {
-    fn make(builder: &mut Builder, size: [u32; 2]) -> Self {
-        let [across, down] = passes::dirty_mark::words(size).map(u64::from);
-        Self {
-            dirty: builder.buffer("dirty_samples", 4 * across * down, false),
-            list: builder.buffer("edit_list", passes::dirty_list::bytes(size), false),
-        }
     }
 }
 

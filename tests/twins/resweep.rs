@@ -7,31 +7,31 @@ use ridgelight::cpu::horizon_resweep::horizon_resweep;
 use ridgelight::plan::Rectangle;
 use ridgelight::plan::azimuths::even;
 
-/// A field with other heights in a rectangle.
-fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> HeightField {
-    let (row, col) = (rectangle.row as usize, rectangle.col as usize);
-    let (rows, cols) = (row..row + rectangle.rows as usize, col..col + rectangle.cols as usize);
-    let heights = before.heights_m();
-    field(before.rows(), before.cols(), before.cell_m(), |r, c| {
-        let inside = rows.contains(&r) && cols.contains(&c);
-        f64::from(heights[r * before.cols() + c]) + if inside { by } else { 0.0 }
-    })
+/// Heights of a field, others in a rectangle; a field of them would have another base.
+fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> Vec<f32> {
+    let mut heights = before.heights_m().to_vec();
+    for row in rectangle.row..rectangle.row + rectangle.rows {
+        let first = row as usize * before.cols() + rectangle.col as usize;
+        heights[first..first + rectangle.cols as usize].iter_mut().for_each(|h| *h += by as f32);
+    }
+    heights
 }
 
 /// Sweeps before an edit and goes on from there; returns the samples swept, and those of all lines.
 fn resweep(
     before: &HeightField,
-    after: &HeightField,
+    after: &[f32],
     rectangle: Rectangle,
     options: SweepOptions,
 ) -> Result<[usize; 2], String> {
     let mut azimuths = even(24, before.cell_m());
     let mut lattices = swept(before, Border::Plane, &mut azimuths, [0; 2], options);
-    let whole = swept(after, Border::Plane, &mut azimuths, [0; 2], options);
+    let mut whole = lattices.clone();
     let mut dirty = dirty_mark([before.cols(), before.rows()], rectangle);
-    let heights = Heights::of(after, Border::Plane);
+    let heights = Heights { samples: after, ..Heights::of(before, Border::Plane) };
     let mut count = 0;
     for azimuth in &azimuths {
+        horizon_sweep(heights, azimuth, &options, whole.of_mut(azimuth));
         let lattice = lattices.of_mut(azimuth);
         count += horizon_resweep(heights, azimuth, &options, rectangle, lattice, &mut dirty);
     }
