@@ -38,6 +38,7 @@ fn light(
         asks: Asks::Light,
         probes: Box::new(probes),
         refuses: never,
+        is_long: |_| false,
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Method {
     pub quality: Quality,
 }
 
-/// Every method. A new one is enrolled by an entry here; `kinds_of` says which kinds have one.
+/// Every method. A new one is enrolled by an entry here.
 pub fn all() -> Vec<Method> {
     let base = Quality { azimuths: 16, sun_azimuths: 32, ..Quality::default() };
     let fused = |fuse| Quality { fuse, ..base };
@@ -39,43 +39,6 @@ pub fn all() -> Vec<Method> {
     ]
     .map(|(name, quality)| Method { name, quality })
     .into()
-}
-
-/// What a method is of each kind, by number. A variant that is added to one of these enums does not
-/// compile until it stands here, and fails until [`all`] has a method of it.
-pub fn kinds_of(q: &Quality) -> [(usize, usize); 5] {
-    let method = match q.method {
-        scene::Method::Auto => 0,
-        scene::Method::Sweep => 1,
-        scene::Method::Brute => 2,
-    };
-    let lines = match q.lines {
-        Lines::Exact => 0,
-        Lines::QuarterCell => 1,
-        Lines::HalfCell => 2,
-        Lines::Cell => 3,
-        Lines::TwoCells => 4,
-        Lines::FourCells => 5,
-    };
-    let fuse = match q.fuse {
-        Fuse::Nearest => 0,
-        Fuse::Slopes => 1,
-        Fuse::Own => 2,
-        Fuse::AimedNearest => 3,
-        Fuse::Aimed => 4,
-    };
-    let precision = match q.precision {
-        Precision::F32 => 0,
-        Precision::F16 => 1,
-        Precision::Packed => 2,
-    };
-    let hull = match q.hull {
-        Hull::Auto => 0,
-        Hull::Private => 1,
-        Hull::Shared => 2,
-        Hull::List => 3,
-    };
-    [(method, 3), (lines, 6), (fuse, 5), (precision, 3), (hull, 4)]
 }
 
 impl Method {

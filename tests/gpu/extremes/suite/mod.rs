@@ -34,6 +34,8 @@ pub struct Case {
     pub probes: Probes,
     /// The sentence with which a method refuses the case.
     pub refuses: fn(&Method) -> Option<&'static str>,
+    /// Whether a method takes so long that `tools/extremes` alone draws it, and the tests do not.
+    pub is_long: fn(&Method) -> bool,
 }
 
 type Probes = Box<dyn Fn(&Found) -> Vec<Probe>>;
@@ -131,6 +133,16 @@ pub enum Outcome {
     Refused(String),
 }
 
+impl Outcome {
+    /// How many values were looked at.
+    pub fn values(&self) -> usize {
+        match self {
+            Outcome::Measured { values, .. } => *values,
+            Outcome::Refused(_) => 0,
+        }
+    }
+}
+
 /// A case under a method, by their places in the lists.
 pub struct Row {
     pub case: usize,
@@ -215,14 +227,12 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
     Some(format!("{}, {}: {said}", case.name, method.name))
 }
 
-/// Every case under every method.
-pub fn run(gpu: &mut Headless, cases: &[Case], methods: &[Method]) -> Vec<Row> {
+/// Every case under every method; long ones where asked.
+pub fn run(gpu: &mut Headless, cases: &[Case], methods: &[Method], long: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for (m, method) in methods.iter().enumerate() {
-        for (c, case) in cases.iter().enumerate() {
-            let t0 = std::time::Instant::now();
+        for (c, case) in cases.iter().enumerate().filter(|(_, c)| long || !(c.is_long)(method)) {
             let outcome = outcome(probes(gpu, case, method));
-            println!("T {:.3} {} ; {}", t0.elapsed().as_secs_f64(), case.name, method.name);
             rows.push(Row { case: c, method: m, outcome });
         }
     }

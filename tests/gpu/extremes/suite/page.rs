@@ -1,16 +1,9 @@
-//! The table as a page.
+//! The published table: what stands on the page, and whether it lacks anything.
 
-use std::fmt::Write as _;
+use super::{Case, Method, inputs};
 
-use super::{Case, Method, Outcome, Row, inputs};
-
-/// What a driver found: its name, and a row for every case under every method.
-pub struct Driver {
-    pub name: String,
-    pub rows: Vec<Row>,
-}
-
-const ABOUT: &str = "\
+/// What stands before the tables.
+pub const ABOUT: &str = "\
 # The extremes
 
 Every extreme at which numbers must hold, put to every method: what is expected and why, the worst error
@@ -35,46 +28,15 @@ each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of 
 Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
 
-fn heading(case: &Case) -> String {
-    format!("## {}", case.name)
+/// What a case's table begins with.
+pub fn heading(case: &Case) -> String {
+    let Case { name, expected, bound, .. } = case;
+    format!("\n## {name}\n\nExpected: {expected}.\nBound: {bound}.\n")
 }
 
-fn refused(name: &str, sentence: &str) -> String {
+/// The row of a refused input.
+pub fn refused(name: &str, sentence: &str) -> String {
     format!("| {name} | {sentence} |")
-}
-
-/// The page of all cases under all methods, as some drivers found them.
-pub fn page(cases: &[Case], methods: &[Method], drivers: &[Driver]) -> String {
-    let mut out = ABOUT.to_owned();
-    for (c, case) in cases.iter().enumerate() {
-        writeln!(out, "\n{}\n", heading(case)).unwrap();
-        writeln!(out, "Expected: {}.\nBound: {}.\n", case.expected, case.bound).unwrap();
-        write!(out, "| method |").unwrap();
-        drivers.iter().for_each(|d| write!(out, " {}: worst | bound | share |", d.name).unwrap());
-        writeln!(out, "\n|---|{}", "---|---|---|".repeat(drivers.len())).unwrap();
-        for (m, method) in methods.iter().enumerate() {
-            write!(out, "| {} |", method.name).unwrap();
-            for driver in drivers {
-                let row = driver.rows.iter().find(|r| (r.case, r.method) == (c, m));
-                out += &cells(&row.expect("a row for every case under every method").outcome);
-            }
-            out.push('\n');
-        }
-    }
-    writeln!(out, "\n## Inputs that are refused\n\n| input | what is said |\n|---|---|").unwrap();
-    for (name, offer, _) in inputs::ALL {
-        writeln!(out, "{}", refused(name, &inputs::said(*offer))).unwrap();
-    }
-    out
-}
-
-fn cells(outcome: &Outcome) -> String {
-    match outcome {
-        Outcome::Refused(said) => format!(" refused: *{said}* | | |"),
-        Outcome::Measured { worst, largest_error, .. } => {
-            format!(" {largest_error:.2e} | {:.2e} | {:.3} |", worst.bound, worst.ratio())
-        }
-    }
 }
 
 /// What a page lacks: cases with what is expected of them, rows of methods with a figure or a refusal in
@@ -85,13 +47,7 @@ pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
         missing.push("the text before the tables".to_owned());
     }
     for case in cases {
-        let text = format!(
-            "\n{}\n\nExpected: {}.\nBound: {}.\n",
-            heading(case),
-            case.expected,
-            case.bound
-        );
-        let Some((_, rest)) = page.split_once(&text) else {
+        let Some((_, rest)) = page.split_once(&heading(case)) else {
             missing.push(case.name.clone());
             continue;
         };
