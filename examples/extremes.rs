@@ -1,7 +1,7 @@
 //! Measures every extreme of `tests/gpu/extremes` under every method on the devices named, and writes
 //! what was found as `docs/extremes.md`. See `tools/extremes`.
 //!
-//! `cargo run --release --example extremes -- llvmpipe SwiftShader`; fails where a row is beyond its bound.
+//! `cargo run --example extremes -- llvmpipe SwiftShader`; fails where a row is beyond its bound.
 
 #[path = "../tests/gpu/extremes/suite/mod.rs"]
 mod suite;

@@ -53,7 +53,8 @@ impl Method {
 
     /// Whether a line of the sweep runs through the samples of this lane in azimuths along the grid.
     pub fn has_line_at(&self, lane: usize) -> bool {
-        self.is_brute() || self.quality.lines.shift().is_none_or(|s| (lane << 15) % (1 << s) == 0)
+        self.is_brute()
+            || self.quality.lines.shift().is_none_or(|s| (lane << 15).is_multiple_of(1 << s))
     }
 
     /// The azimuths that it sweeps when asked for `count`, in the order of the circle.

@@ -173,10 +173,9 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         }
     };
     let plan = planned.map_err(|e| e.to_string())?;
-    let environment: Option<Vec<f32>> = match &case.scene.lights.environment {
-        Some(e) => Some(e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()),
-        None => None,
-    };
+    let environment = case.scene.lights.environment.as_ref();
+    let environment: Option<Vec<f32>> =
+        environment.map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
     let mut contents = vec![field.heights_m()];
     contents.extend(environment.as_deref());
     let (layers, outputs) = (plan.layer_azimuths.clone(), plan.outputs().count());
