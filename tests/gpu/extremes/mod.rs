@@ -35,7 +35,9 @@ fn a_value_beyond_its_bound_is_seen() {
     let mut device = Device::new();
     let (cases, mut methods) = (suite::cases(), methods::all());
     methods.truncate(3);
-    for (c, case) in cases.iter().enumerate() {
+    // Of one size, which share their pipelines.
+    let is_usual = |case: &suite::Case| case.scene.field.heights_m().len() == 65 * 65;
+    for (c, case) in cases.iter().enumerate().filter(|(_, case)| is_usual(case)) {
         let method = &methods[2];
         let found = suite::probes(device.gpu.as_mut().expect("alive"), case, method);
         let probes = found.expect("drawn");
