@@ -85,3 +85,13 @@ chromium_file() {
     done
     return 1
 }
+
+# A loader manifest of SwiftShader. Chromium's own names the library relative to itself and an API of 1.0.
+swiftshader_manifest() {
+    cat <<JSON
+{
+    "file_format_version": "1.0.0",
+    "ICD": { "library_path": "$(chromium_file libvk_swiftshader.so)", "api_version": "1.3.0" }
+}
+JSON
+}

@@ -1,0 +1,128 @@
+//! The methods that every case is put to, and what each may err by.
+
+use ridgelight::measure::tolerance::{
+    ARC_TANGENT, EPSILON, march_slope, surface_slope, sweep_slope, twin_fused_slope,
+    twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed, twin_surface_slope,
+};
+use ridgelight::plan::Azimuth;
+use ridgelight::plan::azimuths::{along_grid_vectors, even};
+use ridgelight::scene::{self, Fuse, Hull, Lines, Precision, Quality};
+
+/// A way to find horizons, as the page names it.
+pub struct Method {
+    pub name: &'static str,
+    pub quality: Quality,
+}
+
+/// Every method. A new one is enrolled by an entry here.
+pub fn all() -> Vec<Method> {
+    let base = Quality { azimuths: 16, sun_azimuths: 32, ..Quality::default() };
+    let fused = |fuse| Quality { fuse, ..base };
+    let spaced = |lines, fuse| Quality { lines, fuse, ..base };
+    let kept = |precision, fuse| Quality { precision, fuse, ..base };
+    [
+        ("brute", Quality { method: scene::Method::Brute, ..base }),
+        ("exact", Quality { lines: Lines::Exact, ..base }),
+        ("auto: 1, aimed-nearest", base),
+        ("1, aimed", Quality { method: scene::Method::Sweep, ..fused(Fuse::Aimed) }),
+        ("1, own, list", Quality { hull: Hull::List, ..fused(Fuse::Own) }),
+        ("1, slopes, shared", Quality { hull: Hull::Shared, ..fused(Fuse::Slopes) }),
+        ("1, nearest, private", Quality { hull: Hull::Private, ..fused(Fuse::Nearest) }),
+        ("1/4, aimed", spaced(Lines::QuarterCell, Fuse::Aimed)),
+        ("1/2, aimed-nearest", spaced(Lines::HalfCell, Fuse::AimedNearest)),
+        ("2, aimed-nearest", spaced(Lines::TwoCells, Fuse::AimedNearest)),
+        ("4, aimed", spaced(Lines::FourCells, Fuse::Aimed)),
+        ("1, slopes, f16", kept(Precision::F16, Fuse::Slopes)),
+        ("1, nearest, f16", kept(Precision::F16, Fuse::Nearest)),
+        ("1, nearest, packed", kept(Precision::Packed, Fuse::Nearest)),
+        ("1, aimed-nearest, packed", kept(Precision::Packed, Fuse::AimedNearest)),
+    ]
+    .map(|(name, quality)| Method { name, quality })
+    .into()
+}
+
+impl Method {
+    pub fn is_brute(&self) -> bool {
+        self.quality.method == scene::Method::Brute
+    }
+
+    /// Whether it sweeps along grid vectors, where every crossing is on the hull.
+    pub fn is_exact(&self) -> bool {
+        !self.is_brute() && self.quality.lines == Lines::Exact
+    }
+
+    /// Whether a line of the sweep runs through the samples of this lane in azimuths along the grid.
+    pub fn has_line_at(&self, lane: usize) -> bool {
+        self.is_brute()
+            || self.quality.lines.shift().is_none_or(|s| (lane << 15).is_multiple_of(1 << s))
+    }
+
+    /// The azimuths that it sweeps when asked for `count`, in the order of the circle.
+    pub fn azimuths(&self, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
+        if self.is_exact() { along_grid_vectors(count, cell_m) } else { even(count, cell_m) }
+    }
+
+    /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but
+    /// for packed entries, which are rounded and seen from what is not.
+    pub fn level(&self, largest_m: f64) -> f64 {
+        if self.quality.precision == Precision::Packed { largest_m } else { 0.0 }
+    }
+
+    /// Slope by which a plane that rises by `rise_m` from lane to lane may be missed between lines.
+    ///
+    /// `own` sees what two lines met from the sample's height, t cells aside of the one and 1 - t of the
+    /// other, and interpolates: t (1 - t) rise_m / distance, once added and once taken away. All that a
+    /// line meets on a plane ties, and where rounding picks other distances the two do not cancel:
+    /// t (1 - t) rise_m / step at most.
+    pub fn ties(&self, rise_m: f64, step_m: f64) -> f64 {
+        let is_own = !self.is_brute() && !self.is_exact() && self.quality.fuse == Fuse::Own;
+        if is_own { 0.25 * rise_m / step_m } else { 0.0 }
+    }
+
+    /// How far a slope may be from the truth, where heights reach `largest_m` and nothing that is
+    /// not level stands nearer than `near_m`.
+    ///
+    /// Heights are rounded on the way in, at both ends: 2 ε H. Then the truth to the twin and the twin
+    /// to the device (`measure::tolerance`, with `near_m` in place of a step): a march R ≤ 2 H; a
+    /// surface sweep; a sweep and its fuse. Reduced precision adds its own: slopes as f16 2^-10 of
+    /// themselves, packed heights 2^-11 of H.
+    fn slope_error(&self, slope: f64, largest_m: f64, near_m: f64, azimuth: &Azimuth) -> f64 {
+        let rounded = 2.0 * EPSILON * largest_m / near_m;
+        if self.is_brute() {
+            let relief = 2.0 * largest_m;
+            return rounded + march_slope(relief, near_m) + twin_march_slope(relief, near_m);
+        }
+        if self.is_exact() {
+            let vector = [azimuth.vector_march, azimuth.vector_lane];
+            let twin = twin_surface_slope(largest_m, near_m, vector);
+            return rounded + surface_slope(largest_m, near_m) + twin;
+        }
+        let swept = sweep_slope(largest_m, near_m) + 2.0 * twin_fused_slope(largest_m, near_m);
+        let reduced = match self.quality.precision {
+            Precision::F32 => twin_slope(slope),
+            Precision::F16 => twin_slope_f16(slope),
+            Precision::Packed => twin_slope(slope) + twin_slope_packed(largest_m, near_m),
+        };
+        rounded + swept + reduced
+    }
+
+    /// The same as an elevation, radians: d atan(x) = dx / (1 + x²) at the flattest that the slope may
+    /// be. `arc_tangent` errs in proportion below slope 1 (Abramowitz & Stegun 4.4.49 bounds the
+    /// error of atan(x) / x). An f16 beyond 65 504 is that number. `ties` as [`Method::ties`].
+    pub fn angle_error(
+        &self,
+        slope: f64,
+        (largest_m, near_m): (f64, f64),
+        ties: f64,
+        azimuth: &Azimuth,
+    ) -> f64 {
+        let error = self.slope_error(slope, largest_m, near_m, azimuth) + ties;
+        let flattest = (slope.abs() - error).max(0.0);
+        let saturated = match self.quality.precision {
+            Precision::F16 => slope.atan() - slope.min(65_504.0).atan(),
+            Precision::F32 | Precision::Packed => 0.0,
+        };
+        let turned = (error / (1.0 + flattest * flattest)).min(std::f64::consts::FRAC_PI_2);
+        turned + ARC_TANGENT * (slope.abs() + error).min(1.0) + saturated
+    }
+}

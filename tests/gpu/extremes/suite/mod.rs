@@ -1,0 +1,266 @@
+//! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
+//! it on the driver at hand; `examples/extremes.rs` prints it for several as `docs/extremes.md`.
+
+mod horizons;
+pub mod inputs;
+mod lights;
+pub mod methods;
+pub mod page;
+
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Azimuth, Picture};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Quality, Scene, Surface};
+
+use methods::Method;
+
+/// What is drawn for a case.
+pub enum Asks {
+    /// `count` azimuths from number `first` on, of a circle of `of`.
+    Horizons { of: u32, first: u32, count: u32 },
+    /// A picture and a layer for each light.
+    Light,
+}
+
+/// A scene at an extreme, and what its answer has to be.
+pub struct Case {
+    pub name: String,
+    /// The right answer and why; for the page.
+    pub expected: String,
+    /// How far from it a value may be, as a formula; for the page.
+    pub bound: String,
+    pub scene: Scene,
+    pub asks: Asks,
+    /// Values of the result beside what is expected of them.
+    pub probes: Probes,
+    /// The sentence with which a method refuses the case.
+    pub refuses: fn(&Method) -> Option<&'static str>,
+    /// Whether a method takes so long that `tools/extremes` alone draws it, and the tests do not.
+    pub is_long: fn(&Method) -> bool,
+}
+
+type Probes = Box<dyn Fn(&Found) -> Vec<Probe>>;
+
+/// A value that was found, and what it may be.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    pub found: f64,
+    /// The right answer, or the interval that holds it.
+    pub expected: [f64; 2],
+    /// How far outside it may be.
+    pub bound: f64,
+    /// Azimuth or light, row, column.
+    pub at: [usize; 3],
+}
+
+impl Probe {
+    /// Distance from what is expected; infinite where no number was found.
+    pub fn error(&self) -> f64 {
+        let [low, high] = self.expected;
+        let error = (low - self.found).max(self.found - high).max(0.0);
+        if self.found.is_finite() { error } else { f64::INFINITY }
+    }
+
+    /// Error over bound: above 1 is too far.
+    pub fn ratio(&self) -> f64 {
+        if self.error() == 0.0 { 0.0 } else { self.error() / self.bound }
+    }
+}
+
+/// What a method drew for a case.
+pub struct Found<'a> {
+    pub scene: &'a Scene,
+    pub method: &'a Method,
+    /// The azimuths of the circle asked for, as the method sweeps them.
+    pub azimuths: Vec<Azimuth>,
+    /// Radians of each.
+    pub azimuths_rad: Vec<f64>,
+    /// Which azimuth each layer of the first output is.
+    layers: Vec<u32>,
+    outputs: Vec<Pixels>,
+}
+
+impl Found<'_> {
+    /// Elevation of the horizon, radians; `None` where that azimuth was not asked for.
+    pub fn horizon(&self, k: usize, row: usize, col: usize) -> Option<f64> {
+        let layer = self.layers.iter().position(|l| *l as usize == k)?;
+        let (rows, cols) = (self.scene.field.rows(), self.scene.field.cols());
+        Some(f64::from(self.outputs[0].values[(layer * rows + row) * cols + col]))
+    }
+
+    /// A horizon whose slope has to be this: see [`Method::angle_error`].
+    pub fn slope(
+        &self,
+        at: [usize; 3],
+        slope: f64,
+        (largest_m, near_m): (f64, f64),
+    ) -> Option<Probe> {
+        self.between(at, [slope; 2], (largest_m, near_m), 0.0)
+    }
+
+    /// A horizon whose slope has to be in an interval, where ties may be broken by rounding.
+    pub fn between(
+        &self,
+        at: [usize; 3],
+        slopes: [f64; 2],
+        rounded: (f64, f64),
+        ties: f64,
+    ) -> Option<Probe> {
+        let [k, row, col] = at;
+        let found = self.horizon(k, row, col)?;
+        let bounds = slopes.map(|s| self.method.angle_error(s, rounded, ties, &self.azimuths[k]));
+        let expected = slopes.map(f64::atan);
+        Some(Probe { found, expected, bound: bounds[0].max(bounds[1]), at })
+    }
+
+    /// First channel of a layer at a sample.
+    pub fn light(&self, layer: &str, row: usize, col: usize) -> f64 {
+        let output = self.outputs.iter().find(|o| o.name == layer);
+        let output = output.unwrap_or_else(|| panic!("no output {layer}"));
+        f64::from(output.values[(row * self.scene.field.cols() + col) * output.channels])
+    }
+
+    /// The circle's azimuths that were swept.
+    pub fn count(&self) -> f64 {
+        f64::from(self.method.quality.azimuths)
+    }
+}
+
+/// What came of a case under a method.
+pub enum Outcome {
+    /// The worst of so many values, and the largest error of all.
+    Measured { worst: Probe, largest_error: f64, values: usize },
+    /// The sentence that was said.
+    Refused(String),
+}
+
+impl Outcome {
+    /// How many values were looked at.
+    pub fn values(&self) -> usize {
+        match self {
+            Outcome::Measured { values, .. } => *values,
+            Outcome::Refused(_) => 0,
+        }
+    }
+}
+
+/// A case under a method, by their places in the lists.
+pub struct Row {
+    pub case: usize,
+    pub method: usize,
+    pub outcome: Outcome,
+}
+
+/// Every case. A new one is enrolled by an entry in one of the two lists.
+pub fn cases() -> Vec<Case> {
+    horizons::cases().into_iter().chain(lights::cases()).collect()
+}
+
+/// The probes of a case under a method on a device, or the sentence of the refusal.
+pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Probe>, String> {
+    let field = &case.scene.field;
+    let limits = gpu.report().limits;
+    let (quality, planned) = match case.asks {
+        Asks::Horizons { of, first, count } => {
+            let quality = Quality { azimuths: of, ..method.quality };
+            let border = case.scene.surface.border;
+            let part = (first, count);
+            (quality, plan::horizons(field, border, &quality, &limits, part, false))
+        }
+        Asks::Light => {
+            let wanted = Picture { light_layers: true, ..Picture::default() };
+            let planned = plan::picture(&case.scene, &method.quality, &limits, wanted);
+            (method.quality, planned)
+        }
+    };
+    let plan = planned.map_err(|e| e.to_string())?;
+    let environment = case.scene.lights.environment.as_ref();
+    let environment: Option<Vec<f32>> =
+        environment.map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
+    let mut contents = vec![field.heights_m()];
+    contents.extend(environment.as_deref());
+    let (layers, outputs) = (plan.layer_azimuths.clone(), plan.outputs().count());
+    let mut frame = gpu.frame(plan, &contents).map_err(|e| e.to_string())?;
+    gpu.draw(&mut frame).map_err(|e| e.to_string())?;
+    let outputs = (0..outputs).map(|o| gpu.pixels(&frame, o).map_err(|e| e.to_string()));
+    let outputs = outputs.collect::<Result<Vec<Pixels>, String>>();
+    gpu.end(frame);
+    let found = Found {
+        scene: &case.scene,
+        method,
+        azimuths: method.azimuths(quality.azimuths, field.cell_m()),
+        azimuths_rad: plan::circle_rad(&quality, field.cell_m()),
+        layers,
+        outputs: outputs?,
+    };
+    Ok((case.probes)(&found))
+}
+
+/// The worst of some probes.
+pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
+    let probes = match probes {
+        Ok(probes) => probes,
+        Err(sentence) => return Outcome::Refused(sentence),
+    };
+    let worst = probes.iter().copied().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+    Outcome::Measured {
+        worst: worst.expect("a case looks at something under every method"),
+        largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
+        values: probes.len(),
+    }
+}
+
+/// What is wrong with a row, if anything.
+pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String> {
+    let (case, method) = (&cases[row.case], &methods[row.method]);
+    let said = match (&row.outcome, (case.refuses)(method)) {
+        (Outcome::Measured { worst, .. }, None) if worst.ratio() <= 1.0 => return None,
+        (Outcome::Measured { worst, .. }, None) => {
+            let Probe { found, expected: [low, high], bound, at } = worst;
+            let ratio = worst.ratio();
+            format!("at {at:?}: {found}, expected {low} to {high}: {ratio:.3} of {bound:e}")
+        }
+        (Outcome::Measured { .. }, Some(_)) => "drawn, and should be refused".to_owned(),
+        (Outcome::Refused(said), Some(sentence)) if said == sentence => return None,
+        (Outcome::Refused(said), _) => format!("refused: {said}"),
+    };
+    Some(format!("{}, {}: {said}", case.name, method.name))
+}
+
+/// Every case under every method; long ones where asked.
+pub fn run(gpu: &mut Headless, cases: &[Case], methods: &[Method], long: bool) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (m, method) in methods.iter().enumerate() {
+        for (c, case) in cases.iter().enumerate().filter(|(_, c)| long || !(c.is_long)(method)) {
+            let outcome = outcome(probes(gpu, case, method));
+            rows.push(Row { case: c, method: m, outcome });
+        }
+    }
+    rows
+}
+
+/// No method refuses.
+fn never(_: &Method) -> Option<&'static str> {
+    None
+}
+
+/// Heights that are good, none of them marked as no-data.
+fn field(
+    [rows, cols]: [usize; 2],
+    cell_m: [f64; 2],
+    height: impl Fn(usize, usize) -> f64,
+) -> HeightField {
+    let heights: Vec<f64> = (0..rows * cols).map(|i| height(i / cols, i % cols)).collect();
+    HeightField::new(rows, cols, &heights, cell_m, None).expect("a good field")
+}
+
+/// A white field on a plane.
+fn white(field: HeightField, lights: Lights) -> Scene {
+    let surface =
+        Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane, phong: None };
+    Scene { field, surface, lights }
+}
+
+/// The largest |height above the base|.
+fn largest(field: &HeightField) -> f64 {
+    field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m))
+}

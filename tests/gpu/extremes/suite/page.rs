@@ -1,0 +1,73 @@
+//! The published table: what stands on the page, and whether it lacks anything.
+
+use super::{Case, Method, inputs};
+
+/// What stands before the tables.
+pub const ABOUT: &str = "\
+# The extremes
+
+Every extreme at which numbers must hold, put to every method: what is expected and why, the worst error
+found, the bound that it must keep, and the error as a share of the bound. Made by `tools/extremes`; the
+test `extremes` of `tests/gpu` holds every row to its bound on the driver at hand.
+
+Angles in radians; lights in exit radiance. Errors are distances from what is expected; *worst* is the
+largest of all values looked at, *share* the largest of error over bound, which may stand elsewhere.
+Methods are named by their lines' distance in cells and their fuse (`--lines`, `--fuse`), hull and
+precision where they are not the default's. ε = 2^-24; m azimuths. *The method's* bound of a
+horizon, at the distance d of what makes it, with heights up to H:
+
+| method | bound on the slope |
+|---|---|
+| brute | (2 + 76 + 208) ε H / d: heights in, march, device |
+| exact | (2 + 540 + 40 (1 + march / lane)) ε H / d along the grid vector (march, lane) |
+| all others | (2 + 38 + 256) ε H / d and 6 ε of the slope: heights in, sweep, fuse |
+| f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
+| packed besides | 2^-9 H / d and 100 ε H / d |
+
+each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
+Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
+";
+
+/// What a case's table begins with.
+pub fn heading(case: &Case) -> String {
+    let Case { name, expected, bound, .. } = case;
+    format!("\n## {name}\n\nExpected: {expected}.\nBound: {bound}.\n")
+}
+
+/// The row of a refused input.
+pub fn refused(name: &str, sentence: &str) -> String {
+    format!("| {name} | {sentence} |")
+}
+
+/// What a page lacks: cases with what is expected of them, rows of methods with a figure or a refusal in
+/// every column, refused inputs.
+pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
+    let mut missing = Vec::new();
+    if !page.starts_with(ABOUT) {
+        missing.push("the text before the tables".to_owned());
+    }
+    for case in cases {
+        let Some((_, rest)) = page.split_once(&heading(case)) else {
+            missing.push(case.name.clone());
+            continue;
+        };
+        let table = rest.split("\n## ").next().unwrap_or_default();
+        for method in methods {
+            let begin = format!("| {} | ", method.name);
+            let row = table.lines().find_map(|l| l.strip_prefix(&begin));
+            let refusal = (case.refuses)(method);
+            let holds = row.is_some_and(|r| match refusal {
+                Some(sentence) => r.contains(sentence),
+                None => {
+                    r.split(" | ").all(|cell| cell.trim_end_matches(" |").parse::<f64>().is_ok())
+                }
+            });
+            if !holds {
+                missing.push(format!("{}, {}", case.name, method.name));
+            }
+        }
+    }
+    let inputs = inputs::ALL.iter().map(|(name, _, sentence)| refused(name, sentence));
+    missing.extend(inputs.filter(|row| !page.lines().any(|l| l == row)));
+    missing
+}
