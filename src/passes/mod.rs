@@ -3,10 +3,13 @@
 
 pub(crate) mod env_tables;
 pub(crate) mod env_wedges;
+pub(crate) mod height_bounds;
+pub(crate) mod height_cells;
 pub(crate) mod height_transpose;
 pub(crate) mod horizon_march;
 pub(crate) mod horizon_sweep;
 pub(crate) mod light_resolve;
+pub(crate) mod path_trace;
 mod push;
 pub(crate) mod sky_shade;
 pub(crate) mod sun_shade;
