@@ -165,8 +165,10 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uint lost)
         Place next = place;
         vec3 onward = vec3(0.0);
         bool goes_on = false;
-        vec3 centre = vec3((float(place.base.x) + place.offset.x) * cell_x_m,
-                           (float(rows - 1 - place.base.y) - place.offset.y) * cell_y_m, place.own);
+        // Where a field that repeats begins again stands its first sample.
+        vec2 from = vec2(place.base) + place.offset;
+        from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(cols, rows))) : from;
+        vec3 centre = vec3(from.x * cell_x_m, (float(rows - 1) - from.y) * cell_y_m, place.own);
         // First towards each light, then where the surface scatters to.
         for (int r = 0; r < rays; r++) {
             uint dimension = 2u * uint(bounce * rays + r);

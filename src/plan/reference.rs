@@ -54,8 +54,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     if let Some(environment) = &lights.environment {
         let [width, height] = [environment.width() as u32, environment.height() as u32];
         bound.push(("environment", image("environment", Owner::Input, rgba, [width, height])));
-        let cdf =
-            image("environment_cdf", Owner::Input, Format::R32Float, [width + 1, height]);
+        let cdf = image("environment_cdf", Owner::Input, Format::R32Float, [width + 1, height]);
         bound.push(("environment_cdf", cdf));
     }
     bound.push(("lights", image("lights", Owner::Input, rgba, [2, count.max(1) as u32])));

@@ -3,6 +3,7 @@
 
 mod cases;
 mod light;
+mod paths;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -51,6 +52,9 @@ type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
 /// The twin of every pass, by name.
 const TWINS: &[(&str, Twin)] = &[
     ("height_transpose", sweep::height_transpose),
+    ("height_cells", paths::height_cells),
+    ("height_bounds", paths::height_bounds),
+    ("path_trace", paths::path_trace),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
@@ -236,8 +240,8 @@ fn check(device: &mut Device, case: &Case) -> usize {
 
 #[test]
 fn every_shader_has_a_twin_and_a_case() {
-    let cases: Vec<Case> =
-        [cases::sweeps(), cases::samples(), cases::pictures()].into_iter().flatten().collect();
+    let cases = [cases::sweeps(), cases::samples(), cases::pictures(), cases::references()];
+    let cases: Vec<Case> = cases.into_iter().flatten().collect();
     let planned: Vec<&str> = cases
         .iter()
         .flat_map(|case| case.plan(&Limits::lavapipe()).passes)
@@ -271,6 +275,14 @@ fn sweeps_of_one_value_a_sample_are_their_twins() {
 fn pictures_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::pictures() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn paths_are_their_twins_pass_by_pass() {
+    let mut device = Device::new();
+    for case in cases::references() {
         check(&mut device, &case);
     }
 }
