@@ -10,27 +10,42 @@ use crate::{Device, field, under_sky};
 /// Radiance and its standard error.
 type Traced = [Vec<[f64; 3]>; 2];
 
-/// `batches` of a scene.
-fn traced(device: &mut Device, scene: &Scene, bounces: u32, seed: u32, batches: usize) -> Traced {
-    let plan = plan::reference(scene, bounces, seed, &device.limits()).expect("a plan");
-    let last = plan.passes.len() - 1;
-    let lost = plan.find("lost_rays").expect("a buffer");
+/// `batches` of a scene with up to these bounces, by one renderer.
+fn traced_each<const N: usize>(
+    device: &mut Device,
+    scene: &Scene,
+    bounces: [u32; N],
+    seed: u32,
+    batches: usize,
+) -> [Traced; N] {
+    let limits = device.limits();
+    let plans = bounces.map(|b| plan::reference(scene, b, seed, &limits).expect("a plan"));
+    let last = plans[0].passes.len() - 1;
+    let lost = plans[0].find("lost_rays").expect("a buffer");
     let contents = plan::reference_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let gpu = device.gpu.as_mut().expect("alive");
-    let mut frame = gpu.frame(plan, &contents).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    for _ in 1..batches {
-        gpu.draw_passes(&mut frame, &[last]).expect("drawn on");
-    }
-    assert_eq!(gpu.read(&frame, lost).expect("read back")[0], 0, "rays were lost");
-    let both = [0, 1].map(|output| {
-        let pixels = gpu.pixels(&frame, output).expect("pixels");
-        let texels = pixels.values.chunks_exact(4);
-        texels.map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
+    let mut frame = gpu.frame(plans[0].clone(), &contents).expect("a frame");
+    let all = plans.map(|plan| {
+        gpu.replace_plan(&mut frame, plan).expect("the same passes");
+        gpu.draw(&mut frame).expect("drawn");
+        for _ in 1..batches {
+            gpu.draw_passes(&mut frame, &[last]).expect("drawn on");
+        }
+        assert_eq!(gpu.read(&frame, lost).expect("read back")[0], 0, "rays were lost");
+        [0, 1].map(|output| {
+            let pixels = gpu.pixels(&frame, output).expect("pixels");
+            let texels = pixels.values.chunks_exact(4);
+            texels.map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
+        })
     });
     gpu.end(frame);
-    both
+    all
+}
+
+fn traced(device: &mut Device, scene: &Scene, bounces: u32, seed: u32, batches: usize) -> Traced {
+    let [only] = traced_each(device, scene, [bounces], seed, batches);
+    only
 }
 
 /// Batches that the comparisons draw.
@@ -61,9 +76,9 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
             let sigma = with_rare_events(light, error, &truth.radiance[b]);
             Agreement::of(light, &sigma, &truth.radiance[b], &truth.error[b], 1e-5)
         };
-        for b in [0, 2] {
-            let both = traced(&mut device, &scene, b as u32, 1, BATCHES);
-            let of = agreement(&both, b);
+        let all = traced_each(&mut device, &scene, [0, 2], 1, BATCHES);
+        for (both, b) in all.iter().zip([0, 2]) {
+            let of = agreement(both, b);
             println!(
                 "{name}, {b} bounces: rms {:.3}, worst {:.2}, mean {:.2} of {}",
                 of.rms, of.worst, of.mean, of.count
@@ -72,7 +87,7 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
             // Convex ground sees little or nothing of itself.
             let sum = |b: usize| truth.radiance[b].iter().flatten().sum::<f64>();
             if b == 0 && sum(2) > 1.01 * sum(0) {
-                let wrong = agreement(&both, 2);
+                let wrong = agreement(both, 2);
                 assert!(!wrong.holds(), "{name}: deaf to bounces: {wrong:?}");
             }
         }
@@ -112,13 +127,11 @@ fn white_ground_in_white_light_is_white() {
 #[test]
 fn a_single_line_of_samples_sees_all_of_the_sky() {
     let mut device = Device::new();
-    for (rows, cols) in [(1, 1), (1, 9), (9, 1)] {
-        let line = field(rows, cols, [1.0, 1.0], |_, _| 2.0);
-        for border in [Border::Plane, Border::Open, Border::Periodic] {
-            let scene = under_sky(line.clone(), border);
-            let [light, _] = traced(&mut device, &scene, 1, 0, 2);
-            assert!(light.iter().flatten().all(|v| *v == 1.0), "{rows} × {cols}, {border:?}");
-        }
+    let (plane, open, periodic) = (Border::Plane, Border::Open, Border::Periodic);
+    for (rows, cols, border) in [(1, 1, plane), (1, 9, open), (9, 1, plane), (9, 1, periodic)] {
+        let scene = under_sky(field(rows, cols, [1.0, 1.0], |_, _| 2.0), border);
+        let [light, _] = traced(&mut device, &scene, 1, 0, 2);
+        assert!(light.iter().flatten().all(|v| *v == 1.0), "{rows} × {cols}, {border:?}");
     }
 }
 

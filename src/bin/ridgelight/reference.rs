@@ -21,7 +21,8 @@ const BATCHES_A_LOOK: u32 = 8;
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
 static WAS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Told of a signal: whether it is heard here. A second one is not.
+/// Told of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
+/// second one is not.
 pub fn hears_signal() -> bool {
     IS_TRACING.load(Ordering::SeqCst) && !WAS_INTERRUPTED.swap(true, Ordering::SeqCst)
 }
@@ -31,13 +32,13 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     let scene = scene(args)?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
+    // From here on a signal is the end of the tracing, however little there is.
+    IS_TRACING.store(true, Ordering::SeqCst);
     let (mut gpu, limits) = setup::device(&args.global)?;
     let contents = plan::reference_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let mut frame = gpu.frame(plan(&limits)?, &contents)?;
-    IS_TRACING.store(true, Ordering::SeqCst);
     let traced = trace(args, &scene, &mut gpu, &mut frame);
-    // What is written now is wanted whole: one signal is still heard, and changes nothing more.
     let traced =
         traced.and_then(|traced| write(args, &scene, &gpu, &frame, &traced).map(|()| traced));
     IS_TRACING.store(false, Ordering::SeqCst);
