@@ -2,13 +2,16 @@
 //!
 //! A twin has its shader's name and reads like it. Geometry (sweeps, fusing) does the shader's own
 //! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
-//! bits; light is summed in f64 and compared within a tolerance.
+//! bits; light is summed in f64 and compared within a tolerance. The twin of `path_trace` is [`bounce`],
+//! which finds the same light without chance.
 
 pub mod bounce;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;
 pub mod env_wedges;
+pub mod height_bounds;
+pub mod height_cells;
 pub mod height_transpose;
 pub mod horizon_march;
 pub mod horizon_resweep;

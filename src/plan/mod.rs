@@ -11,6 +11,7 @@ mod limits;
 mod pass;
 mod picture;
 mod print;
+mod reference;
 mod resource;
 mod shining;
 pub mod sweep;
@@ -24,6 +25,7 @@ pub use horizons::horizons;
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture};
+pub use reference::{REFERENCE_BATCH, reference, reference_inputs};
 pub use resource::{Format, Kind, Owner, Resource};
 pub use sweeping::circle_rad;
 

@@ -8,6 +8,7 @@ mod flags;
 mod inputs;
 mod needs_vulkan;
 mod plan;
+mod reference;
 mod signals;
 mod trade;
 

@@ -9,7 +9,7 @@ use crate::{Folder, read};
 
 /// Runs what must succeed, with nothing on stderr (progress is for terminals) and one line on
 /// stdout.
-fn done(folder: &Folder, args: &str) {
+pub fn done(folder: &Folder, args: &str) {
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
     assert_eq!(run.out.lines().count(), usize::from(!args.contains("--quiet")), "{}", run.out);
@@ -20,7 +20,7 @@ fn done(folder: &Folder, args: &str) {
     assert_eq!(hidden, None, "{args}");
 }
 
-fn plane<'a>(planes: &'a Planes, name: &str) -> &'a [f32] {
+pub fn plane<'a>(planes: &'a Planes, name: &str) -> &'a [f32] {
     let at = planes.names.iter().position(|n| n == name);
     &planes.planes[at.unwrap_or_else(|| panic!("{name} in {:?}", planes.names))]
 }
@@ -32,12 +32,12 @@ pub fn write_field(folder: &Folder, side: usize, height: impl Fn(usize, usize) -
     folder.write("field.npy", &npy("<f4", false, &format!("({side}, {side})"), &data));
 }
 
-fn json(path: &Path) -> serde_json::Value {
+pub fn json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
 /// The string attributes of an EXR.
-fn attributes(path: &Path) -> std::collections::BTreeMap<String, String> {
+pub fn attributes(path: &Path) -> std::collections::BTreeMap<String, String> {
     let meta = exr::meta::MetaData::read_from_file(path, true).unwrap();
     let other = &meta.headers[0].own_attributes.other;
     other

@@ -3,11 +3,11 @@
 // `env` sets signals back that a script in the background has ignored: coreutils' does.
 #![cfg(target_os = "linux")]
 
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::Folder;
 use crate::needs_vulkan::write_field;
+use crate::{Folder, read};
 
 /// Longer than anything here takes, on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -24,6 +24,28 @@ fn wait_until(mut is_so: impl FnMut() -> bool) -> bool {
     false
 }
 
+/// A command in `folder` that signals end as they do by default.
+fn started(folder: &Folder, args: &str) -> Child {
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT,TERM,HUP", env!("CARGO_BIN_EXE_ridgelight")]);
+    command.current_dir(folder.path("")).args(args.split(' '));
+    command.stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap()
+}
+
+/// Sends a signal and waits for the end.
+fn ended_by(signal: &str, mut child: Child) -> Output {
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
+    let ended = wait_until(|| child.try_wait().unwrap().is_some());
+    if !ended {
+        child.kill().unwrap();
+    }
+    let output = child.wait_with_output().unwrap();
+    assert!(ended, "{signal} is not heard");
+    assert_eq!(output.status.code(), Some(130), "{signal}");
+    output
+}
+
 /// Brute force in 1,024 azimuths of 256², half a gigabyte of results: seconds on any device.
 #[test]
 fn gpu_an_interrupted_command_leaves_no_file() {
@@ -34,24 +56,35 @@ fn gpu_an_interrupted_command_leaves_no_file() {
     for signal in ["INT", "TERM"] {
         let args =
             "horizon field.npy -o out.npy --distances far.npy --azimuths 1024 --method brute";
-        let mut command = Command::new("env");
-        command.args(["--default-signal=INT,TERM,HUP", env!("CARGO_BIN_EXE_ridgelight")]);
-        command.current_dir(folder.path("")).args(args.split(' '));
-        let mut child = command.stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let child = started(&folder, args);
         // Both files are begun: the comparison below has something to see.
         let began = wait_until(|| folder.contents().len() == before.len() + 2);
         assert!(began, "no file was begun");
-        let pid = child.id().to_string();
-        assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
-        let ended = wait_until(|| child.try_wait().unwrap().is_some());
-        if !ended {
-            child.kill().unwrap();
-        }
-        let output = child.wait_with_output().unwrap();
-        assert!(ended, "{signal} is not heard");
-        assert_eq!(output.status.code(), Some(130), "{signal}");
+        let output = ended_by(signal, child);
         assert_eq!(String::from_utf8(output.stderr).unwrap(), "ridgelight: interrupted\n");
         assert!(output.stdout.is_empty());
         assert!(folder.contents() == before, "{signal} left files");
     }
+}
+
+/// A billion paths of 64 bounces a sample are more than any device has traced when its user has enough.
+#[test]
+fn gpu_an_interrupted_reference_writes_what_it_has() {
+    let folder = Folder::new();
+    write_field(&folder, 16, |r, c| ((7 * r + 3 * c) % 11) as f32);
+    let args = "reference field.npy -o out.exr --spp 1000000000 --bounces 64 --json out.json";
+    let child = started(&folder, args);
+    // It listens from before it opens a device.
+    let maps = format!("/proc/{}/maps", child.id());
+    let opens = || std::fs::read_to_string(&maps).is_ok_and(|m| m.contains("libvulkan"));
+    assert!(wait_until(opens), "no device is opened");
+    let output = ended_by("INT", child);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.starts_with("out.exr: 16 × 16, ") && said.lines().count() == 1, "{said}");
+    let exr = read(&folder.path("out.exr"));
+    assert_eq!(exr.names.len(), 6);
+    assert!(exr.planes.concat().iter().all(|v| v.is_finite()));
+    assert!(folder.path("out.json").exists());
+    let hidden = |p: &std::path::PathBuf| p.to_string_lossy().contains(".ridgelight");
+    assert!(!folder.contents().keys().any(hidden));
 }

@@ -12,6 +12,9 @@ mod forms;
 mod goldens;
 mod pruned;
 mod real;
+mod reference_truth;
+#[path = "../scenes/mod.rs"]
+mod scenes;
 mod twins;
 
 use std::sync::{Mutex, MutexGuard};

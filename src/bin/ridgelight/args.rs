@@ -1,12 +1,14 @@
 //! What can be asked for, and how it is spelled.
 
 mod compare;
+mod reference;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub use compare::CompareArgs;
+pub use reference::ReferenceArgs;
 
 /// Lights height fields: exact horizons, sky, environment and sun, as Vulkan compute passes.
 #[derive(Parser)]
@@ -32,9 +34,8 @@ pub enum Command {
     Devices(DevicesArgs),
     /// Speed against accuracy: measures settings and writes table, plot, frontier, recommendation
     Trade(TradeArgs),
-    /// The truth, slowly (not yet)
-    #[command(hide = true)]
-    Reference(NotYet),
+    /// The truth, slowly: light paths with all bounces, and how far off they may still be
+    Reference(ReferenceArgs),
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),

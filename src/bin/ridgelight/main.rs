@@ -15,6 +15,7 @@ mod compare;
 mod devices;
 mod horizon;
 mod plan;
+mod reference;
 mod render;
 mod setup;
 mod trade;
@@ -24,14 +25,17 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 /// What shells report of a command that Ctrl-C ended.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
 
 /// Leaves no unfinished file behind when the user, the terminal or the system asks to end.
 fn end_cleanly_on_signals() {
     let end = || {
+        if reference::hears_signal() {
+            return;
+        }
         ridgelight::files::abandon_unfinished();
         let _ = writeln!(std::io::stderr(), "ridgelight: interrupted");
-        std::process::exit(INTERRUPTED);
+        std::process::exit(INTERRUPTED.into());
     };
     // Where one of the signals is ignored (nohup, jobs in the background of a script) it stays so,
     // and the others do what they do by default: no more than tidiness is lost.
@@ -55,7 +59,7 @@ fn main() -> ExitCode {
         args::Command::Bench(args) => bench::run(args),
         args::Command::Compare(args) => compare::run(args),
         args::Command::Devices(args) => devices::run(args),
-        args::Command::Reference(_) => not_yet("reference"),
+        args::Command::Reference(args) => reference::run(args),
         args::Command::Trade(args) => trade::run(args),
         args::Command::Bake(_) => not_yet("bake"),
         args::Command::View(_) => not_yet("view"),
@@ -63,6 +67,7 @@ fn main() -> ExitCode {
     match done {
         Ok(setup::Outcome::Done) => ExitCode::SUCCESS,
         Ok(setup::Outcome::Beyond) => ExitCode::from(1),
+        Ok(setup::Outcome::Interrupted) => ExitCode::from(INTERRUPTED),
         Err(error) => {
             let error = setup::in_flags(error);
             // One line whatever a file is called or a driver says; a closed stderr is no panic.
@@ -74,6 +79,6 @@ fn main() -> ExitCode {
 }
 
 fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {
-    let expected = "render, horizon, plan, bench, trade, compare or devices: it is not yet there";
+    let expected = "another that --help lists: it is not yet there";
     Err(ridgelight::Error::setting("command", command, expected))
 }

@@ -20,6 +20,8 @@ pub enum Outcome {
     Done,
     /// A comparison beyond its bound.
     Beyond,
+    /// Told to end early; what it had is written.
+    Interrupted,
 }
 
 pub fn field(path: &Path, surface: &FieldArgs) -> Result<HeightField> {
@@ -298,9 +300,11 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 10] = [
+    const FLAGS: [(&str, &str); 12] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
+        ("light ", "--light "),
+        ("phong", "--phong"),
         ("albedo", "--albedo"),
         ("cell_m", "--cell"),
         ("z_scale", "--z-scale"),

@@ -2,15 +2,19 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Precision,
-    Quality, Scene, Sun, Surface,
+    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Phong, Precision,
+    Quality, Scene, SphereLight, Sun, Surface,
 };
 
 use crate::{field, random};
 
 pub(super) enum Wanted {
-    Horizons { distances: bool },
+    Horizons {
+        distances: bool,
+    },
     Picture(Picture),
+    /// Bounces.
+    Reference(u32),
 }
 
 pub(super) struct Case {
@@ -34,12 +38,16 @@ impl Case {
                 distances,
             ),
             Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, wanted),
+            Wanted::Reference(bounces) => plan::reference(&self.scene, bounces, 1, limits),
         }
         .expect("a plan")
     }
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
+        if let Wanted::Reference(_) = self.wanted {
+            return plan::reference_inputs(&self.scene);
+        }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::Picture(_) = self.wanted {
             let four = |texels: &[[f32; 3]]| -> Vec<f32> {
@@ -216,4 +224,49 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("environment on a plane", on_a_plane, quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
     ]
+}
+
+/// Light paths: every kind of light, a lobe and a map; and a field that repeats, with two levels of blocks.
+pub(super) fn references() -> Vec<Case> {
+    let sun = |diameter_rad| Sun {
+        azimuth_rad: 2.0,
+        elevation_rad: 0.6,
+        diameter_rad,
+        irradiance: [1.0, 0.5, 0.2],
+    };
+    let ball =
+        SphereLight { position_m: [9.0, 7.0, 912.0], radius_m: 3.0, radiance: [0.1, 0.4, 2.0] };
+    let mut next = random(21);
+    let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
+    let all = Scene {
+        field: rough(7, 9, 22),
+        surface: Surface {
+            border: Border::Open,
+            albedo: Albedo::Map(map),
+            phong: Some(Phong { exponent: 6.0, scale: 0.2 }),
+        },
+        lights: Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(23)),
+            suns: vec![sun(0.2), sun(0.0)],
+            spheres: vec![ball],
+        },
+    };
+    let repeated = Scene {
+        field: rough(6, 10, 24),
+        surface: Surface {
+            border: Border::Periodic,
+            albedo: Albedo::Constant([0.6, 0.3, 0.9]),
+            phong: None,
+        },
+        lights: Lights { sky: Some([1.0; 3]), suns: vec![sun(0.3)], ..Lights::default() },
+    };
+    let reference = |name, scene, bounces| Case {
+        name,
+        scene,
+        quality: Quality::default(),
+        wanted: Wanted::Reference(bounces),
+        loses_lines: false,
+    };
+    vec![reference("all lights", all, 1), reference("periodic", repeated, 2)]
 }

@@ -4,6 +4,7 @@
 mod cases;
 mod edit;
 mod light;
+mod paths;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -55,6 +56,9 @@ const TWINS: &[(&str, Twin)] = &[
     ("dirty_mark", edit::dirty_mark),
     ("height_transpose", sweep::height_transpose),
     ("horizon_resweep", edit::horizon_resweep),
+    ("height_cells", paths::height_cells),
+    ("height_bounds", paths::height_bounds),
+    ("path_trace", paths::path_trace),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
@@ -254,8 +258,8 @@ fn check(device: &mut Device, case: &Case) -> usize {
 
 #[test]
 fn every_shader_has_a_twin_and_a_case() {
-    let cases: Vec<Case> =
-        [cases::sweeps(), cases::samples(), cases::pictures()].into_iter().flatten().collect();
+    let cases = [cases::sweeps(), cases::samples(), cases::pictures(), cases::references()];
+    let cases: Vec<Case> = cases.into_iter().flatten().collect();
     let planned: Vec<&str> = cases
         .iter()
         .map(|case| case.plan(&Limits::lavapipe()))
@@ -290,6 +294,14 @@ fn sweeps_of_one_value_a_sample_are_their_twins() {
 fn pictures_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::pictures() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn paths_are_their_twins_pass_by_pass() {
+    let mut device = Device::new();
+    for case in cases::references() {
         check(&mut device, &case);
     }
 }

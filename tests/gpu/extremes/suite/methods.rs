@@ -59,7 +59,11 @@ impl Method {
 
     /// The azimuths that it sweeps when asked for `count`, in the order of the circle.
     pub fn azimuths(&self, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
-        if self.is_exact() { along_grid_vectors(count, cell_m) } else { even(count, cell_m) }
+        if self.is_exact() {
+            along_grid_vectors(count, cell_m).expect("vectors")
+        } else {
+            even(count, cell_m)
+        }
     }
 
     /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but

@@ -188,7 +188,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         scene: &case.scene,
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
-        azimuths_rad: plan::circle_rad(&quality, field.cell_m()),
+        azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
         layers,
         outputs: outputs?,
     };

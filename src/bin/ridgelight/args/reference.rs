@@ -1,0 +1,71 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use ridgelight::scene::{Phong, SphereLight};
+
+use super::{GlobalArgs, Input, LightArgs, SurfaceArgs, numbers, whole};
+
+#[derive(Args)]
+pub struct ReferenceArgs {
+    #[command(flatten)]
+    pub input: Input,
+    /// Where to write: .exr with radiance (R, G, B) and its standard error (standard_error.R, …), which
+    /// `trade --reference` takes
+    #[arg(short, long, value_name = "OUT.exr")]
+    pub output: PathBuf,
+    /// Paths a sample, in batches of 16, at least 32: the error falls with their square root
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = whole, allow_negative_numbers = true)]
+    pub spp: u32,
+    /// Times that light may be reflected on its way to the sample, 0..64; 0 is direct light alone
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    pub bounces: u32,
+    /// Ends before --spp once the standard error's rms is below this share of the mean radiance, after
+    /// 128 paths at the earliest (0.01 is 1 %)
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    pub until_error: Option<f64>,
+    /// Another number, other paths: 0..4294967295
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    pub seed: u32,
+    #[command(flatten)]
+    pub lights: LightArgs,
+    /// A ball of light: its middle east of the westernmost column, north of the southernmost row and
+    /// above 0, its radius (all metres), its radiance (one number or R,G,B). May be repeated
+    #[arg(
+        long,
+        value_name = "X,Y,Z,RADIUS,RADIANCE",
+        value_parser = ball,
+        allow_hyphen_values = true,
+        help_heading = "Lights"
+    )]
+    pub light: Vec<SphereLight>,
+    #[command(flatten)]
+    pub surface: SurfaceArgs,
+    /// A lobe about the mirror direction of the view from above: exponent 0..10000, and its share 0..1
+    #[arg(
+        long,
+        value_name = "EXPONENT,SCALE",
+        value_parser = phong,
+        allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
+    pub phong: Option<Phong>,
+    #[command(flatten)]
+    pub global: GlobalArgs,
+}
+
+fn ball(text: &str) -> Result<SphereLight, String> {
+    let parts = numbers(text)?;
+    let radiance = match parts.get(4..).unwrap_or_default() {
+        [grey] => [*grey as f32; 3],
+        [r, g, b] => [*r as f32, *g as f32, *b as f32],
+        _ => return Err("expected X,Y,Z,RADIUS and RADIANCE, one number or R,G,B".into()),
+    };
+    Ok(SphereLight { position_m: [parts[0], parts[1], parts[2]], radius_m: parts[3], radiance })
+}
+
+fn phong(text: &str) -> Result<Phong, String> {
+    match numbers(text)?.as_slice() {
+        [exponent, scale] => Ok(Phong { exponent: *exponent as f32, scale: *scale as f32 }),
+        other => Err(format!("{} numbers, expected EXPONENT,SCALE", other.len())),
+    }
+}

@@ -1,0 +1,210 @@
+//! Light paths in batches until there are enough, the error is small enough, or the user has enough.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ridgelight::files::{self, Channels, Layer};
+use ridgelight::gpu::{Frame, Headless, Timing};
+use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
+use ridgelight::scene::{Lights, Scene, Surface};
+use ridgelight::{Error, Result};
+
+use crate::args::ReferenceArgs;
+use crate::setup::{self, Outcome};
+
+/// Batches before the error of the error is small: 1/√(2·7) of it.
+const LEAST_BATCHES: u32 = 8;
+
+/// Batches between two looks at the error.
+const BATCHES_A_LOOK: u32 = 8;
+
+/// Whether a signal is to end the tracing, not the program.
+static IS_TRACING: AtomicBool = AtomicBool::new(false);
+static WAS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Told of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
+/// second one is not.
+pub fn hears_signal() -> bool {
+    IS_TRACING.load(Ordering::SeqCst) && !WAS_INTERRUPTED.swap(true, Ordering::SeqCst)
+}
+
+pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
+    check(args)?;
+    let scene = scene(args)?;
+    let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
+    setup::check_plan(&args.global, plan)?;
+    // From here on a signal is the end of the tracing, however little there is.
+    IS_TRACING.store(true, Ordering::SeqCst);
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let contents = plan::reference_inputs(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let mut frame = gpu.frame(plan(&limits)?, &contents)?;
+    let traced = trace(args, &scene, &mut gpu, &mut frame);
+    let traced =
+        traced.and_then(|traced| write(args, &scene, &gpu, &frame, &traced).map(|()| traced));
+    IS_TRACING.store(false, Ordering::SeqCst);
+    gpu.end(frame);
+    let traced = traced?;
+    if !args.global.quiet {
+        crate::say!(
+            "{}: {} × {}, {} paths a sample, {:.3} % off, {:.1} ms on {}",
+            args.output.display(),
+            scene.field.cols(),
+            scene.field.rows(),
+            traced.batches * REFERENCE_BATCH,
+            100.0 * traced.error,
+            traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
+            gpu.report().name
+        );
+    }
+    let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
+    Ok(if interrupted { Outcome::Interrupted } else { Outcome::Done })
+}
+
+fn check(args: &ReferenceArgs) -> Result<()> {
+    setup::check_output("-o", &args.output, &["exr"])?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
+    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
+    if args.spp == 0 {
+        return Err(Error::setting("--spp", "0", "a whole number, 1 or more"));
+    }
+    match args.until_error {
+        Some(e) if !(e.is_finite() && e > 0.0) => {
+            Err(Error::setting("--until-error", e.to_string(), "a number above 0"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn scene(args: &ReferenceArgs) -> Result<Scene> {
+    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
+    let alone =
+        args.lights.sky.is_none() && args.lights.env.is_none() && args.lights.sun.is_empty();
+    // A local light takes the default sky's place, as any light does.
+    let sky = if alone && !args.light.is_empty() { None } else { lights.sky };
+    Ok(Scene {
+        field,
+        surface: Surface { phong: args.phong, ..surface },
+        lights: Lights { sky, spheres: args.light.clone(), ..lights },
+    })
+}
+
+/// What the paths have come to.
+struct Traced {
+    batches: u32,
+    radiance: Vec<[f32; 3]>,
+    standard_error: Vec<[f32; 3]>,
+    /// Root of the mean squared standard error over the mean radiance.
+    error: f64,
+    /// Sums, by pass.
+    times: Vec<Timing>,
+}
+
+fn trace(
+    args: &ReferenceArgs,
+    scene: &Scene,
+    gpu: &mut Headless,
+    frame: &mut Frame,
+) -> Result<Traced> {
+    let last = frame.plan().passes.len() - 1;
+    let wanted = args.spp.div_ceil(REFERENCE_BATCH).max(2);
+    let progress = crate::render::progress(args.global.quiet, "tracing");
+    let mut times = gpu.draw(frame)?;
+    let mut batches = 1;
+    loop {
+        let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
+        let looks = batches % BATCHES_A_LOOK == 0 && batches >= LEAST_BATCHES;
+        // Two batches at least: of one, no error is known.
+        if batches >= 2 && (batches >= wanted || interrupted || looks) {
+            let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
+            let error = relative(scene, &radiance, &standard_error);
+            progress.set_message(format!(
+                "{} of {} paths a sample, {:.3} % off",
+                batches * REFERENCE_BATCH,
+                wanted * REFERENCE_BATCH,
+                100.0 * error
+            ));
+            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
+            if batches >= wanted || interrupted || enough {
+                progress.finish_and_clear();
+                none_lost(gpu, frame)?;
+                return Ok(Traced { batches, radiance, standard_error, error, times });
+            }
+        }
+        let more = gpu.draw_passes(frame, &[last])?;
+        for (sum, one) in times.iter_mut().rev().zip(&more) {
+            sum.ns += one.ns;
+        }
+        batches += 1;
+    }
+}
+
+fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
+    let pixels = gpu.pixels(frame, output)?;
+    Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
+}
+
+/// Over all channels of the samples that are no voids; 0 where all is dark.
+fn relative(scene: &Scene, radiance: &[[f32; 3]], standard_error: &[[f32; 3]]) -> f64 {
+    let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
+    let (mut light, mut squares, mut count) = (0.0, 0.0, 0.0);
+    for i in (0..radiance.len()).filter(|i| !is_void(*i)) {
+        for c in 0..3 {
+            light += f64::from(radiance[i][c]);
+            squares += f64::from(standard_error[i][c]).powi(2);
+            count += 1.0;
+        }
+    }
+    if light > 0.0 { (squares * count).sqrt() / light } else { 0.0 }
+}
+
+/// Rays that were given up would be missing from the light.
+fn none_lost(gpu: &mut Headless, frame: &Frame) -> Result<()> {
+    let Some(lost) = frame.plan().find("lost_rays") else { return Ok(()) };
+    match gpu.read(frame, lost)?.first() {
+        None | Some(0) => Ok(()),
+        Some(count) => Err(Error::Device {
+            doing: "tracing paths".into(),
+            reason: format!("{count} rays took more steps than a field can ask for"),
+        }),
+    }
+}
+
+fn write(
+    args: &ReferenceArgs,
+    scene: &Scene,
+    gpu: &Headless,
+    frame: &Frame,
+    traced: &Traced,
+) -> Result<()> {
+    let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &traced.times);
+    let lit = Some((&args.lights, &args.surface, scene));
+    metadata.extend(setup::asked(&args.input.path, &args.surface.field, lit));
+    let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
+    add("spp", (traced.batches * REFERENCE_BATCH).to_string());
+    add("relative_standard_error", traced.error.to_string());
+    for (i, ball) in scene.lights.spheres.iter().enumerate() {
+        let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
+        add(&format!("light{}", i + 1), format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m));
+    }
+    if let Some(phong) = scene.surface.phong {
+        add("phong", format!("{},{}", phong.exponent, phong.scale));
+    }
+    let mut layers =
+        [("", traced.radiance.clone()), ("standard_error", traced.standard_error.clone())];
+    for (_, texels) in &mut layers {
+        setup::mask_voids(&scene.field, texels.as_flattened_mut(), 3);
+    }
+    let layers = layers
+        .iter()
+        .map(|(name, texels)| Layer { name: (*name).into(), channels: Channels::Rgb(texels) });
+    let (rows, cols) = (scene.field.rows(), scene.field.cols());
+    files::write_exr(&args.output, rows, cols, &layers.collect::<Vec<_>>(), &metadata)?;
+    match &args.global.json {
+        Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,53 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Builder, ResourceId};
+use crate::scene::{Border, HeightField};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HeightCellsPush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+}
+
+same_layout!(
+    HeightCellsPush,
+    height_cells_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+
+/// Heights as rays look at them; the sums of paths begin anew.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    [heights, cells, ground, batch_mean, lost_rays]: [ResourceId; 5],
+) {
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(rows);
+    builder.pass(
+        &shaders::HEIGHT_CELLS,
+        "",
+        "a ray reads a cell at once; paths begin with the samples' normals",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[(0, u32::from(border == Border::Periodic))],
+        &HeightCellsPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: field.cell_m()[0] as f32,
+            cell_y_m: field.cell_m()[1] as f32,
+        },
+        &[
+            ("heights", heights),
+            ("cells", cells),
+            ("ground", ground),
+            ("batch_mean", batch_mean),
+            ("lost_rays", lost_rays),
+        ],
+        samples * (4 + 3 * 16),
+        samples,
+    );
+}

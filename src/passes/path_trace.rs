@@ -1,0 +1,123 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Builder, ResourceId};
+use crate::scene::{Albedo, Border, Scene};
+
+/// log2 of the paths a sample of one batch. Fewer: more dispatches. More: a set fills its square more
+/// evenly, but fewer batches tell the standard error.
+const SET_BITS: u32 = 4;
+
+/// Paths a sample that one run of the pass adds.
+pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PathTracePush {
+    cols: i32,
+    rows: i32,
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    top_level: i32,
+    highest_m: f32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    rotation_turns: f32,
+    exponent: f32,
+    lobe_share: f32,
+    bounces: i32,
+    suns: i32,
+    light_count: i32,
+    seed: u32,
+    albedo: [f32; 4],
+    sky: [f32; 4],
+}
+
+same_layout!(
+    PathTracePush,
+    path_trace_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    highest_m = HIGHEST_M,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    rotation_turns = ROTATION_TURNS,
+    exponent = EXPONENT,
+    lobe_share = LOBE_SHARE,
+    bounces = BOUNCES,
+    suns = SUNS,
+    light_count = LIGHT_COUNT,
+    seed = SEED,
+    albedo = ALBEDO,
+    sky = SKY,
+);
+
+/// What rays skip by: cells, rows of the image that the levels' places follow from, levels.
+pub(crate) struct Blocks {
+    pub cells: [u32; 2],
+    pub padded_rows: u32,
+    pub top_level: u32,
+}
+
+/// One batch of paths from every sample.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    (bounces, seed): (u32, u32),
+    bound: &[(&str, ResourceId)],
+) {
+    let Scene { field, surface, lights } = scene;
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(rows);
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let has_cells = surface.border == Border::Periodic || (cols > 1 && rows > 1);
+    let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
+    let (albedo, is_map) = match surface.albedo {
+        Albedo::Constant(colour) => (colour, false),
+        Albedo::Map(_) => ([0.0; 3], true),
+    };
+    let turns = |e: &crate::scene::Environment| {
+        (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
+    };
+    builder.pass(
+        &shaders::PATH_TRACE,
+        "",
+        format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[
+            (0, surface.border as u32),
+            (1, u32::from(has_cells)),
+            (2, SET_BITS),
+            (3, u32::from(is_map)),
+            (4, u32::from(lights.environment.is_some())),
+            (5, u32::from(surface.phong.is_some())),
+        ],
+        &PathTracePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cells_x: blocks.cells[0] as i32,
+            cells_y: blocks.cells[1] as i32,
+            padded_rows: blocks.padded_rows as i32,
+            top_level: blocks.top_level as i32,
+            highest_m,
+            cell_x_m: field.cell_m()[0] as f32,
+            cell_y_m: field.cell_m()[1] as f32,
+            rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
+            exponent: surface.phong.map_or(0.0, |p| p.exponent),
+            lobe_share: surface.phong.map_or(0.0, |p| p.scale),
+            bounces: bounces as i32,
+            suns: lights.suns.len() as i32,
+            light_count: (lights.suns.len() + lights.spheres.len()) as i32,
+            seed,
+            albedo: four(albedo),
+            sky: four(lights.sky.unwrap_or_default()),
+        },
+        bound,
+        samples * 7 * 16,
+        samples * u64::from(BATCH_PATHS),
+    );
+}

@@ -1,0 +1,115 @@
+//! Light paths from the command line.
+
+use crate::needs_vulkan::{attributes, done, json, plane, write_field};
+use crate::{Folder, read, refused};
+
+#[test]
+fn wrong_requests_are_refused() {
+    let folder = Folder::new();
+    refused(
+        &folder,
+        &[
+            ("reference a.asc -o out.png", 2, &["-o", ".exr"]),
+            ("reference a.asc -o out.exr --json out.txt", 2, &["--json", ".json"]),
+            ("reference a.asc -o out.exr --spp 0", 2, &["--spp", "1 or more"]),
+            ("reference a.asc -o out.exr --spp -1", 2, &["--spp", "whole number"]),
+            ("reference a.asc -o out.exr --bounces 65", 2, &["--bounces", "0 to 64"]),
+            ("reference a.asc -o out.exr --until-error 0", 2, &["--until-error", "above 0"]),
+            ("reference a.asc -o out.exr --until-error nan", 2, &["--until-error", "above 0"]),
+            ("reference a.asc -o out.exr --seed -1", 2, &["--seed", "whole number"]),
+            ("reference a.asc -o out.exr --light 1,2,3,4", 2, &["--light", "RADIANCE"]),
+            ("reference a.asc -o out.exr --light 1,2,3,0,1", 2, &["--light 1: radius"]),
+            ("reference a.asc -o out.exr --light 1,2,3,1,-1", 2, &["--light 1: radiance"]),
+            ("reference a.asc -o out.exr --phong 5", 2, &["--phong", "EXPONENT,SCALE"]),
+            ("reference a.asc -o out.exr --phong 5,0.1", 2, &["--phong scale", "albedo of 1"]),
+            ("reference a.asc -o out.exr --phong -1,0", 2, &["--phong exponent"]),
+            ("reference a.asc -o out.exr --sun 0,91", 2, &["--sun 1: elevation"]),
+            ("reference none.asc -o out.exr", 1, &["none.asc"]),
+            ("reference a.asc -o out.exr", 1, &["driver"]),
+        ],
+    );
+}
+
+/// A ridge, so that there is noise.
+fn write_ridge(folder: &Folder) {
+    write_field(folder, 9, |_, c| 3.0 - (c as f32 - 4.0).abs().min(3.0));
+}
+
+#[test]
+fn gpu_reference_writes_light_and_its_error() {
+    let folder = Folder::new();
+    write_ridge(&folder);
+    let args = "--spp 40 --bounces 1 --seed 7 --albedo 0.5 --phong 9,0.25 --light 4,4,9,1,2,3,4";
+    done(&folder, &format!("reference field.npy -o out.exr --json out.json {args}"));
+    let exr = read(&folder.path("out.exr"));
+    let names = ["B", "G", "R", "standard_error.B", "standard_error.G", "standard_error.R"];
+    assert_eq!(exr.names, names);
+    assert!(exr.planes.concat().iter().all(|v| v.is_finite() && *v >= 0.0));
+    assert!(plane(&exr, "standard_error.R").iter().any(|v| *v > 0.0));
+    // The ball takes the default sky's place: of its light alone, blue is twice red.
+    for (b, r) in plane(&exr, "B").iter().zip(plane(&exr, "R")) {
+        assert!((b - 2.0 * r).abs() <= 1e-5 * b, "{b} {r}");
+    }
+    let (settings, json) = (attributes(&folder.path("out.exr")), json(&folder.path("out.json")));
+    for (name, value) in [
+        ("method", "path tracing"),
+        // Whole batches of 16.
+        ("spp", "48"),
+        ("bounces", "1"),
+        ("seed", "7"),
+        ("phong", "9,0.25"),
+        ("light1", "4,4,9,1,2,3,4"),
+    ] {
+        assert_eq!(settings.get(name).map(String::as_str), Some(value), "{name}");
+        assert_eq!(json["settings"][name], *value, "{name}");
+    }
+    for name in ["device", "gpu_ms", "relative_standard_error", "device_bytes"] {
+        assert!(settings.get(name).is_some_and(|v| !v.is_empty()), "{name} in {settings:?}");
+    }
+    let passes = json["passes"].as_array().unwrap();
+    assert!(passes.iter().any(|p| p["pass"] == "path_trace"), "{passes:?}");
+    // Without a ball the sky is the default.
+    done(&folder, "reference a.asc -o sky.exr --spp 1");
+    assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "1,1,1");
+}
+
+#[test]
+fn gpu_reference_stops_at_an_error() {
+    let folder = Folder::new();
+    write_ridge(&folder);
+    done(&folder, "reference field.npy -o out.exr --spp 1000000 --until-error 0.01 --quiet");
+    let settings = attributes(&folder.path("out.exr"));
+    let [spp, error] = ["spp", "relative_standard_error"].map(|n| settings[n].parse::<f64>());
+    let (spp, error) = (spp.unwrap(), error.unwrap());
+    assert!((128.0..1e5).contains(&spp) && error < 0.01, "{spp} {error}");
+}
+
+#[test]
+fn gpu_voids_have_no_light() {
+    let folder = Folder::new();
+    folder.write("v.asc", b"ncols 4 nrows 3 cellsize 1 nodata_value -9 0 0 0 0 0 5 -9 0 0 0 0 0");
+    done(&folder, "reference v.asc -o v.exr --spp 32 --quiet");
+    for plane in read(&folder.path("v.exr")).planes {
+        for (i, v) in plane.iter().enumerate() {
+            assert_eq!(v.is_nan(), i == 6, "sample {i}: {v}");
+        }
+    }
+}
+
+/// What `trade` reads: the truth's own standard error is named in its report.
+#[test]
+fn gpu_trade_takes_the_reference() {
+    let folder = Folder::new();
+    write_ridge(&folder);
+    done(&folder, "reference field.npy -o truth.exr --spp 4096 --quiet");
+    let args = ["trade", "field.npy", "-o", "out", "--budget", "1", "--reference", "truth.exr"];
+    let run = folder.run(&args);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let report = json(&folder.path("out/trade.json"));
+    let stated = attributes(&folder.path("truth.exr"))["relative_standard_error"].clone();
+    let stated: f64 = stated.parse().unwrap();
+    let how = report["truth"]["how"].as_str().unwrap();
+    let said =
+        format!("its noise, {:.3} % of the mean by its layer standard_error", 100.0 * stated);
+    assert!(how.contains(&said), "{how} does not say {said}");
+}

@@ -1,0 +1,164 @@
+//! The path tracer against the f64 quadrature, and against what is known without either.
+
+use ridgelight::cpu::bounce::{Fineness, truth};
+use ridgelight::plan;
+use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Surface};
+
+use crate::scenes::{Agreement, scenes};
+use crate::{Device, field, under_sky};
+
+/// Radiance and its standard error.
+type Traced = [Vec<[f64; 3]>; 2];
+
+/// `batches` of a scene with up to these bounces, by one renderer.
+fn traced_each<const N: usize>(
+    device: &mut Device,
+    scene: &Scene,
+    bounces: [u32; N],
+    seed: u32,
+    batches: usize,
+) -> [Traced; N] {
+    let limits = device.limits();
+    let plans = bounces.map(|b| plan::reference(scene, b, seed, &limits).expect("a plan"));
+    let last = plans[0].passes.len() - 1;
+    let lost = plans[0].find("lost_rays").expect("a buffer");
+    let contents = plan::reference_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frame = gpu.frame(plans[0].clone(), &contents).expect("a frame");
+    let all = plans.map(|plan| {
+        gpu.replace_plan(&mut frame, plan).expect("the same passes");
+        gpu.draw(&mut frame).expect("drawn");
+        for _ in 1..batches {
+            gpu.draw_passes(&mut frame, &[last]).expect("drawn on");
+        }
+        assert_eq!(gpu.read(&frame, lost).expect("read back")[0], 0, "rays were lost");
+        [0, 1].map(|output| {
+            let pixels = gpu.pixels(&frame, output).expect("pixels");
+            let texels = pixels.values.chunks_exact(4);
+            texels.map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
+        })
+    });
+    gpu.end(frame);
+    all
+}
+
+fn traced(device: &mut Device, scene: &Scene, bounces: u32, seed: u32, batches: usize) -> Traced {
+    let [only] = traced_each(device, scene, [bounces], seed, batches);
+    only
+}
+
+/// Batches that the comparisons draw.
+const BATCHES: usize = 64;
+
+/// The standard errors with what they cannot know: events so rare that a few or none of the paths met one.
+///
+/// Bernstein's inequality: N paths of variance v that carry W at most have a mean beyond `off` with
+/// probability exp(-off² / 2σ²), σ² = v / N + W·off / 3N. W is taken as the brightest sample.
+fn with_rare_events(light: &[[f64; 3]], error: &[[f64; 3]], truth: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let paths = (BATCHES as u32 * plan::REFERENCE_BATCH) as f64;
+    let brightest = [0, 1, 2].map(|c| truth.iter().fold(0.0_f64, |m, v| m.max(v[c])));
+    let of = |i: usize, c: usize| {
+        let off = (light[i][c] - truth[i][c]).abs();
+        (error[i][c].powi(2) + brightest[c] * off / (3.0 * paths)).sqrt()
+    };
+    (0..light.len()).map(|i| [0, 1, 2].map(|c| of(i, c))).collect()
+}
+
+/// Also seen to fail: light of no bounce against the truth of two.
+#[test]
+fn paths_agree_with_the_quadrature_on_every_scene() {
+    let mut device = Device::new();
+    for (name, scene) in scenes() {
+        let fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };
+        let truth = truth(&scene, 2, fineness).expect("a truth");
+        let agreement = |[light, error]: &Traced, b: usize| {
+            let sigma = with_rare_events(light, error, &truth.radiance[b]);
+            Agreement::of(light, &sigma, &truth.radiance[b], &truth.error[b], 1e-5)
+        };
+        let all = traced_each(&mut device, &scene, [0, 2], 1, BATCHES);
+        for (both, b) in all.iter().zip([0, 2]) {
+            let of = agreement(both, b);
+            println!(
+                "{name}, {b} bounces: rms {:.3}, worst {:.2}, mean {:.2} of {}",
+                of.rms, of.worst, of.mean, of.count
+            );
+            assert!(of.holds(), "{name}, {b} bounces: {of:?}");
+            // Convex ground sees little or nothing of itself.
+            let sum = |b: usize| truth.radiance[b].iter().flatten().sum::<f64>();
+            if b == 0 && sum(2) > 1.01 * sum(0) {
+                let wrong = agreement(both, 2);
+                assert!(!wrong.holds(), "{name}: deaf to bounces: {wrong:?}");
+            }
+        }
+    }
+}
+
+/// Every path from level ground leaves for the sky, where it carries albedo × 1.
+#[test]
+fn level_ground_under_a_sky_has_no_noise() {
+    let mut device = Device::new();
+    let scene = under_sky(field(5, 7, [1.0, 3.0], |_, _| 8.0), Border::Plane);
+    let [light, error] = traced(&mut device, &scene, 1, 0, 2);
+    assert!(light.iter().flatten().all(|v| *v == 1.0), "{light:?}");
+    assert!(error.iter().flatten().all(|v| *v == 0.0), "{error:?}");
+}
+
+/// White ground, light of radiance 1 from everywhere that is not ground: radiance 1 at every bounce's end.
+/// Of 64 bounces no path is left: each leaves a sample of this field with a chance above a third.
+#[test]
+fn white_ground_in_white_light_is_white() {
+    let mut device = Device::new();
+    let rough = field(12, 11, [1.0, 1.0], |r, c| ((r * 31 + c * 17) % 7) as f64 / 3.0);
+    let mut scene = under_sky(rough, Border::Open);
+    let [light, _] = traced(&mut device, &scene, 64, 3, 2);
+    assert!(light.iter().flatten().all(|v| *v == 1.0), "{light:?}");
+    // The same light as an environment, chosen or met: each path's share is right in the mean alone.
+    let white = Environment::new(6, 5, vec![[1.0; 3]; 30], 0.5).expect("an environment");
+    scene.lights = Lights { environment: Some(white), ..Lights::default() };
+    let [light, error] = traced(&mut device, &scene, 64, 4, BATCHES);
+    let ones = vec![[1.0; 3]; light.len()];
+    let none = vec![[0.0; 3]; light.len()];
+    let of = Agreement::of(&light, &error, &ones, &none, 1e-5);
+    assert!(of.holds(), "{of:?}");
+}
+
+/// A field without cells sees nothing of itself, whichever way it is thin.
+#[test]
+fn a_single_line_of_samples_sees_all_of_the_sky() {
+    let mut device = Device::new();
+    let (plane, open, periodic) = (Border::Plane, Border::Open, Border::Periodic);
+    for (rows, cols, border) in [(1, 1, plane), (1, 9, open), (9, 1, plane), (9, 1, periodic)] {
+        let scene = under_sky(field(rows, cols, [1.0, 1.0], |_, _| 2.0), border);
+        let [light, _] = traced(&mut device, &scene, 1, 0, 2);
+        assert!(light.iter().flatten().all(|v| *v == 1.0), "{rows} × {cols}, {border:?}");
+    }
+}
+
+/// Of two independent pictures, z = difference / √(sum of squared standard errors) is nearly Student's t:
+/// z² of n batches has the mean (n - 1)/(n - 3), and N of them a standard deviation of √(2/N) about it.
+#[test]
+fn standard_errors_say_how_far_two_seeds_differ() {
+    let mut device = Device::new();
+    let surface = Surface { albedo: Albedo::Constant([0.5; 3]), ..Surface::default() };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let field = ridgelight::measure::fractal::fractal(32, 5).expect("a field");
+    let scene = Scene { field, surface, lights };
+    let first = traced(&mut device, &scene, 1, 1, BATCHES);
+    assert!(first == traced(&mut device, &scene, 1, 1, BATCHES), "the same seed, other bits");
+    let second = traced(&mut device, &scene, 1, 2, BATCHES);
+    assert!(first[0] != second[0], "another seed, the same bits");
+    let squares: Vec<f64> = (0..first[0].len())
+        .map(|i| {
+            let variance = first[1][i][0].powi(2) + second[1][i][0].powi(2);
+            (first[0][i][0] - second[0][i][0]).powi(2) / variance
+        })
+        .filter(|z| z.is_finite())
+        .collect();
+    let count = squares.len() as f64;
+    assert!(count > 500.0, "{count} samples with noise");
+    let mean = squares.iter().sum::<f64>() / count;
+    let expected = (BATCHES - 1) as f64 / (BATCHES - 3) as f64;
+    println!("mean z² {mean:.3}, expected {expected:.3}, of {count}");
+    assert!((mean - expected).abs() < 5.0 * (2.0 / count).sqrt(), "{mean} of {count}");
+}
