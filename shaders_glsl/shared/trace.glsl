@@ -1,11 +1,11 @@
-// Rays over the triangulated surface. Needs bindings cells and maxima, constants BORDER and HAS_CELLS, and
+// Rays over the triangulated surface. Needs bindings cells and maxima, constants BORDER, THIN_ROWS, THIN_COLS, and
 // push constants cells_x, cells_y, padded_rows, top_level, highest_m before it.
 //
 // A ray starts at a place on the surface: cell `base` (counted past the edge in neither direction),
 // `offset` in it (0 .. 1 towards east and south), height `own`. Everything is counted from there, so a
 // short ray keeps its digits however large the field. Positions along the ray are t, in cells of the
 // axis along which it runs faster. The surface along the ray is linear between its crossings with
-// columns, rows and diagonals, so it is hit before the first of them at which it stands above the ray.
+// columns, rows and diagonals, so it is hit before the first of them at which it does not stand below the ray.
 // The start itself never counts: only crossings at t > 0 are looked at. Where the surface already rises
 // faster than the ray in the very first triangle, the hit lies at t = 0: the ground right there.
 
@@ -13,7 +13,7 @@
 
 const uint RAY_FREE = 0u;     // left the field, or rose above all of it, or came to its end
 const uint RAY_HIT = 1u;
-const uint RAY_GROUND = 2u;   // went below horizontal outside, where the ground goes on level and black
+const uint RAY_GROUND = 2u;   // left level or falling, where the ground goes on level and black
 const uint RAY_LOST = 3u;     // took more steps than there can be
 // A ray over a field that repeats is given up after this many cells. What goes on so long is within
 // relief / REACH_CELLS of horizontal; what falls there counts as ground.
@@ -60,7 +60,8 @@ float cell_rise(vec4 corners, float own, vec2 at) {
 Met trace(Ray ray, float t_end, bool going) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
-    vec2 inverse = mix(1.0 / ray.advance, vec2(1e30), equal(ray.advance, vec2(0.0)));
+    bvec2 along_line = equal(ray.advance, vec2(0.0));
+    vec2 inverse = mix(1.0 / ray.advance, vec2(1e30), along_line);
     // On a grid line a ray belongs to the cell that it runs into; along the last line, to the last cell.
     ivec2 cell = ray.base;
     cell.x -= ray.offset.x == 0.0 && !onward.x ? 1 : 0;
@@ -74,7 +75,8 @@ Met trace(Ray ray, float t_end, bool going) {
         at.x -= ray.advance.x == 0.0 && at.x == cells_of.x ? 1 : 0;
         at.y -= ray.advance.y == 0.0 && at.y == cells_of.y ? 1 : 0;
         cell = at;
-        leaves = !HAS_CELLS || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, cells_of));
+        leaves = (THIN_ROWS && ray.advance.y != 0.0) || (THIN_COLS && ray.advance.x != 0.0)
+              || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, cells_of));
     }
     // From here on a rising ray is over everything.
     float t_over = ray.rise > 0.0 ? max(highest_m - ray.own, 0.0) / ray.rise : 1e30;
@@ -96,7 +98,8 @@ Met trace(Ray ray, float t_end, bool going) {
         ivec2 high = min(low + (1 << bits), cells_of);
         ivec2 seen = at - cell;
         ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - seen - ray.base;
-        vec2 to_edge = (vec2(edge) - ray.offset) * inverse;
+        // Along a grid line the edges beside it are never reached, not even where it is one of them.
+        vec2 to_edge = mix((vec2(edge) - ray.offset) * inverse, vec2(1e30), along_line);
         float ahead = max(min(to_edge.x, to_edge.y), t);
         // Held inside: lanes that are done go on fetching.
         ivec2 fetched = clamp(at, ivec2(0), cells_of - 1);
@@ -111,8 +114,8 @@ Met trace(Ray ray, float t_end, bool going) {
         float t_split = abs(apart) < 1e-30 ? -1.0 : (from.y - from.x) / apart;
         float share = clamp(from.x + t_split * ray.advance.x, 0.0, 1.0);
         float over_split = t_split * ray.rise - ((corners.x - ray.own) + share * (corners.w - corners.x));
-        bool in_split = t_split > t && t_split < ahead && over_split < 0.0;
-        bool blocked = in_split || (ahead > t && over_exit < 0.0);
+        bool in_split = t_split > t && t_split < ahead && over_split <= 0.0;
+        bool blocked = in_split || (ahead > t && over_exit <= 0.0);
         bool clear = level == 0 ? !blocked : min(t * ray.rise, ahead * ray.rise) > top;
         hit = going && level == 0 && blocked ? true : hit;
         t_next = going ? ahead : t_next;
@@ -155,7 +158,7 @@ Met trace(Ray ray, float t_end, bool going) {
     vec2 at_end = clamp(from + t_next * ray.advance, 0.0, 1.0);
     float over_middle = t_middle * ray.rise - (split ? (corners.x - ray.own) + at_middle.x * (corners.w - corners.x)
                                                      : cell_rise(corners, ray.own, at_middle));
-    bool first = over_middle < 0.0;
+    bool first = over_middle <= 0.0;
     float t_a = first ? t : t_middle;
     float t_b = first ? t_middle : t_next;
     float over_a = first ? t * ray.rise - cell_rise(corners, ray.own, at_start) : over_middle;
@@ -167,7 +170,7 @@ Met trace(Ray ray, float t_end, bool going) {
     met.offset = clamp(from + met.t * ray.advance, 0.0, 1.0);
     vec2 between = from + 0.5 * (t_a + t_b) * ray.advance;
     met.lower = between.y > between.x;
-    bool below = BORDER == BORDER_PLANE && leaves && ray.rise < 0.0;
+    bool below = BORDER == BORDER_PLANE && leaves && ray.rise <= 0.0;
     // A ray that repetitions have not met within its reach rises free or sinks into the ground.
     bool sinks = BORDER == BORDER_PERIODIC && ray.rise <= 0.0 && t_end >= REACH_CELLS;
     met.what = lost ? RAY_LOST : (hit ? RAY_HIT : (below || sinks ? RAY_GROUND : RAY_FREE));

@@ -74,7 +74,7 @@ pub(crate) fn plan(
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let samples = u64::from(cols) * u64::from(rows);
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let has_cells = surface.border == Border::Periodic || (cols > 1 && rows > 1);
+    let is_line = |n| surface.border != Border::Periodic && n == 1;
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let (albedo, is_map) = match surface.albedo {
         Albedo::Constant(colour) => (colour, false),
@@ -90,7 +90,8 @@ pub(crate) fn plan(
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &[
             (0, surface.border as u32),
-            (1, u32::from(has_cells)),
+            (1, u32::from(is_line(rows))),
+            (6, u32::from(is_line(cols))),
             (2, SET_BITS),
             (3, u32::from(is_map)),
             (4, u32::from(lights.environment.is_some())),

@@ -12,6 +12,7 @@ mod forms;
 mod goldens;
 mod pruned;
 mod real;
+mod reference_edges;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;

@@ -8,7 +8,7 @@ use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};
 
 /// Radiance and its standard error.
-type Traced = [Vec<[f64; 3]>; 2];
+pub(crate) type Traced = [Vec<[f64; 3]>; 2];
 
 /// `batches` of a scene with up to these bounces, by one renderer.
 fn traced_each<const N: usize>(
@@ -43,7 +43,13 @@ fn traced_each<const N: usize>(
     all
 }
 
-fn traced(device: &mut Device, scene: &Scene, bounces: u32, seed: u32, batches: usize) -> Traced {
+pub(crate) fn traced(
+    device: &mut Device,
+    scene: &Scene,
+    bounces: u32,
+    seed: u32,
+    batches: usize,
+) -> Traced {
     let [only] = traced_each(device, scene, [bounces], seed, batches);
     only
 }

@@ -1,0 +1,72 @@
+//! Rays and lobes of the path tracer where a rounding decides: suns along lines of samples, exponents of
+//! 1e4.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use ridgelight::cpu::light;
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::scene::{Albedo, Border, Lights, Phong, Sun};
+
+use crate::reference_truth::traced;
+use crate::{Device, field, under_sky};
+
+fn point(azimuth_rad: f64, elevation_rad: f64) -> Sun {
+    Sun { azimuth_rad, elevation_rad, diameter_rad: 0.0, irradiance: [3.0; 3] }
+}
+
+/// A point sun at horizontal, at the zenith and along lines of samples, those at the rim too: lit or not
+/// as the oracle says, without noise.
+#[test]
+fn suns_along_lines_of_samples_are_the_oracles() {
+    let mut device = Device::new();
+    let all = &[Border::Plane, Border::Open, Border::Periodic][..];
+    for (rows, cols, borders) in [(5, 5, all), (1, 7, &all[..1]), (7, 1, &all[..1])] {
+        let peaks = field(rows, cols, [1.0, 1.0], |r, c| {
+            if r + c == 4 { 3.0 } else { 0.5 * c as f64 + 0.3 * r as f64 }
+        });
+        for &border in borders {
+            let oracle = Oracle::new(&peaks, border);
+            let angles = [0.0_f64, 90.0, 180.0, 270.0].map(|a| [(a, 0.0_f64), (a, 10.0)]);
+            for (azimuth, elevation) in angles.into_iter().flatten().chain([(0.0, 90.0)]) {
+                let sun = point(azimuth.to_radians(), elevation.to_radians());
+                let mut scene = under_sky(peaks.clone(), border);
+                scene.lights = Lights { suns: vec![sun], ..Lights::default() };
+                let [light, _] = traced(&mut device, &scene, 0, 1, 1);
+                for (i, found) in light.iter().enumerate() {
+                    let truth = light::sun_of(&oracle, i / cols, i % cols, &sun, 1)[0];
+                    let says =
+                        format!("{border:?} {rows}×{cols} {azimuth}° {elevation}° sample {i}");
+                    // A direction and a normal of f32, irradiance 3.
+                    assert!((found[0] - truth).abs() < 1e-6, "{says}: {} for {truth}", found[0]);
+                }
+            }
+        }
+    }
+}
+
+/// A ramp that rises eastwards mirrors the view from above westwards, twice its tilt from the zenith; a
+/// point sun `off` beside that gives E · scale · (n + 1) / 2π · cosⁿ off.
+#[test]
+fn a_narrow_lobe_keeps_its_digits() {
+    let mut device = Device::new();
+    let tilt = 0.4_f64;
+    let ramp = field(5, 5, [1.0, 1.0], |_, c| tilt.tan() * c as f64);
+    let mut scene = under_sky(ramp, Border::Open);
+    scene.surface.albedo = Albedo::Constant([0.0; 3]);
+    for (off, exponent) in [(0.0, 1e4), (0.004, 1e4), (0.2, 30.0), (0.7, 1.0), (0.5, 0.0)] {
+        scene.lights =
+            Lights { suns: vec![point(PI, FRAC_PI_2 - 2.0 * tilt + off)], ..Lights::default() };
+        scene.surface.phong = Some(Phong { exponent, scale: 0.6 });
+        let [light, _] = traced(&mut device, &scene, 0, 1, 1);
+        let n = f64::from(exponent);
+        let expected = 3.0 * f64::from(0.6_f32) * (n + 1.0) / TAU * off.cos().powf(n);
+        // Directions of f32 are off by 3e-7, the power with their angle: n · off · 3e-7, and second
+        // order beside it; the exponential by a few ulp.
+        let bound = expected * (4e-6 + n * (off + 1e-3) * 3e-7);
+        let found = light[12][0];
+        assert!(
+            (found - expected).abs() < bound,
+            "{exponent} {off}: {found} for {expected} ± {bound}"
+        );
+    }
+}
