@@ -87,11 +87,16 @@ pub fn choose(reports: &[DeviceReport], wanted: Option<&str>) -> Result<usize> {
     let no = |reason: String| Error::Device { doing: "choosing a device".into(), reason };
     let index = match wanted {
         Some(wanted) => {
-            let number = wanted.parse::<usize>().ok().filter(|i| *i < reports.len());
             let lower = wanted.to_lowercase();
             let named = || reports.iter().position(|r| r.name.to_lowercase().contains(&lower));
-            number.or_else(named).ok_or_else(|| {
-                no(format!("no device is called {wanted}; there are: {}", listed()))
+            // A number is never looked for in names, which are full of versions.
+            let found = match wanted.parse::<usize>() {
+                Ok(number) => Some(number).filter(|i| *i < reports.len()),
+                Err(_) if wanted.is_empty() => None,
+                Err(_) => named(),
+            };
+            found.ok_or_else(|| {
+                no(format!("there is no device {wanted:?}; there are, from 0: {}", listed()))
             })?
         }
         None => {

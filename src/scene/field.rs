@@ -69,7 +69,7 @@ impl HeightField {
                 return Err(Error::setting(
                     format!("height at row {}, column {}", i / cols, i % cols),
                     format!("{h:?}"),
-                    "a finite number within ±1e15, or a value marked as no-data",
+                    "a finite number within ±1e15, or one marked as no-data (--nodata)",
                 ));
             }
             known.push(h);

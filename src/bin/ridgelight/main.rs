@@ -4,10 +4,24 @@
 macro_rules! say {
     ($($text:tt)*) => {{
         use std::io::Write as _;
-        let _ = writeln!(std::io::stdout(), $($text)*);
+        crate::said(writeln!(std::io::stdout(), $($text)*));
     }};
 }
 pub(crate) use say;
+
+/// Ends where standard output cannot take what is said: with 0 where nobody reads on, with 1 where it
+/// is full or broken.
+fn said(written: std::io::Result<()>) {
+    match written {
+        Ok(()) => {}
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {}
+        Err(error) => {
+            eprintln!("ridgelight: standard output: {error}");
+            ridgelight::files::abandon_unfinished();
+            std::process::exit(1);
+        }
+    }
+}
 
 mod args;
 mod bench;

@@ -7,6 +7,9 @@ use ridgelight::scene::HeightField;
 use crate::args::{Layer, RenderArgs};
 use crate::setup::{self, Outcome};
 
+/// Linear; sRGB makes 240 of 255 of it.
+const NEARLY_WHITE: f32 = 0.87;
+
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
     args.later.check()?;
     setup::check_output("-o", &args.output, &["exr", "png"])?;
@@ -72,6 +75,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let picture = rgb(&pixels[0]);
         let tone = Tone { exposure: args.exposure };
         files::write_png(&args.output, rows, cols, &picture, scene.field.voids(), tone)?;
+        let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
+        if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
+            crate::say!(
+                "nearly all of the picture is white: --sun 315,30 --sky 0.3 or a lower --exposure shows relief"
+            );
+        }
     }
     if let Some(json) = &args.global.json {
         files::write_json(json, &setup::as_json(&metadata, &times))?;
