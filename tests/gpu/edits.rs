@@ -219,11 +219,11 @@ fn edits_that_cannot_be_are_refused() {
     assert!(bits(gpu, &frame) == before, "after an error nothing has been recorded");
     gpu.draw_edit(&mut frame, all).expect("drawn");
     assert!(bits(gpu, &frame) == before, "nothing was edited");
-    let mut coloured = scene.clone();
-    coloured.lights.suns[0].irradiance = [9.0; 3];
-    let other = planned(gpu, &coloured, &quality, true);
+    let mut brighter = scene.clone();
+    brighter.lights.sky = Some([9.0; 3]);
+    let other = planned(gpu, &brighter, &quality, true);
     let passes = gpu.replace_plan(&mut frame, other).expect("the same passes");
-    let error = gpu.draw_edit(&mut frame, all).expect_err("the new colour is nowhere yet");
+    let error = gpu.draw_edit(&mut frame, all).expect_err("the new sky is nowhere yet");
     assert!(error.to_string().contains("not recorded"), "{error}");
     gpu.draw_passes(&mut frame, &passes).expect("drawn");
     gpu.draw_edit(&mut frame, all).expect("drawn");

@@ -53,15 +53,9 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let start = Quality { method: Method::Sweep, ..Quality::default() };
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
-    if let Some(path) = &args.reference {
-        if setup::extension(path) != "exr" {
-            let found = path.display().to_string();
-            return Err(Error::setting(
-                "--reference",
-                found,
-                "an .exr: others clip what is bright",
-            ));
-        }
+    if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
+        let found = path.display().to_string();
+        return Err(Error::setting("--reference", found, "an .exr: others clip what is bright"));
     }
     let given = args.reference.as_deref().map(|p| Truth::read(p, &scene.field)).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
