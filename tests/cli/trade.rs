@@ -32,7 +32,7 @@ fn wrong_trades_are_refused() {
             ("trade a.asc -o out --sky -1", 2, &["--sky"]),
             ("trade none.asc -o out", 1, &["none.asc"]),
             ("trade a.asc -o out --reference none.exr", 1, &["none.exr"]),
-            ("trade a.asc -o out --reference a.npy", 1, &["a.npy: channels", "R, G and B, or Y"]),
+            ("trade a.asc -o out --reference a.npy", 2, &["--reference: found a.npy", "an .exr"]),
             ("trade a.asc -o out", 1, &["driver"]),
         ],
     );
