@@ -12,10 +12,15 @@ int lane_position(Azimuth azimuth, int lane, int lanes) {
     return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? flipped : lane;
 }
 
-// Remainders of negative numbers are undefined in Vulkan.
+// Remainders of negative numbers are undefined in Vulkan. Names, not expressions, are chosen between:
+// glslang makes branches of the latter, which SwiftShader's compiler takes minutes and gigabytes over.
 int wrapped(int i, int n) {
-    int r = (i < 0 ? -1 - i : i) % n;
-    return i < 0 ? n - 1 - r : r;
+    bool below = i < 0;
+    int mirrored = -1 - i;
+    int whole = below ? mirrored : i;
+    int r = whole % n;
+    int from_end = n - 1 - r;
+    return below ? from_end : r;
 }
 
 // Whether a lane position lies on the field.
