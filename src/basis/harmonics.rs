@@ -1,0 +1,74 @@
+//! Real orthonormal spherical harmonics: values, rotation about the vertical, zonal functions turned to
+//! any axis.
+
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_PI, PI, TAU};
+
+use super::legendre::{associated, value};
+use super::{bands, index};
+
+/// Y_lm of every coefficient at a unit direction.
+///
+/// sinᵐθ cos mφ and sinᵐθ sin mφ are the parts of (x + iy)ᵐ: nothing is undefined at the poles.
+pub fn evaluate(order: usize, direction: DVec3) -> Vec<f64> {
+    let DVec3 { x, y, z } = direction;
+    let mut powers = vec![(1.0, 0.0)];
+    for m in 1..order {
+        let (re, im) = powers[m - 1];
+        powers.push((re * x - im * y, re * y + im * x));
+    }
+    bands(order)
+        .map(|(l, m)| {
+            let (re, im) = powers[m.unsigned_abs()];
+            let around = match m {
+                0 => (1.0 / TAU).sqrt(),
+                1.. => re * FRAC_1_PI.sqrt(),
+                _ => im * FRAC_1_PI.sqrt(),
+            };
+            around * value(&associated(l, m.unsigned_abs()), z)
+        })
+        .collect()
+}
+
+/// Σ of coefficients times Y at a unit direction: the function that they stand for.
+///
+/// # Panics
+/// When `coefficients` are not n² for an order n.
+pub fn reconstruct(coefficients: &[f64], direction: DVec3) -> f64 {
+    let values = evaluate(order_of(coefficients), direction);
+    coefficients.iter().zip(values).map(|(c, y)| c * y).sum()
+}
+
+/// The same function turned counter-clockwise about z: f'(φ) = f(φ - angle).
+///
+/// # Panics
+/// When `coefficients` are not n² for an order n.
+pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
+    bands(order_of(coefficients))
+        .map(|(l, m)| {
+            // cos m(φ - a) = cos mφ cos ma + sin mφ sin ma; sin m(φ - a) = sin mφ cos ma - cos mφ sin ma.
+            let (sin, cos) = (m as f64 * angle_rad).sin_cos();
+            coefficients[index(l, m)] * cos - coefficients[index(l, -m)] * sin
+        })
+        .collect()
+}
+
+/// A zonal function about z (n coefficients of Y_l0), about a unit axis instead: z_l √(4π/(2l+1)) Y_lm
+/// (Sloan, Luna & Snyder 2005).
+///
+/// # Panics
+/// When there are none, or more than [`super::MAX_ORDER`].
+pub fn turned(zonal: &[f64], axis: DVec3) -> Vec<f64> {
+    let values = evaluate(zonal.len(), axis);
+    bands(zonal.len())
+        .zip(values)
+        .map(|((l, _), y)| zonal[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * y)
+        .collect()
+}
+
+/// n of n² coefficients.
+pub(super) fn order_of(coefficients: &[f64]) -> usize {
+    let order = coefficients.len().isqrt();
+    assert_eq!(order * order, coefficients.len(), "coefficients: not a square number of them");
+    order
+}

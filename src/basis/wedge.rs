@@ -1,0 +1,88 @@
+//! Spherical harmonics of one visible wedge, and their table (Snyder & Nowrouzezahrai 2008, as the thesis tells
+//! it in §4.2.1, §4.3.1 and §5.1).
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::azimuth::around;
+use super::bands;
+use super::quadrature::points;
+use super::slice::{Slices, slice_index};
+
+/// Y_lm of what lies in azimuths 0 to `width_rad` above a horizon that rises linearly, as an angle, from
+/// `horizon_rad[0]` to `horizon_rad[1]`; each in [-π/2..π/2], down to the nadir (thesis eq. 4.17, 4.18).
+pub fn wedge(slices: &Slices, horizon_rad: [f64; 2], width_rad: f64) -> Vec<f64> {
+    let order = slices.order();
+    let [first, last] = horizon_rad;
+    let mut sums = vec![0.0; order * order];
+    for (t, weight) in points(0.0, 1.0) {
+        let turns = around(order, t * width_rad);
+        let slice = slices.above(first + t * (last - first));
+        for (sum, (l, m)) in sums.iter_mut().zip(bands(order)) {
+            let turn = turns[(order - 1).wrapping_add_signed(m)];
+            *sum += weight * width_rad * turn * slice[slice_index(l, m.unsigned_abs())];
+        }
+    }
+    sums
+}
+
+/// [`wedge`] at a square of horizons, looked up between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WedgeTable {
+    /// Horizons of either side, evenly from `lowest_rad` to the zenith: 2 or more.
+    pub side: usize,
+    /// The lowest horizon: 0 for the sky, -π/2 for local lights.
+    pub lowest_rad: f64,
+    /// Width of the wedges, 2π over the number of azimuths.
+    pub width_rad: f64,
+    /// n² coefficients of each texel, `[first horizon][last horizon]`.
+    pub texels: Vec<Vec<f64>>,
+}
+
+impl WedgeTable {
+    /// The table of an order.
+    ///
+    /// # Panics
+    /// When `side` is below 2.
+    pub fn new(order: usize, side: usize, lowest_rad: f64, width_rad: f64) -> Self {
+        assert!(side >= 2, "{side} horizons");
+        let slices = Slices::new(order);
+        let spacing = (FRAC_PI_2 - lowest_rad) / (side - 1) as f64;
+        let horizon = |i: usize| lowest_rad + spacing * i as f64;
+        let texels = (0..side * side)
+            .map(|i| wedge(&slices, [horizon(i / side), horizon(i % side)], width_rad))
+            .collect();
+        Self { side, lowest_rad, width_rad, texels }
+    }
+
+    /// Between the four nearest texels, bilinearly; horizons outside the table are taken to its edge.
+    pub fn look_up(&self, horizon_rad: [f64; 2]) -> Vec<f64> {
+        let last = self.side - 1;
+        let [(row, u), (col, v)] = horizon_rad.map(|horizon| {
+            let place =
+                (horizon - self.lowest_rad) / (FRAC_PI_2 - self.lowest_rad) * last as f64;
+            let node = (place.max(0.0) as usize).min(last - 1);
+            (node, (place - node as f64).clamp(0.0, 1.0))
+        });
+        let texel = |r: usize, c: usize| &self.texels[(row + r) * self.side + col + c];
+        let (near, far) = ([texel(0, 0), texel(0, 1)], [texel(1, 0), texel(1, 1)]);
+        (0..near[0].len())
+            .map(|i| {
+                let across = |pair: [&Vec<f64>; 2]| pair[0][i] * (1.0 - v) + pair[1][i] * v;
+                across(near) * (1.0 - u) + across(far) * u
+            })
+            .collect()
+    }
+}
+
+/// How far [`WedgeTable::look_up`] may be from [`wedge`] in a coefficient of band `l`.
+///
+/// With spacing h, linear interpolation of each of the two horizons errs by h²/8 of the second derivative.
+/// The wedge is ∫ Φ_m G((1-t) ω_a + t ω_b) dφ with G' = -Θ_lm cos ω, so that derivative is ∫ Φ_m t² G'' dφ:
+/// Δφ/3 · max|Φ_m| · max|G''|. Θ_lm cos ω is a trigonometric polynomial of degree l+1 that does not
+/// pass max|Θ_lm|, so by Bernstein |G''| ≤ (l+1) max|Θ_lm|; and by the addition theorem
+/// max|Θ_lm| max|Φ_m| ≤ √((2l+1)/4π).
+pub fn look_up_error(table: &WedgeTable, l: usize) -> f64 {
+    let spacing = (FRAC_PI_2 - table.lowest_rad) / (table.side - 1) as f64;
+    let steepest = (l + 1) as f64 * ((2 * l + 1) as f64 / (4.0 * std::f64::consts::PI)).sqrt();
+    spacing * spacing / 8.0 * 2.0 * table.width_rad / 3.0 * steepest
+}
