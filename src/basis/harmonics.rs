@@ -25,7 +25,7 @@ pub fn evaluate(order: usize, direction: DVec3) -> Vec<f64> {
                 1.. => re * FRAC_1_PI.sqrt(),
                 _ => im * FRAC_1_PI.sqrt(),
             };
-            around * value(&associated(l, m.unsigned_abs()), z)
+            around * value(associated(l, m.unsigned_abs()), z)
         })
         .collect()
 }

@@ -1,7 +1,9 @@
 //! Normalised Legendre polynomials, the associated functions, and the occlusion function in them
 //! (NS09 §4).
 
-use super::check_order;
+use std::sync::LazyLock;
+
+use super::{MAX_ORDER, check_order};
 
 /// Coefficients of z⁰, z¹, … of a polynomial.
 pub type Polynomial = Vec<f64>;
@@ -43,14 +45,23 @@ pub fn legendre(degree: usize) -> Polynomial {
 /// P̂_l = √((2l+1)/2) P_l at `z`, for l < `order`: orthonormal on [-1, 1] (NS09 §4).
 pub fn nlp(order: usize, z: f64) -> Vec<f64> {
     check_order(order);
-    (0..order).map(|l| value(&associated(l, 0), z)).collect()
+    (0..order).map(|l| value(associated(l, 0), z)).collect()
 }
 
-/// The polynomial q of Θ_lm(cos θ) = sinᵐθ q(cos θ), for 0 ≤ m ≤ l.
+/// The polynomial q of Θ_lm(cos θ) = sinᵐθ q(cos θ), for 0 ≤ m ≤ l < [`MAX_ORDER`].
 ///
 /// q = √((2l+1)/2 · (l-m)!/(l+m)!) dᵐP_l/dzᵐ, so that ∫ Θ_lm² dz = 1 on [-1, 1].
-pub fn associated(l: usize, m: usize) -> Polynomial {
-    assert!(m <= l, "m {m} of band {l}");
+///
+/// # Panics
+/// For any other l and m.
+pub fn associated(l: usize, m: usize) -> &'static [f64] {
+    static ALL: LazyLock<Vec<Vec<Polynomial>>> = LazyLock::new(|| {
+        (0..MAX_ORDER).map(|l| (0..=l).map(|m| associated_of(l, m)).collect()).collect()
+    });
+    &ALL[l][m]
+}
+
+fn associated_of(l: usize, m: usize) -> Polynomial {
     let mut q = legendre(l);
     for _ in 0..m {
         q = derivative(&q);

@@ -30,7 +30,7 @@ pub fn triples(order: usize) -> Vec<Triple> {
             let sin = ((1.0 - z) * (1.0 + z)).sqrt();
             let theta = |(l, m): (usize, isize)| {
                 let m = m.unsigned_abs();
-                value(&associated(l, m), z) * sin.powi(m as i32)
+                value(associated(l, m), z) * sin.powi(m as i32)
             };
             (weight, bands(order).map(theta).collect())
         })

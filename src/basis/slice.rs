@@ -45,7 +45,7 @@ impl Above {
     fn new(l: usize, m: usize) -> Self {
         // With sinᵐθ = cosᵐω: ∫ q(sin ω) cos^(m+1) ω dω = ∫ F dω for odd m, ∫ F ds for even m.
         let squared = [1.0, 0.0, -1.0];
-        let mut f = associated(l, m);
+        let mut f = associated(l, m).to_vec();
         for _ in 0..m.div_ceil(2) {
             f = product(&f, &squared);
         }
@@ -123,7 +123,7 @@ pub fn from_nlp(order: usize) -> Vec<Vec<f64>> {
                     let p = associated(c, 0);
                     integral(0.0, PI, |theta| {
                         let (sin, cos) = theta.sin_cos();
-                        value(&p, cos) * value(&q, cos) * sin.powi(m as i32 + 1)
+                        value(p, cos) * value(q, cos) * sin.powi(m as i32 + 1)
                     })
                 })
                 .collect()
@@ -138,7 +138,7 @@ pub fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
             let q = associated(l, m);
             integral(0.0, PI, |theta| {
                 let (sin, cos) = theta.sin_cos();
-                f(cos) * value(&q, cos) * sin.powi(m as i32 + 1)
+                f(cos) * value(q, cos) * sin.powi(m as i32 + 1)
             })
         })
         .collect()

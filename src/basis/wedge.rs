@@ -58,8 +58,7 @@ impl WedgeTable {
     pub fn look_up(&self, horizon_rad: [f64; 2]) -> Vec<f64> {
         let last = self.side - 1;
         let [(row, u), (col, v)] = horizon_rad.map(|horizon| {
-            let place =
-                (horizon - self.lowest_rad) / (FRAC_PI_2 - self.lowest_rad) * last as f64;
+            let place = (horizon - self.lowest_rad) / (FRAC_PI_2 - self.lowest_rad) * last as f64;
             let node = (place.max(0.0) as usize).min(last - 1);
             (node, (place - node as f64).clamp(0.0, 1.0))
         });

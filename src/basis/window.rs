@@ -102,7 +102,9 @@ const ROWS: usize = 64;
 fn largest(f: impl Fn([f64; 2]) -> f64) -> f64 {
     let step = PI / ROWS as f64;
     let mut grid: Vec<(f64, [f64; 2])> = (0..=ROWS)
-        .flat_map(|i| (0..2 * ROWS).map(move |j| [step * i as f64, TAU / (2 * ROWS) as f64 * j as f64]))
+        .flat_map(|i| {
+            (0..2 * ROWS).map(move |j| [step * i as f64, TAU / (2 * ROWS) as f64 * j as f64])
+        })
         .map(|place| (f(place), place))
         .collect();
     grid.sort_by(|a, b| b.0.total_cmp(&a.0));

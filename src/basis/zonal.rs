@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::check_order;
-use super::legendre::{associated, derivative, legendre, product, value};
+use super::legendre::{derivative, legendre, value};
 
 /// √((2l+1)/4π), the coefficient of a lobe of unit integral whose band keeps the share 1.
 fn whole_band(l: usize) -> f64 {
@@ -61,17 +61,10 @@ pub fn sky(order: usize) -> Vec<f64> {
     cap(order, FRAC_PI_2)
 }
 
-/// max(cos θ, 0), of integral π: exit radiance of a diffuse surface divides by π once (NS09 §7).
+/// max(cos θ, 0), of integral π: exit radiance of a diffuse surface divides by π once (NS09 §7). π times the lobe
+/// of exponent 1; odd bands from 3 on are 0.
 pub fn clamped_cosine(order: usize) -> Vec<f64> {
-    check_order(order);
-    (0..order)
-        .map(|l| {
-            // 2π ∫ from 0 to 1 of z Y_l0 dz, term by term.
-            let integrand = product(&associated(l, 0), &[0.0, 1.0]);
-            let terms = integrand.iter().enumerate().map(|(k, c)| c / (k + 1) as f64);
-            TAU.sqrt() * terms.sum::<f64>()
-        })
-        .collect()
+    phong(order, 1.0).iter().map(|c| PI * c).collect()
 }
 
 /// Phong's lobe (S+1)/2π max(cos θ, 0)^S of unit integral and exponent S ≥ 0, exactly.
@@ -91,7 +84,7 @@ pub fn phong(order: usize, exponent: f64) -> Vec<f64> {
 /// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
 ///
 /// Times √((2l+1)/4π), which the paper leaves out, for a lobe of unit integral. Tends to [`phong`] for large S,
-/// off by 1/(2S) of band 1 and more of higher ones; poor below S = 4.
+/// which keeps e^(-l(l+1)/2S) there: off by l/(2S) of band l.
 pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
     check_order(order);
     (0..order).map(|l| (-((l * l) as f64) / (2.0 * exponent)).exp() * whole_band(l)).collect()

@@ -1,0 +1,159 @@
+use crate::{ORDERS, noise, number, numbers, project, reference, same, within};
+use ridgelight::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
+use ridgelight::basis::harmonics::rotate_z;
+use ridgelight::basis::slice::{Slices, from_nlp, nlp_value};
+use ridgelight::basis::{bands, index, zonal};
+use std::f64::consts::{PI, TAU};
+
+const BLENDS: [Blend; 2] = [Blend::Linear, Blend::BSpline];
+
+#[test]
+fn blend_matrices_are_the_reference() {
+    for sample in reference("nlp_to_sh").as_array().unwrap() {
+        let width = number(&sample["delta_phi"]);
+        for (blend, name, columns) in
+            [(Blend::Linear, "linear_16x8", 8), (Blend::BSpline, "bspline_16x16", 16)]
+        {
+            let matrix = blend_matrix(4, blend, width);
+            assert_eq!(matrix.len(), 16);
+            for (row, expected) in matrix.iter().zip(sample[name].as_array().unwrap()) {
+                assert_eq!(row.len(), columns);
+                same(row, &numbers(expected));
+            }
+        }
+    }
+}
+
+/// Weights of a blend sum to 1 everywhere, and those of a B-spline are 1/6, 2/3, 1/6 at a knot.
+#[test]
+fn blends_share_out_the_whole() {
+    for blend in BLENDS {
+        for t in [0.0, 0.2, 0.5, 1.0] {
+            within(&[blend.weights(t).iter().sum()], &[1.0], 1e-15);
+        }
+    }
+    within(&Blend::BSpline.weights(0.0), &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0, 0.0], 1e-15);
+    let (a, b) = (1.0 / 48.0, 23.0 / 48.0);
+    within(&Blend::BSpline.weights(0.5), &[a, b, b, a], 1e-15);
+}
+
+/// As the paper does it: each wedge's matrix, its turn about z, and the sum of m wedges, the last one from
+/// azimuth m - 1 back to 0. With a wedge less the answers differ.
+#[test]
+fn weights_all_around_are_wedges_turned_and_summed() {
+    for (order, count) in [(1, 3), (2, 5), (4, 8), (4, 32), (6, 7)] {
+        let nlps: Vec<Vec<f64>> = (0..count).map(|k| noise(k as u64, order)).collect();
+        let width = TAU / count as f64;
+        for blend in BLENDS {
+            let matrix = blend_matrix(order, blend, width);
+            let reach: &[usize] =
+                if blend == Blend::Linear { &[0, 1] } else { &[count - 1, 0, 1, 2] };
+            let mut sums = [vec![0.0; order * order], vec![0.0; order * order]];
+            for j in 0..count {
+                let stacked: Vec<f64> =
+                    reach.iter().flat_map(|i| nlps[(j + i) % count].clone()).collect();
+                let wedge: Vec<f64> = matrix
+                    .iter()
+                    .map(|row| row.iter().zip(&stacked).map(|(a, b)| a * b).sum())
+                    .collect();
+                for (i, v) in rotate_z(&wedge, width * j as f64).iter().enumerate() {
+                    sums[0][i] += v;
+                    sums[1][i] += if j + 1 < count { *v } else { 0.0 };
+                }
+            }
+            let at_once = assemble_nlp(order, &circle(order, blend, count), &nlps);
+            within(&at_once, &sums[0], 1e-13);
+            let missing: f64 = at_once.iter().zip(&sums[1]).map(|(a, b)| (a - b).abs()).sum();
+            assert!(missing > 1e-3, "{missing}");
+        }
+    }
+}
+
+/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of wedges.
+#[test]
+fn a_level_horizon_is_a_cap() {
+    for order in ORDERS {
+        for (count, elevation) in [(order, 0.3), (8, -0.9), (31, 1.2), (32, 0.0)] {
+            let seen = vec![Slices::new(order).above(elevation); count];
+            let cap = zonal::cap(order, PI / 2.0 - elevation);
+            let mut expected = vec![0.0; order * order];
+            (0..order).for_each(|l| expected[index(l, 0)] = cap[l]);
+            for blend in BLENDS {
+                within(&assemble(order, &circle(order, blend, count), &seen), &expected, 1e-13);
+            }
+        }
+    }
+}
+
+/// Slices and NLP agree on functions that NLP hold, and a sum over azimuths that is turned by one azimuth is the
+/// sum of slices moved on by one.
+#[test]
+fn slices_turn_with_their_azimuths() {
+    let (order, count) = (5, 9);
+    let nlps: Vec<Vec<f64>> = (0..count).map(|k| noise(40 + k as u64, order)).collect();
+    let matrix = from_nlp(order);
+    let slices: Vec<Vec<f64>> = nlps
+        .iter()
+        .map(|v| matrix.iter().map(|row| row.iter().zip(v).map(|(e, c)| e * c).sum()).collect())
+        .collect();
+    for blend in BLENDS {
+        let weights = circle(order, blend, count);
+        let sum = assemble(order, &weights, &slices);
+        within(&assemble_nlp(order, &weights, &nlps), &sum, 1e-13);
+        let mut moved = slices.clone();
+        moved.rotate_right(1);
+        within(&assemble(order, &weights, &moved), &rotate_z(&sum, TAU / count as f64), 1e-13);
+    }
+}
+
+/// A swath against quadrature wedge by wedge; a B-spline repeats the slices at its ends.
+#[test]
+fn a_swath_is_its_wedges() {
+    let (order, start, width) = (4, 2.5, 1.3);
+    for count in [2, 3, 6] {
+        let nlps: Vec<Vec<f64>> = (0..count).map(|k| noise(70 + k as u64, order)).collect();
+        let step = width / (count - 1) as f64;
+        for blend in BLENDS {
+            let mut direct = [0.0; 16];
+            for j in 0..count - 1 {
+                let first = start + step * j as f64;
+                let part = project(order, [0.0, PI], [first, first + step], |theta, phi| {
+                    let weights = blend.weights((phi - first) / step);
+                    (0..4_usize)
+                        .map(|i| {
+                            let k = (j + i).saturating_sub(1).min(count - 1);
+                            weights[i] * nlp_value(&nlps[k], theta.cos())
+                        })
+                        .sum()
+                });
+                direct.iter_mut().zip(part).for_each(|(d, p)| *d += p);
+            }
+            let weights = swath(order, blend, start, width, count);
+            within(&assemble_nlp(order, &weights, &nlps), &direct, 1e-13);
+        }
+    }
+}
+
+/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its ends).
+#[test]
+fn a_swath_once_around_is_the_circle() {
+    let (order, count) = (6, 12);
+    let mut slices: Vec<Vec<f64>> = (0..count).map(|k| noise(90 + k as u64, 21)).collect();
+    let all = assemble(order, &circle(order, Blend::Linear, count), &slices);
+    slices.push(slices[0].clone());
+    let weights = swath(order, Blend::Linear, 0.0, TAU, count + 1);
+    within(&assemble(order, &weights, &slices), &all, 1e-13);
+}
+
+/// Sizes for every order: n² rows; n columns for each azimuth that takes part.
+#[test]
+fn sizes_follow_the_order() {
+    for order in ORDERS {
+        for (blend, reach) in [(Blend::Linear, 2), (Blend::BSpline, 4)] {
+            let matrix = blend_matrix(order, blend, 0.3);
+            assert_eq!(matrix.len(), bands(order).count());
+            assert!(matrix.iter().all(|row| row.len() == reach * order));
+        }
+        assert!(circle(order, Blend::Linear, 5).iter().all(|w| w.len() == 2 * order - 1));
+    }
+}

@@ -1,0 +1,184 @@
+//! The texts are run by a small reader of GLSL's sums and products: what they say, in f64.
+
+use crate::{ORDERS, noise, within};
+use ridgelight::basis::glsl::{Factor, glsl_product, glsl_slice, glsl_visibility_nlp};
+use ridgelight::basis::harmonics::turned;
+use ridgelight::basis::legendre::occlusion;
+use ridgelight::basis::product::{product, triples};
+use ridgelight::basis::slice::Slices;
+use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+#[derive(Default)]
+struct Machine {
+    values: HashMap<String, f64>,
+    products: usize,
+    sums: usize,
+}
+
+impl Machine {
+    fn given(name: &str, values: &[f64]) -> Self {
+        let mut machine = Self::default();
+        machine.array(name, values);
+        machine
+    }
+
+    fn array(&mut self, name: &str, values: &[f64]) {
+        for (i, v) in values.iter().enumerate() {
+            self.values.insert(format!("{name}[{i}]"), *v);
+        }
+    }
+
+    /// Runs every statement of a function's body.
+    fn run(&mut self, text: &str) {
+        let body = text.split_once('{').expect("a body").1;
+        for line in body.lines().map(|l| l.split("//").next().unwrap().trim()) {
+            if line.is_empty() || line == "}" || line == "float t;" {
+                continue;
+            }
+            let line = line.strip_suffix(';').unwrap_or_else(|| panic!("{line}"));
+            let (to, from) = line.split_once('=').expect("an assignment");
+            let added = to.trim_end().ends_with('+');
+            let to = to.trim_end().trim_end_matches('+').trim().to_owned();
+            let mut tokens = tokens(from);
+            tokens.reverse();
+            let mut value = self.sum(&mut tokens);
+            assert!(tokens.is_empty(), "{line}");
+            if added {
+                self.sums += 1;
+                value += self.values[&to];
+            }
+            self.values.insert(to, value);
+        }
+    }
+
+    fn sum(&mut self, tokens: &mut Vec<String>) -> f64 {
+        let mut value = self.term(tokens);
+        while tokens.last().is_some_and(|t| t == "+" || t == "-") {
+            let sign = tokens.pop().unwrap();
+            let next = self.term(tokens);
+            self.sums += 1;
+            value += if sign == "+" { next } else { -next };
+        }
+        value
+    }
+
+    fn term(&mut self, tokens: &mut Vec<String>) -> f64 {
+        let mut value = self.factor(tokens);
+        while tokens.last().is_some_and(|t| t == "*") {
+            tokens.pop();
+            value *= self.factor(tokens);
+            self.products += 1;
+        }
+        value
+    }
+
+    fn factor(&mut self, tokens: &mut Vec<String>) -> f64 {
+        let token = tokens.pop().expect("a value");
+        if token == "(" {
+            let value = self.sum(tokens);
+            assert_eq!(tokens.pop().as_deref(), Some(")"));
+            return value;
+        }
+        token
+            .parse()
+            .unwrap_or_else(|_| *self.values.get(&token).unwrap_or_else(|| panic!("{token}")))
+    }
+
+    fn read(&self, name: &str, count: usize) -> Vec<f64> {
+        (0..count).map(|i| self.values[&format!("{name}[{i}]")]).collect()
+    }
+}
+
+/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks, brackets.
+fn tokens(text: &str) -> Vec<String> {
+    text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
+}
+
+/// n² products of at most n⁴ terms of constants that are f32: each off by 2^-24 of itself, |a b| ≤ 1 and Σ|Γ| over
+/// a row below 3 n².
+fn tolerance(order: usize) -> f64 {
+    3.0 * (order * order) as f64 / f64::from(1 << 24)
+}
+
+#[test]
+fn products_are_products() {
+    for order in ORDERS {
+        let (a, b) = (noise(11, order * order), noise(12, order * order));
+        let expected = product(&triples(order), &a, &b);
+        for receiver in 1..=order {
+            let mut machine = Machine::given("a", &a);
+            machine.array("b", &b);
+            let text = glsl_product("sh_product", order, receiver, Factor::Any);
+            assert!(text.starts_with(&format!("void sh_product(in float a[{}]", order * order)));
+            machine.run(&text);
+            let outer = receiver * receiver;
+            within(&machine.read("c", outer), &expected[..outer], tolerance(order));
+            println!("any {order} {receiver}: {} * {} +", machine.products, machine.sums);
+        }
+    }
+}
+
+/// About an axis of azimuth 0 a zonal function needs m ≥ 0 only: the rest may hold anything.
+#[test]
+fn aligned_products_are_products_with_what_is_even_in_azimuth() {
+    let axis = glam::DVec3::new(0.6, 0.0, 0.8);
+    for order in ORDERS {
+        let (a, b) = (noise(13, order * order), turned(&noise(14, order), axis));
+        let expected = product(&triples(order), &a, &b);
+        for receiver in 1..=order {
+            let mut machine = Machine::given("a", &a);
+            for (i, (l, m)) in ridgelight::basis::bands(order).enumerate() {
+                assert_eq!(i, ridgelight::basis::index(l, m));
+                if m >= 0 {
+                    machine.values.insert(format!("b[{i}]"), b[i]);
+                }
+            }
+            machine.run(&glsl_product("p", order, receiver, Factor::Aligned));
+            let outer = receiver * receiver;
+            within(&machine.read("c", outer), &expected[..outer], 10.0 * tolerance(order));
+            println!("aligned {order} {receiver}: {} * {} +", machine.products, machine.sums);
+        }
+    }
+}
+
+#[test]
+fn slices_are_slices() {
+    for order in ORDERS {
+        let text = glsl_slice("slice_above", order);
+        for elevation in [-FRAC_PI_2, -0.4, 0.0, 0.9, FRAC_PI_2] {
+            let mut machine = Machine::default();
+            let (sin, cos) = f64::sin_cos(elevation);
+            for (name, value) in [("rise", FRAC_PI_2 - elevation), ("sin_", sin), ("cos_", cos)] {
+                machine.values.insert(name.to_owned(), value);
+            }
+            machine.run(&text);
+            let expected = Slices::new(order).above(elevation);
+            // Coefficients of at most 60 in size, each off by 2^-24, eight of them.
+            within(&machine.read("slice", expected.len()), &expected, 500.0 / f64::from(1 << 24));
+            if elevation == 0.0 {
+                println!("slice {order}: {} * {} +", machine.products, machine.sums);
+            }
+        }
+    }
+}
+
+#[test]
+fn visibility_is_what_is_not_occluded() {
+    for order in ORDERS {
+        let text = glsl_visibility_nlp("nlp_above", order);
+        for elevation in [-1.2_f64, 0.0, 0.3, 1.5] {
+            let (sin, cos) = elevation.sin_cos();
+            let mut machine = Machine::default();
+            machine.values.insert("sin_".to_owned(), sin);
+            machine.values.insert("cos2".to_owned(), cos * cos);
+            machine.run(&text);
+            let mut expected: Vec<f64> = occlusion(order, sin, cos).iter().map(|b| -b).collect();
+            expected[0] += SQRT_2;
+            within(&machine.read("nlp", order), &expected, 20.0 / f64::from(1 << 24));
+            if elevation == 0.0 {
+                println!("nlp {order}: {} * {} +", machine.products, machine.sums);
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+use crate::{project, within};
+use ridgelight::basis::azimuth::Blend;
+use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
+use ridgelight::basis::key::KeyLight;
+use ridgelight::basis::slice::Slices;
+use ridgelight::basis::zonal::clamped_cosine;
+use ridgelight::basis::{index, zonal};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+const KEY: KeyLight = KeyLight { azimuth_rad: 2.0, width_rad: 0.8, elevations_rad: [0.3, 0.9] };
+
+fn free() -> Vec<f64> {
+    project(4, [FRAC_PI_2 - 0.9, FRAC_PI_2 - 0.3], [2.0, 2.8], |_, _| 1.0)
+}
+
+/// Horizons below the light leave its whole rectangle, for any number of azimuths.
+#[test]
+fn a_free_light_is_its_rectangle() {
+    for count in [2, 3, 9] {
+        for blend in [Blend::Linear, Blend::BSpline] {
+            let seen = KEY.visible(&Slices::new(4), blend, &vec![0.1; count]);
+            within(&seen, &free(), 1e-14);
+        }
+    }
+    assert_eq!(KEY.azimuths(3), [2.0, 2.4, 2.8]);
+}
+
+/// A level horizon within it cuts it there; one above it leaves nothing, with NLP as well.
+#[test]
+fn a_horizon_cuts_the_light() {
+    let slices = Slices::new(4);
+    let cut = project(4, [FRAC_PI_2 - 0.9, FRAC_PI_2 - 0.6], [2.0, 2.8], |_, _| 1.0);
+    within(&KEY.visible(&slices, Blend::Linear, &[0.6; 3]), &cut, 1e-14);
+    for horizon in [0.9, 1.2, FRAC_PI_2] {
+        assert_eq!(KEY.visible(&slices, Blend::Linear, &[horizon; 3]), [0.0; 16]);
+        assert_eq!(KEY.visible_nlp(4, Blend::Linear, &[horizon; 3]), [0.0; 16]);
+        assert_eq!(KEY.seen(horizon), [0.9, 0.9]);
+    }
+    assert_eq!(KEY.seen(-1.0), [0.3, 0.9]);
+}
+
+/// Light is lost little by little as one horizon rises: band 0 falls linearly with what the slices hold, never
+/// rises.
+#[test]
+fn light_falls_as_a_horizon_rises() {
+    let slices = Slices::new(4);
+    let mut last = f64::INFINITY;
+    for step in 0..40 {
+        let horizon = 0.2 + 0.02 * f64::from(step);
+        let solid = KEY.visible(&slices, Blend::Linear, &[0.4, horizon, 0.7])[0];
+        assert!(solid <= last + 1e-15, "{horizon}");
+        last = solid;
+    }
+}
+
+/// NLP agree with slices at even m, where they lose nothing (both are the same polynomials there).
+#[test]
+fn nlp_lose_nothing_zonal() {
+    let horizons = [0.2, 0.5, 0.8];
+    let exact = KEY.visible(&Slices::new(4), Blend::Linear, &horizons);
+    let nlp = KEY.visible_nlp(4, Blend::Linear, &horizons);
+    for l in 0..4 {
+        within(&[nlp[index(l, 0)]], &[exact[index(l, 0)]], 1e-14);
+    }
+    let apart = exact.iter().zip(&nlp).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart > 1e-4, "what NLP lose at odd m is seen: {apart}");
+}
+
+/// All around and from horizontal to the zenith it is the sky: a flat receiver's exit radiance is 1 up to what
+/// order 6 leaves out of the cosine's and the half-sphere's product (odd bands beyond the first of the one, even
+/// of the other: nothing but their first two, 1/2 + 1/2).
+#[test]
+fn the_whole_sky_is_a_key_light() {
+    let whole = KeyLight { azimuth_rad: 0.0, width_rad: TAU, elevations_rad: [0.0, FRAC_PI_2] };
+    let seen = whole.visible(&Slices::new(6), Blend::Linear, &[-0.3; 9]);
+    let sky = zonal::sky(6);
+    for l in 0..6 {
+        within(&[seen[index(l, 0)]], &[sky[l]], 1e-13);
+    }
+    let cosine = turned(&clamped_cosine(6), glam::DVec3::Z);
+    let exit: f64 = seen.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI;
+    within(&[exit], &[1.0], 1e-13);
+    assert!(reconstruct(&seen, glam::DVec3::Z) > 0.5);
+    assert_eq!(evaluate(1, glam::DVec3::Z).len(), 1);
+}

@@ -1,0 +1,139 @@
+use crate::{ORDERS, number, numbers, project, reference, same, within};
+use ridgelight::basis::index;
+use ridgelight::basis::legendre::nlp;
+use ridgelight::basis::quadrature::integral;
+use ridgelight::basis::zonal::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+#[test]
+fn clamped_cosine_is_the_reference() {
+    let expected = numbers(&reference("zh_clamped_cosine"));
+    for order in ORDERS {
+        same(&clamped_cosine(order), &expected[..order]);
+    }
+}
+
+#[test]
+fn caps_are_the_reference() {
+    for sample in reference("zh_cap").as_array().unwrap() {
+        let half = number(&sample["half_angle"]);
+        let expected = numbers(&sample["zh"]);
+        same(&cap(4, half), &expected);
+        // Small discs keep their digits.
+        if half < 0.1 {
+            for (got, exact) in cap(4, half).iter().zip(expected) {
+                assert!((got - exact).abs() < 1e-12 * exact);
+            }
+        }
+    }
+}
+
+/// Thesis appendix A, as printed.
+#[test]
+fn caps_are_the_thesis() {
+    for half in [0.05, 0.7, 1.9, 3.0_f64] {
+        let c = half.cos();
+        let printed = [
+            -PI.sqrt() * (c - 1.0),
+            0.5 * (3.0 * PI).sqrt() * half.sin().powi(2),
+            -0.5 * (5.0 * PI).sqrt() * c * (c - 1.0) * (1.0 + c),
+            -0.125 * (7.0 * PI).sqrt() * 2.0 * (c - 1.0) * (1.0 + c) * (5.0 * c * c - 1.0),
+        ];
+        same(&cap(4, half)[..3], &printed[..3]);
+        let direct = TAU.sqrt() * integral(half.cos(), 1.0, |z| nlp(4, z)[3]);
+        within(&[cap(4, half)[3]], &[direct], 1e-14);
+    }
+}
+
+/// From far away a ball is a point: its solid angle π (r/d)² times Y_l0(z); at 1e9 radii and more.
+#[test]
+fn a_far_ball_is_a_point() {
+    for distance in [1e4_f64, 1e9, 1e150] {
+        let solid_angle = PI / distance / distance;
+        for (l, z) in ball(6, 1.0, distance).iter().enumerate() {
+            let point = solid_angle * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
+            // 1 - cos a = a²/2 (1 - a²/12 …) and P_l'(cos a): relative l(l+1) a²/4 at most, 30/4.
+            let tolerance = (7.5 / distance / distance + 1e-14) * point;
+            assert!((z - point).abs() <= tolerance, "{distance}: {z:e} {point:e}");
+        }
+    }
+    assert_eq!(ball(3, 0.0, 0.0), [0.0; 3], "a point that is nowhere seen");
+    assert_eq!(ball(3, 1.0, f64::INFINITY), [0.0; 3]);
+}
+
+/// Outside, sin a = r/d; on the surface half of all directions; inside all of them.
+#[test]
+fn a_ball_around_its_receiver_is_the_whole_sphere() {
+    same(&ball(6, 2.0, 4.0), &cap(6, PI / 6.0));
+    within(&ball(6, 2.0, 2.0), &cap(6, FRAC_PI_2), 1e-15);
+    for distance in [1.9999999, 1.0, 0.0] {
+        let whole = ball(6, 2.0, distance);
+        within(&whole, &[2.0 * PI.sqrt(), 0.0, 0.0, 0.0, 0.0, 0.0], 1e-15);
+        within(&whole, &cap(6, PI), 1e-14);
+    }
+}
+
+/// A flat diffuse receiver gets from a disc at the zenith π sin²a: all bands but the first three are 0 in the
+/// product of an order that holds them, and the series converges to it.
+#[test]
+fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
+    let half = 0.6_f64;
+    let exact = PI * half.sin().powi(2);
+    let lit: f64 = cap(6, half).iter().zip(clamped_cosine(6)).map(|(a, b)| a * b).sum();
+    // What is left out: bands 6 and on, of |disc| ≤ √(2π(1-cos a)) and |cosine| beyond band 5, by Schwarz.
+    let rest = 2.0 * PI / 3.0 - clamped_cosine(6).iter().map(|c| c * c).sum::<f64>();
+    let disc = TAU * (1.0 - half.cos()) - cap(6, half).iter().map(|c| c * c).sum::<f64>();
+    assert!((lit - exact).abs() <= (rest * disc).sqrt(), "{lit} {exact}");
+    assert!((rest * disc).sqrt() < 0.1 * exact, "a bound that says something");
+}
+
+#[test]
+fn a_balls_azimuths() {
+    assert_eq!(ball_half_azimuth(1.0, 2.0), Some(PI / 6.0).map(|_| 0.5_f64.asin()));
+    assert_eq!(ball_half_azimuth(1.0, 1.0), None);
+    assert_eq!(ball_half_azimuth(1.0, 0.0), None);
+}
+
+/// The sky against quadrature; all that is not zonal is 0.
+#[test]
+fn the_sky_is_the_upper_half() {
+    let direct = project(4, [0.0, FRAC_PI_2], [0.0, TAU], |_, _| 1.0);
+    for l in 0..4 {
+        within(&[sky(4)[l]], &[direct[index(l, 0)]], 1e-14);
+    }
+}
+
+/// Against quadrature in panels about the lobe's peak, exponents 0 to 1e4; of unit integral, and of 0: the
+/// half-space's mean.
+#[test]
+fn phong_is_its_lobe() {
+    for exponent in [0.0, 1.0, 2.5, 30.0, 1e4_f64] {
+        let lobe = phong(6, exponent);
+        within(&[lobe[0]], &[1.0 / (4.0 * PI).sqrt()], 1e-16);
+        for (l, coefficient) in lobe.iter().enumerate() {
+            let width = (8.0 / (exponent + 1.0).sqrt()).min(FRAC_PI_2);
+            let direct: f64 = (0..8)
+                .map(|i| {
+                    let [a, b] = [i, i + 1].map(|k| width * f64::from(k) / 8.0);
+                    integral(a, b, |t| {
+                        t.sin() * (exponent + 1.0) * t.cos().powf(exponent) * nlp(6, t.cos())[l]
+                    })
+                })
+                .sum();
+            within(&[*coefficient], &[direct / TAU.sqrt()], 1e-12);
+        }
+    }
+    // Exponent 1 is the cosine over π.
+    let cosine: Vec<f64> = clamped_cosine(6).iter().map(|c| c / PI).collect();
+    within(&phong(6, 1.0), &cosine, 1e-15);
+}
+
+/// The paper's lobe keeps e^(-l²/2S) of band l where the lobe itself keeps e^(-l(l+1)/2S) nearly: l/2S apart.
+#[test]
+fn the_papers_phong_is_sharper_by_half_its_band_over_the_exponent() {
+    let s = 1e4;
+    for l in 0..6 {
+        let apart = (phong_gaussian(6, s)[l] / phong(6, s)[l] - 1.0) * 2.0 * s;
+        assert!((apart - l as f64).abs() < 0.01, "{l}: {apart}");
+    }
+}
