@@ -102,12 +102,16 @@ fn place(order: usize, m: isize) -> usize {
 /// Weights `[k][m + n - 1]` of azimuths φ_k = 2πk/count, all around: count wedges, the last back to φ_0.
 ///
 /// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided by the
-/// width as often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1).
-pub fn circle(order: usize, blend: Blend, count: usize) -> Vec<Vec<f64>> {
+/// width as often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). So all around, a blend does nothing but damp each m,
+/// what was seen and what was aliased alike: by 6 % at m = 3 with B-splines over 32 azimuths. Without a blend every
+/// azimuth stands for itself: exact for slices that turn slower than count - |m|, and nearer to the truth
+/// wherever horizons are smooth.
+pub fn circle(order: usize, blend: Option<Blend>, count: usize) -> Vec<Vec<f64>> {
     let width = TAU / count as f64;
     let power = match blend {
-        Blend::Linear => 2,
-        Blend::BSpline => 4,
+        None => 0,
+        Some(Blend::Linear) => 2,
+        Some(Blend::BSpline) => 4,
     };
     (0..count)
         .map(|k| {

@@ -1,4 +1,4 @@
-use crate::{ORDERS, noise, number, numbers, project, reference, same, within};
+use crate::{ORDERS, noise, number, numbers, project, project_whole, reference, same, within};
 use ridgelight::basis::azimuth::{Blend, assemble, assemble_nlp, blend_matrix, circle, swath};
 use ridgelight::basis::harmonics::rotate_z;
 use ridgelight::basis::slice::{Slices, from_nlp, nlp_value};
@@ -61,7 +61,7 @@ fn weights_all_around_are_wedges_turned_and_summed() {
                     sums[1][i] += if j + 1 < count { *v } else { 0.0 };
                 }
             }
-            let at_once = assemble_nlp(order, &circle(order, blend, count), &nlps);
+            let at_once = assemble_nlp(order, &circle(order, Some(blend), count), &nlps);
             within(&at_once, &sums[0], 1e-13);
             let missing: f64 = at_once.iter().zip(&sums[1]).map(|(a, b)| (a - b).abs()).sum();
             assert!(missing > 1e-3, "{missing}");
@@ -79,7 +79,11 @@ fn a_level_horizon_is_a_cap() {
             let mut expected = vec![0.0; order * order];
             (0..order).for_each(|l| expected[index(l, 0)] = cap[l]);
             for blend in BLENDS {
-                within(&assemble(order, &circle(order, blend, count), &seen), &expected, 1e-13);
+                within(
+                    &assemble(order, &circle(order, Some(blend), count), &seen),
+                    &expected,
+                    1e-13,
+                );
             }
         }
     }
@@ -97,7 +101,7 @@ fn slices_turn_with_their_azimuths() {
         .map(|v| matrix.iter().map(|row| row.iter().zip(v).map(|(e, c)| e * c).sum()).collect())
         .collect();
     for blend in BLENDS {
-        let weights = circle(order, blend, count);
+        let weights = circle(order, Some(blend), count);
         let sum = assemble(order, &weights, &slices);
         within(&assemble_nlp(order, &weights, &nlps), &sum, 1e-13);
         let mut moved = slices.clone();
@@ -139,7 +143,7 @@ fn a_swath_is_its_wedges() {
 fn a_swath_once_around_is_the_circle() {
     let (order, count) = (6, 12);
     let mut slices: Vec<Vec<f64>> = (0..count).map(|k| noise(90 + k as u64, 21)).collect();
-    let all = assemble(order, &circle(order, Blend::Linear, count), &slices);
+    let all = assemble(order, &circle(order, Some(Blend::Linear), count), &slices);
     slices.push(slices[0].clone());
     let weights = swath(order, Blend::Linear, 0.0, TAU, count + 1);
     within(&assemble(order, &weights, &slices), &all, 1e-13);
@@ -154,6 +158,47 @@ fn sizes_follow_the_order() {
             assert_eq!(matrix.len(), bands(order).count());
             assert!(matrix.iter().all(|row| row.len() == reach * order));
         }
-        assert!(circle(order, Blend::Linear, 5).iter().all(|w| w.len() == 2 * order - 1));
+        assert!(circle(order, Some(Blend::Linear), 5).iter().all(|w| w.len() == 2 * order - 1));
     }
+}
+
+/// Slices that turn slower than count - |m| are summed exactly without a blend; with one, m is damped by
+/// sinc(mΔφ/2) to the power 2 or 4, as one wedge's matrix says too.
+#[test]
+fn a_blend_all_around_damps_each_turn() {
+    let (order, count) = (4, 9);
+    // f = (1 + cos 3φ) P̂_0 + sin 2φ P̂_1: turns of 3 at most, 9 - 3 > 3.
+    let part = |phi: f64| vec![1.0 + (3.0 * phi).cos(), (2.0 * phi).sin(), 0.0, 0.0];
+    let width = TAU / count as f64;
+    let nlps: Vec<_> = (0..count).map(|k| part(width * k as f64)).collect();
+    let exact = project_whole(order, |theta, phi| nlp_value(&part(phi), theta.cos()));
+    within(&assemble_nlp(order, &circle(order, None, count), &nlps), &exact, 1e-13);
+    for (blend, power) in [(Blend::Linear, 2), (Blend::BSpline, 4)] {
+        let blended = assemble_nlp(order, &circle(order, Some(blend), count), &nlps);
+        for ((l, m), got) in bands(order).zip(blended) {
+            let x = 0.5 * m as f64 * width;
+            let damped = if m == 0 { 1.0 } else { (x.sin() / x).powi(power) };
+            within(&[got], &[damped * exact[index(l, m)]], 1e-13);
+        }
+    }
+}
+
+/// With ever more azimuths a smooth horizon's harmonics come without a blend faster than any power; linearly
+/// blended with the square; a blend's error is seen.
+#[test]
+fn a_smooth_horizon_converges_fastest_without_a_blend() {
+    let order = 4;
+    let slices = Slices::new(order);
+    let seen = |count: usize, blend| {
+        let above = |k| slices.above(0.6 + 0.4 * (TAU * k as f64 / count as f64).cos());
+        assemble(order, &circle(order, blend, count), &(0..count).map(above).collect::<Vec<_>>())
+    };
+    let truth = seen(512, None);
+    let apart = |count, blend| -> f64 {
+        seen(count, blend).iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(apart(32, None) < 1e-13, "{:e}", apart(32, None));
+    let linear = Some(Blend::Linear);
+    assert!((3.5..4.5).contains(&(apart(32, linear) / apart(64, linear))));
+    assert!(apart(32, linear) > 1e-4);
 }

@@ -115,7 +115,7 @@ fn wedges_and_slices_meet_as_azimuths_grow() {
     let apart = |count: usize| {
         let width = TAU / count as f64;
         let seen: Vec<_> = (0..count).map(|k| slices.above(horizon(width * k as f64))).collect();
-        let blended = assemble(order, &circle(order, Blend::Linear, count), &seen);
+        let blended = assemble(order, &circle(order, Some(Blend::Linear), count), &seen);
         let mut summed = [0.0; 16];
         for k in 0..count {
             let phi = width * k as f64;
