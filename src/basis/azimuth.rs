@@ -1,10 +1,10 @@
 //! From slices along azimuths to spherical harmonics: blending, turning and summing in one (NS09 §6,
 //! appendix).
 //!
-//! A wedge lies between two azimuths Δφ apart; across it the slices are blended with weights β_i(φ/Δφ), and
-//! the result is projected. Every Y_lm is a product, so the projection of the sum over all wedges is
-//! Σ_k slice_k[l, |m|] · w_k[m], w_k[m] = ∫ Φ_m times the bump that belongs to azimuth k. The 2n - 1 weights
-//! of an azimuth take the place of a blend matrix, a rotation about z and a sum.
+//! A wedge lies between two azimuths Δφ apart; across it the slices are blended with weights β_i(φ/Δφ),
+//! and the result is projected. Every Y_lm is a product, so the projection of the sum over all wedges is
+//! Σ_k slice_k(l, |m|) w_k(m), w_k(m) = ∫ Φ_m times the bump that belongs to azimuth k. The 2n - 1
+//! weights of an azimuth take the place of a blend matrix, a rotation about z and a sum.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -76,8 +76,8 @@ fn wedge(order: usize, blend: Blend, start_rad: f64, width_rad: f64) -> [Vec<f64
     })
 }
 
-/// Blend matrix of a wedge from azimuth 0 to `width_rad`, (0..2π]: n² rows; columns are the NLP coefficients of
-/// the two (linear) or four (B-spline) azimuths in turn (NS09 eq. 20, appendix A).
+/// Blend matrix of a wedge from azimuth 0 to `width_rad`, (0..2π]: n² rows; columns are the NLP
+/// coefficients of the two (linear) or four (B-spline) azimuths in turn (NS09 eq. 20, appendix A).
 ///
 /// 16 × 8 and 16 × 16 at order 4. For [`super::harmonics::rotate_z`] by each wedge's azimuth, then a sum.
 pub fn blend_matrix(order: usize, blend: Blend, width_rad: f64) -> Vec<Vec<f64>> {
@@ -101,11 +101,11 @@ fn place(order: usize, m: isize) -> usize {
 
 /// Weights `[k][m + n - 1]` of azimuths φ_k = 2πk/count, all around: count wedges, the last back to φ_0.
 ///
-/// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided by the
-/// width as often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). So all around, a blend does nothing but damp each m,
-/// what was seen and what was aliased alike: by 6 % at m = 3 with B-splines over 32 azimuths. Without a blend every
-/// azimuth stands for itself: exact for slices that turn slower than count - |m|, and nearer to the truth
-/// wherever horizons are smooth.
+/// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided
+/// by the width as often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). So all around, a blend does
+/// nothing but damp each m, what was seen and what was aliased alike: by 6 % at m = 3 with B-splines over
+/// 32 azimuths. Without a blend every azimuth stands for itself: exact for slices that turn slower than
+/// count - |m|, and nearer to the truth wherever horizons are smooth.
 pub fn circle(order: usize, blend: Option<Blend>, count: usize) -> Vec<Vec<f64>> {
     let width = TAU / count as f64;
     let power = match blend {
@@ -128,8 +128,9 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
-/// Weights `[k][m + n - 1]` of azimuths φ_k = start + k · width/(count - 1): count - 1 wedges, nothing beyond
-/// the two ends (NS09 §6, partial swaths). A B-spline takes the end's slice again where it would reach beyond.
+/// Weights `[k][m + n - 1]` of azimuths φ_k = start + k · width/(count - 1): count - 1 wedges, nothing
+/// beyond the two ends (NS09 §6, partial swaths). A B-spline takes the end's slice again where it would
+/// reach beyond.
 ///
 /// # Panics
 /// When `count` is below 2.
@@ -170,8 +171,8 @@ pub fn assemble(order: usize, weights: &[Vec<f64>], slices: &[Vec<f64>]) -> Vec<
         .collect()
 }
 
-/// [`assemble`] from NLP coefficients: they are weighted and summed first, n (2n-1) products an azimuth, and
-/// taken to slices once.
+/// [`assemble`] from NLP coefficients: they are weighted and summed first, n (2n-1) products an azimuth,
+/// and taken to slices once.
 ///
 /// # Panics
 /// As [`assemble`].

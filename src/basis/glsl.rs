@@ -14,13 +14,13 @@ use super::slice::{Slices, parts};
 pub enum Factor {
     /// Any series.
     Any,
-    /// A zonal function about an axis of azimuth 0, even in azimuth: only m ≥ 0 is read. Half of the products
-    /// go: what is even and what is odd in azimuth no longer mix.
+    /// A zonal function about an axis of azimuth 0, even in azimuth: only m ≥ 0 is read. Half of the
+    /// products go: what is even and what is odd in azimuth no longer mix.
     Aligned,
 }
 
-/// `void sh_product(in float a[n²], in float b[n²], out float c[r²])`: the product of two series of `order`, its
-/// bands below `receiver` only, `name` in place of `sh_product`.
+/// `void sh_product(in float a[n²], in float b[n²], out float c[r²])`: the product of two series of
+/// `order`, its bands below `receiver` only, `name` in place of `sh_product`.
 ///
 /// The product with b is a symmetric matrix whose entries are sums over b. Each entry is made once, used in
 /// two rows, and dropped. Straight-line code, no branches.
@@ -61,8 +61,8 @@ pub fn glsl_product(name: &str, order: usize, receiver: usize, factor: Factor) -
     text + "}\n"
 }
 
-/// `void name(in float rise, in float sin_, in float cos_, out float slice[n(n+1)/2])`: [`Slices::above`] an elevation ω of sine and
-/// cosine `sin_` and `cos_`, with `rise` = π/2 - ω, [0..π].
+/// `void name(in float rise, in float sin_, in float cos_, out float slice[n(n+1)/2])`: [`Slices::above`]
+/// an elevation ω of sine and cosine `sin_` and `cos_`, with `rise` = π/2 - ω, [0..π].
 pub fn glsl_slice(name: &str, order: usize) -> String {
     let slices = Slices::new(order);
     let count = slices.parts().len();
@@ -75,15 +75,16 @@ pub fn glsl_slice(name: &str, order: usize) -> String {
         let line = match (part.odd, part.whole.abs() < 1e-14) {
             (true, true) => format!("cos_ * ({inner})"),
             (true, false) => format!("{whole} * rise + cos_ * ({inner})"),
-            (false, _) => format!("{whole} + {inner}"),
+            (false, true) => inner,
+            (false, false) => format!("{whole} + {inner}"),
         };
         writeln!(text, "    slice[{i}] = {line}; // l {l}, m {m}").unwrap();
     }
     text + "}\n"
 }
 
-/// `void name(in float sin_, in float cos2, out float nlp[n])`: NLP coefficients of what lies above an elevation of
-/// sine `sin_` and squared cosine `cos2` (NS09 eq. 11).
+/// `void name(in float sin_, in float cos2, out float nlp[n])`: NLP coefficients of what lies above an
+/// elevation of sine `sin_` and squared cosine `cos2` (NS09 eq. 11).
 pub fn glsl_visibility_nlp(name: &str, order: usize) -> String {
     let mut text =
         format!("void {name}(in float sin_, in float cos2, out float nlp[{order}])\n{{\n");

@@ -1,9 +1,9 @@
 //! Key lights: a part of the sky of uniform radiance, between two azimuths and two elevations (NS09 §6,
 //! supplement §1).
 //!
-//! Horizons are taken at a few azimuths across it. Of each, what counts is where [horizon, π/2] and the light's
-//! elevations meet. The light being uniform, light times visibility is that restricted visibility itself: a sum of
-//! slices times a radiance, no product of two series.
+//! Horizons are taken at a few azimuths across it. Of each, what counts is where [horizon, π/2] and the
+//! light's elevations meet. The light being uniform, light times visibility is that restricted visibility
+//! itself: a sum of slices times a radiance, no product of two series.
 
 use super::azimuth::{Blend, assemble, assemble_nlp, swath};
 use super::legendre::occlusion;
@@ -21,8 +21,12 @@ pub struct KeyLight {
 }
 
 impl KeyLight {
-    /// Where horizons are taken: `count` azimuths from end to end, 2 or more (NS09: 3).
+    /// Where horizons are taken: `count` azimuths from end to end (NS09: 3).
+    ///
+    /// # Panics
+    /// When `count` is below 2.
     pub fn azimuths(&self, count: usize) -> Vec<f64> {
+        assert!(count >= 2, "{count} azimuths across a light");
         let step = self.width_rad / (count - 1) as f64;
         (0..count).map(|k| self.azimuth_rad + step * k as f64).collect()
     }

@@ -7,8 +7,9 @@
 //!   polynomials (NLP): [`legendre`].
 //! - Φ_0 = 1/√2π, Φ_m = cos mφ/√π, Φ_-m = sin mφ/√π: [`azimuth`].
 //!
-//! What is seen along one azimuth is a [`slice`] of n(n+1)/2 numbers ∫ f Θ_lm dz, or the n numbers of the
-//! NLP, and spherical harmonics are sums of slices times weights of Φ: [`azimuth::assemble`].
+//! What is seen along one azimuth is a [slice](mod@slice) of n(n+1)/2 numbers ∫ f Θ_lm dz, or the n
+//! numbers of the NLP, and spherical harmonics are sums of slices times weights of Φ:
+//! [`azimuth::assemble`].
 //!
 //! Order n means bands l < n, n² coefficients at [`index`]; n is 1 to [`MAX_ORDER`] everywhere, and
 //! functions panic on any other. A zonal function about the z axis is its n coefficients of Y_l0.

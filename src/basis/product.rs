@@ -1,7 +1,7 @@
 //! Products of two series: Γ_ijk = ∫ Y_i Y_j Y_k.
 //!
-//! A product of order n kept to order n is (a b)_k = Σ Γ_ijk a_i b_j, and light L seen through V by a receiver H
-//! is Σ Γ_ijk L_i V_j H_k.
+//! A product of order n kept to order n is (a b)_k = Σ Γ_ijk a_i b_j, and light L seen through V by a
+//! receiver H is Σ Γ_ijk L_i V_j H_k.
 
 use std::f64::consts::TAU;
 
@@ -21,8 +21,9 @@ pub struct Triple {
 
 /// Every Γ_ijk of an order that is not 0, i ≤ j ≤ k, by places.
 ///
-/// In elevation Gauss' rule: where azimuths leave a value, |m| sums to an even number and the integrand is a
-/// polynomial of degree 15 at most. In azimuth 32 even points, exact below 32 turns. What is not 0 is above 1e-3.
+/// In elevation Gauss' rule: where azimuths leave a value, |m| sums to an even number and the integrand
+/// is a polynomial of degree 15 at most. In azimuth 32 even points, exact below 32 turns. What is not 0
+/// is above 1e-3.
 pub fn triples(order: usize) -> Vec<Triple> {
     check_order(order);
     let elevations: Vec<(f64, Vec<f64>)> = points(-1.0, 1.0)
@@ -85,8 +86,10 @@ pub fn product(triples: &[Triple], a: &[f64], b: &[f64]) -> Vec<f64> {
 
 /// M_jk = Σ_i Γ_ijk L_i: what a light makes of visibility, `[row][column]`, symmetric.
 ///
-/// M V is light times visibility; the first rows are its first bands, all that a diffuse receiver takes up to
-/// order 4. It is the same at every place, so a shader needs no Γ.
+/// M V is light times visibility; the first rows are its first bands, 9 coefficients all that a diffuse
+/// receiver takes at order 4. M is the same at every place, so a shader needs no Γ: at order 4, 144
+/// products a colour where visibility is known, and 9 a colour at each receiver. The generated product
+/// ([`super::glsl`]) costs some 300 and 16 a colour, all at each receiver.
 ///
 /// # Panics
 /// When `triples` are of a higher order than `light`.

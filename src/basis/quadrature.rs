@@ -12,8 +12,8 @@ static RULE: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(rule);
 /// Places and weights on `low` to `high` of 32 points: exact for polynomials of degree 63.
 ///
 /// For e^{iat} over a length h the rule errs by less than (a h/4)^64 / 64! of h, a bound on its Taylor
-/// terms that it does not reach: below 1e-19 up to a h = 50. Everything of order 6 here turns by 5 azimuthal
-/// turns at most, 10 π, or by 12 elevations of half a turn.
+/// terms that it does not reach: below 1e-19 up to a h = 50. Everything of order 6 here turns by 5
+/// azimuthal turns at most, 10 π, or by 12 elevations of half a turn.
 pub fn points(low: f64, high: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     RULE.iter().map(move |(x, w)| (middle + half * x, half * w))

@@ -1,8 +1,8 @@
 //! What is seen along one azimuth: a function of elevation as its integrals with every Θ_lm.
 //!
-//! A slice holds ∫ f Θ_lm dz at [`slice_index`], m ≥ 0. NS09 keeps n NLP coefficients instead, which for odd m
-//! leave out part of f, as sinᵐθ is no polynomial in z there; from visibility above a horizon slices follow in
-//! closed form, without that loss.
+//! A slice holds ∫ f Θ_lm dz at [`slice_index`], m ≥ 0. NS09 keeps n NLP coefficients instead, which for
+//! odd m leave out part of f, as sinᵐθ is no polynomial in z there; from visibility above a horizon
+//! slices follow in closed form, without that loss.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -49,7 +49,7 @@ impl Above {
         for _ in 0..m.div_ceil(2) {
             f = product(&f, &squared);
         }
-        if m % 2 == 0 {
+        if m.is_multiple_of(2) {
             let mut below = vec![0.0];
             below.extend(f.iter().enumerate().map(|(k, c)| -c / (k + 1) as f64));
             return Self { odd: false, whole: -value(&below, 1.0), polynomial: below };

@@ -1,5 +1,5 @@
-//! Spherical harmonics of one visible wedge, and their table (Snyder & Nowrouzezahrai 2008, as the thesis tells
-//! it in §4.2.1, §4.3.1 and §5.1).
+//! Spherical harmonics of one visible wedge, and their table (Snyder & Nowrouzezahrai 2008, as the thesis
+//! tells it in §4.2.1, §4.3.1 and §5.1).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -71,17 +71,17 @@ impl WedgeTable {
             })
             .collect()
     }
-}
 
-/// How far [`WedgeTable::look_up`] may be from [`wedge`] in a coefficient of band `l`.
-///
-/// With spacing h, linear interpolation of each of the two horizons errs by h²/8 of the second derivative.
-/// The wedge is ∫ Φ_m G((1-t) ω_a + t ω_b) dφ with G' = -Θ_lm cos ω, so that derivative is ∫ Φ_m t² G'' dφ:
-/// Δφ/3 · max|Φ_m| · max|G''|. Θ_lm cos ω is a trigonometric polynomial of degree l+1 that does not
-/// pass max|Θ_lm|, so by Bernstein |G''| ≤ (l+1) max|Θ_lm|; and by the addition theorem
-/// max|Θ_lm| max|Φ_m| ≤ √((2l+1)/4π).
-pub fn look_up_error(table: &WedgeTable, l: usize) -> f64 {
-    let spacing = (FRAC_PI_2 - table.lowest_rad) / (table.side - 1) as f64;
-    let steepest = (l + 1) as f64 * ((2 * l + 1) as f64 / (4.0 * std::f64::consts::PI)).sqrt();
-    spacing * spacing / 8.0 * 2.0 * table.width_rad / 3.0 * steepest
+    /// How far [`look_up`](Self::look_up) may be from [`wedge`] in a coefficient of band `l`.
+    ///
+    /// With spacing h, linear interpolation of each of the two horizons errs by h²/8 of the second
+    /// derivative. The wedge is ∫ Φ_m G((1-t) ω_a + t ω_b) dφ with G' = -Θ_lm cos ω, so that derivative
+    /// is ∫ Φ_m t² G'' dφ: Δφ/3 · max|Φ_m| · max|G''|. Θ_lm cos ω is a trigonometric polynomial of degree
+    /// l+1 that does not pass max|Θ_lm|, so by Bernstein |G''| ≤ (l+1) max|Θ_lm|; and by the addition
+    /// theorem max|Θ_lm| max|Φ_m| ≤ √((2l+1)/4π).
+    pub fn error(&self, l: usize) -> f64 {
+        let spacing = (FRAC_PI_2 - self.lowest_rad) / (self.side - 1) as f64;
+        let steepest = (l + 1) as f64 * ((2 * l + 1) as f64 / (4.0 * std::f64::consts::PI)).sqrt();
+        spacing * spacing / 8.0 * 2.0 * self.width_rad / 3.0 * steepest
+    }
 }

@@ -28,10 +28,10 @@ fn window(order: usize, width: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
 /// The window after which no series of light is negative anywhere, whatever the light: factors of the
 /// sharpest lobe of these bands that is nowhere negative.
 ///
-/// Factors are those of a convolution with a zonal lobe K(z), and light convolved with K ≥ 0 stays above 0. Of
-/// all such polynomials of degree d = n - 1 the one here keeps the most of band 1, the largest mean of z: by Gauss'
-/// rule with weight (1+z)^e, e = d mod 2, that mean is at most the rule's last node x, and reached by
-/// K = (1+z)^e (R(z)/(z-x))², R the polynomial of the nodes.
+/// Factors are those of a convolution with a zonal lobe K(z), and light convolved with K ≥ 0 stays above
+/// 0. Of all such polynomials of degree d = n - 1 the one here keeps the most of band 1, the largest mean
+/// of z: by Gauss' rule with weight (1+z)^e, e = d mod 2, that mean is at most the rule's last node x,
+/// and reached by K = (1+z)^e (R(z)/(z-x))², R the polynomial of the nodes.
 pub fn nonnegative(order: usize) -> Vec<f64> {
     check_order(order);
     let (half, odd) = ((order - 1) / 2, (order - 1) % 2);
@@ -70,10 +70,11 @@ fn without_root(polynomial: &[f64], root: f64) -> Polynomial {
 
 /// The mildest window between none and [`nonnegative`] that leaves this series nowhere negative.
 ///
-/// Factors 1 - t + t κ_l. At a direction where the series f is negative and its window's f_κ not, t has to
-/// reach -f/(f_κ - f); the largest of these is sought over the sphere, as Sloan (Deringing Spherical
-/// Harmonics, 2017) seeks the mildest of another family. The whole of [`nonnegative`], t = 1, where f_κ is negative
-/// too: that is no series of light. Several colours share the smallest factors, or hues shift.
+/// Factors 1 - t + t κ_l. At a direction where the series f is negative and its window's f_κ not, t has
+/// to reach -f/(f_κ - f); the largest of these is sought over the sphere, as Sloan (Deringing Spherical
+/// Harmonics, 2017) seeks the mildest of another family. The whole of [`nonnegative`], t = 1, where f_κ
+/// is negative too: that is no series of light. Several colours share the smallest factors, or hues
+/// shift.
 ///
 /// # Panics
 /// When `coefficients` are not n² for an order n.
@@ -97,8 +98,8 @@ pub fn mildest(coefficients: &[f64]) -> Vec<f64> {
 /// Rows of the grid that [`largest`] starts from: 2.8°, a thirteenth of the shortest wave of order 6.
 const ROWS: usize = 64;
 
-/// The largest value over the sphere of a function of (θ, φ): the best of a grid, then steps that halve around
-/// the best few, down to 1e-9 rad.
+/// The largest value over the sphere of a function of (θ, φ): the best of a grid, then steps that halve
+/// around the best few, down to 1e-9 rad.
 fn largest(f: impl Fn([f64; 2]) -> f64) -> f64 {
     let step = PI / ROWS as f64;
     let mut grid: Vec<(f64, [f64; 2])> = (0..=ROWS)

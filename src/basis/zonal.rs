@@ -61,8 +61,8 @@ pub fn sky(order: usize) -> Vec<f64> {
     cap(order, FRAC_PI_2)
 }
 
-/// max(cos θ, 0), of integral π: exit radiance of a diffuse surface divides by π once (NS09 §7). π times the lobe
-/// of exponent 1; odd bands from 3 on are 0.
+/// max(cos θ, 0), of integral π: exit radiance of a diffuse surface divides by π once (NS09 §7). π times
+/// the lobe of exponent 1; odd bands from 3 on are 0.
 pub fn clamped_cosine(order: usize) -> Vec<f64> {
     phong(order, 1.0).iter().map(|c| PI * c).collect()
 }
@@ -83,8 +83,8 @@ pub fn phong(order: usize, exponent: f64) -> Vec<f64> {
 
 /// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
 ///
-/// Times √((2l+1)/4π), which the paper leaves out, for a lobe of unit integral. Tends to [`phong`] for large S,
-/// which keeps e^(-l(l+1)/2S) there: off by l/(2S) of band l.
+/// Times √((2l+1)/4π), which the paper leaves out, for a lobe of unit integral. Tends to [`phong`] for
+/// large S, which keeps e^(-l(l+1)/2S) there: off by l/(2S) of band l.
 pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
     check_order(order);
     (0..order).map(|l| (-((l * l) as f64) / (2.0 * exponent)).exp() * whole_band(l)).collect()

@@ -69,7 +69,8 @@ fn weights_all_around_are_wedges_turned_and_summed() {
     }
 }
 
-/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of wedges.
+/// A level horizon is a cap about z: every zonal coefficient the cap's, all others 0, for any number of
+/// wedges.
 #[test]
 fn a_level_horizon_is_a_cap() {
     for order in ORDERS {
@@ -89,8 +90,8 @@ fn a_level_horizon_is_a_cap() {
     }
 }
 
-/// Slices and NLP agree on functions that NLP hold, and a sum over azimuths that is turned by one azimuth is the
-/// sum of slices moved on by one.
+/// Slices and NLP agree on functions that NLP hold, and a sum over azimuths that is turned by one azimuth
+/// is the sum of slices moved on by one.
 #[test]
 fn slices_turn_with_their_azimuths() {
     let (order, count) = (5, 9);
@@ -138,7 +139,8 @@ fn a_swath_is_its_wedges() {
     }
 }
 
-/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its ends).
+/// A swath once around, closed by the slice it began with, is the circle (linear: a B-spline stops at its
+/// ends).
 #[test]
 fn a_swath_once_around_is_the_circle() {
     let (order, count) = (6, 12);
@@ -183,8 +185,8 @@ fn a_blend_all_around_damps_each_turn() {
     }
 }
 
-/// With ever more azimuths a smooth horizon's harmonics come without a blend faster than any power; linearly
-/// blended with the square; a blend's error is seen.
+/// With ever more azimuths a smooth horizon's harmonics come without a blend faster than any power;
+/// linearly blended with the square; a blend's error is seen.
 #[test]
 fn a_smooth_horizon_converges_fastest_without_a_blend() {
     let order = 4;

@@ -90,13 +90,14 @@ impl Machine {
     }
 }
 
-/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks, brackets.
+/// Tokens apart: names with their index, numbers with sign and exponent, operators between blanks,
+/// brackets.
 fn tokens(text: &str) -> Vec<String> {
     text.replace('(', " ( ").replace(')', " ) ").split_whitespace().map(str::to_owned).collect()
 }
 
-/// n² products of at most n⁴ terms of constants that are f32: each off by 2^-24 of itself, |a b| ≤ 1 and Σ|Γ| over
-/// a row below 3 n².
+/// n² products of at most n⁴ terms of constants that are f32: each off by 2^-24 of itself, |a b| ≤ 1 and
+/// Σ|Γ| over a row below 3 n².
 fn tolerance(order: usize) -> f64 {
     3.0 * (order * order) as f64 / f64::from(1 << 24)
 }

@@ -61,8 +61,8 @@ fn nlp_are_orthonormal_and_occlusion_is_their_integral() {
     }
 }
 
-/// Everything below the zenith is everything: √2 and 0s; below the nadir, nothing. Near both the first number
-/// keeps its digits: 1 + sin σ = 2 sin²((σ + π/2)/2).
+/// Everything below the zenith is everything: √2 and 0s; below the nadir, nothing. Near both the first
+/// number keeps its digits: 1 + sin σ = 2 sin²((σ + π/2)/2).
 #[test]
 fn occlusion_at_its_ends() {
     let (sin, cos) = FRAC_PI_2.sin_cos();

@@ -101,3 +101,13 @@ pub(crate) fn noise(seed: u64, count: usize) -> Vec<f64> {
         })
         .collect()
 }
+
+/// A number off by 2e-12 of itself is not the reference, nor is 2e-15 where there should be nothing.
+#[test]
+fn comparators_fail() {
+    for (got, expected) in [(1.0 + 2e-12, 1.0), (2e-15, 0.0), (f64::NAN, 0.0)] {
+        assert!(std::panic::catch_unwind(|| same(&[got], &[expected])).is_err(), "{got}");
+    }
+    assert!(std::panic::catch_unwind(|| within(&[f64::NAN], &[0.0], 1.0)).is_err());
+    assert!(std::panic::catch_unwind(|| within(&[0.0], &[0.0, 0.0], 1.0)).is_err());
+}

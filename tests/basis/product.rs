@@ -2,7 +2,7 @@ use crate::{ORDERS, direction, noise, project_whole, within};
 use glam::DVec3;
 use ridgelight::basis::harmonics::{reconstruct, rotate_z, turned};
 use ridgelight::basis::product::{light_matrix, product, triples};
-use ridgelight::basis::{bands, zonal};
+use ridgelight::basis::zonal;
 use std::f64::consts::PI;
 
 /// Distinct products and all that are not 0, as counted by an independent quadrature.
@@ -63,8 +63,8 @@ fn a_lights_matrix_is_its_product() {
     }
 }
 
-/// Σ Γ L V H: a sky of radiance 1 through a free half-space, on a flat diffuse receiver, is 1 up to what order 4
-/// leaves out, and does not care which two are multiplied first.
+/// Σ Γ L V H: a sky of radiance 1 through a free half-space, on a flat diffuse receiver, is 1 up to what
+/// order 4 leaves out, and does not care which two are multiplied first.
 #[test]
 fn light_through_visibility_on_a_receiver() {
     let up = |zonal: Vec<f64>| turned(&zonal, DVec3::Z);
@@ -74,5 +74,5 @@ fn light_through_visibility_on_a_receiver() {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>() / PI;
     let exit = dot(&product(&triples, &sky, &seen), &cosine);
     within(&[dot(&product(&triples, &seen, &cosine), &sky)], &[exit], 1e-14);
-    assert!((exit - 1.0).abs() < 0.05 && bands(4).count() == 16, "{exit}");
+    assert!((exit - 1.0).abs() < 0.05, "{exit}");
 }

@@ -55,8 +55,7 @@ fn nlp_go_to_slices() {
             .collect();
         within(&by_matrix, &project(order, |z| nlp_value(&coefficients[..order], z)), 1e-14);
         for (l, m) in parts(order) {
-            for c in 0..order {
-                let entry = matrix[slice_index(l, m)][c];
+            for (c, &entry) in matrix[slice_index(l, m)].iter().enumerate() {
                 if m == 0 {
                     within(&[entry], &[f64::from(u8::from(l == c))], 1e-14);
                 }

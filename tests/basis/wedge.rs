@@ -2,7 +2,7 @@ use crate::{number, numbers, project, reference, same, within};
 use ridgelight::basis::azimuth::{Blend, assemble, circle};
 use ridgelight::basis::harmonics::rotate_z;
 use ridgelight::basis::slice::Slices;
-use ridgelight::basis::wedge::{WedgeTable, look_up_error, wedge};
+use ridgelight::basis::wedge::{WedgeTable, wedge};
 use ridgelight::basis::{bands, index, zonal};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -15,7 +15,8 @@ fn wedges_are_the_reference() {
     }
 }
 
-/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of [0..1].
+/// Direct integration over the wedge: θ from 0 to the horizon's, which moves with φ, in a variable u of
+/// [0..1].
 #[test]
 fn wedges_are_their_integrals() {
     let slices = Slices::new(6);
@@ -68,8 +69,8 @@ fn wedges_all_around_are_a_cap() {
     }
 }
 
-/// At the table's own horizons the look-up is the wedge; between them it errs by less than the formula, and by a
-/// quarter with half the spacing. Both spans, worst over a grid that avoids the nodes.
+/// At the table's own horizons the look-up is the wedge; between them it errs by less than the formula,
+/// and by a quarter with half the spacing. Both spans, worst over a grid that avoids the nodes.
 #[test]
 fn a_tables_error_falls_with_the_square_of_its_spacing() {
     let (order, width) = (4, TAU / 32.0);
@@ -93,7 +94,7 @@ fn a_tables_error_falls_with_the_square_of_its_spacing() {
                 }
             }
             for (l, error) in errors.iter().enumerate() {
-                let most = look_up_error(&table, l);
+                let most = table.error(l);
                 assert!(*error <= most, "side {side} band {l}: {error:e} of {most:e}");
                 assert!(*error >= 0.02 * most, "a formula far too wide: {error:e} of {most:e}");
             }
@@ -106,7 +107,8 @@ fn a_tables_error_falls_with_the_square_of_its_spacing() {
     }
 }
 
-/// Wedges blend angles, slices blend what is seen: both come to the truth with the square of the wedge's width.
+/// Wedges blend angles, slices blend what is seen: both come to the truth with the square of the wedge's
+/// width.
 #[test]
 fn wedges_and_slices_meet_as_azimuths_grow() {
     let order = 4;

@@ -23,8 +23,8 @@ fn known_factors() {
     within(&hann(6, 1e9), &[1.0; 6], 1e-15);
 }
 
-/// The mean of z that a polynomial ≥ 0 can reach: the last node of Gauss' rule. 1/3 for degree 1 (1 + z), 1/√3 for
-/// degree 2 (two points), (1 + √6)/5 for degree 3 (Radau), √(3/5) for degree 4 (three points).
+/// The mean of z that a polynomial ≥ 0 can reach: the last node of Gauss' rule. 1/3 for degree 1 (1 + z),
+/// 1/√3 for degree 2 (two points), (1 + √6)/5 for degree 3 (Radau), √(3/5) for degree 4 (three points).
 #[test]
 fn the_sharpest_lobe_keeps_the_last_node_of_band_1() {
     assert_eq!(nonnegative(1), [1.0]);
@@ -35,8 +35,8 @@ fn the_sharpest_lobe_keeps_the_last_node_of_band_1() {
     assert!(nonnegative(6).windows(2).all(|pair| pair[1] < pair[0]));
 }
 
-/// A point light is the worst there is: after this window it touches 0 and does not pass it. Without, it rings
-/// to a large share of its peak; Hann of the order's width still does.
+/// A point light is the worst there is: after this window it touches 0 and does not pass it. Without, it
+/// rings to a large share of its peak; Hann of the order's width still does.
 #[test]
 fn a_point_light_is_not_negative() {
     for order in ORDERS {
@@ -53,8 +53,8 @@ fn a_point_light_is_not_negative() {
     }
 }
 
-/// Lights of discs and points: the mildest window leaves 0 as the lowest value where something rang, and the whole
-/// series where nothing did.
+/// Lights of discs and points: the mildest window leaves 0 as the lowest value where something rang, and
+/// the whole series where nothing did.
 #[test]
 fn the_mildest_window_just_reaches_0() {
     for order in 2..=6 {

@@ -73,8 +73,8 @@ fn a_ball_around_its_receiver_is_the_whole_sphere() {
     }
 }
 
-/// A flat diffuse receiver gets from a disc at the zenith π sin²a: all bands but the first three are 0 in the
-/// product of an order that holds them, and the series converges to it.
+/// A flat diffuse receiver gets from a disc at the zenith π sin²a: all bands but the first three are 0 in
+/// the product of an order that holds them, and the series converges to it.
 #[test]
 fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
     let half = 0.6_f64;
@@ -89,7 +89,7 @@ fn a_disc_at_the_zenith_lights_by_its_sine_squared() {
 
 #[test]
 fn a_balls_azimuths() {
-    assert_eq!(ball_half_azimuth(1.0, 2.0), Some(PI / 6.0).map(|_| 0.5_f64.asin()));
+    assert_eq!(ball_half_azimuth(1.0, 2.0), Some(0.5_f64.asin()));
     assert_eq!(ball_half_azimuth(1.0, 1.0), None);
     assert_eq!(ball_half_azimuth(1.0, 0.0), None);
 }
@@ -128,7 +128,8 @@ fn phong_is_its_lobe() {
     within(&phong(6, 1.0), &cosine, 1e-15);
 }
 
-/// The paper's lobe keeps e^(-l²/2S) of band l where the lobe itself keeps e^(-l(l+1)/2S) nearly: l/2S apart.
+/// The paper's lobe keeps e^(-l²/2S) of band l where the lobe itself keeps e^(-l(l+1)/2S) nearly: l/2S
+/// apart.
 #[test]
 fn the_papers_phong_is_sharper_by_half_its_band_over_the_exponent() {
     let s = 1e4;
