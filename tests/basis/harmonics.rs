@@ -15,6 +15,25 @@ fn values_are_the_reference() {
     }
 }
 
+/// Band 5 at θ = 1.2, φ = 2.9 from its definition with 30 digits: sums of derivatives of P_5, no recurrence.
+#[test]
+fn the_highest_band_is_its_definition() {
+    let expected = [
+        0.431_608_699_616_287_33,
+        -0.467_025_008_746_105_7,
+        0.047_724_206_080_507_379,
+        0.212_447_023_678_733_02,
+        -0.048_096_676_988_238_17,
+        0.292_192_458_154_195_17,
+        0.195_193_279_712_497_56,
+        -0.404_918_431_551_468_69,
+        -0.053_891_742_142_454_9,
+        0.322_552_559_470_544_78,
+        -0.163_856_253_539_563_96,
+    ];
+    same(&evaluate(6, direction(1.2, 2.9))[25..], &expected);
+}
+
 /// Y_1 is √(3/4π) (y, z, x): no sign of Condon and Shortley.
 #[test]
 fn band_1_is_the_direction() {
