@@ -5,6 +5,7 @@
 mod common;
 mod compare;
 mod flags;
+mod idle;
 mod inputs;
 mod needs_vulkan;
 mod plan;

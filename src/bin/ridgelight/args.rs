@@ -9,7 +9,7 @@ mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
@@ -25,6 +25,29 @@ use values::bytes;
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
+}
+
+impl Cli {
+    /// What the user wrote.
+    ///
+    /// # Errors
+    /// Clap's sentence on what cannot be read; help and version too.
+    pub fn read() -> Result<Self, clap::Error> {
+        let mut parser = Self::command();
+        let matches = parser.try_get_matches_from_mut(std::env::args_os())?;
+        let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
+        let quality = match &mut cli.command {
+            Command::Render(args) => Some(&mut args.quality),
+            Command::Horizon(args) => Some(&mut args.quality),
+            Command::Plan(args) => Some(&mut args.quality),
+            Command::Bench(args) => Some(&mut args.quality),
+            _ => None,
+        };
+        if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
+            quality.remember(matches);
+        }
+        Ok(cli)
+    }
 }
 
 #[derive(Subcommand)]

@@ -3,6 +3,7 @@ use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan};
 
 use crate::args::{PlanArgs, PlanFormat};
+use crate::idle;
 use crate::setup::{self, Outcome};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
@@ -34,6 +35,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         limits.memory_budget = budget;
     }
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
+    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {

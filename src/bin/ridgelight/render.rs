@@ -5,6 +5,7 @@ use ridgelight::plan;
 use ridgelight::scene::HeightField;
 
 use crate::args::{Layer, RenderArgs};
+use crate::idle;
 use crate::setup::{self, Outcome};
 
 /// Linear; sRGB makes 240 of 255 of it.
@@ -48,6 +49,13 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     setup::check_plan(&args.global, picture)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = picture(&limits)?;
+    let horizon = args.layers.contains(&Layer::Horizon);
+    let mut used = plan.settings.clone();
+    if horizon {
+        let border = setup::border(&args.surface.field);
+        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
+    }
+    idle::say(args.global.quiet, &args.quality.written, &used);
     let contents = setup::contents(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
@@ -64,7 +72,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
-    let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene.field, args, &limits)?) } else { None };
     progress.finish_and_clear();

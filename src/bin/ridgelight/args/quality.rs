@@ -1,4 +1,5 @@
-use clap::{Args, ValueEnum};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Id, ValueEnum};
 
 use super::values::whole;
 
@@ -29,6 +30,21 @@ pub struct QualityArgs {
     /// Elevations of an environment's table, 8..4096
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
     pub table_elevations: u32,
+    /// Every flag of the command that was written out, as its setting is called, and its first value.
+    #[arg(skip)]
+    pub written: Vec<(String, String)>,
+}
+
+impl QualityArgs {
+    /// Remembers what was written out, which values alone do not tell from defaults.
+    pub fn remember(&mut self, matches: &ArgMatches) {
+        let written = matches.ids().map(Id::as_str).filter_map(|id| {
+            let by_user = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let value = matches.get_raw(id).filter(|_| by_user)?.next()?;
+            Some((id.to_owned(), value.to_string_lossy().into_owned()))
+        });
+        self.written = written.collect();
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
