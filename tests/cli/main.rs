@@ -12,6 +12,7 @@ mod plan;
 mod reference;
 mod signals;
 mod trade;
+mod unlike;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -167,10 +167,36 @@ fn exr_channels_and_sample_types() {
             assert_eq!(absolute(&field), expected(), "{name}");
         }
     }
-    let field = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("Y", f32), ("Z", zero.clone())]));
-    assert_eq!(absolute(&field.unwrap()), expected());
-    let error = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("G", zero)])).unwrap_err();
-    assert!(error.to_string().contains("the channels B, G"), "{error}");
+    let file = |heights: &str, others: &[&str]| {
+        let others = others.iter().map(|name| (*name, zero.clone()));
+        let all: Vec<_> = others.chain([(heights, f32.clone())]).collect();
+        parse("a.exr", &exr(4, 3, &all))
+    };
+    for (heights, others) in [
+        ("Z", &["R", "G", "B"][..]),
+        ("Z", &["A", "N.X"]),
+        ("height", &["X"]),
+        ("elevation", &["R", "G", "B", "A"]),
+        ("Y", &["A"]),
+        ("R", &["A"]),
+    ] {
+        assert_eq!(absolute(&file(heights, others).unwrap()), expected(), "{heights}, {others:?}");
+    }
+    // Colours, vectors, and heights of which there are two.
+    for (one, others, said) in [
+        ("R", &["G", "B"][..], "the channels B, G, R"),
+        ("R", &["A", "B", "G"], "the channels A, B, G, R"),
+        ("R", &["G"], "the channels G, R"),
+        ("Y", &["BY", "RY"], "the channels BY, RY, Y"),
+        ("Z", &["X", "Y"], "the channels X, Y, Z"),
+        ("Y", &["Z"], "the channels Y, Z"),
+        ("height", &["Z"], "the channels Z, height"),
+        ("G", &["B"], "the channels B, G"),
+    ] {
+        let error = file(one, others).unwrap_err().to_string();
+        one_sentence(&error, "a.exr");
+        assert!(error.contains(said) && error.contains("one channel"), "{error}");
+    }
 }
 
 #[test]
