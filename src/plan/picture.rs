@@ -1,6 +1,5 @@
 mod images;
 
-use super::builder::check_size;
 use super::edit::Edits;
 use super::shining::{Shining, sun_name};
 use super::sweep::Sweep;
@@ -43,7 +42,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
     refuse_later(surface, lights)?;
-    let size = check_size(field, limits)?;
+    let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, wanted, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;

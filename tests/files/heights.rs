@@ -294,3 +294,36 @@ fn geotiff_places_and_units() {
     heights[3] = f32::NAN;
     assert!(field("nan", &heights).unwrap().voids().unwrap()[3]);
 }
+
+/// By the header alone: nothing but it is there.
+#[test]
+fn sizes_are_known_from_headers() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        height_size(&path)
+    };
+    for (name, bytes) in height_files() {
+        let expected = match name {
+            "a.npz" => None,
+            "N44W072.hgt" => Some([3, 3]),
+            _ => Some([ROWS, COLS]),
+        };
+        assert_eq!(size(name, &bytes), expected, "{name}");
+        // The samples are last, but for TIFF's, whose header stands behind them.
+        let cut = match name {
+            "a.png" => 24,
+            "a.asc" => bytes.len() - 36,
+            "a.npy" => bytes.len() - 2 * HEIGHTS.len(),
+            "a.exr" => bytes.len() - 30,
+            _ => continue,
+        };
+        assert_eq!(size(name, &bytes[..cut]), expected, "{name}, cut");
+        assert_eq!(size(name, &bytes[..8]), None, "{name}, 8 bytes");
+    }
+    assert_eq!(size("a.xyz", b"ncols 3 nrows 4"), None);
+    assert_eq!(size("a.npy", &npy("<f4", false, "(2, 3, 4)", &[])), None);
+    assert_eq!(height_size(folder.path()), None);
+    assert_eq!(height_size(&folder.path().join("missing.png")), None);
+}

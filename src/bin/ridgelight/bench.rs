@@ -46,7 +46,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let quality = setup::quality(&args.quality)?;
     let field = match &args.input {
-        Some(path) => setup::field(path, &args.surface.field)?,
+        Some(path) => setup::field(path, &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;

@@ -115,17 +115,23 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
             "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
         ));
     }
-    let field = setup::field(&args.input.path, &args.surface)?;
+    let field = setup::field(&args.input.path, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let distances = args.distances.is_some();
     setup::check_plan(&args.global, |limits| {
         let most = at_once(&field, limits);
         plan_from(&field, border, &quality, limits, (0, most), distances)
     })?;
+    let shape = [quality.azimuths as usize, field.rows(), field.cols()];
+    if is_npy {
+        let bytes = 4 * shape.iter().product::<usize>() as u64;
+        let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
+        let outputs: Vec<_> = outputs.into_iter().flatten().map(|path| (path, bytes)).collect();
+        files::check_room(&outputs)?;
+    }
     let (mut gpu, limits) = setup::device(&args.global)?;
     let used = used(&field, border, &quality, &limits, distances)?;
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let shape = [quality.azimuths as usize, field.rows(), field.cols()];
     let mut angles_file =
         if is_npy { Some(NpyWriter::create(&args.output, &shape)?) } else { None };
     let mut distances_file =

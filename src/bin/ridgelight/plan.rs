@@ -14,7 +14,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     // Planned for the device that would run it; without one, for the software driver everyone has.
     let devices = gpu::devices();

@@ -42,7 +42,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         ));
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let wanted = setup::wanted(&args.layers);
     let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
