@@ -135,7 +135,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Asked)
         );
         costs.push([swept / all, lit, ratio]);
     }
-    println!("\n{}", summary(&asked, &costs));
+    println!("\n{}", summary(asked, &costs));
     Ok(())
 }
 
