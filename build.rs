@@ -102,11 +102,11 @@ fn splice(path: &Path, files: &mut Vec<PathBuf>, text: &mut String) {
     }
 }
 
-/// Turns `ERROR: 1:20: …` into `shaders_glsl/shared/x.glsl:20: …`.
+/// Turns `ERROR: 1:20: …` (glslang) and `1:20: …` (shaderc) into `shaders_glsl/shared/x.glsl:20: …`.
 fn located(log: &str, files: &[PathBuf]) -> String {
     log.lines()
         .map(|line| {
-            let Some(rest) = line.strip_prefix("ERROR: ") else { return line.to_owned() };
+            let rest = line.strip_prefix("ERROR: ").unwrap_or(line);
             let mut parts = rest.splitn(3, ':');
             match (parts.next().and_then(|n| n.parse::<usize>().ok()), parts.next(), parts.next()) {
                 (Some(n), Some(row), Some(what)) if n < files.len() => {

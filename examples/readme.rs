@@ -178,6 +178,17 @@ fn accuracy() -> Result<String> {
     Ok(format!("{name}{}: {}\n", made(&path)?, tables.trim()))
 }
 
+/// The last paragraph of examples/edits.
+fn edits() -> Result<String> {
+    let path = Path::new(RESULTS).join("edits.txt");
+    let text = text(&path)?;
+    let missing = || wrong(&path, "no summary", "the text of examples/edits");
+    let summary = text.trim_end().rsplit_once("\n\n").ok_or_else(missing)?.1;
+    // After the date: the device, the sizes.
+    let device = text.lines().nth(1).and_then(|line| line.rsplit_once(": ")).ok_or_else(missing)?.0;
+    Ok(format!("{summary}\n*{device}{}*\n", made(&path)?))
+}
+
 /// `readme` with what stands between the marks of `name` replaced.
 fn with(readme: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
@@ -198,8 +209,13 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 4] =
-        [("picture", picture), ("sizes", sizes), ("accuracy", accuracy), ("forms", forms)];
+    let sections: [Section; 5] = [
+        ("picture", picture),
+        ("sizes", sizes),
+        ("accuracy", accuracy),
+        ("forms", forms),
+        ("edits", edits),
+    ];
     for (name, section) in sections {
         let new = with(&readme, name, &section()?)?;
         if new != readme {

@@ -185,21 +185,35 @@ fn check_claims(path: &Path, header: &Header, held: usize) -> Result<()> {
     open::plausible(path, "header", bytes, held, ratio)
 }
 
-/// Heights from the channel Y, Z, R or height (first found), or from the only channel.
+/// Heights from the only channel, or from the only one that is called as heights are.
 pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
     let file = ExrFile::open(path, bytes)?;
     let names = file.names();
-    let index = match ["Y", "Z", "R", "height"].iter().find_map(|n| file.find(n)) {
-        Some(index) => index,
-        None if names.len() == 1 => 0,
-        None => {
-            let found = format!("the channels {}", names.join(", "));
-            return Err(Error::file(path, "header", found, "Y, Z, R, height, or only one"));
-        }
+    let Some(index) = height_channel(&names) else {
+        let found = format!("the channels {}", names.join(", "));
+        let expected = "one channel, or one called height, elevation, Z, Y or R that is no part of a colour or vector";
+        return Err(Error::file(path, "header", found, expected));
     };
     let single = file.sample_type(index) != SampleType::U32;
     let (rows, cols, mut planes) = file.planes(&[index], |v| v)?;
     Ok(Raster { single, ..Raster::bare(rows, cols, planes.swap_remove(0)) })
+}
+
+/// R beside G or B is red, Y beside RY or BY the light of a colour, and what is beside X the part of
+/// a vector: none of these is a height.
+fn height_channel(names: &[&str]) -> Option<usize> {
+    let has = |all: &[&str]| all.iter().any(|n| names.contains(n));
+    let is_height = |name: &str| match name {
+        "height" | "heights" | "elevation" => true,
+        "Z" => !has(&["X"]),
+        "Y" | "R" => !has(&["X", "G", "B", "RY", "BY"]),
+        _ => false,
+    };
+    match (names, names.iter().filter(|name| is_height(name)).count()) {
+        ([_], _) => Some(0),
+        (_, 1) => names.iter().position(|name| is_height(name)),
+        _ => None,
+    }
 }
 
 /// Colour in linear light from R, G and B, or grey from Y or the only channel.

@@ -63,7 +63,7 @@ impl Raster {
 /// | name | holds | cell size | no data |
 /// |---|---|---|---|
 /// | `.png` | grey, 8 or 16 bits; one count is one metre | 1 × 1 | alpha 0, or the `tRNS` grey |
-/// | `.exr` | channel `Y`, `Z`, `R` or `height`, or the only one; f16, f32, u32 | 1 × 1 | |
+/// | `.exr` | the only channel, or the only `height`, `elevation`, `Z`, `Y` or `R`; f16, f32, u32 | 1 × 1 | |
 /// | `.tif`, `.tiff` | one band of any integer or float type | GeoTIFF tags | GDAL's tag |
 /// | `.hgt` | SRTM: square, 16-bit big-endian | 1/(n-1)° at the latitude in the name | -32768 |
 /// | `.asc` | ESRI ASCII grid | header | header |

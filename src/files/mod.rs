@@ -22,6 +22,8 @@ mod npz;
 mod open;
 mod planes;
 mod png;
+mod room;
+mod size;
 mod tif;
 
 pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
@@ -31,3 +33,5 @@ pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use npy::{NpyWriter, write_npy_f32};
 pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{Tone, encode_png, write_png};
+pub use room::check_room;
+pub use size::height_size;

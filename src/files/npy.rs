@@ -125,7 +125,7 @@ impl<'a> Array<'a> {
 }
 
 /// The text of a key's value in a Python dictionary of the kind NPY headers are.
-fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+pub(super) fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     let at = [format!("'{key}'"), format!("\"{key}\"")]
         .iter()
         .find_map(|quoted| text.find(quoted).map(|at| at + quoted.len()))?;
@@ -138,7 +138,7 @@ fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
 }
 
 /// `(3, 4)`, `(3,)` or `()`; NumPy 1 wrote `3L` in Python 2.
-fn tuple(text: &str) -> Option<Vec<usize>> {
+pub(super) fn tuple(text: &str) -> Option<Vec<usize>> {
     let inner = text.trim().strip_prefix('(')?.strip_suffix(')')?.trim();
     if inner.is_empty() {
         return Some(Vec::new());

@@ -55,7 +55,7 @@ impl Format {
     }
 
     /// By the name's extension, in either case.
-    fn of_name(path: &Path) -> Option<Self> {
+    pub fn of_name(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Format::Png),
             "exr" => Some(Format::Exr),

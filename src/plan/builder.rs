@@ -3,7 +3,6 @@ use super::batch::bytes_text;
 use super::pass::place_barriers;
 use super::{Format, Kind, Limits, Owner, Pass, Plan, Resource, ResourceId};
 use crate::gpu::shaders::Shader;
-use crate::scene::HeightField;
 use crate::{Error, Result};
 
 /// Collects a plan.
@@ -104,19 +103,6 @@ impl Builder {
     pub(super) fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
     }
-}
-
-/// Columns and rows of a field that the device has images for.
-pub(super) fn check_size(field: &HeightField, limits: &Limits) -> Result<[u32; 2]> {
-    let longest = field.cols().max(field.rows());
-    if longest > limits.image_side as usize {
-        return Err(Error::Limit {
-            what: format!("a field of {} × {}", field.cols(), field.rows()),
-            needs: format!("images {longest} texels long"),
-            limit: format!("{} on this device", limits.image_side),
-        });
-    }
-    Ok([field.cols() as u32, field.rows() as u32])
 }
 
 impl Plan {

@@ -1,5 +1,4 @@
 use super::azimuths::Azimuth;
-use super::builder::check_size;
 use super::sweep::Sweep;
 use super::sweeping::{circle, part, prepare, settings};
 use super::{Builder, Format, Limits, Owner, Plan, batch};
@@ -21,7 +20,7 @@ pub fn horizons(
     distances: bool,
 ) -> Result<Plan> {
     quality.check()?;
-    let size = check_size(field, limits)?;
+    let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let sweep = Sweep::choose(field, border, quality, limits, distances, &mut notes)?;
     if distances && matches!(&sweep, Sweep::Lines(l) if !l.writes_occluders || l.slope_format > 0) {

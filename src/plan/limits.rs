@@ -1,3 +1,6 @@
+use super::batch::bytes_text;
+use crate::{Error, Result};
+
 /// What a plan may count on: a device's limits and the memory that it may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -51,5 +54,26 @@ impl Limits {
             is_cpu,
             memory_budget,
         }
+    }
+
+    /// Columns and rows of a field that the device has images for.
+    ///
+    /// # Errors
+    /// A field that no image can hold, or whose heights alone are beyond the budget.
+    pub fn check_size(&self, rows: usize, cols: usize) -> Result<[u32; 2]> {
+        let longest = cols.max(rows);
+        let beyond = |needs: String, limit: String| {
+            Err(Error::Limit { what: format!("a field of {cols} × {rows}"), needs, limit })
+        };
+        if longest > self.image_side as usize {
+            let limit = format!("{} on this device", self.image_side);
+            return beyond(format!("images {longest} texels long"), limit);
+        }
+        let bytes = (4 * rows as u64).saturating_mul(cols as u64);
+        if bytes > self.memory_budget {
+            let limit = format!("{} of --memory-budget", bytes_text(self.memory_budget));
+            return beyond(format!("{} for its heights", bytes_text(bytes)), limit);
+        }
+        Ok([cols as u32, rows as u32])
     }
 }

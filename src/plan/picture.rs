@@ -1,12 +1,14 @@
-use super::builder::check_size;
+mod images;
+
 use super::edit::Edits;
 use super::shining::{Shining, sun_name};
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
-use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use super::{Builder, Limits, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Border, Environment, Lights, Quality, Scene, Surface};
+use crate::scene::{Albedo, Border, Lights, Quality, Scene, Surface};
 use crate::{Error, Result};
+use images::{Images, Tables};
 
 /// What a picture should hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,7 +42,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
     refuse_later(surface, lights)?;
-    let size = check_size(field, limits)?;
+    let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, wanted, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
@@ -102,95 +104,6 @@ fn refuse_later(surface: &Surface, lights: &Lights) -> Result<()> {
         return Err(Error::setting("phong", "a lobe", expected));
     }
     Ok(())
-}
-
-/// Images of the field's size, and the environment.
-struct Images {
-    heights: ResourceId,
-    environment: Option<ResourceId>,
-    albedo_map: Option<ResourceId>,
-    radiance: ResourceId,
-    sky_layer: Option<ResourceId>,
-    env_layer: Option<ResourceId>,
-    /// In the order of the suns that shine.
-    sun_layers: Vec<Option<ResourceId>>,
-    sky_view: Option<ResourceId>,
-    sky_sum: Option<ResourceId>,
-    env_sum: Option<ResourceId>,
-    sun_sum: Option<ResourceId>,
-}
-
-impl Images {
-    fn make(builder: &mut Builder, scene: &Scene, shining: &Shining<'_>, wanted: Picture) -> Self {
-        let flat = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
-        let mut image = |name: &str, owner: Owner, format: Format, extent: [u32; 3]| {
-            builder.image(name, owner, format, extent, false)
-        };
-        let colour = if shining.is_grey { Format::R32Float } else { Format::Rgba32Float };
-        let heights = image("heights", Owner::Input, Format::R32Float, flat);
-        let environment = shining.environment.map(|e| {
-            let extent = [e.width() as u32, e.height() as u32, 1];
-            image("environment", Owner::Input, Format::Rgba32Float, extent)
-        });
-        let has_map = matches!(scene.surface.albedo, Albedo::Map(_));
-        let albedo_map = has_map.then(|| image("albedo", Owner::Input, Format::Rgba32Float, flat));
-        let radiance = image("radiance", Owner::Output, colour, flat);
-        let mut layer = |shines: bool, light: &str| {
-            let name = format!("direct.{light}");
-            (shines && wanted.light_layers).then(|| image(&name, Owner::Output, colour, flat))
-        };
-        let sky_layer = layer(shining.sky.is_some(), "sky");
-        let env_layer = layer(environment.is_some(), "env");
-        let sun_layers = shining.suns.iter().map(|(i, _)| layer(true, &sun_name(*i))).collect();
-        let view = wanted.sky_view;
-        let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
-        let mut sum = |needed: bool, name: &str, format: Format| {
-            needed.then(|| image(name, Owner::Internal, format, flat))
-        };
-        let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
-        let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
-        let sun_sum = sum(!shining.suns.is_empty(), "sun_sum", Format::R32Float);
-        Self {
-            heights,
-            environment,
-            albedo_map,
-            radiance,
-            sky_layer,
-            env_layer,
-            sun_layers,
-            sky_view,
-            sky_sum,
-            env_sum,
-            sun_sum,
-        }
-    }
-
-    /// Whether anything is lit from all around.
-    fn need_circle(&self) -> bool {
-        self.sky_sum.is_some() || self.env_sum.is_some()
-    }
-}
-
-/// The environment by azimuth and elevation.
-struct Tables {
-    wedge_rows: ResourceId,
-    tables: ResourceId,
-}
-
-impl Tables {
-    fn make(
-        builder: &mut Builder,
-        (environment, border): (&Environment, Border),
-        quality: &Quality,
-    ) -> Self {
-        let rows = environment.rows_above_ground(border) as u64;
-        let rows_bytes = u64::from(quality.azimuths) * rows * 48;
-        let wedge_rows = builder.buffer("wedge_rows", rows_bytes, false);
-        let extent = [quality.table_elevations, 3, quality.azimuths];
-        let format = Format::Rgba32Float;
-        let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
-        Self { wedge_rows, tables }
-    }
 }
 
 /// A picture while its passes are added.

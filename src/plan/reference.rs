@@ -1,4 +1,3 @@
-use super::builder::check_size;
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::path_trace::{self, BATCH_PATHS, Blocks};
 use crate::passes::{height_bounds, height_cells};
@@ -42,7 +41,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
             limit: format!("{} on this device", limits.image_side),
         });
     }
-    let size = check_size(field, limits)?;
+    let size = limits.check_size(field.rows(), field.cols())?;
 
     let mut builder = Builder::new();
     let mut image = |name: &str, owner: Owner, format: Format, [width, height]: [u32; 2]| {

@@ -41,6 +41,23 @@ pub struct LineSweep {
     pub fuse: Fuse,
 }
 
+impl LineSweep {
+    /// The distance of lines that is used, where a periodic field did not take another.
+    pub(super) fn spacing(&self) -> Lines {
+        let all = [Lines::QuarterCell, Lines::HalfCell, Lines::TwoCells, Lines::FourCells];
+        all.into_iter().find(|l| l.shift() == Some(self.line_shift)).unwrap_or(Lines::Cell)
+    }
+
+    /// What is kept, which may be more than what was asked for.
+    pub(super) fn precision(&self) -> Precision {
+        match (self.packed, self.slope_format) {
+            (true, _) => Precision::Packed,
+            (false, 2) => Precision::F16,
+            (false, _) => Precision::F32,
+        }
+    }
+}
+
 /// How horizons are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sweep {

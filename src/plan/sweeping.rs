@@ -340,11 +340,11 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
     match sweep {
         Sweep::Lines(lines) => {
             add("method", "sweep".into());
-            add("lines", Lines::name(quality.lines).into());
+            add("lines", lines.spacing().name().into());
             add("fuse", quality.fuse.name().into());
             add("hull", format!("{:?}", lines.hull).to_lowercase());
             add("hull_depth", lines.hull_depth.to_string());
-            add("precision", quality.precision.name().into());
+            add("precision", lines.precision().name().into());
         }
         Sweep::Surface { .. } => {
             add("method", "sweep".into());

@@ -222,6 +222,8 @@ fn outputs() {
             ),
             ("horizon a.asc -o old.npy --distances far.npy --fuse slopes", 2, &["--distances"]),
             ("horizon a.asc -o out.npy --lines exact", 2, &["--lines exact", "--json"]),
+            // Brute force has even azimuths: nothing to say beside them.
+            ("horizon a.asc -o out.npy --lines exact --method brute", 1, &["driver"]),
             ("render a.png -o a.png", 2, &["-o: found a.png", "the input"]),
             ("render a.png -o ./a.png", 2, &["-o", "the input"]),
             ("render a.asc -o map.png --albedo map.png", 2, &["-o: found map.png", "the input"]),

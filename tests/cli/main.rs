@@ -5,12 +5,14 @@
 mod common;
 mod compare;
 mod flags;
+mod idle;
 mod inputs;
 mod needs_vulkan;
 mod plan;
 mod reference;
 mod signals;
 mod trade;
+mod unlike;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ridgelight::files::Planes;
 
-use crate::common::{hdr, npy};
+use crate::common::{colour, hdr, npy, png};
 use crate::{Folder, read};
 
 /// Runs what must succeed, with nothing on stderr (progress is for terminals) and one line on
@@ -342,4 +342,45 @@ fn gpu_tight_budgets_are_met_with_fewer_azimuths_at_a_time() {
         }
     }
     assert!(refused > 0 && met > 0, "{refused} refused, {met} met");
+}
+
+/// A field too long for any image is refused by its header: these have no samples, or wrong ones.
+#[test]
+fn gpu_fields_beyond_the_device_are_refused_unread() {
+    let folder = Folder::new();
+    folder.write("long.png", &png(40_000, 3, colour::GREY, 8, &[], &[0; 12]));
+    folder.write("long.npy", &npy("<f4", false, "(3, 40000)", &[]));
+    folder.write("long.asc", b"ncols 40000 nrows 3 cellsize 1 0 0 0");
+    let zeros = || exr::prelude::FlatSamples::F32(vec![0.0; 40_000]);
+    let whole = crate::common::exr(40_000, 1, &[("Z", zeros())]);
+    folder.write("long.exr", &whole[..whole.len() - 30]);
+    let mut image = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut image).unwrap();
+    let deflate = tiff::encoder::Compression::Deflate(tiff::encoder::DeflateLevel::Fast);
+    encoder = encoder.with_compression(deflate);
+    encoder.write_image::<tiff::encoder::colortype::Gray8>(40_000, 1, &[0; 40_000]).unwrap();
+    let mut image = image.into_inner();
+    image[8..16].fill(0xff);
+    folder.write("long.tif", &image);
+    let before = folder.contents();
+    for name in ["long.png", "long.npy", "long.asc", "long.exr", "long.tif"] {
+        for command in ["plan", "render -o o.exr", "horizon -o o.npy", "reference -o o.exr"] {
+            let args: Vec<_> = command.split(' ').chain([name]).collect();
+            let run = folder.run(&args);
+            assert_eq!((run.status, run.err.lines().count()), (Some(1), 1), "{}", run.err);
+            let said = format!("ridgelight: {name}: a field of 40000 × ");
+            assert!(run.err.starts_with(&said), "{command}: {}", run.err);
+            assert!(
+                run.err.contains("needs images 40000 texels long, the limit is "),
+                "{}",
+                run.err
+            );
+        }
+    }
+    // A budget too small for the heights needs no device to be seen.
+    let run = folder.run_without_driver(&["plan", "long.npy", "--memory-budget", "300KiB"]);
+    let said =
+        "long.npy: a field of 40000 × 3: needs 468.8 KiB for its heights, the limit is 300.0 KiB";
+    assert!(run.err.contains(said), "{}", run.err);
+    assert!(folder.contents() == before);
 }

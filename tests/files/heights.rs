@@ -167,10 +167,36 @@ fn exr_channels_and_sample_types() {
             assert_eq!(absolute(&field), expected(), "{name}");
         }
     }
-    let field = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("Y", f32), ("Z", zero.clone())]));
-    assert_eq!(absolute(&field.unwrap()), expected());
-    let error = parse("a.exr", &exr(4, 3, &[("B", zero.clone()), ("G", zero)])).unwrap_err();
-    assert!(error.to_string().contains("the channels B, G"), "{error}");
+    let file = |heights: &str, others: &[&str]| {
+        let others = others.iter().map(|name| (*name, zero.clone()));
+        let all: Vec<_> = others.chain([(heights, f32.clone())]).collect();
+        parse("a.exr", &exr(4, 3, &all))
+    };
+    for (heights, others) in [
+        ("Z", &["R", "G", "B"][..]),
+        ("Z", &["A", "N.X"]),
+        ("height", &["X"]),
+        ("elevation", &["R", "G", "B", "A"]),
+        ("Y", &["A"]),
+        ("R", &["A"]),
+    ] {
+        assert_eq!(absolute(&file(heights, others).unwrap()), expected(), "{heights}, {others:?}");
+    }
+    // Colours, vectors, and heights of which there are two.
+    for (one, others, said) in [
+        ("R", &["G", "B"][..], "the channels B, G, R"),
+        ("R", &["A", "B", "G"], "the channels A, B, G, R"),
+        ("R", &["G"], "the channels G, R"),
+        ("Y", &["BY", "RY"], "the channels BY, RY, Y"),
+        ("Z", &["X", "Y"], "the channels X, Y, Z"),
+        ("Y", &["Z"], "the channels Y, Z"),
+        ("height", &["Z"], "the channels Z, height"),
+        ("G", &["B"], "the channels B, G"),
+    ] {
+        let error = file(one, others).unwrap_err().to_string();
+        one_sentence(&error, "a.exr");
+        assert!(error.contains(said) && error.contains("one channel"), "{error}");
+    }
 }
 
 #[test]
@@ -267,4 +293,37 @@ fn geotiff_places_and_units() {
     assert!(field("-3.40282346639e+38", &heights).unwrap().voids().unwrap()[3]);
     heights[3] = f32::NAN;
     assert!(field("nan", &heights).unwrap().voids().unwrap()[3]);
+}
+
+/// By the header alone: nothing but it is there.
+#[test]
+fn sizes_are_known_from_headers() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        height_size(&path)
+    };
+    for (name, bytes) in height_files() {
+        let expected = match name {
+            "a.npz" => None,
+            "N44W072.hgt" => Some([3, 3]),
+            _ => Some([ROWS, COLS]),
+        };
+        assert_eq!(size(name, &bytes), expected, "{name}");
+        // The samples are last, but for TIFF's, whose header stands behind them.
+        let cut = match name {
+            "a.png" => 24,
+            "a.asc" => bytes.len() - 36,
+            "a.npy" => bytes.len() - 2 * HEIGHTS.len(),
+            "a.exr" => bytes.len() - 30,
+            _ => continue,
+        };
+        assert_eq!(size(name, &bytes[..cut]), expected, "{name}, cut");
+        assert_eq!(size(name, &bytes[..8]), None, "{name}, 8 bytes");
+    }
+    assert_eq!(size("a.xyz", b"ncols 3 nrows 4"), None);
+    assert_eq!(size("a.npy", &npy("<f4", false, "(2, 3, 4)", &[])), None);
+    assert_eq!(height_size(folder.path()), None);
+    assert_eq!(height_size(&folder.path().join("missing.png")), None);
 }

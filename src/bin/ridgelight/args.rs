@@ -1,14 +1,23 @@
 //! What can be asked for, and how it is spelled.
 
 mod compare;
+mod later;
+mod quality;
 mod reference;
+mod scene;
+mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub use compare::CompareArgs;
+pub use later::LaterArgs;
+pub use quality::{FuseName, HullName, LinesName, MethodName, PrecisionName, QualityArgs};
 pub use reference::ReferenceArgs;
+pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
+pub use values::albedo_colour;
+use values::bytes;
 
 /// Lights height fields: exact horizons, sky, environment and sun, as Vulkan compute passes.
 #[derive(Parser)]
@@ -16,6 +25,29 @@ pub use reference::ReferenceArgs;
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
+}
+
+impl Cli {
+    /// What the user wrote.
+    ///
+    /// # Errors
+    /// Clap's sentence on what cannot be read; help and version too.
+    pub fn read() -> Result<Self, clap::Error> {
+        let mut parser = Self::command();
+        let matches = parser.try_get_matches_from_mut(std::env::args_os())?;
+        let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
+        let quality = match &mut cli.command {
+            Command::Render(args) => Some(&mut args.quality),
+            Command::Horizon(args) => Some(&mut args.quality),
+            Command::Plan(args) => Some(&mut args.quality),
+            Command::Bench(args) => Some(&mut args.quality),
+            _ => None,
+        };
+        if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
+            quality.remember(matches);
+        }
+        Ok(cli)
+    }
 }
 
 #[derive(Subcommand)]
@@ -198,92 +230,6 @@ pub struct Input {
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Lights")]
-pub struct LightArgs {
-    /// Radiance of a uniform sky: one number or R,G,B. Default 1 where no other light is given
-    #[arg(long, value_name = "RADIANCE", value_parser = colour, allow_negative_numbers = true)]
-    pub sky: Option<[f32; 3]>,
-    /// Environment at infinity: .hdr or .exr, equirectangular, angular map, cube cross or faces
-    #[arg(long, value_name = "FILE")]
-    pub env: Option<PathBuf>,
-    /// Turns the environment clockwise, compass degrees; unturned, its middle is east
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 0.0,
-        allow_negative_numbers = true,
-        requires = "env"
-    )]
-    pub env_rotate: f64,
-    /// A sun: compass azimuth, elevation, angular diameter (degrees; default 0.53), irradiance facing
-    /// it (one number or R,G,B; default 1). Diameter 0 casts hard shadows. May be repeated
-    #[arg(long, value_name = "AZ,EL[,ANGLE[,IRRADIANCE]]", value_parser = sun, allow_hyphen_values = true)]
-    pub sun: Vec<ridgelight::scene::Sun>,
-}
-
-#[derive(Args)]
-pub struct SurfaceArgs {
-    #[command(flatten)]
-    pub field: FieldArgs,
-    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
-    #[arg(
-        long,
-        value_name = "VALUE|FILE",
-        default_value = "1",
-        allow_negative_numbers = true,
-        help_heading = "Surface"
-    )]
-    pub albedo: String,
-}
-
-#[derive(Args)]
-#[command(next_help_heading = "Surface")]
-pub struct FieldArgs {
-    /// Spacing of columns and of rows in the heights' unit (metres), where the file has none or a
-    /// wrong one. Default the file's, else 1
-    #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true)]
-    pub cell: Option<[f64; 2]>,
-    /// Multiplies heights; not 0
-    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
-    pub z_scale: f64,
-    /// Beyond the edge: the ground goes on level (plane), nothing (open), the field repeats (periodic)
-    #[arg(long, default_value = "plane")]
-    pub border: BorderName,
-    /// The height that stands for no data, as the file has it (nan is one). Default the file's
-    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
-    pub nodata: Option<f64>,
-}
-
-#[derive(Args)]
-#[command(next_help_heading = "Quality")]
-pub struct QualityArgs {
-    /// How horizons are found
-    #[arg(long, default_value = "auto")]
-    pub method: MethodName,
-    /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
-    #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
-    pub azimuths: u32,
-    /// Slices across a sun's disc, 1..256
-    #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
-    pub sun_azimuths: u32,
-    /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
-    #[arg(long, default_value = "1")]
-    pub lines: LinesName,
-    /// How lines' results come back to samples
-    #[arg(long, default_value = "aimed-nearest")]
-    pub fuse: FuseName,
-    /// What a sweep keeps: packed is f16 height + u16 distance on the hull
-    #[arg(long, default_value = "f32")]
-    pub precision: PrecisionName,
-    /// Where a sweep's hull lives; never changes the result
-    #[arg(long, default_value = "auto")]
-    pub hull: HullName,
-    /// Elevations of an environment's table, 8..4096
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
-    pub table_elevations: u32,
-}
-
-#[derive(Args)]
 #[command(next_help_heading = "Everywhere")]
 pub struct GlobalArgs {
     /// Part of a device's name, or its number in `ridgelight devices`. Default the first GPU that
@@ -302,64 +248,6 @@ pub struct GlobalArgs {
     pub quiet: bool,
 }
 
-/// Flags of methods that are still to come: known, so that the answer is not "unexpected argument".
-#[derive(Args)]
-pub struct LaterArgs {
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    light: Vec<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    phong: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    bounces: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    subsample: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    level_step: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    level_offset: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    basis: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    max_error: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    time_budget: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    scene: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    seed: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    camera: Option<String>,
-}
-
-impl LaterArgs {
-    /// Refuses them.
-    pub fn check(&self) -> ridgelight::Result<()> {
-        let light = self.light.first();
-        let given = [
-            ("--light", light),
-            ("--phong", self.phong.as_ref()),
-            ("--bounces", self.bounces.as_ref()),
-            ("--subsample", self.subsample.as_ref()),
-            ("--level-step", self.level_step.as_ref()),
-            ("--level-offset", self.level_offset.as_ref()),
-            ("--basis", self.basis.as_ref()),
-            ("--max-error", self.max_error.as_ref()),
-            ("--time-budget", self.time_budget.as_ref()),
-            ("--scene", self.scene.as_ref()),
-            ("--seed", self.seed.as_ref()),
-            ("--camera", self.camera.as_ref()),
-        ];
-        match given.into_iter().find_map(|(name, value)| Some((name, value?))) {
-            Some((name, value)) => Err(ridgelight::Error::setting(
-                name,
-                value.as_str(),
-                "nothing: it is not yet there",
-            )),
-            None => Ok(()),
-        }
-    }
-}
-
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Layer {
     Lights,
@@ -372,136 +260,4 @@ pub enum PlanFormat {
     Text,
     Json,
     Dot,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum BorderName {
-    Plane,
-    Open,
-    Periodic,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum MethodName {
-    /// The planner's choice
-    Auto,
-    /// Hull sweeps along lines
-    Sweep,
-    /// Height pyramid (not yet)
-    Pyramid,
-    /// Every crossing of every sample's own line: exact and slow
-    Brute,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum LinesName {
-    #[value(name = "exact")]
-    Exact,
-    #[value(name = "1/4")]
-    QuarterCell,
-    #[value(name = "1/2")]
-    HalfCell,
-    #[value(name = "1")]
-    Cell,
-    #[value(name = "2")]
-    TwoCells,
-    #[value(name = "4")]
-    FourCells,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum FuseName {
-    /// The nearer line's slope
-    Nearest,
-    /// Both lines' slopes, interpolated
-    Slopes,
-    /// Both lines' occluders from the sample's own height, interpolated
-    Own,
-    /// The surface on the sample's own line where the nearer line's occluder stands
-    AimedNearest,
-    /// The same with both lines' occluders, the higher
-    Aimed,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum PrecisionName {
-    F32,
-    F16,
-    Packed,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum HullName {
-    Auto,
-    Private,
-    Shared,
-    List,
-}
-
-/// The range is [`ridgelight::scene::Quality`]'s to check.
-fn whole(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
-}
-
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    text.split(',')
-        .map(|part| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is no number")))
-        .collect()
-}
-
-fn colour(text: &str) -> Result<[f32; 3], String> {
-    match numbers(text)?.as_slice() {
-        [grey] => Ok([*grey as f32; 3]),
-        [r, g, b] => Ok([*r as f32, *g as f32, *b as f32]),
-        other => Err(format!("{} numbers, expected one or R,G,B", other.len())),
-    }
-}
-
-pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
-    colour(text).ok()
-}
-
-fn cell(text: &str) -> Result<[f64; 2], String> {
-    match numbers(text)?.as_slice() {
-        [both] => Ok([*both; 2]),
-        [x, y] => Ok([*x, *y]),
-        other => Err(format!("{} numbers, expected X or X,Y", other.len())),
-    }
-}
-
-fn sun(text: &str) -> Result<ridgelight::scene::Sun, String> {
-    let parts = numbers(text)?;
-    let irradiance = match parts.get(3..).unwrap_or_default() {
-        [] => [1.0; 3],
-        [grey] => [*grey as f32; 3],
-        [r, g, b] => [*r as f32, *g as f32, *b as f32],
-        _ => return Err("expected AZ,EL[,ANGLE[,IRRADIANCE or R,G,B]]".into()),
-    };
-    let [azimuth, elevation] =
-        parts.get(..2).and_then(|p| p.try_into().ok()).ok_or("expected at least AZ,EL")?;
-    let azimuth: f64 = azimuth;
-    Ok(ridgelight::scene::Sun {
-        // Compass: clockwise from north; inside: counter-clockwise from east.
-        azimuth_rad: (90.0 - azimuth).to_radians(),
-        elevation_rad: f64::to_radians(elevation),
-        diameter_rad: parts.get(2).copied().unwrap_or(0.53).to_radians(),
-        irradiance,
-    })
-}
-
-fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-    let (number, unit) = text.split_at(digits);
-    let number: f64 = number.parse().map_err(|_| format!("{text:?} is no size"))?;
-    let factor = match unit.trim().to_lowercase().as_str() {
-        "" | "b" => 1.0,
-        "k" | "kib" => 1024.0,
-        "m" | "mib" => 1024.0 * 1024.0,
-        "g" | "gib" => 1024.0 * 1024.0 * 1024.0,
-        "kb" => 1e3,
-        "mb" => 1e6,
-        "gb" => 1e9,
-        _ => return Err(format!("{unit:?} is no unit: KiB, MiB, GiB, kB, MB, GB")),
-    };
-    Ok((number * factor) as u64)
 }

@@ -15,6 +15,7 @@ use ridgelight::scene::Quality;
 use ridgelight::{Error, Result};
 
 use crate::args::BenchArgs;
+use crate::idle;
 use crate::setup::{self, Outcome};
 use rows::{Row, sums};
 use verify::Verifier;
@@ -45,11 +46,13 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     let quality = setup::quality(&args.quality)?;
     let field = match &args.input {
-        Some(path) => setup::field(path, &args.surface.field)?,
+        Some(path) => setup::field(path, &args.surface.field, &args.global)?,
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+    idle(args, &plan);
     let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
     let bar = crate::render::progress(args.global.quiet, "verifying against the oracle");
     let verifier = Verifier::new(&scene)?;
@@ -78,7 +81,6 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         }
         all.extend(table);
     } else {
-        let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
         check_names(&args.passes, &plan, args.forms)?;
         let contents = setup::contents(&scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
@@ -115,6 +117,20 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         files::write_json(path, &rows::file(&device, &driver, &all))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Says what was written out and changes nothing; of fields, too.
+fn idle(args: &BenchArgs, plan: &Plan) {
+    let (quiet, written) = (args.global.quiet, &args.quality.written);
+    idle::say(quiet, written, &plan.settings);
+    let reason = match (&args.input, args.sizes.as_slice()) {
+        (None, []) => return,
+        (Some(_), _) => "with an INPUT",
+        (None, _) => "with --sizes",
+    };
+    if let Some((setting, value)) = written.iter().find(|(s, _)| s == "size").filter(|_| !quiet) {
+        idle::note(setting, value, reason);
+    }
 }
 
 /// Whether a label is asked for: by its first word, the pass, or by all of it.

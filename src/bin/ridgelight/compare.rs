@@ -14,6 +14,10 @@ use rows::{Excess, Row};
 pub fn run(args: &CompareArgs) -> Result<Outcome> {
     check(args)?;
     let (a, b) = (pairs::read(&args.result)?, pairs::read(&args.reference)?);
+    if args.horizons {
+        pairs::check_horizons(&args.result, &a)?;
+        pairs::check_horizons(&args.reference, &b)?;
+    }
     let pairs = Pairs::of(args, &a, &b)?;
     let bar = crate::render::progress(args.quiet, "comparing");
     let mut maps = Vec::new();

@@ -1,10 +1,11 @@
 use ridgelight::files::{self, Channels, Layer, NpyWriter};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, HeightField, Lines, Quality};
+use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
 use ridgelight::{Error, Result};
 
 use crate::args::HorizonArgs;
+use crate::idle;
 use crate::setup::{self, Outcome};
 
 /// Azimuths computed and read back at a time: their angles stay within this many bytes.
@@ -35,6 +36,19 @@ fn plan_from(
             planned => return planned,
         }
     }
+}
+
+/// The settings really used.
+pub fn used(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    distances: bool,
+) -> Result<Vec<(String, String)>> {
+    let mut used = plan_from(field, border, quality, limits, (0, 1), distances)?.settings;
+    used.push(("azimuths".into(), quality.azimuths.to_string()));
+    Ok(used)
 }
 
 /// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
@@ -93,22 +107,31 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &[&args.input.path])?;
     let quality = setup::quality(&args.quality)?;
     let is_npy = setup::extension(&args.output) == "npy";
-    if quality.lines == Lines::Exact && is_npy && args.global.json.is_none() {
+    let is_exact = quality.lines == Lines::Exact && quality.method != Method::Brute;
+    if is_exact && is_npy && args.global.json.is_none() {
         return Err(Error::setting(
             "--lines exact",
             "an .npy output alone",
             "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
         ));
     }
-    let field = setup::field(&args.input.path, &args.surface)?;
+    let field = setup::field(&args.input.path, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let distances = args.distances.is_some();
     setup::check_plan(&args.global, |limits| {
         let most = at_once(&field, limits);
         plan_from(&field, border, &quality, limits, (0, most), distances)
     })?;
-    let (mut gpu, limits) = setup::device(&args.global)?;
     let shape = [quality.azimuths as usize, field.rows(), field.cols()];
+    if is_npy {
+        let bytes = 4 * shape.iter().product::<usize>() as u64;
+        let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
+        let outputs: Vec<_> = outputs.into_iter().flatten().map(|path| (path, bytes)).collect();
+        files::check_room(&outputs)?;
+    }
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let used = used(&field, border, &quality, &limits, distances)?;
+    idle::say(args.global.quiet, &args.quality.written, &used);
     let mut angles_file =
         if is_npy { Some(NpyWriter::create(&args.output, &shape)?) } else { None };
     let mut distances_file =

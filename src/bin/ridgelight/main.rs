@@ -28,13 +28,13 @@ mod bench;
 mod compare;
 mod devices;
 mod horizon;
+mod idle;
 mod plan;
 mod reference;
 mod render;
 mod setup;
 mod trade;
 
-use clap::Parser as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 
@@ -57,7 +57,7 @@ fn end_cleanly_on_signals() {
 }
 
 fn main() -> ExitCode {
-    let command = match args::Cli::try_parse() {
+    let command = match args::Cli::read() {
         Ok(cli) => cli.command,
         Err(error) => {
             // Help and version are not errors; clap's own exit status for wrong usage is 2.

@@ -3,6 +3,7 @@ use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan};
 
 use crate::args::{PlanArgs, PlanFormat};
+use crate::idle;
 use crate::setup::{self, Outcome};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
@@ -13,7 +14,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         setup::check_distinct(&[("--json", Some(json))], &inputs)?;
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     // Planned for the device that would run it; without one, for the software driver everyone has.
     let devices = gpu::devices();
@@ -34,6 +35,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         limits.memory_budget = budget;
     }
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
+    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {

@@ -79,7 +79,7 @@ fn check(args: &ReferenceArgs) -> Result<()> {
 }
 
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
     let alone =
         args.lights.sky.is_none() && args.lights.env.is_none() && args.lights.sun.is_empty();

@@ -5,6 +5,7 @@ use ridgelight::plan;
 use ridgelight::scene::HeightField;
 
 use crate::args::{Layer, RenderArgs};
+use crate::idle;
 use crate::setup::{self, Outcome};
 
 /// Linear; sRGB makes 240 of 255 of it.
@@ -41,13 +42,20 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         ));
     }
     let quality = setup::quality(&args.quality)?;
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let wanted = setup::wanted(&args.layers);
     let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
     setup::check_plan(&args.global, picture)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = picture(&limits)?;
+    let horizon = args.layers.contains(&Layer::Horizon);
+    let mut used = plan.settings.clone();
+    if horizon {
+        let border = setup::border(&args.surface.field);
+        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
+    }
+    idle::say(args.global.quiet, &args.quality.written, &used);
     let contents = setup::contents(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
@@ -64,7 +72,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
-    let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene.field, args, &limits)?) } else { None };
     progress.finish_and_clear();

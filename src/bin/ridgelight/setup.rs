@@ -1,7 +1,7 @@
 //! From arguments to scenes, qualities and devices.
 
 use ridgelight::files::{self, HeightOptions};
-use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
+use ridgelight::gpu::{self, Headless, HeadlessOptions, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Fuse, HeightField, Hull, Lights, Lines, Method, Precision, Quality, Scene,
@@ -24,13 +24,37 @@ pub enum Outcome {
     Interrupted,
 }
 
-pub fn field(path: &Path, surface: &FieldArgs) -> Result<HeightField> {
+/// Every Vulkan device has images of this side.
+const LEAST_SIDE: usize = 4096;
+
+/// Refuses a field that the device cannot hold by its header, before its samples are read. What is no
+/// field and where there is no device is told later.
+fn check_size(path: &Path, global: &GlobalArgs) -> Result<()> {
+    let Some([rows, cols]) = files::height_size(path) else { return Ok(()) };
+    let budget = global.memory_budget.unwrap_or(1 << 50).min(1 << 50);
+    let mut limits = Limits::boundless(true, budget);
+    if rows.max(cols) > LEAST_SIDE
+        && let Ok(devices) = gpu::devices()
+        && let Ok(index) = gpu::choose(&devices, global.device.as_deref())
+    {
+        limits.image_side = devices[index].limits.image_side;
+    }
+    limits.check_size(rows, cols).map(drop).map_err(|error| match error {
+        Error::Limit { what, needs, limit } => {
+            Error::Limit { what: format!("{}: {what}", path.display()), needs, limit }
+        }
+        other => other,
+    })
+}
+
+pub fn field(path: &Path, surface: &FieldArgs, global: &GlobalArgs) -> Result<HeightField> {
     if !surface.z_scale.is_finite() || surface.z_scale == 0.0 {
         let expected = "a finite number other than 0";
         return Err(Error::setting("--z-scale", surface.z_scale.to_string(), expected));
     }
     let options =
         HeightOptions { cell_m: surface.cell, z_scale: surface.z_scale, nodata: surface.nodata };
+    check_size(path, global)?;
     files::read_heights(path, &options)
 }
 

@@ -48,7 +48,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         written.iter().map(|path| ("-o", Some(path.as_path()))).collect();
     outputs.push(("--json", args.global.json.as_deref()));
     setup::check_distinct(&outputs, &inputs)?;
-    let field = setup::field(&args.input.path, &args.surface.field)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let start = Quality { method: Method::Sweep, ..Quality::default() };
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());

@@ -27,7 +27,7 @@ pub struct CompareArgs {
     /// What it should be, of the same size
     #[arg(value_name = "B")]
     pub reference: PathBuf,
-    /// Take values as elevations in radians and report degrees
+    /// Take values as elevations in radians, as `horizon` writes them, and report degrees
     #[arg(long)]
     pub horizons: bool,
     /// Factor on radiance before it is shown, clipped at 1, for FLIP; for .exr and .hdr, a .png is

@@ -3,7 +3,8 @@ use std::path::PathBuf;
 use clap::Args;
 use ridgelight::scene::{Phong, SphereLight};
 
-use super::{GlobalArgs, Input, LightArgs, SurfaceArgs, numbers, whole};
+use super::values::{numbers, whole};
+use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
 
 #[derive(Args)]
 pub struct ReferenceArgs {

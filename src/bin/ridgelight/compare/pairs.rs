@@ -38,6 +38,39 @@ pub fn read(path: &Path) -> Result<Planes> {
     Ok(file)
 }
 
+/// Whether a file's planes can be elevations, radians: as `horizon` names its channels where there are
+/// names, and from straight down to straight up.
+pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
+    let wrong = |place: String, found: String, expected: &str| {
+        Err(Error::File { path: path.to_owned(), place, found, expected: expected.to_owned() })
+    };
+    let is_azimuth = |name: &&String| {
+        let degrees = name.strip_prefix("horizon.").and_then(|d| d.parse::<f64>().ok());
+        degrees.is_some_and(|d| (0.0..=360.0).contains(&d))
+    };
+    let expected = "horizons: horizon.000.000 and so on, an azimuth in degrees each";
+    match extension(path).as_str() {
+        "npy" => {}
+        "exr" => {
+            if let Some(other) = file.names.iter().find(|name| !is_azimuth(name)) {
+                return wrong("channels".into(), other.clone(), expected);
+            }
+        }
+        other => return wrong("name".into(), format!("the extension .{other}"), "an .exr or .npy"),
+    }
+    for (name, plane) in file.names.iter().zip(&file.planes) {
+        // Vulkan lets atan be off by 4096 units in the last place.
+        let most = std::f32::consts::FRAC_PI_2 * (1.0 + 4096.0 * f32::EPSILON);
+        let steep = |v: &f32| v.abs() > most;
+        if let Some(i) = plane.iter().position(steep) {
+            let (row, col) = (i / file.cols, i % file.cols);
+            let place = format!("channel {name} at row {row}, column {col}");
+            return wrong(place, plane[i].to_string(), "an elevation, -π/2 to π/2 radians");
+        }
+    }
+    Ok(())
+}
+
 /// The result's difference from the reference; equal infinities have none.
 pub fn difference(a: f32, b: f32) -> f32 {
     if a == b { 0.0 } else { a - b }

@@ -1,0 +1,59 @@
+use clap::Args;
+
+/// Flags of methods that are still to come: known, so that the answer is not "unexpected argument".
+#[derive(Args)]
+pub struct LaterArgs {
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    light: Vec<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    phong: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    bounces: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    subsample: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    level_step: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    level_offset: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    basis: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    max_error: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    time_budget: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    scene: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    seed: Option<String>,
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    camera: Option<String>,
+}
+
+impl LaterArgs {
+    /// Refuses them.
+    pub fn check(&self) -> ridgelight::Result<()> {
+        let light = self.light.first();
+        let given = [
+            ("--light", light),
+            ("--phong", self.phong.as_ref()),
+            ("--bounces", self.bounces.as_ref()),
+            ("--subsample", self.subsample.as_ref()),
+            ("--level-step", self.level_step.as_ref()),
+            ("--level-offset", self.level_offset.as_ref()),
+            ("--basis", self.basis.as_ref()),
+            ("--max-error", self.max_error.as_ref()),
+            ("--time-budget", self.time_budget.as_ref()),
+            ("--scene", self.scene.as_ref()),
+            ("--seed", self.seed.as_ref()),
+            ("--camera", self.camera.as_ref()),
+        ];
+        match given.into_iter().find_map(|(name, value)| Some((name, value?))) {
+            Some((name, value)) => Err(ridgelight::Error::setting(
+                name,
+                value.as_str(),
+                "nothing: it is not yet there",
+            )),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Id, ValueEnum};
+
+use super::values::whole;
+
+#[derive(Args)]
+#[command(next_help_heading = "Quality")]
+pub struct QualityArgs {
+    /// How horizons are found
+    #[arg(long, default_value = "auto")]
+    pub method: MethodName,
+    /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
+    #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
+    pub azimuths: u32,
+    /// Slices across a sun's disc, 1..256
+    #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
+    pub sun_azimuths: u32,
+    /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
+    #[arg(long, default_value = "1")]
+    pub lines: LinesName,
+    /// How lines' results come back to samples
+    #[arg(long, default_value = "aimed-nearest")]
+    pub fuse: FuseName,
+    /// What a sweep keeps: packed is f16 height + u16 distance on the hull
+    #[arg(long, default_value = "f32")]
+    pub precision: PrecisionName,
+    /// Where a sweep's hull lives; never changes the result
+    #[arg(long, default_value = "auto")]
+    pub hull: HullName,
+    /// Elevations of an environment's table, 8..4096
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
+    pub table_elevations: u32,
+    /// Every flag of the command that was written out, as its setting is called, and its first value.
+    #[arg(skip)]
+    pub written: Vec<(String, String)>,
+}
+
+impl QualityArgs {
+    /// Remembers what was written out, which values alone do not tell from defaults.
+    pub fn remember(&mut self, matches: &ArgMatches) {
+        let written = matches.ids().map(Id::as_str).filter_map(|id| {
+            let by_user = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let value = matches.get_raw(id).filter(|_| by_user)?.next()?;
+            Some((id.to_owned(), value.to_string_lossy().into_owned()))
+        });
+        self.written = written.collect();
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum MethodName {
+    /// The planner's choice
+    Auto,
+    /// Hull sweeps along lines
+    Sweep,
+    /// Height pyramid (not yet)
+    Pyramid,
+    /// Every crossing of every sample's own line: exact and slow
+    Brute,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum LinesName {
+    #[value(name = "exact")]
+    Exact,
+    #[value(name = "1/4")]
+    QuarterCell,
+    #[value(name = "1/2")]
+    HalfCell,
+    #[value(name = "1")]
+    Cell,
+    #[value(name = "2")]
+    TwoCells,
+    #[value(name = "4")]
+    FourCells,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum FuseName {
+    /// The nearer line's slope
+    Nearest,
+    /// Both lines' slopes, interpolated
+    Slopes,
+    /// Both lines' occluders from the sample's own height, interpolated
+    Own,
+    /// The surface on the sample's own line where the nearer line's occluder stands
+    AimedNearest,
+    /// The same with both lines' occluders, the higher
+    Aimed,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PrecisionName {
+    F32,
+    F16,
+    Packed,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum HullName {
+    Auto,
+    Private,
+    Shared,
+    List,
+}

@@ -1,0 +1,69 @@
+//! Words of the command line as values.
+
+/// The range is [`ridgelight::scene::Quality`]'s to check.
+pub fn whole(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
+}
+
+pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',')
+        .map(|part| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is no number")))
+        .collect()
+}
+
+pub fn colour(text: &str) -> Result<[f32; 3], String> {
+    match numbers(text)?.as_slice() {
+        [grey] => Ok([*grey as f32; 3]),
+        [r, g, b] => Ok([*r as f32, *g as f32, *b as f32]),
+        other => Err(format!("{} numbers, expected one or R,G,B", other.len())),
+    }
+}
+
+pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
+    colour(text).ok()
+}
+
+pub fn cell(text: &str) -> Result<[f64; 2], String> {
+    match numbers(text)?.as_slice() {
+        [both] => Ok([*both; 2]),
+        [x, y] => Ok([*x, *y]),
+        other => Err(format!("{} numbers, expected X or X,Y", other.len())),
+    }
+}
+
+pub fn sun(text: &str) -> Result<ridgelight::scene::Sun, String> {
+    let parts = numbers(text)?;
+    let irradiance = match parts.get(3..).unwrap_or_default() {
+        [] => [1.0; 3],
+        [grey] => [*grey as f32; 3],
+        [r, g, b] => [*r as f32, *g as f32, *b as f32],
+        _ => return Err("expected AZ,EL[,ANGLE[,IRRADIANCE or R,G,B]]".into()),
+    };
+    let [azimuth, elevation] =
+        parts.get(..2).and_then(|p| p.try_into().ok()).ok_or("expected at least AZ,EL")?;
+    let azimuth: f64 = azimuth;
+    Ok(ridgelight::scene::Sun {
+        // Compass: clockwise from north; inside: counter-clockwise from east.
+        azimuth_rad: (90.0 - azimuth).to_radians(),
+        elevation_rad: f64::to_radians(elevation),
+        diameter_rad: parts.get(2).copied().unwrap_or(0.53).to_radians(),
+        irradiance,
+    })
+}
+
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    let number: f64 = number.parse().map_err(|_| format!("{text:?} is no size"))?;
+    let factor = match unit.trim().to_lowercase().as_str() {
+        "" | "b" => 1.0,
+        "k" | "kib" => 1024.0,
+        "m" | "mib" => 1024.0 * 1024.0,
+        "g" | "gib" => 1024.0 * 1024.0 * 1024.0,
+        "kb" => 1e3,
+        "mb" => 1e6,
+        "gb" => 1e9,
+        _ => return Err(format!("{unit:?} is no unit: KiB, MiB, GiB, kB, MB, GB")),
+    };
+    Ok((number * factor) as u64)
+}

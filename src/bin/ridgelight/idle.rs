@@ -1,0 +1,46 @@
+//! Flags that were written out and change nothing: each is said, none is an error.
+
+use std::io::Write as _;
+
+/// Flags of quality, as plans name what they really used.
+const SETTINGS: [&str; 7] =
+    ["azimuths", "sun_azimuths", "lines", "fuse", "precision", "hull", "table_elevations"];
+
+/// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
+pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
+    if quiet {
+        return;
+    }
+    for (setting, value) in written.iter().filter(|(s, _)| SETTINGS.contains(&s.as_str())) {
+        let by_name = |(name, used): &(String, String)| {
+            // The others are the planner's to choose or to count on.
+            let is_kept = !matches!(name.as_str(), "lines" | "precision") || used == value;
+            name == setting && is_kept
+        };
+        if !used.iter().any(by_name) {
+            note(setting, value, &reason(setting, used));
+        }
+    }
+}
+
+/// One line.
+pub fn note(setting: &str, value: &str, reason: &str) {
+    let flag = setting.replace('_', "-");
+    let line = format!("note: --{flag} {value} changes nothing {reason}");
+    // A closed stderr is no panic.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+fn reason(setting: &str, used: &[(String, String)]) -> String {
+    let of = |name: &str| used.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
+    match (setting, of("method"), of("lines")) {
+        ("azimuths", ..) => "without a sky or an environment".into(),
+        ("sun_azimuths", ..) => "without a sun wider than 0.01°".into(),
+        ("table_elevations", ..) => "without an environment".into(),
+        (_, Some("brute"), _) => "with --method brute".into(),
+        (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
+        (_, _, Some("exact")) => "with --lines exact".into(),
+        ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),
+        _ => "with --border periodic: they do not divide this field".into(),
+    }
+}

@@ -1,0 +1,250 @@
+//! Passes into a command buffer, all arguments checked.
+
+use ash::vk;
+
+use super::super::memory::Backed;
+use super::super::pipelines::descriptor_type;
+use super::super::shaders::BindingKind;
+use super::images::transition;
+use super::{ImageArg, ImageState, Renderer};
+use crate::plan::{Owner, Pass, Rectangle, ResourceId};
+
+impl Renderer {
+    /// Records passes, all arguments checked.
+    pub(super) fn append(
+        &mut self,
+        commands: vk::CommandBuffer,
+        slot: usize,
+        inputs: &[ImageArg],
+        outputs: &[ImageArg],
+        passes: &[usize],
+        edited: Option<Rectangle>,
+    ) {
+        let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
+        let bound = self.bind(inputs, outputs);
+        self.write_sets(slot, &bound);
+        let device = self.host.device.clone();
+        let queries = self.slots[slot].queries;
+        let entry = self.entry(&bound, whole_plan);
+        let exit = self.exit(&bound);
+        let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
+        // Passes of an edit may find their workgroups in a buffer.
+        let stages = compute | vk::PipelineStageFlags2::DRAW_INDIRECT;
+        let memory = [vk::MemoryBarrier2::default()
+            .src_stage_mask(stages)
+            .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
+            .dst_stage_mask(stages)
+            .dst_access_mask(ImageState::WRITTEN.access | vk::AccessFlags2::INDIRECT_COMMAND_READ)];
+        let between = vk::DependencyInfo::default().memory_barriers(&memory);
+        let first =
+            vk::DependencyInfo::default().image_memory_barriers(&entry).memory_barriers(&memory);
+        let timestamp = |query: usize| {
+            if queries != vk::QueryPool::null() {
+                // SAFETY: `commands` is being recorded for a family with timestamps; the pool has a
+                // query more than the plan has passes, reset where the recording begins.
+                unsafe { device.cmd_write_timestamp2(commands, compute, queries, query as u32) };
+            }
+        };
+        // SAFETY: the caller says that `commands` is being recorded for the host's family; every
+        // handle is alive, images are in the layouts that their arguments state, sets and queries of
+        // this slot are not in use.
+        unsafe {
+            if queries != vk::QueryPool::null() {
+                let count = passes.len() as u32 + 1;
+                // At once, so that no earlier times are taken for these; and where it runs, in case it
+                // runs again.
+                device.reset_query_pool(queries, 0, count);
+                device.cmd_reset_query_pool(commands, queries, 0, count);
+            }
+            device.cmd_pipeline_barrier2(commands, &first);
+            timestamp(0);
+            for (query, &index) in passes.iter().enumerate() {
+                if query > 0 && self.must_wait(passes[query - 1], index) {
+                    device.cmd_pipeline_barrier2(commands, &between);
+                }
+                self.dispatch(commands, slot, index, edited);
+                timestamp(query + 1);
+            }
+            let last = vk::DependencyInfo::default().image_memory_barriers(&exit);
+            device.cmd_pipeline_barrier2(commands, &last);
+        }
+        self.slots[slot].recorded = passes.to_vec();
+    }
+
+    /// From what images were to what passes use them as. The plan's own hold nothing from frame to
+    /// frame, unless single passes are repeated.
+    fn entry(
+        &self,
+        bound: &[Option<&ImageArg>],
+        whole_plan: bool,
+    ) -> Vec<vk::ImageMemoryBarrier2<'static>> {
+        let own = |backed: &Backed, layout| {
+            let from = ImageState { layout, ..ImageState::WRITTEN };
+            transition(backed.image, backed.layers, from, ImageState::WRITTEN)
+        };
+        let mut entry = Vec::new();
+        for (i, backed) in self.resources.iter().enumerate() {
+            if let Some(backed) = backed.as_ref().filter(|b| b.image != vk::Image::null()) {
+                let layout =
+                    if whole_plan { vk::ImageLayout::UNDEFINED } else { vk::ImageLayout::GENERAL };
+                entry.push(own(backed, layout));
+            }
+            if let Some(arg) = bound[i] {
+                let to = self.state_of(ResourceId(i));
+                entry.push(transition(arg.image, arg.extent[2], arg.before, to));
+            }
+        }
+        for (_, _, backed) in self.unused.iter().filter(|u| u.2.image != vk::Image::null()) {
+            entry.push(own(backed, vk::ImageLayout::UNDEFINED));
+        }
+        entry
+    }
+
+    /// From what passes used the caller's images as to what they are left as.
+    fn exit(&self, bound: &[Option<&ImageArg>]) -> Vec<vk::ImageMemoryBarrier2<'static>> {
+        let left = |(i, arg): (usize, &Option<&ImageArg>)| {
+            let arg = (*arg)?;
+            let after = match self.plan.resources[i].owner {
+                Owner::Input => arg.before,
+                _ => arg.after,
+            };
+            Some(transition(arg.image, arg.extent[2], self.state_of(ResourceId(i)), after))
+        };
+        bound.iter().enumerate().filter_map(left).collect()
+    }
+
+    /// One pass, labelled.
+    ///
+    /// # Safety
+    /// `commands` is being recorded for the host's family; every handle is alive, and the slot's sets
+    /// are not in use.
+    unsafe fn dispatch(
+        &self,
+        commands: vk::CommandBuffer,
+        slot: usize,
+        index: usize,
+        edited: Option<Rectangle>,
+    ) {
+        let device = &self.host.device;
+        let pass = self.pass(index);
+        let pipeline = self.pipeline_of_pass[index];
+        let point = vk::PipelineBindPoint::COMPUTE;
+        let sets = [self.slots[slot].sets[index]];
+        let of_edit = edited.map(|rectangle| pass.for_edit(rectangle));
+        let (groups, push) = of_edit.as_ref().map_or((pass.groups, &pass.push), |(g, p)| (*g, p));
+        self.label(commands, Some(pass));
+        // SAFETY: as the caller says; sets and push constants are those of the pipeline's layout.
+        unsafe {
+            device.cmd_bind_pipeline(commands, point, pipeline.pipeline);
+            device.cmd_bind_descriptor_sets(commands, point, pipeline.layout, 0, &sets, &[]);
+            let stages = vk::ShaderStageFlags::COMPUTE;
+            device.cmd_push_constants(commands, pipeline.layout, stages, 0, push);
+            match pass.indirect.and_then(|(id, at)| Some((self.internal(id)?.buffer, at))) {
+                Some((buffer, at)) => device.cmd_dispatch_indirect(commands, buffer, at),
+                None => device.cmd_dispatch(commands, groups[0], groups[1], groups[2]),
+            }
+        }
+        self.label(commands, None);
+    }
+
+    /// Whether a barrier stands between two passes recorded one after the other.
+    fn must_wait(&self, last: usize, next: usize) -> bool {
+        (last + 1..=next).any(|p| self.pass(p).barrier_before)
+    }
+
+    fn label(&self, commands: vk::CommandBuffer, pass: Option<&Pass>) {
+        let Some(debug) = &self.host.debug_utils else { return };
+        match pass {
+            Some(pass) => {
+                let name = std::ffi::CString::new(pass.label()).unwrap_or_default();
+                let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
+                // SAFETY: `commands` is being recorded; the name lives across the call.
+                unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
+            }
+            // SAFETY: `commands` is being recorded and a label is open.
+            None => unsafe { debug.cmd_end_debug_utils_label(commands) },
+        }
+    }
+
+    fn state_of(&self, id: ResourceId) -> ImageState {
+        match self.plan.resources[id.0].owner {
+            Owner::Input => ImageState::READ,
+            _ => ImageState::WRITTEN,
+        }
+    }
+
+    fn bind<'a>(
+        &self,
+        inputs: &'a [ImageArg],
+        outputs: &'a [ImageArg],
+    ) -> Vec<Option<&'a ImageArg>> {
+        let (mut inputs, mut outputs) = (inputs.iter(), outputs.iter());
+        let owners = self.plan.resources.iter().map(|r| r.owner);
+        owners
+            .map(|owner| match owner {
+                Owner::Internal => None,
+                Owner::Input => inputs.next(),
+                Owner::Output => outputs.next(),
+            })
+            .collect()
+    }
+
+    fn write_sets(&self, slot: usize, bound: &[Option<&ImageArg>]) {
+        for (index, (pass, set)) in self.plan.every_pass().zip(&self.slots[slot].sets).enumerate() {
+            let mut images = Vec::new();
+            let mut buffers = Vec::new();
+            let mut texels = Vec::new();
+            for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
+                let backed = match id {
+                    Some(id) => self.resources[id.0].as_ref(),
+                    None => {
+                        let writer = binding.written.then_some(index);
+                        let fitting =
+                            self.unused.iter().find(|u| u.0 == binding.kind && u.1 == writer);
+                        fitting.map(|u| &u.2)
+                    }
+                };
+                let arg = id.and_then(|id| bound[id.0]);
+                let is_input = id.is_some_and(|id| self.plan.resources[id.0].owner == Owner::Input);
+                images.push([vk::DescriptorImageInfo {
+                    sampler: vk::Sampler::null(),
+                    image_view: arg.map_or_else(
+                        || backed.map_or_else(Default::default, |b| b.view),
+                        |a| a.view,
+                    ),
+                    image_layout: if is_input {
+                        ImageState::READ.layout
+                    } else {
+                        vk::ImageLayout::GENERAL
+                    },
+                }]);
+                texels.push([backed.map_or_else(Default::default, |b| b.texels)]);
+                buffers.push([vk::DescriptorBufferInfo {
+                    buffer: backed.map_or_else(Default::default, |b| b.buffer),
+                    offset: 0,
+                    range: vk::WHOLE_SIZE,
+                }]);
+            }
+            let writes: Vec<_> = pass
+                .shader
+                .bindings
+                .iter()
+                .enumerate()
+                .map(|(i, binding)| {
+                    let write = vk::WriteDescriptorSet::default()
+                        .dst_set(*set)
+                        .dst_binding(binding.binding)
+                        .descriptor_type(descriptor_type(binding.kind));
+                    match binding.kind {
+                        BindingKind::StorageBuffer => write.buffer_info(&buffers[i]),
+                        BindingKind::TexelBuffer => write.texel_buffer_view(&texels[i]),
+                        _ => write.image_info(&images[i]),
+                    }
+                })
+                .collect();
+            // SAFETY: the sets are this slot's, whose last command buffer has run; views and buffers
+            // are alive and of the kinds that reflection found.
+            unsafe { self.host.device.update_descriptor_sets(&writes, &[]) };
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What a picture's passes read and write besides the sweeps' own.
+
+use super::super::shining::{Shining, sun_name};
+use super::super::{Builder, Format, Owner, ResourceId};
+use super::Picture;
+use crate::scene::{Albedo, Border, Environment, Quality, Scene};
+
+/// Images of the field's size, and the environment.
+pub(super) struct Images {
+    pub heights: ResourceId,
+    pub environment: Option<ResourceId>,
+    pub albedo_map: Option<ResourceId>,
+    pub radiance: ResourceId,
+    pub sky_layer: Option<ResourceId>,
+    pub env_layer: Option<ResourceId>,
+    /// In the order of the suns that shine.
+    pub sun_layers: Vec<Option<ResourceId>>,
+    pub sky_view: Option<ResourceId>,
+    pub sky_sum: Option<ResourceId>,
+    pub env_sum: Option<ResourceId>,
+    pub sun_sum: Option<ResourceId>,
+}
+
+impl Images {
+    pub fn make(
+        builder: &mut Builder,
+        scene: &Scene,
+        shining: &Shining<'_>,
+        wanted: Picture,
+    ) -> Self {
+        let flat = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
+        let mut image = |name: &str, owner: Owner, format: Format, extent: [u32; 3]| {
+            builder.image(name, owner, format, extent, false)
+        };
+        let colour = if shining.is_grey { Format::R32Float } else { Format::Rgba32Float };
+        let heights = image("heights", Owner::Input, Format::R32Float, flat);
+        let environment = shining.environment.map(|e| {
+            let extent = [e.width() as u32, e.height() as u32, 1];
+            image("environment", Owner::Input, Format::Rgba32Float, extent)
+        });
+        let has_map = matches!(scene.surface.albedo, Albedo::Map(_));
+        let albedo_map = has_map.then(|| image("albedo", Owner::Input, Format::Rgba32Float, flat));
+        let radiance = image("radiance", Owner::Output, colour, flat);
+        let mut layer = |shines: bool, light: &str| {
+            let name = format!("direct.{light}");
+            (shines && wanted.light_layers).then(|| image(&name, Owner::Output, colour, flat))
+        };
+        let sky_layer = layer(shining.sky.is_some(), "sky");
+        let env_layer = layer(environment.is_some(), "env");
+        let sun_layers = shining.suns.iter().map(|(i, _)| layer(true, &sun_name(*i))).collect();
+        let view = wanted.sky_view;
+        let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
+        let mut sum = |needed: bool, name: &str, format: Format| {
+            needed.then(|| image(name, Owner::Internal, format, flat))
+        };
+        let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
+        let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
+        let sun_sum = sum(!shining.suns.is_empty(), "sun_sum", Format::R32Float);
+        Self {
+            heights,
+            environment,
+            albedo_map,
+            radiance,
+            sky_layer,
+            env_layer,
+            sun_layers,
+            sky_view,
+            sky_sum,
+            env_sum,
+            sun_sum,
+        }
+    }
+
+    /// Whether anything is lit from all around.
+    pub fn need_circle(&self) -> bool {
+        self.sky_sum.is_some() || self.env_sum.is_some()
+    }
+}
+
+/// The environment by azimuth and elevation.
+pub(super) struct Tables {
+    pub wedge_rows: ResourceId,
+    pub tables: ResourceId,
+}
+
+impl Tables {
+    pub fn make(
+        builder: &mut Builder,
+        (environment, border): (&Environment, Border),
+        quality: &Quality,
+    ) -> Self {
+        let rows = environment.rows_above_ground(border) as u64;
+        let rows_bytes = u64::from(quality.azimuths) * rows * 48;
+        let wedge_rows = builder.buffer("wedge_rows", rows_bytes, false);
+        let extent = [quality.table_elevations, 3, quality.azimuths];
+        let format = Format::Rgba32Float;
+        let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
+        Self { wedge_rows, tables }
+    }
+}

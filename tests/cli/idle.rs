@@ -1,0 +1,114 @@
+//! Flags that were written out and change nothing are said, and are no error.
+
+use crate::common::{hdr, npy};
+use crate::needs_vulkan::write_field;
+use crate::{Folder, Run};
+
+/// Runs a plan, which needs no driver, of `field` with `flags`.
+fn plan(folder: &Folder, field: &str, flags: &str) -> Run {
+    let args = format!("plan {field} {flags}");
+    let run = folder.run_without_driver(&args.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(run.status, Some(0), "{args}: {}", run.err);
+    assert!(run.out.contains("border"), "{args}: {}", run.out);
+    run
+}
+
+/// A level field with a spike, so that something is swept.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    write_field(&folder, 9, |r, c| if (r, c) == (4, 4) { 3.0 } else { 0.0 });
+    folder.write("env.hdr", &hdr(8, 4, "", &[[128, 128, 128, 129]; 32]));
+    folder
+}
+
+#[test]
+fn flags_that_change_nothing_are_said() {
+    let folder = folder();
+    for (flags, says) in [
+        ("--method brute --hull list", &["--hull list changes nothing with --method brute"][..]),
+        ("--method brute --lines exact", &["--lines exact changes nothing with --method brute"]),
+        (
+            "--fuse own --method brute --precision packed",
+            &[
+                "--fuse own changes nothing with --method brute",
+                "--precision packed changes nothing with --method brute",
+            ],
+        ),
+        ("--lines exact --fuse aimed", &["--fuse aimed changes nothing with --lines exact"]),
+        ("--precision f16", &["--precision f16 changes nothing with --fuse aimed-nearest"]),
+        ("--table-elevations 64", &["--table-elevations 64 changes nothing without an env"]),
+        ("--sun-azimuths 4", &["--sun-azimuths 4 changes nothing without a sun wider"]),
+        ("--sun 90,30,0 --sun-azimuths 4 --sky 1", &["--sun-azimuths 4 changes nothing without"]),
+        ("--sun 90,30 --azimuths 16", &["--azimuths 16 changes nothing without a sky"]),
+        // Lines 2 apart do not divide 9 cells.
+        ("--border periodic --lines 2", &["--lines 2 changes nothing with --border periodic"]),
+    ] {
+        let run = plan(&folder, "field.npy", flags);
+        let lines: Vec<_> = run.err.lines().collect();
+        assert_eq!(lines.len(), says.len(), "{flags}: {}", run.err);
+        for said in says {
+            let line = format!("note: {said}");
+            assert!(lines.iter().any(|l| l.starts_with(&line)), "{flags}: {}", run.err);
+        }
+        let quiet = format!("plan field.npy {flags} --quiet");
+        let run = folder.run_without_driver(&quiet.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{quiet}");
+    }
+    // Nothing rises above anything else on a level field.
+    let level: Vec<u8> = [0_f32; 9].iter().flat_map(|v| v.to_le_bytes()).collect();
+    folder.write("level.npy", &npy("<f4", false, "(3, 3)", &level));
+    let run = plan(&folder, "level.npy", "--hull shared");
+    assert_eq!(
+        run.err,
+        "note: --hull shared changes nothing where nothing rises above anything else\n"
+    );
+}
+
+#[test]
+fn flags_that_act_or_were_not_written_are_not() {
+    let folder = folder();
+    for flags in [
+        "",
+        "--method brute",
+        "--lines exact",
+        "--method brute --azimuths 8",
+        "--lines 2 --fuse slopes --precision f16 --hull shared --azimuths 8",
+        "--precision packed --hull list",
+        "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
+        "--sun 90,30 --sun-azimuths 4",
+        "--env env.hdr --table-elevations 64 --azimuths 8",
+        "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
+        "--border periodic --lines 1/2",
+    ] {
+        assert_eq!(plan(&folder, "field.npy", flags).err, "", "{flags}");
+    }
+}
+
+#[test]
+fn gpu_results_are_those_without_the_flag() {
+    let folder = folder();
+    let mut all = Vec::new();
+    for flags in ["", " --table-elevations 64"] {
+        let args = format!("horizon field.npy -o h.npy --azimuths 8{flags}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let said = "note: --table-elevations 64 changes nothing without an environment\n";
+        let said = if flags.is_empty() { "" } else { said };
+        assert_eq!((run.status, run.err.as_str()), (Some(0), said));
+        all.push(std::fs::read(folder.path("h.npy")).unwrap());
+    }
+    assert!(all[0] == all[1]);
+    // The layer of horizons needs the circle that a sun alone does not.
+    for (flags, notes) in [("", 1), (" --layers horizon", 0), (" --layers sky-view", 0)] {
+        let args = format!("render field.npy -o s.exr --sun 90,30 --azimuths 8{flags}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.lines().count()), (Some(0), notes), "{args}: {}", run.err);
+    }
+    for (flags, reason) in
+        [("a.asc --size 8", "with an INPUT"), ("--size 8 --sizes 4", "with --sizes")]
+    {
+        let args = format!("bench {flags} --samples 1");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        let said = format!("note: --size 8 changes nothing {reason}\n");
+        assert_eq!((run.status, run.err), (Some(0), said), "{args}");
+    }
+}
