@@ -30,6 +30,9 @@ pub struct Report<'a> {
     pub spent_s: f64,
 }
 
+/// What is dearer or cheaper, and changes error or time by less than this share, is not worth a sentence.
+const WORTH: f64 = 0.9;
+
 pub fn ms(ns: f64) -> String {
     format!("{} ms", digits(ns * 1e-6))
 }
@@ -108,17 +111,21 @@ impl Report<'_> {
         });
         let here = front.iter().position(|p| p.place == point.place).unwrap_or(0);
         let ratio = |of: f64, to: f64| digits(of / to.max(f64::MIN_POSITIVE));
-        if let Some(cheaper) = here.checked_sub(1).and_then(|i| front.get(i)) {
+        let is_cheaper = |p: &&&Point| p.ratio <= WORTH * point.ratio;
+        if let Some(cheaper) = front[..here].iter().rev().find(is_cheaper) {
             all.push(format!(
-                "The next cheaper on the frontier, {}, saves {} of the time and errs {} × as much.",
+                "The next on the frontier that saves a tenth of the time, {}, saves {} and errs {} × as \
+                 much.",
                 self.flags(cheaper.place),
                 percent(1.0 - cheaper.ratio / point.ratio),
                 ratio(self.error(cheaper), self.error(point))
             ));
         }
-        if let Some(dearer) = front.get(here + 1) {
+        let is_better = |p: &&&Point| self.error(p) <= WORTH * self.error(point);
+        if let Some(dearer) = front[here + 1..].iter().find(is_better) {
             all.push(format!(
-                "The next dearer, {}, takes {} × the time and errs {} × as much: this saves {} of its time.",
+                "The next that errs a tenth less, {}, takes {} × the time and errs {} × as much: this saves \
+                 {} of its time.",
                 self.flags(dearer.place),
                 ratio(dearer.ratio, point.ratio),
                 ratio(self.error(dearer), self.error(point)),
@@ -293,12 +300,12 @@ impl Report<'_> {
         let open = self.not_tried().len();
         let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
         format!(
-            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {} s \
-             of {} s, {} s of them for the truth.",
+            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {:.1} s \
+             of {:.1} s, {:.1} s of them for the truth.",
             self.walk.points.len(),
-            digits(self.spent_s),
-            digits(self.budget_s),
-            digits(self.truth_s)
+            self.spent_s,
+            self.budget_s,
+            self.truth_s
         )
     }
 
