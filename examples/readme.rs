@@ -126,12 +126,10 @@ fn sizes() -> Result<String> {
                 continue;
             };
             let settings = &row["settings"];
-            let setting = |name: &str| settings[name].as_str().and_then(|v| v.parse::<f64>().ok());
-            let mb = setting("device_bytes").ok_or_else(|| {
-                wrong(&figures.path, "no device_bytes", "one, as tools/bench writes it")
-            })? * 1e-6;
+            let mb = figures.number(settings, "device_bytes")? * 1e-6;
             let ms = figures.number(row, "median_ns")? * 1e-6;
-            write!(out, " {ms:.1} ms, {mb:.1} MB, {} |", percent(setting("light_error"))).unwrap();
+            let error = percent(settings["light_error"].as_f64());
+            write!(out, " {ms:.1} ms, {mb:.1} MB, {error} |").unwrap();
         }
         out.push('\n');
     }

@@ -16,6 +16,17 @@ pub enum HullPlace {
     Occluders = 2,
 }
 
+impl HullPlace {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            HullPlace::Private => "private",
+            HullPlace::Shared => "shared",
+            HullPlace::Occluders => "list",
+        }
+    }
+}
+
 /// A hull sweep along lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineSweep {

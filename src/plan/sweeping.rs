@@ -342,7 +342,7 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
             add("method", "sweep".into());
             add("lines", lines.spacing().name().into());
             add("fuse", quality.fuse.name().into());
-            add("hull", format!("{:?}", lines.hull).to_lowercase());
+            add("hull", lines.hull.name().into());
             add("hull_depth", lines.hull_depth.to_string());
             add("precision", lines.precision().name().into());
         }

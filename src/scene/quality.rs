@@ -1,4 +1,5 @@
 use crate::{Error, Result};
+use std::ops::RangeInclusive;
 
 /// What speed is traded against accuracy with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,25 +40,32 @@ impl Default for Quality {
 }
 
 impl Quality {
+    /// What [`azimuths`](Self::azimuths) may be.
+    pub const AZIMUTHS: RangeInclusive<u32> = 4..=1024;
+    /// What [`sun_azimuths`](Self::sun_azimuths) may be.
+    pub const SUN_AZIMUTHS: RangeInclusive<u32> = 1..=256;
+    /// What [`table_elevations`](Self::table_elevations) may be.
+    pub const TABLE_ELEVATIONS: RangeInclusive<u32> = 8..=4096;
+
     /// Checks every range.
     ///
     /// # Errors
     /// The first setting out of range, by its name on the command line.
     pub fn check(&self) -> Result<()> {
-        let within = |name: &str, value: u32, low: u32, high: u32| {
-            if (low..=high).contains(&value) {
+        let within = |name: &str, value: u32, range: RangeInclusive<u32>| {
+            if range.contains(&value) {
                 Ok(())
             } else {
                 Err(Error::setting(
                     name,
                     value.to_string(),
-                    format!("a whole number from {low} to {high}"),
+                    format!("a whole number from {} to {}", range.start(), range.end()),
                 ))
             }
         };
-        within("--azimuths", self.azimuths, 4, 1024)?;
-        within("--sun-azimuths", self.sun_azimuths, 1, 256)?;
-        within("--table-elevations", self.table_elevations, 8, 4096)?;
+        within("--azimuths", self.azimuths, Self::AZIMUTHS)?;
+        within("--sun-azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
+        within("--table-elevations", self.table_elevations, Self::TABLE_ELEVATIONS)?;
         Ok(())
     }
 }

@@ -3,40 +3,15 @@
 //! wall's points at t with the kernel of two perpendicular strips, ½ s t / (s² + t²)^(3/2) dt.
 
 use ridgelight::cpu::bounce::Fineness;
-use ridgelight::scene::{Border, HeightField, Lights, Sun};
+use ridgelight::scene::{Border, Lights, Sun};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
+use crate::reference_page::{HALF, WALL, groove_parts, grooves};
 use crate::{field, reds, under_sky};
-
-/// Samples from bottom to ridge.
-const HALF: usize = 8;
-/// Length of a wall.
-const WALL: f64 = HALF as f64 * SQRT_2;
-
-/// One row, repeated: the bottom at column 8, ridges at column 0.
-fn grooves() -> HeightField {
-    field(1, 2 * HALF, [1.0, 1.0], |_, c| (c as f64 - HALF as f64).abs())
-}
-
-/// ∫ over the other wall of a radiance as a function of the distance from the bottom; midpoint rule
-/// in t = s·tan u, where the kernel is ½ sin u du: error below (step²/24)·variation, under 1e-8.
-fn from_the_other_wall(s: f64, radiance: impl Fn(f64) -> f64) -> f64 {
-    let end = (WALL / s).atan();
-    let steps = 4000;
-    (0..steps)
-        .map(|i| (i as f64 + 0.5) / steps as f64 * end)
-        .map(|u| 0.5 * u.sin() * radiance(s * u.tan()) * end / steps as f64)
-        .sum()
-}
-
-/// The share of sky at s: all but the other wall, 1 - ½ (1 - s/√(s² + a²)).
-fn sky(s: f64) -> f64 {
-    0.5 + 0.5 * s / s.hypot(WALL)
-}
 
 /// The worst error of a column's answer over the walls, bottom and ridge left out: there normals are
 /// not a wall's.
-fn worst(answer: &[f64], expected: impl Fn(f64) -> f64) -> f64 {
+fn worst(answer: &[f64], expected: &dyn Fn(f64) -> f64) -> f64 {
     (1..HALF)
         .flat_map(|i| [(HALF + i, i), (HALF - i, i)])
         .map(|(col, i)| (answer[col] - expected(i as f64 * SQRT_2)).abs())
@@ -49,25 +24,15 @@ fn worst(answer: &[f64], expected: impl Fn(f64) -> f64) -> f64 {
 /// reflected light the error per cell c is at most (c²/8)·|L''| of the sky's, 1.5·½/(2a²).
 #[test]
 fn a_groove_reflects_as_perpendicular_strips_do() {
-    let scene = under_sky(grooves(), Border::Periodic, 0.5);
-    let once = |s: f64| from_the_other_wall(s, |t| 0.5 * sky(t));
-    // Once reflected light at 200 points of the wall, linear between them.
-    let table: Vec<f64> =
-        (0..=200).map(|i| 0.5 * once(f64::from(i).max(1e-6) * WALL / 200.0)).collect();
-    let twice = |s: f64| {
-        from_the_other_wall(s, |t| {
-            let place = (t / WALL * 200.0).clamp(0.0, 199.999_999);
-            let (i, share) = (place as usize, place.fract());
-            table[i] + share * (table[i + 1] - table[i])
-        })
-    };
+    let scene = under_sky(grooves(1), Border::Periodic, 0.5);
+    let [sky, once, twice] = groove_parts();
     let [coarse, fine] = [1, 2].map(|divisions| {
         let pictures = reds(&scene, 2, Fineness { azimuths: 40, divisions, strips: 1 });
         let part = |b: usize| -> Vec<f64> {
             pictures[b].iter().zip(&pictures[b - 1]).map(|(all, before)| all - before).collect()
         };
-        assert!(worst(&pictures[0], |s| 0.5 * sky(s)) < 1e-14);
-        [worst(&part(1), |s| 0.5 * once(s)), worst(&part(2), |s| 0.5 * twice(s))]
+        assert!(worst(&pictures[0], sky.as_ref()) < 1e-14);
+        [worst(&part(1), once.as_ref()), worst(&part(2), twice.as_ref())]
     });
     println!("errors of bounces 1 and 2: {coarse:?}, of half the cells {fine:?}");
     let cell = SQRT_2;
@@ -91,7 +56,7 @@ fn a_lit_wall_lights_the_other() {
         diameter_rad: 0.0,
         irradiance: [PI as f32; 3],
     };
-    let mut scene = under_sky(grooves(), Border::Periodic, 0.5);
+    let mut scene = under_sky(grooves(1), Border::Periodic, 0.5);
     scene.lights = Lights { suns: vec![sun], ..Lights::default() };
     let pictures = reds(&scene, 1, Fineness { azimuths: 128, divisions: 1, strips: 1 });
     for i in 1..HALF {

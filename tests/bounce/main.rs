@@ -5,6 +5,8 @@ mod grooves;
 mod paths;
 mod pits;
 mod profile;
+#[path = "../reference_page/mod.rs"]
+mod reference_page;
 #[path = "../scenes/mod.rs"]
 mod scenes;
 mod sources;

@@ -2,15 +2,43 @@
 
 use ridgelight::cpu::bounce::{Fineness, truth};
 
+use crate::reference_page::{FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
 use crate::scenes::{Agreement, scenes};
 
+/// Figures after a row's head on the published page; none where there is no such row, one that is no number
+/// or too few.
+fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
+    let row = page.lines().find_map(|line| line.strip_prefix(head))?;
+    let all: Option<Vec<f64>> =
+        row.trim_end_matches('|').split('|').map(|cell| cell.trim().parse().ok()).collect();
+    all?.try_into().ok()
+}
+
+/// docs/reference.md: what stands there.
+fn page() -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference.md");
+    std::fs::read_to_string(path).expect("docs/reference.md")
+}
+
 /// Prints mean radiance and stated error of every scene, and asks that the truth be worth comparing with:
-/// the stated errors' rms is below 1 % of the mean.
+/// the stated errors' rms is below 1 % of the mean. The published page says the same means, and its z hold.
 #[test]
 fn stated_errors_are_small_on_every_scene() {
     println!("{:34} bounces  mean radiance (sky, sun, ball)      rms of stated error", "scene");
+    let page = page();
     for (name, scene) in scenes() {
-        let truth = truth(&scene, 2, Fineness { azimuths: 16, divisions: 1, strips: 12 }).unwrap();
+        let truth = truth(&scene, MOST_BOUNCES, FINENESS).unwrap();
+        for b in 0..=MOST_BOUNCES {
+            for (channel, light) in light_names(&scene).into_iter().enumerate() {
+                let head = head(name, b, light, &truth, channel);
+                let Some([_, _, mean, rms, worst]) = figures(&page, &head) else {
+                    panic!("run tools/reference: docs/reference.md lacks {head}");
+                };
+                let count = truth.radiance[b].len();
+                let published = Agreement { rms, worst, mean, count };
+                assert!(published.holds(), "{head}: {published:?}");
+            }
+        }
         for (b, (picture, error)) in truth.radiance.iter().zip(&truth.error).enumerate() {
             let n = picture.len() as f64;
             let mean = [0, 1, 2].map(|i| picture.iter().map(|v| v[i]).sum::<f64>() / n);
@@ -21,6 +49,23 @@ fn stated_errors_are_small_on_every_scene() {
                 assert!(rms[i] < 0.01 * mean[i] || rms[i] == 0.0, "{name} {b} {i}");
             }
         }
+    }
+}
+
+/// Each closed form stands on the published page, and its z is below 4.
+#[test]
+fn closed_forms_are_published() {
+    let page = page();
+    for closed in closed_forms() {
+        let head = closed.head();
+        let samples = closed.scene.field.heights_m().len();
+        assert!(!closed.known.is_empty() && closed.known.iter().all(|k| k.0 < samples), "{head}");
+        let Some([_, _, _, z]) = figures(&page, &head) else {
+            panic!("run tools/reference: docs/reference.md lacks {head}");
+        };
+        assert!(z <= 4.0, "{head}{z}");
+        // A row of another value is not this one's.
+        assert!(figures::<4>(&page.replace(&head, "| "), &head).is_none());
     }
 }
 
@@ -44,7 +89,7 @@ fn agreement_tells_noise_from_wrong() {
     };
     let noisy: Vec<[f64; 3]> = right.iter().map(|v| v.map(|v| v + 1e-3 * normal())).collect();
     let of = |picture: &[[f64; 3]], sigma: &[[f64; 3]]| {
-        Agreement::of(picture, sigma, right, stated, 1e-6)
+        Agreement::of([picture, sigma], [right, stated], f64::INFINITY, 1e-6)
     };
     assert!(of(&noisy, &sigma).holds(), "{:?}", of(&noisy, &sigma));
     let brighter: Vec<[f64; 3]> = noisy.iter().map(|v| v.map(|v| 1.01 * v)).collect();

@@ -46,7 +46,7 @@ fn json_is_whole_and_refers_to_what_is_there() {
     let sum: u64 = plan["resources"].as_array().unwrap().iter().map(bytes).sum();
     assert_eq!(bytes(&plan), sum);
     assert_eq!(plan["size"], serde_json::json!([4, 3]));
-    assert_eq!(plan["settings"]["azimuths"], "64");
+    assert_eq!(plan["settings"]["azimuths"], 64);
 
     let run = folder.run_without_driver(&[&LIT[..], &["--json", "plan.json"]].concat());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));

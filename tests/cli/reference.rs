@@ -1,5 +1,7 @@
 //! Light paths from the command line.
 
+use serde_json::json;
+
 use crate::needs_vulkan::{attributes, done, json, plane, write_field};
 use crate::{Folder, read, refused};
 
@@ -50,23 +52,23 @@ fn gpu_reference_writes_light_and_its_error() {
     for (b, r) in plane(&exr, "B").iter().zip(plane(&exr, "R")) {
         assert!((b - 2.0 * r).abs() <= 1e-5 * b, "{b} {r}");
     }
-    let (settings, json) = (attributes(&folder.path("out.exr")), json(&folder.path("out.json")));
-    for (name, value) in [
-        ("method", "path tracing"),
+    let (settings, report) = (attributes(&folder.path("out.exr")), json(&folder.path("out.json")));
+    for (name, text, value) in [
+        ("method", "path tracing", json!("path tracing")),
         // Whole batches of 16.
-        ("spp", "48"),
-        ("bounces", "1"),
-        ("seed", "7"),
-        ("phong", "9,0.25"),
-        ("light1", "4,4,9,1,2,3,4"),
+        ("spp", "48", json!(48)),
+        ("bounces", "1", json!(1)),
+        ("seed", "7", json!(7)),
+        ("phong", "9,0.25", json!([9, 0.25])),
+        ("light1", "4,4,9,1,2,3,4", json!([4, 4, 9, 1, 2, 3, 4])),
     ] {
-        assert_eq!(settings.get(name).map(String::as_str), Some(value), "{name}");
-        assert_eq!(json["settings"][name], *value, "{name}");
+        assert_eq!(settings.get(name).map(String::as_str), Some(text), "{name}");
+        assert_eq!(report["settings"][name], value, "{name}");
     }
     for name in ["device", "gpu_ms", "relative_standard_error", "device_bytes"] {
         assert!(settings.get(name).is_some_and(|v| !v.is_empty()), "{name} in {settings:?}");
     }
-    let passes = json["passes"].as_array().unwrap();
+    let passes = report["passes"].as_array().unwrap();
     assert!(passes.iter().any(|p| p["pass"] == "path_trace"), "{passes:?}");
     // Without a ball the sky is the default.
     done(&folder, "reference a.asc -o sky.exr --spp 1");

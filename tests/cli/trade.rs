@@ -60,6 +60,11 @@ fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&text(path)).unwrap()
 }
 
+/// Whether x rises and y falls from each point to the next.
+fn falls(points: &[(f64, f64)]) -> bool {
+    points.windows(2).all(|two| two[0].0 < two[1].0 && two[0].1 > two[1].1)
+}
+
 /// Time and error of the frontier, in its order; each rises, falls.
 fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
     let points = report["points"].as_array().unwrap();
@@ -69,15 +74,52 @@ fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
     };
     let front: Vec<_> = report["frontier"].as_array().unwrap().iter().map(of).collect();
     assert!(!front.is_empty());
-    for two in front.windows(2) {
-        assert!(two[0].0 < two[1].0 && two[0].1 > two[1].1, "{front:?}");
-    }
+    assert!(falls(&front), "{front:?}");
     for point in points {
         let (time, error) =
             (point["time_ns"].as_f64().unwrap(), point["relative_rmse"].as_f64().unwrap());
         assert!(front.iter().any(|f| f.0 <= time && f.1 <= error), "{point}");
     }
     front
+}
+
+/// The frontier of the table, from cheap to dear.
+fn table_frontier(csv: &str) -> Vec<(f64, f64)> {
+    let mut lines = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let [time, error, front] = ["time_ms", "relative_rmse", "frontier"]
+        .map(|n| names.iter().position(|name| *name == n).unwrap());
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let on = lines.filter(|row| row[front] == "true");
+    let mut all: Vec<_> = on.map(|row| (number(row[time]), number(row[error]))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// The corners of the page's frontier, as (to the right, up): `M x y` and then `H x V y` each.
+fn plotted_frontier(page: &str) -> Vec<(f64, f64)> {
+    let path = page.split_once("class=front d=\"M").unwrap().1.split_once('"').unwrap().0;
+    path.replace('H', ";")
+        .replace('V', " ")
+        .split(';')
+        .map(|corner| {
+            let (x, y) = corner.split_once(' ').unwrap();
+            (x.parse::<f64>().unwrap(), -y.parse::<f64>().unwrap())
+        })
+        .collect()
+}
+
+/// A point that another covers is seen, wherever it is written.
+#[test]
+fn a_frontier_that_is_none_is_seen() {
+    let csv = "settings,time_ms,relative_rmse,frontier\na,2.0,1e-2,true\nb,1.0,2e-2,true\nc,3.0,9e-2,false\n";
+    assert_eq!(table_frontier(csv), [(1.0, 0.02), (2.0, 0.01)]);
+    assert!(falls(&table_frontier(csv)));
+    assert!(!falls(&table_frontier(&csv.replace("9e-2,false", "9e-2,true"))));
+    let page = "<path class=front d=\"M80.0 10.0H90.0V20.5H95.0V30.0\" />";
+    assert_eq!(plotted_frontier(page), [(80.0, -10.0), (90.0, -20.5), (95.0, -30.0)]);
+    assert!(falls(&plotted_frontier(page)));
+    assert!(!falls(&plotted_frontier(&page.replace("20.5", "9.5"))));
 }
 
 #[test]
@@ -136,6 +178,8 @@ fn gpu_trade_of_a_small_field() {
     let columns = csv.lines().next().unwrap().split(',').count();
     assert_eq!(csv.lines().count(), points.len() + 1);
     assert!(csv.lines().all(|l| l.split(',').count() == columns), "{csv}");
+    let table = table_frontier(&csv);
+    assert!(table.len() == front.len() && falls(&table), "{csv}");
 
     let page = text(&folder.path("report/trade.html"));
     for none in ["http", "src=\"/", "<link", "url(", "@import", "{{"] {
@@ -143,9 +187,32 @@ fn gpu_trade_of_a_small_field() {
     }
     assert_eq!(page.matches("<circle class=\"point").count(), points.len());
     assert_eq!(page.matches("<figure").count(), front.len() + 1);
+    // A tenth of a pixel is as near as the plot goes: what is as near may share a corner's place.
+    let plotted = plotted_frontier(&page);
+    let falls_or_stays = plotted.windows(2).all(|two| two[0].0 <= two[1].0 && two[0].1 >= two[1].1);
+    assert!(plotted.len() == front.len() && falls_or_stays, "{plotted:?}");
+    // What the eye sees of each, and why the one is recommended.
+    for point in points {
+        let on = front.iter().any(|f| Some(f.0) == point["time_ns"].as_f64());
+        let flip = point["flip"]["mean"].as_f64();
+        assert!(!on || flip.is_some_and(|f| (0.0..=1.0).contains(&f)), "{point}");
+    }
+    let why = report["recommendation"]["why"].as_array().unwrap();
+    let why: Vec<&str> = why.iter().map(|w| w.as_str().unwrap()).collect();
+    for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured", "hull"]
+    {
+        assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
+    }
+    let hulls = report["hulls"].as_array().unwrap();
+    assert!(hulls.iter().any(|h| h["time_ratio"].is_number()), "{hulls:?}");
+    for knob in report["knobs"].as_array().unwrap() {
+        let steps = knob["cheap_to_dear"].as_array().unwrap();
+        assert!(steps.contains(&knob["default"]) && !knob["dearer"].as_str().unwrap().is_empty());
+    }
     assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
     let flags = point["flags"].as_str().unwrap();
-    assert!(page.contains(flags) && run.out.contains(flags), "{flags}");
+    assert!(run.out.contains(flags), "{flags}");
+    assert!(flags.split(" --").all(|flag| page.contains(flag)), "{flags}");
 }
 
 /// A truth from a file; a bound that nothing keeps is said and ends with status 1, the report written

@@ -129,7 +129,10 @@ fn field(
 
 /// How a picture with standard errors stands to a truth with stated errors.
 ///
-/// Of each sample and channel, z = (|difference| - stated error, at least 0) / standard error.
+/// Of each sample and channel, z = (|difference| - stated error, at least 0) / σ. σ is the standard error with
+/// what it cannot know: events so rare that a few or none of the paths met one. Bernstein's inequality: N
+/// paths of variance v that carry W at most have a mean beyond `off` with probability exp(-off² / 2σ²),
+/// σ² = v / N + W·off / 3N. W is taken as the brightest sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreement {
     /// √(mean z²); 1 or less where both tell the truth.
@@ -143,12 +146,12 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// `rounding` is the share of a value that the picture's arithmetic may lose.
-    pub fn of(
-        picture: &[[f64; 3]],
-        standard_error: &[[f64; 3]],
-        truth: &[[f64; 3]],
-        stated: &[[f64; 3]],
+    /// `paths` are those of a sample, infinitely many for noise without rare events; `rounding` is the
+    /// share of a value that the picture's arithmetic may lose.
+    pub fn of<const N: usize>(
+        [picture, standard_error]: [&[[f64; N]]; 2],
+        [truth, stated]: [&[[f64; N]]; 2],
+        paths: f64,
         rounding: f64,
     ) -> Self {
         let z = |off: f64, allowed: f64, sigma: f64| match (off.abs() - allowed).max(0.0) {
@@ -156,28 +159,35 @@ impl Agreement {
             beyond => beyond / sigma,
         };
         let (mut squares, mut worst, mut mean) = (0.0, 0.0_f64, 0.0_f64);
-        for i in 0..3 {
+        for i in 0..N {
+            let brightest = truth.iter().fold(0.0_f64, |m, v| m.max(v[i]));
             let (mut off_sum, mut allowed_sum, mut variance) = (0.0, 0.0, 0.0);
             for (at, got) in picture.iter().enumerate() {
                 let off = got[i] - truth[at][i];
                 let allowed = stated[at][i] + rounding * truth[at][i].abs();
-                let here = z(off, allowed, standard_error[at][i]);
+                let rare = brightest * off.abs() / (3.0 * paths);
+                let here_variance = standard_error[at][i].powi(2) + rare;
+                let here = z(off, allowed, here_variance.sqrt());
                 squares += here * here;
                 worst = worst.max(here);
                 off_sum += off;
                 allowed_sum += allowed;
-                variance += standard_error[at][i].powi(2);
+                variance += here_variance;
             }
             mean = mean.max(z(off_sum, allowed_sum, variance.sqrt()));
         }
-        let count = 3 * picture.len();
+        let count = N * picture.len();
         Self { rms: (squares / count as f64).sqrt(), worst, mean, count }
     }
 
     /// Whether chance explains it: rms within four of its own standard deviations 1/√(2·count) of 1 (noise
     /// whose standard error is itself an estimate), the mean within 4 and the worst within 6.
     pub fn holds(&self) -> bool {
-        let rms = 1.0 + 4.0 / (2.0 * self.count as f64).sqrt();
-        self.rms <= rms && self.worst <= 6.0 && self.mean <= 4.0
+        self.rms <= self.most_rms() && self.worst <= 6.0 && self.mean <= 4.0
+    }
+
+    /// What `rms` may be.
+    pub fn most_rms(&self) -> f64 {
+        1.0 + 4.0 / (2.0 * self.count as f64).sqrt()
     }
 }

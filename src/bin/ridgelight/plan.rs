@@ -71,8 +71,7 @@ fn json(plan: &Plan) -> serde_json::Value {
         .iter()
         .map(|r| serde_json::json!({ "name": r.name, "owner": format!("{:?}", r.owner).to_lowercase(), "bytes": r.bytes() }))
         .collect();
-    let settings: serde_json::Map<_, _> =
-        plan.settings.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
+    let settings = setup::typed(&plan.settings);
     serde_json::json!({
         "size": plan.size, "settings": settings, "passes": passes, "resources": resources,
         "bytes": plan.bytes(), "notes": plan.notes,

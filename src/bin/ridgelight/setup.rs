@@ -253,12 +253,29 @@ pub fn inputs<'a>(
     [Some(field), lights.env.as_deref(), albedo].into_iter().flatten().collect()
 }
 
+/// Settings as JSON: a number as a number, numbers with commas between them as a list of numbers, all
+/// else as text. A file, a device and the spelling of `--lines` (1, 1/2, exact) are text, whatever they
+/// look like.
+pub fn typed(settings: &[(String, String)]) -> serde_json::Map<String, serde_json::Value> {
+    const WORDS: [&str; 6] = ["ridgelight", "device", "driver", "input", "env", "lines"];
+    let typed = |name: &str, text: &str| {
+        let number = |t: &str| serde_json::from_str::<serde_json::Number>(t).ok();
+        let all: Option<Vec<_>> = text.split(',').map(number).collect();
+        match all {
+            Some(numbers) if !WORDS.contains(&name) => match numbers.as_slice() {
+                [one] => one.clone().into(),
+                more => more.into(),
+            },
+            _ => text.into(),
+        }
+    };
+    settings.iter().map(|(name, text)| (name.clone(), typed(name, text))).collect()
+}
+
 pub fn as_json(metadata: &[(String, String)], times: &[Timing]) -> serde_json::Value {
-    let settings: serde_json::Map<_, _> =
-        metadata.iter().map(|(k, v)| (k.clone(), serde_json::Value::from(v.clone()))).collect();
     let passes: Vec<_> =
         times.iter().map(|t| serde_json::json!({ "pass": t.label, "ns": t.ns })).collect();
-    serde_json::json!({ "settings": settings, "passes": passes })
+    serde_json::json!({ "settings": typed(metadata), "passes": passes })
 }
 
 /// Replaces values of void samples, in every plane.
@@ -346,5 +363,32 @@ pub fn in_flags(error: Error) -> Error {
             Error::Setting { name: named.unwrap_or(name), found, expected }
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_numbers_and_words_are_words() {
+        let settings = [
+            ("azimuths", "64"),
+            ("z_scale", "0.5"),
+            ("nodata", "-32768"),
+            ("sky", "0.25,1,1e6"),
+            ("lines", "1"),
+            ("input", "7"),
+            ("albedo", "colours.png"),
+            ("note1", "1, of 2"),
+            ("until", "inf"),
+            ("empty", ""),
+        ]
+        .map(|(name, text)| (name.to_owned(), text.to_owned()));
+        let expected = serde_json::json!({
+            "azimuths": 64, "z_scale": 0.5, "nodata": -32768, "sky": [0.25, 1, 1e6], "lines": "1", "input": "7",
+            "albedo": "colours.png", "note1": "1, of 2", "until": "inf", "empty": "",
+        });
+        assert_eq!(serde_json::Value::from(typed(&settings)), expected);
     }
 }

@@ -1,6 +1,10 @@
-//! The settings that trade speed for accuracy, each as a ladder from cheap to dear.
+//! The settings that trade speed for accuracy, each as a ladder from cheap to dear. Whoever adds a
+//! method or a setting registers its knob in [`knobs`]; search, frontier and report know none by name.
+//!
+//! Where the hull lives is no knob: it costs time and never changes the result.
 
 use crate::scene::{Fuse, Lines, Method, Precision, Quality, Scene};
+use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
 #[derive(Clone, Debug)]
@@ -9,6 +13,11 @@ pub struct Knob {
     pub name: &'static str,
     /// Its values as the command line spells them, flag and all, from cheap to dear.
     pub steps: Vec<String>,
+    /// What a count may be, of which the steps are a few; none for a choice, whose steps are all there
+    /// are.
+    pub range: Option<RangeInclusive<u32>>,
+    /// The step that the default is.
+    pub default: usize,
     /// Which way is dearer, and what that is thought to buy.
     pub dearer: &'static str,
     /// Gives a quality the value of a step.
@@ -48,6 +57,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
                 .map(|(_, name)| format!("--lines {name}"))
                 .chain(["--method brute".to_owned()])
                 .collect(),
+            range: None,
+            default: 0,
             dearer: "closer lines, then every sample on a line, then brute force: small occluders",
             set: |quality, step| match LINES.get(step) {
                 Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
@@ -58,6 +69,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         Knob {
             name: "fuse",
             steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
+            range: None,
+            default: 0,
             dearer: "more of the lines' results, then the surface itself: horizons of each sample",
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
@@ -65,6 +78,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         Knob {
             name: "precision",
             steps: PRECISIONS.iter().map(|p| format!("--precision {}", p.name())).collect(),
+            range: None,
+            default: 0,
             dearer: "more bits: heights on the hull, stored slopes",
             set: |quality, step| quality.precision = PRECISIONS[step],
             idle: has_no_lines,
@@ -74,6 +89,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         all.push(Knob {
             name: "azimuths",
             steps: spell("--azimuths", &AZIMUTHS),
+            range: Some(Quality::AZIMUTHS),
+            default: 0,
             dearer: "more azimuths: sharp silhouettes",
             set: |quality, step| quality.azimuths = AZIMUTHS[step],
             idle: |_| false,
@@ -83,6 +100,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         all.push(Knob {
             name: "sun azimuths",
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
+            range: Some(Quality::SUN_AZIMUTHS),
+            default: 0,
             dearer: "more slices of a sun's disc: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
             idle: |_| false,
@@ -92,12 +111,31 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         all.push(Knob {
             name: "table elevations",
             steps: spell("--table-elevations", &TABLE_ELEVATIONS),
+            range: Some(Quality::TABLE_ELEVATIONS),
+            default: 0,
             dearer: "more elevations a table: small bright places",
             set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
             idle: |_| false,
         });
     }
+    for knob in &mut all {
+        knob.default = default_step(knob);
+    }
     all
+}
+
+/// What the defaults walk from: sweeps, which is what they come to.
+pub fn start() -> Quality {
+    Quality { method: Method::Sweep, ..Quality::default() }
+}
+
+fn default_step(knob: &Knob) -> usize {
+    let is_default = |step: &usize| {
+        let mut quality = start();
+        (knob.set)(&mut quality, *step);
+        quality == start()
+    };
+    (0..knob.steps.len()).find(is_default).expect("every default is on its ladder")
 }
 
 /// Settings, and where they stand on each knob's ladder.
@@ -182,7 +220,7 @@ mod tests {
     #[test]
     fn places_are_all_that_differ() {
         let knobs = knobs(&scene(sky()));
-        let start = Quality { method: Method::Sweep, ..Quality::default() };
+        let start = start();
         let all = places(&knobs, &start);
         assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2) * 6);
         for (i, place) in all.iter().enumerate() {
@@ -196,5 +234,41 @@ mod tests {
         assert_eq!(brute.len(), 6);
         assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
         assert_eq!(brute[0].steps, [Some(6), None, None, Some(0)]);
+    }
+
+    /// Steps rise within the range, differ, and the default is the command line's.
+    #[test]
+    fn knobs_say_their_range_and_default() {
+        let light = Lights {
+            environment: Some(
+                crate::scene::Environment::new(2, 1, vec![[1.0; 3]; 2], 0.0).unwrap(),
+            ),
+            ..sun(0.01)
+        };
+        let all = knobs(&scene(light));
+        let found: Vec<(&str, &str)> =
+            all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
+        let expected = [
+            ("sweep", "--lines 1"),
+            ("fuse", "--fuse aimed-nearest"),
+            ("precision", "--precision f32"),
+            ("azimuths", "--azimuths 64"),
+            ("sun azimuths", "--sun-azimuths 8"),
+            ("table elevations", "--table-elevations 256"),
+        ];
+        assert_eq!(found, expected);
+        for knob in &all {
+            let Some(range) = &knob.range else { continue };
+            let count = |s: &String| s.split(' ').next_back().unwrap().parse::<u32>().unwrap();
+            let counts: Vec<u32> = knob.steps.iter().map(count).collect();
+            assert!(counts.iter().all(|c| range.contains(c)), "{counts:?}");
+            assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
+            for (step, count) in counts.iter().enumerate() {
+                let mut quality = start();
+                (knob.set)(&mut quality, step);
+                quality.check().unwrap();
+                assert_eq!(quality == start(), step == knob.default, "{count}");
+            }
+        }
     }
 }

@@ -8,5 +8,5 @@ mod search;
 mod tests;
 
 pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
-pub use knobs::{Knob, Place, knobs, places};
+pub use knobs::{Knob, Place, knobs, places, start};
 pub use search::{Break, SLACK, Search, Side, Skip};

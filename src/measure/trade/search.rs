@@ -134,6 +134,20 @@ impl Search {
         self.front = frontier(&values).into_iter().map(|i| self.measured[i]).collect();
     }
 
+    /// Takes in another value of a measured place, as if it had been the first.
+    pub fn measured_again(&mut self, place: usize, value: Value) {
+        let steps = std::mem::take(&mut self.steps);
+        let fresh = Self::new(steps, self.start, self.floor);
+        let old = std::mem::replace(self, fresh);
+        (self.given_up, self.too_dear) = (old.given_up, old.too_dear);
+        for i in old.measured {
+            let known = if i == place { Some(value) } else { old.values[i] };
+            if let Some(value) = known {
+                self.measured(i, value);
+            }
+        }
+    }
+
     /// Takes in that a place cannot be measured; `too_dear`: and nothing that costs more.
     pub fn give_up(&mut self, place: usize, too_dear: bool) {
         self.given_up[place] = true;

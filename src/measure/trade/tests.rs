@@ -201,3 +201,33 @@ fn too_dear_is_too_dear_for_all_above() {
     assert_eq!(search.skip(at(3, 0)), Some(Skip::TooDear { than: at(1, 1) }));
     assert!(!search.is_open(at(1, 1)) && search.is_open(at(0, 2)) && search.is_open(at(2, 0)));
 }
+
+/// A value corrected afterwards leaves what it would have left at first: frontier, breaks, reasons.
+#[test]
+fn a_corrected_value_is_as_if_it_were_the_first() {
+    let sides = [3, 4, 3];
+    let steps = grid(&sides);
+    for seed in 0..20 {
+        let model = monotone(&sides, &mut Random(300 + seed));
+        let mut right = walk(&steps, &model, 0.1, 9);
+        let mut corrected = Search::new(steps.clone(), steps.len() / 2, 0.1);
+        let wrong = right.order()[seed as usize % 9];
+        for &place in right.order() {
+            let value = model(&steps[place]);
+            let share = if place == wrong { 0.01 } else { 1.0 };
+            corrected.measured(place, Value { cost: share * value.cost, ..value });
+        }
+        for search in [&mut right, &mut corrected] {
+            search.give_up(0, true);
+        }
+        assert_ne!(corrected.value(wrong), right.value(wrong));
+        corrected.measured_again(wrong, model(&steps[wrong]));
+        assert_eq!(corrected.order(), right.order());
+        assert_eq!(corrected.frontier(), right.frontier());
+        assert_eq!(corrected.breaks(), right.breaks());
+        for place in 0..steps.len() {
+            assert_eq!(corrected.value(place), right.value(place));
+            assert_eq!(corrected.skip(place), right.skip(place));
+        }
+    }
+}

@@ -5,6 +5,8 @@ use ridgelight::measure::statistics::Summary;
 use ridgelight::plan::{Pass, Plan};
 use serde_json::{Value, json};
 
+use crate::setup;
+
 /// One pass in one mode.
 pub struct Row {
     pub pass: String,
@@ -61,11 +63,9 @@ impl Row {
     }
 
     pub fn json(&self) -> Value {
-        let settings: serde_json::Map<_, _> =
-            self.settings.iter().map(|(k, v)| (k.clone(), Value::from(v.clone()))).collect();
         json!({
             "pass": self.pass, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
-            "azimuths": self.azimuths, "settings": settings, "samples": self.samples,
+            "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "samples": self.samples,
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
             "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
             "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),

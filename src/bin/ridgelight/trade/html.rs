@@ -2,7 +2,7 @@
 
 use super::point::Point;
 use super::report::{Report, ms};
-use super::truth::percent;
+use super::truth::{digits, percent};
 
 const TEMPLATE: &str = include_str!("page.html");
 /// Groups of ruled-out settings, and settings not tried, that are spelt out; all are in the JSON.
@@ -28,20 +28,25 @@ pub fn page(report: &Report) -> String {
         format!("{held}<ul>{}</ul>", lines(breaks))
     };
     let recommended = report.recommended();
-    let headline = format!("{}, {}", report.time_text(recommended), report.error_text(recommended));
+    let headline = format!(
+        "{} a frame, {} off (RMSE over the mean)",
+        report.time_text(recommended),
+        report.error_text(recommended)
+    );
     let why = report.why().iter().map(|l| format!("<p>{}\n", escaped(l))).collect::<String>();
     let text = |text: String| escaped(&text);
     filled(
         TEMPLATE,
         &[
             ("title", text(format!("{input}: speed against accuracy"))),
-            ("flags", text(report.flags(recommended.place))),
+            ("flags", code(&report.flags(recommended.place))),
             ("headline", text(headline)),
             ("why", why),
             ("plot", super::plot::svg(report)),
             ("truth", text(report.truth_text())),
             ("drift", text(report.drift_text())),
             ("summary", text(report.summary())),
+            ("tones", text(report.tones.text())),
             ("cards", cards(report)),
             ("rows", rows(report)),
             ("assumption", text(Report::assumption())),
@@ -74,8 +79,8 @@ fn cards(report: &Report) -> String {
         format!("<img src=\"data:image/png;base64,{}\" alt=\"{}\">", base64(png), escaped(alt))
     };
     let mut all = format!(
-        "<figure>{}<figcaption><b>truth</b><br>{}</figcaption></figure>\n",
-        picture(&report.truth_png, "truth"),
+        "<figure>{}<figcaption><b>the truth</b><br>{}</figcaption></figure>\n",
+        picture(&report.truth_png, "the truth"),
         escaped(&report.truth.about)
     );
     for point in report.frontier() {
@@ -83,15 +88,19 @@ fn cards(report: &Report) -> String {
         let flags = report.flags(point.place);
         let is_it = point.place == report.recommended().place;
         all += &format!(
-            "<figure{}>{}{}<figcaption><b>{}, {}</b><br><code>{}</code><br>full colour: {} too bright \
-             <i class=bright></i> or too dark <i class=dark></i></figcaption></figure>\n",
+            "<figure{}>{}{}<figcaption><b>{}, {}</b>{}<br>{}<br>ꟻLIP {} in the mean, {} at the 99th \
+             percentile<br>difference: <span class=scale>−{scale} too dark <i></i> {scale} too \
+             bright</span></figcaption></figure>\n",
             if is_it { " class=best" } else { "" },
             picture(&pictures.light, &flags),
             picture(&pictures.difference, &format!("difference of {flags}")),
             escaped(&report.time_text(point)),
             escaped(&report.error_text(point)),
-            escaped(&flags),
-            escaped(&percent(pictures.scale)),
+            if is_it { ", recommended" } else { "" },
+            code(&flags),
+            digits(pictures.flip.mean),
+            digits(pictures.flip.p99),
+            scale = short_percent(pictures.scale),
         );
     }
     all
@@ -108,23 +117,31 @@ fn rows(report: &Report) -> String {
             _ => "",
         };
         let (t, d) = (&p.total_ns, &p.distance);
+        let drawn = format!(
+            "{} draws: {} in the middle, {} – {}; the baseline beside them {}. ",
+            p.totals_ns.len(),
+            ms(t.median),
+            ms(t.p10),
+            ms(t.p90),
+            ms(p.baseline_median())
+        );
         let passes: Vec<String> =
             p.passes.iter().map(|(name, ns)| format!("{name}: {}", ms(*ns))).collect();
         let cells = [
             report.time_text(p),
-            format!("{}, {} – {}", ms(t.median), ms(t.p10), ms(t.p90)),
-            p.draws.to_string(),
             report.error_text(p),
             percent(d.mean_shift),
             percent(d.p99),
-            format!("{} at row {}, column {}", percent(d.worst), d.worst_row, d.worst_col),
+            percent(d.worst),
+            format!("{}, {}", d.worst_row, d.worst_col),
+            p.pictures.as_ref().map_or_else(String::new, |p| digits(p.flip.mean)),
             format!("{:.1} MiB", p.bytes as f64 / 1_048_576.0),
-            ms(p.baseline_median()),
         ];
         let cells: String = cells.iter().map(|c| format!("<td>{}", escaped(c))).collect();
         format!(
-            "<tr class=\"{kind}\"><td><details><summary><code>{}</code></summary>{}</details>{cells}\n",
-            escaped(&report.flags(p.place)),
+            "<tr class=\"{kind}\"><td><details><summary>{}</summary>{}{}</details>{cells}\n",
+            code(&report.flags(p.place)),
+            escaped(&drawn),
             escaped(&passes.join("; "))
         )
     };
@@ -138,15 +155,10 @@ fn ruled_out(report: &Report) -> String {
         .take(GROUPS)
         .map(|g| {
             let some: Vec<String> =
-                g.places.iter().take(EXAMPLES).map(|i| escaped(&report.flags(*i))).collect();
+                g.places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i))).collect();
             let more = g.places.len().saturating_sub(EXAMPLES);
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            format!(
-                "<li>{} ({}): <code>{}</code>{more}\n",
-                escaped(&g.why),
-                g.places.len(),
-                some.join("</code>, <code>")
-            )
+            format!("<li>{} ({}): {}{more}\n", escaped(&g.why), g.places.len(), some.join(", "))
         })
         .collect();
     let rest = groups.len().saturating_sub(GROUPS);
@@ -162,8 +174,8 @@ fn not_tried(report: &Report) -> String {
         .iter()
         .take(GROUPS)
         .map(|i| {
-            let flags = escaped(&report.flags(*i));
-            format!("<li><code>{flags}</code>: expected {}\n", escaped(&report.expected_text(*i)))
+            let flags = code(&report.flags(*i));
+            format!("<li>{flags}: expected {}\n", escaped(&report.expected_text(*i)))
         })
         .collect();
     let rest = open.len().saturating_sub(GROUPS);
@@ -179,14 +191,32 @@ fn not_tried(report: &Report) -> String {
 
 fn knobs(report: &Report) -> String {
     let row = |knob: &ridgelight::measure::trade::Knob| {
+        let range = knob.range.as_ref();
         format!(
-            "<tr><th>{}<td><code>{}</code><td>{}\n",
+            "<tr><th>{}<td>{}<td>{}<td>{}<td>{}\n",
             escaped(knob.name),
-            escaped(&knob.steps.join("  ")),
+            knob.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
+            code(&knob.steps[knob.default]),
+            range.map_or_else(|| "these".to_owned(), |r| format!("{} to {}", r.start(), r.end())),
             escaped(knob.dearer)
         )
     };
     report.knobs.iter().map(row).collect()
+}
+
+/// Flags that lines break between, not within.
+fn code(flags: &str) -> String {
+    let each: Vec<String> =
+        flags.split(" --").map(|f| escaped(f.trim_start_matches("--"))).collect();
+    format!("<code><span>--{}</span></code>", each.join("</span> <span>--"))
+}
+
+/// Of a round number: no zeros at its end.
+fn short_percent(share: f64) -> String {
+    let text = digits(100.0 * share);
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
 }
 
 /// Text that stands for itself in HTML, in quoted attributes too.
@@ -235,6 +265,11 @@ mod tests {
     fn values_are_filled_in_once() {
         let values = [("a", "{{b}}".to_owned()), ("b", "2".to_owned())];
         assert_eq!(filled("1 {{a}} {{b}} 3", &values), "1 {{b}} 2 3");
+        assert_eq!(code("--a 1 --b"), "<code><span>--a 1</span> <span>--b</span></code>");
+        assert_eq!(
+            [0.02, 0.1, 2.0, 1e-12].map(short_percent),
+            ["2 %", "10 %", "200 %", "1.00e-10 %"]
+        );
         assert_eq!(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
     }
 }

@@ -1,6 +1,7 @@
 //! Time against error on log axes, as SVG.
 
 use super::html::escaped;
+use super::point::Point;
 use super::report::Report;
 
 const WIDTH: f64 = 860.0;
@@ -38,7 +39,7 @@ impl Axis {
 
     /// 1, 2 and 5 in each decade, all of whose numbers are shown where the axis is short.
     fn ticks(&self) -> Vec<(f64, bool)> {
-        let short = self.high - self.low < 2.5;
+        let short = self.high - self.low < 4.0;
         (self.low.floor() as i32..=self.high.ceil() as i32)
             .flat_map(|d| [1.0, 2.0, 5.0].map(|m| (m * 10_f64.powi(d), m == 1.0 || short)))
             .filter(|(v, _)| (self.low..=self.high).contains(&v.log10()))
@@ -96,7 +97,7 @@ pub fn svg(report: &Report) -> String {
             at + 14.0
         );
     }
-    let place = |p: &super::Point| (x.at(report.time_ns(p) * 1e-6), y.at(100.0 * report.error(p)));
+    let place = |p: &Point| (x.at(report.time_ns(p) * 1e-6), y.at(100.0 * report.error(p)));
     let front = report.frontier();
     let mut path = String::new();
     for (i, point) in front.iter().enumerate() {
@@ -105,25 +106,46 @@ pub fn svg(report: &Report) -> String {
         path += &if i == 0 { format!("M{px:.1} {py:.1}") } else { format!("H{px:.1}V{py:.1}") };
     }
     svg += &format!("<path class=front d=\"{path}\" />\n");
-    let is_front = |p: &super::Point| front.iter().any(|f| f.place == p.place);
+    let is_front = |p: &Point| front.iter().any(|f| f.place == p.place);
+    let best = report.recommended();
+    let baseline = points.iter().find(|p| p.place == report.walk.baseline);
+    let mut named = vec![(best, "name", "recommended")];
+    named.extend(baseline.filter(|b| b.place != best.place).map(|b| (b, "small", "the defaults")));
     // The frontier on top.
-    let mut order: Vec<&super::Point> = points.iter().collect();
+    let mut order: Vec<&Point> = points.iter().collect();
     order.sort_by_key(|p| is_front(p));
     for point in order {
         let (px, py) = place(point);
-        let (kind, size) = if is_front(point) { ("on", 5.5) } else { ("off", 4.0) };
+        let is_base = point.place == report.walk.baseline;
+        let (kind, size) = match (is_front(point), is_base) {
+            (true, false) => ("on", 5.5),
+            (true, true) => ("on base", 5.5),
+            (false, true) => ("off base", 5.0),
+            (false, false) => ("off", 4.0),
+        };
         let label = format!(
             "{}: {}, {}",
             report.flags(point.place),
             report.time_text(point),
             report.error_text(point)
         );
-        if point.place == report.recommended().place {
+        if point.place == best.place {
             svg += &format!("<circle class=ring cx={px:.1} cy={py:.1} r=11 />");
         }
         svg += &format!(
             "<circle class=\"point {kind}\" cx={px:.1} cy={py:.1} r={size} tabindex=0><title>{}</title></circle>\n",
             escaped(&label)
+        );
+    }
+    // Above and to the right no point of the frontier is near; where the page ends, to the left.
+    for (point, class, name) in named {
+        let (px, py) = place(point);
+        let (dx, anchor) =
+            if px > WIDTH - right - 120.0 { (-12.0, "end") } else { (12.0, "start") };
+        svg += &format!(
+            "<text class=\"{class} halo\" x={:.1} y={:.1} text-anchor={anchor}>{name}</text>\n",
+            px + dx,
+            py - 10.0
         );
     }
     svg + "</svg>\n"

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side, Skip};
 use serde_json::{Value, json};
 
-use super::Walk;
+use super::hull;
+use super::picture::Tones;
 use super::point::Point;
 use super::truth::{Truth, digits, percent};
+use super::walk::Walk;
+use crate::setup;
 
 pub struct Report<'a> {
     /// Device, driver, field and lights, as (name, value).
@@ -15,6 +18,8 @@ pub struct Report<'a> {
     pub truth: &'a Truth,
     pub truth_s: f64,
     pub truth_png: Vec<u8>,
+    pub tones: &'a Tones,
+    pub hulls: &'a [hull::Place],
     pub knobs: &'a [Knob],
     pub places: &'a [Place],
     pub walk: &'a Walk,
@@ -24,6 +29,9 @@ pub struct Report<'a> {
     pub budget_s: f64,
     pub spent_s: f64,
 }
+
+/// What is dearer or cheaper, and changes error or time by less than this share, is not worth a sentence.
+const WORTH: f64 = 0.9;
 
 pub fn ms(ns: f64) -> String {
     format!("{} ms", digits(ns * 1e-6))
@@ -80,10 +88,10 @@ impl Report<'_> {
         let (front, mut all) = (self.frontier(), Vec::new());
         let time = |cost: f64| ms(cost * self.walk.baseline_ns());
         all.push(match (self.rule, self.recommended.holds) {
-            (Rule::Knee, _) => "Of the frontier it has the least product of time and error: from \
-                 here, twice the time at best halves the error, and half the time at least doubles \
-                 it."
-            .to_owned(),
+            (Rule::Knee, _) => "Recommended because it has the least product of time and error of \
+                 all on the frontier: from here, twice the time at best halves the error, and half \
+                 the time at least doubles it. --max-error or --time-budget pick otherwise."
+                .to_owned(),
             (Rule::MaxError(most), true) => {
                 format!("The cheapest measured of at most {}, as --max-error asks.", percent(most))
             }
@@ -102,24 +110,97 @@ impl Report<'_> {
             }
         });
         let here = front.iter().position(|p| p.place == point.place).unwrap_or(0);
-        let step = |name: &str, other: &Point| {
+        let ratio = |of: f64, to: f64| digits(of / to.max(f64::MIN_POSITIVE));
+        let is_cheaper = |p: &&&Point| p.ratio <= WORTH * point.ratio;
+        if let Some(cheaper) = front[..here].iter().rev().find(is_cheaper) {
+            all.push(format!(
+                "The next on the frontier that saves a tenth of the time, {}, saves {} and errs {} × as \
+                 much.",
+                self.flags(cheaper.place),
+                percent(1.0 - cheaper.ratio / point.ratio),
+                ratio(self.error(cheaper), self.error(point))
+            ));
+        }
+        let is_better = |p: &&&Point| self.error(p) <= WORTH * self.error(point);
+        if let Some(dearer) = front[here + 1..].iter().find(is_better) {
+            all.push(format!(
+                "The next that errs a tenth less, {}, takes {} × the time and errs {} × as much: this saves \
+                 {} of its time.",
+                self.flags(dearer.place),
+                ratio(dearer.ratio, point.ratio),
+                ratio(self.error(dearer), self.error(point)),
+                percent(1.0 - point.ratio / dearer.ratio)
+            ));
+        }
+        all.push(self.risk(point));
+        all.push(if self.is_at_most(point) {
             format!(
-                "The next {name} on the frontier, {}, takes {} × the time for {} × the error.",
-                self.flags(other.place),
-                digits(other.ratio / point.ratio),
-                digits(self.error(other) / self.error(point).max(f64::MIN_POSITIVE))
+                "The truth itself may be {} off, which hides its error: how much less than that it is \
+                 cannot be told, nor whether anything dearer does better. A truth from `ridgelight \
+                 reference` (--reference), or a larger --budget, may tell.",
+                percent(self.truth.own_error)
             )
-        };
-        if let Some(cheaper) = here.checked_sub(1).and_then(|i| front.get(i)) {
-            all.push(step("cheaper", cheaper));
-        }
-        if let Some(dearer) = front.get(here + 1) {
-            all.push(step("dearer", dearer));
-        }
-        if self.is_at_most(point) {
-            all.push("Its error is not told apart from the truth's own.".to_owned());
-        }
+        } else {
+            format!(
+                "The truth itself may be {} off, {} of that error.",
+                percent(self.truth.own_error),
+                percent(self.truth.own_error / self.error(point))
+            )
+        });
+        all.push(self.left_out());
+        all.extend(hull::text(self.hulls));
         all
+    }
+
+    /// What a mean over all texels does not tell.
+    fn risk(&self, point: &Point) -> String {
+        let d = &point.distance;
+        let flip = point.pictures.as_ref().map_or_else(String::new, |p| {
+            let (mean, worst) = (digits(p.flip.mean), digits(p.flip.worst));
+            format!(" To the eye: ꟻLIP {mean} in the mean, {worst} at worst, of 1.")
+        });
+        format!(
+            "It risks: one texel in a hundred off by more than {} of the mean, the worst by {} at row {}, \
+             column {}; all together {} by {}.{flip}",
+            percent(d.p99),
+            percent(d.worst),
+            d.worst_row,
+            d.worst_col,
+            if d.mean_shift < 0.0 { "too dark" } else { "too bright" },
+            percent(d.mean_shift.abs()),
+        )
+    }
+
+    /// What was not measured, why, and what it might have changed.
+    fn left_out(&self) -> String {
+        let open = self.not_tried();
+        let skipped: usize = self.skipped().iter().map(|g| g.places.len()).sum();
+        let mut text = format!(
+            "Of {} settings {} were measured; {skipped} were ruled out or given up",
+            self.places.len(),
+            self.walk.points.len()
+        );
+        if let Some(largest) = self.skipped().first() {
+            let [count, first] = [largest.places.len(), largest.places[0]];
+            let others = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
+            text += &format!(" ({}{others}: {})", self.flags(first), largest.why);
+        }
+        let promising = open.iter().filter(|i| self.walk.search.merit(**i) > 0.0).count();
+        text += &match open.first() {
+            None => "; none were left.".to_owned(),
+            Some(best) if promising > 0 => format!(
+                "; {} were not tried for want of time, {promising} of which are expected beyond the \
+                 frontier, farthest {} ({}): a larger --budget may find better.",
+                open.len(),
+                self.flags(*best),
+                self.expected_text(*best)
+            ),
+            Some(_) => format!(
+                "; {} were not tried for want of time, none of which is expected beyond the frontier.",
+                open.len()
+            ),
+        };
+        text
     }
 
     /// What the drift means, in a sentence.
@@ -219,12 +300,12 @@ impl Report<'_> {
         let open = self.not_tried().len();
         let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
         format!(
-            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {} s \
-             of {} s, {} s of them for the truth.",
+            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {:.1} s \
+             of {:.1} s, {:.1} s of them for the truth.",
             self.walk.points.len(),
-            digits(self.spent_s),
-            digits(self.budget_s),
-            digits(self.truth_s)
+            self.spent_s,
+            self.budget_s,
+            self.truth_s
         )
     }
 
@@ -268,7 +349,7 @@ impl Report<'_> {
         let names = self.knobs.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
         let mut text = format!(
             "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
-             worst,worst_row,worst_col,bytes,baseline_ms,frontier,recommended\n",
+             worst,worst_row,worst_col,flip_mean,flip_p99,bytes,baseline_ms,frontier,recommended\n",
             names.join(",")
         );
         let front = self.walk.search.frontier();
@@ -285,11 +366,13 @@ impl Report<'_> {
                 [self.time_ns(point), t.median, t.p10, t.p90, t.min]
                     .map(|ns| format!("{:.6}", ns * 1e-6)),
             );
-            row.push(point.draws.to_string());
+            row.push(point.totals_ns.len().to_string());
             row.push(format!("{:e}", self.error(point)));
             row.push(self.is_at_most(point).to_string());
             row.extend([d.mean_shift, d.p99, d.worst].map(|x| format!("{x:e}")));
             row.extend([d.worst_row, d.worst_col].map(|x| x.to_string()));
+            let flip = point.pictures.as_ref().map(|p| [p.flip.mean, p.flip.p99]);
+            row.extend(flip.map_or([const { String::new() }; 2], |f| f.map(|x| format!("{x:e}"))));
             row.push(point.bytes.to_string());
             row.push(format!("{:.6}", point.baseline_median() * 1e-6));
             row.push(front.contains(&point.place).to_string());
@@ -302,20 +385,22 @@ impl Report<'_> {
 
     fn point_json(&self, point: &Point) -> Value {
         let (t, d) = (&point.total_ns, &point.distance);
-        let settings: serde_json::Map<_, _> =
-            point.settings.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
         let passes: Vec<Value> = point
             .passes
             .iter()
             .map(|(pass, ns)| json!({ "pass": pass, "median_ns": ns }))
             .collect();
         json!({
-            "flags": self.flags(point.place), "settings": settings,
+            "flags": self.flags(point.place), "settings": setup::typed(&point.settings),
             "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
-            "draws": point.draws, "passes": passes, "bytes": point.bytes,
+            "draws": point.totals_ns.len(), "passes": passes, "bytes": point.bytes,
             "relative_rmse": self.error(point), "at_most": self.is_at_most(point),
             "mean_shift": d.mean_shift, "p99": d.p99, "worst": d.worst,
             "worst_row": d.worst_row, "worst_col": d.worst_col,
+            "flip": point.pictures.as_ref().map(|p| json!({
+                "mean": p.flip.mean, "weighted_quartiles": p.flip.weighted_quartiles, "p99": p.flip.p99,
+                "worst": p.flip.worst, "worst_row": p.flip.worst_row, "worst_col": p.flip.worst_col,
+            })),
             "begun_s": point.at_s[0], "done_s": point.at_s[1], "baseline_ns": point.baseline_median(),
         })
     }
@@ -324,12 +409,20 @@ impl Report<'_> {
         let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
         let front: Vec<usize> =
             self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
-        let about: serde_json::Map<_, _> =
-            self.about.iter().map(|(k, v)| (k.clone(), v.clone().into())).collect();
         let knobs: Vec<Value> = self
             .knobs
             .iter()
-            .map(|k| json!({ "name": k.name, "cheap_to_dear": k.steps, "dearer": k.dearer }))
+            .map(|k| {
+                json!({
+                    "name": k.name, "cheap_to_dear": k.steps, "default": k.steps[k.default],
+                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "dearer": k.dearer,
+                })
+            })
+            .collect();
+        let hulls: Vec<Value> = self
+            .hulls
+            .iter()
+            .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
             .collect();
         let skipped: Vec<Value> = self
             .skipped()
@@ -353,7 +446,7 @@ impl Report<'_> {
         let breaks: Vec<String> =
             self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
         json!({
-            "ridgelight": env!("CARGO_PKG_VERSION"), "about": about,
+            "ridgelight": env!("CARGO_PKG_VERSION"), "about": setup::typed(&self.about),
             "truth": {
                 "what": self.truth.about, "own_relative_rmse": self.truth.own_error,
                 "how": self.truth.quality_of, "seconds": self.truth_s,
@@ -366,7 +459,7 @@ impl Report<'_> {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "drift": self.drift_text(), "ladders_broken": breaks,
+            "hulls": hulls, "drift": self.drift_text(), "ladders_broken": breaks,
             "ruled_out": skipped, "not_tried": open,
         })
     }

@@ -158,8 +158,8 @@ impl Truth {
         truth.own_error = steps.max(off);
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
-             halves as counts double; {probes} samples are {} (RMSE) off the oracle in f64; the \
-             larger of the two is taken",
+             halves as counts double; {probes} samples are at most {} (RMSE, two standard errors \
+             of its square added) off the oracle in f64; the larger of the two is taken",
             percent(steps),
             percent(off)
         );
@@ -188,7 +188,7 @@ impl Truth {
         })
     }
 
-    /// Samples all over the field against the oracle: how many, and their relative RMSE.
+    /// Samples all over the field against the oracle: how many, and the relative RMSE that they allow.
     fn probe(&self, scene: &Scene, most: Duration) -> (usize, f64) {
         let (count, oracle) =
             (self.rows * self.cols, Oracle::new(&scene.field, scene.surface.border));
@@ -210,17 +210,28 @@ impl Truth {
             all.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
         });
         let last = self.planes.len() - 1;
-        let (mut squares, mut sum) = (0.0, 0.0);
-        for (i, expected) in &probed {
-            for (c, light) in expected.iter().enumerate() {
-                squares += (f64::from(self.planes[c.min(last)][*i]) - light).powi(2);
-                sum += light;
-            }
-        }
-        let values = (3 * probed.len()).max(1) as f64;
-        let rmse = (squares / values).sqrt();
-        (probed.len(), if rmse == 0.0 { 0.0 } else { rmse / (sum / values) })
+        let mut sum = 0.0;
+        let squares: Vec<f64> = probed
+            .iter()
+            .map(|(i, expected)| {
+                sum += expected.iter().sum::<f64>() / 3.0;
+                let off = |c: usize| f64::from(self.planes[c.min(last)][*i]) - expected[c];
+                [0, 1, 2].map(|c| off(c).powi(2)).iter().sum::<f64>() / 3.0
+            })
+            .collect();
+        let most = most_mean(&squares).sqrt();
+        let mean = sum / probed.len().max(1) as f64;
+        (probed.len(), if most == 0.0 { 0.0 } else { most / mean })
     }
+}
+
+/// The mean of a sample, and twice its standard error on top: where few texels carry most of the error, as
+/// along a sun's shadows, a sample may have met fewer of them than there are.
+fn most_mean(sample: &[f64]) -> f64 {
+    let count = sample.len().max(2) as f64;
+    let mean = sample.iter().sum::<f64>() / count;
+    let variance = sample.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    mean + 2.0 * (variance / count).sqrt()
 }
 
 /// Exit radiance by the oracle, linear RGB.
@@ -323,6 +334,14 @@ mod tests {
     fn three_digits_are_shown() {
         let shown = [0.0, 0.001_234_5, 0.5, 12.345, 999.4, 123_456.0, 1e-12].map(digits);
         assert_eq!(shown, ["0", "0.00123", "0.500", "12.3", "999", "123456", "1.00e-12"]);
+    }
+
+    /// 0, 0, 0, 4: mean 1, variance 4, standard error 1.
+    #[test]
+    fn a_sample_allows_two_standard_errors() {
+        assert!((most_mean(&[0.0, 0.0, 0.0, 4.0]) - 3.0).abs() < 1e-12);
+        assert_eq!(most_mean(&[0.5; 9]), 0.5);
+        assert_eq!([most_mean(&[]), most_mean(&[0.0])], [0.0; 2]);
     }
 
     #[test]

@@ -1,0 +1,194 @@
+//! Holds the path tracer to the f64 quadrature and to closed forms, and writes what was found as
+//! `docs/reference.md`. See `tools/reference`.
+//!
+//! `cargo run --release --example reference -- DEVICE`; fails where chance does not explain a row.
+
+#[path = "../tests/reference_page/mod.rs"]
+mod reference_page;
+#[path = "../tests/scenes/mod.rs"]
+mod scenes;
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
+use ridgelight::cpu::bounce::{self, Truth};
+use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::scene::Scene;
+use ridgelight::{Error, Result, files, plan};
+use scenes::{Agreement, scenes};
+
+/// Batches of each picture, and a sample's paths in them.
+const BATCHES: u32 = 256;
+const PATHS: f64 = (BATCHES * plan::REFERENCE_BATCH) as f64;
+/// What f32 may take from a value.
+const ROUNDING: f64 = 1e-5;
+
+const ABOUT: &str = "\
+# The reference against the oracle and closed forms
+
+`ridgelight reference` traces light paths on the device; here it is held to the f64 quadrature of
+`src/cpu/bounce.rs`, which shares no code with it, and to scenes whose radiance is a formula. Made by
+`tools/reference`; the test `reference_truth` of `tests/gpu` asks the same of the driver at hand, and `tests/bounce`
+that the quadrature's figures here are those of the code.
+";
+
+const SCENES: &str = "
+## Against the quadrature
+
+Scenes of `tests/scenes`, each lit by sky, sun and a ball of light in channels of their own, so that each light
+is judged alone. *paths* is the mean radiance over all samples, *±* one standard error of that mean: σ of each
+sample from the spread between its batches, √(Σσ²)/n. *quadrature* is the same mean in f64, *stated* the mean of
+its stated error, the difference to half the fineness.
+
+z of a sample = (|paths - quadrature| - stated, at least 0) / σ; z of the mean likewise, with the sums. σ holds
+besides what no spread can know, events too rare to have been met: σ² + W·|difference| / 3N for N paths a
+sample that carry W at most (Bernstein's inequality; W: the brightest sample). Expected of n samples
+of normal noise:
+
+| | expected | bound |
+|---|---|---|
+| rms z | 1, less where *stated* or rare events are not small beside σ | 1 + 4 / √(2n), four of its own standard deviations |
+| worst z | about √(2 ln n): 2.4 of 16, 3.3 of 200 | 6: of 10,000 samples one in 50,000 tables |
+| z of the mean | below 1 in two of three rows | 4 |
+
+0 throughout: the light has no noise there, or reaches no sample.
+";
+
+const CLOSED: &str = "
+## Against closed forms
+
+Derived in `tests/reference_page/mod.rs`. *grid* is how far flat triangles may be from what the formula is for:
+the pit's rim is a staircase, and there alone the bound is not 0. *quadrature* is that of the same triangles in f64,
+whose own error is that of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
+";
+
+/// Radiance and standard error of all samples.
+fn traced(gpu: &mut Headless, scene: &Scene, bounces: usize) -> Result<[Vec<[f64; 3]>; 2]> {
+    let limits = gpu.report().limits;
+    // Seeds of their own: no row shares its paths with another of its scene.
+    let plan = plan::reference(scene, bounces as u32, 1 + bounces as u32, &limits)?;
+    let last = plan.passes.len() - 1;
+    let lost = plan.find("lost_rays");
+    let contents = plan::reference_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        for _ in 1..BATCHES {
+            gpu.draw_passes(frame, &[last])?;
+        }
+        let lost = lost.map(|lost| gpu.read(frame, lost)).transpose()?;
+        if lost.is_some_and(|lost| lost.first() != Some(&0)) {
+            let reason = "rays took more steps than a field can ask for".into();
+            return Err(Error::Device { doing: "tracing paths".into(), reason });
+        }
+        let mut picture = |output| {
+            let pixels = gpu.pixels(frame, output)?;
+            let texels = pixels.values.chunks_exact(4);
+            Ok(texels.map(|t| [t[0], t[1], t[2]].map(f64::from)).collect())
+        };
+        Ok([picture(0)?, picture(1)?])
+    })
+}
+
+/// Mean of a channel and one standard error of it.
+fn mean([light, error]: [&[[f64; 1]]; 2]) -> [f64; 2] {
+    let count = light.len() as f64;
+    let variance: f64 = error.iter().map(|e| e[0] * e[0]).sum();
+    [light.iter().map(|v| v[0]).sum::<f64>() / count, variance.sqrt() / count]
+}
+
+/// The row of one channel; whether chance explains it.
+fn row(
+    head: &str,
+    channel: usize,
+    [light, error]: &[Vec<[f64; 3]>; 2],
+    truth: &Truth,
+    bounces: usize,
+) -> (String, bool) {
+    let one = |picture: &[[f64; 3]]| picture.iter().map(|v| [v[channel]]).collect::<Vec<_>>();
+    let (light, error) = (one(light), one(error));
+    let (right, stated) = (one(&truth.radiance[bounces]), one(&truth.error[bounces]));
+    let of = Agreement::of([&light, &error], [&right, &stated], PATHS, ROUNDING);
+    let [mean, off] = mean([&light, &error]);
+    let row =
+        format!("{head}{mean:.5} | {off:.5} | {:.2} | {:.3} | {:.2} |", of.mean, of.rms, of.worst);
+    (row, of.holds())
+}
+
+/// The row of a closed form; whether chance explains it.
+fn closed_row(
+    closed: &Closed,
+    [light, error]: &[Vec<[f64; 3]>; 2],
+    quadrature: &[[f64; 3]],
+) -> (String, bool) {
+    let of =
+        |picture: &[[f64; 3]]| closed.known.iter().map(|k| [picture[k.0][0]]).collect::<Vec<_>>();
+    let [found, off] = mean([&of(light), &of(error)]);
+    let [value, grid] = closed.means();
+    let [in_f64, _] = mean([&of(quadrature), &[]]);
+    let z = match (found - value).abs() - grid - ROUNDING * value {
+        beyond if beyond <= 0.0 => 0.0,
+        beyond => beyond / off,
+    };
+    (format!("{}{in_f64:.6} | {found:.6} | {off:.6} | {z:.2} |", closed.head()), z <= 4.0)
+}
+
+fn measure(device: &str) -> Result<(String, Vec<String>)> {
+    let options = HeadlessOptions { device: Some(device.to_owned()), validation: false };
+    let mut gpu = Headless::new(&options)?;
+    let mut page = ABOUT.to_owned();
+    writeln!(page, "\n{PATHS} paths a sample on *{}, {}*.", gpu.report().name, gpu.report().driver)
+        .unwrap();
+    let mut wrong = Vec::new();
+    let mut add = |page: &mut String, (row, holds): (String, bool)| {
+        writeln!(page, "{row}").unwrap();
+        if !holds {
+            wrong.push(row);
+        }
+    };
+    page += SCENES;
+    page += "\n| scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |\n";
+    page += "|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for (name, scene) in scenes() {
+        let truth = bounce::truth(&scene, MOST_BOUNCES, FINENESS)?;
+        for bounces in 0..=MOST_BOUNCES {
+            let found = traced(&mut gpu, &scene, bounces)?;
+            for (channel, light) in light_names(&scene).into_iter().enumerate() {
+                let head = head(name, bounces, light, &truth, channel);
+                add(&mut page, row(&head, channel, &found, &truth, bounces));
+            }
+        }
+    }
+    page += CLOSED;
+    page += "\n| scene | bounces | n | value | grid | quadrature | paths | ± | z |\n|---|---|---|---|---|---|---|---|---|\n";
+    for closed in closed_forms() {
+        let found = traced(&mut gpu, &closed.scene, closed.bounces)?;
+        let bounces = bounce::light(&closed.scene, closed.bounces, FINENESS)?;
+        let last = bounces.last().map_or(&[][..], Vec::as_slice);
+        add(&mut page, closed_row(&closed, &found, last));
+    }
+    Ok((page, wrong))
+}
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let [device] = args.as_slice() else {
+        eprintln!("usage: reference DEVICE");
+        return ExitCode::from(2);
+    };
+    let written = measure(device).and_then(|(page, wrong)| {
+        files::write_text(Path::new("docs/reference.md"), &page).map(|()| wrong)
+    });
+    match written {
+        Ok(wrong) => {
+            wrong.iter().for_each(|row| eprintln!("reference: beyond its bound: {row}"));
+            if wrong.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        }
+        Err(error) => {
+            eprintln!("reference: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
