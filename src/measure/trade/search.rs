@@ -201,18 +201,22 @@ impl Search {
 
     /// What a place is expected to have: the nearest measured one's value, changed as each knob that
     /// differs changes it at the start. Costs multiply; squares of errors add, as those of
-    /// independent causes do.
+    /// independent causes do. Nearest are those whose every difference was seen at the start.
     pub fn predicted(&self, place: usize) -> Value {
+        let alone = |knob: usize, i: usize| self.alone(knob, self.steps[i][knob]);
         let near = self.measured.iter().copied().min_by_key(|&i| {
-            (self.differing(i, place).count(), self.distance(i, place), usize::MAX - i)
+            let unseen = self
+                .differing(i, place)
+                .filter(|&knob| alone(knob, i).is_none() || alone(knob, place).is_none());
+            let differing = self.differing(i, place).count();
+            (unseen.count(), differing, self.distance(i, place), usize::MAX - i)
         });
         let Some((near, value)) = near.and_then(|i| Some((i, self.values[i]?))) else {
             return Value { cost: 0.0, error: self.floor };
         };
         let (mut cost, mut squared) = (value.cost, value.error.powi(2));
         for knob in self.differing(near, place) {
-            let at = |i: usize| self.alone(knob, self.steps[i][knob]);
-            if let (Some(from), Some(to)) = (at(near), at(place)) {
+            if let (Some(from), Some(to)) = (alone(knob, near), alone(knob, place)) {
                 cost *= to.cost / from.cost.max(f64::MIN_POSITIVE);
                 squared += to.error.powi(2) - from.error.powi(2);
             }
