@@ -105,7 +105,7 @@ impl Report<'_> {
         let open = self.not_tried();
         let skipped: usize = self.skipped().iter().map(|g| g.places.len()).sum();
         let mut text = format!(
-            "Of {} settings {} were measured; {skipped} were ruled out or given up",
+            "Of {} settings {} were measured, {skipped} ruled out or given up",
             self.places.len(),
             self.walk.points.len()
         );
@@ -118,14 +118,14 @@ impl Report<'_> {
         text += &match open.first() {
             None => "; none were left.".to_owned(),
             Some(best) if promising > 0 => format!(
-                "; {} were not tried for want of time, {promising} of which are expected beyond the \
+                ", {} not tried for want of time, {promising} of which are expected beyond the \
                  frontier, farthest {} ({}): a larger --budget may find better.",
                 open.len(),
                 self.flags(*best),
                 self.expected_text(*best)
             ),
             Some(_) => format!(
-                "; {} were not tried for want of time, none of which is expected beyond the frontier.",
+                ", {} not tried for want of time, none of which is expected beyond the frontier.",
                 open.len()
             ),
         };
