@@ -10,6 +10,7 @@ mod report;
 mod rig;
 mod truth;
 mod walk;
+mod why;
 
 use std::path::Path;
 use std::time::Duration;
