@@ -15,7 +15,7 @@ use crate::setup::{self, Outcome};
 const LEAST_BATCHES: u32 = 8;
 
 /// Batches between two looks at the error.
-const BATCHES_A_LOOK: u32 = 8;
+const BATCHES_A_LOOK: u32 = 4;
 
 /// Whether a signal is to end the tracing, not the program.
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
@@ -94,8 +94,10 @@ fn scene(args: &ReferenceArgs) -> Result<Scene> {
 
 /// What the paths have come to.
 struct Traced {
+    /// Of every sample; an interrupted one may have reached some rows more.
     batches: u32,
     radiance: Vec<[f32; 3]>,
+    /// From the spread between batches.
     standard_error: Vec<[f32; 3]>,
     /// Root of the mean squared standard error over the mean radiance.
     error: f64,
@@ -109,7 +111,8 @@ fn trace(
     gpu: &mut Headless,
     frame: &mut Frame,
 ) -> Result<Traced> {
-    let last = frame.plan().passes.len() - 1;
+    let passes = frame.plan().passes.iter().enumerate();
+    let bands: Vec<usize> = passes.filter(|(_, p)| p.name() == "path_trace").map(|b| b.0).collect();
     let wanted = args.spp.div_ceil(REFERENCE_BATCH).max(2);
     let progress = crate::render::progress(args.global.quiet, "tracing");
     let mut times = gpu.draw(frame)?;
@@ -130,15 +133,24 @@ fn trace(
             let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
             if batches >= wanted || interrupted || enough {
                 progress.finish_and_clear();
-                none_lost(gpu, frame)?;
+                if let Some(lost) = frame.plan().find("lost_rays") {
+                    none_lost(gpu.read(frame, lost)?[0])?;
+                }
                 return Ok(Traced { batches, radiance, standard_error, error, times });
             }
         }
-        let more = gpu.draw_passes(frame, &[last])?;
-        for (sum, one) in times.iter_mut().rev().zip(&more) {
-            sum.ns += one.ns;
+        for &band in &bands {
+            let more = gpu.draw_passes(frame, &[band])?;
+            if let (Some(sum), Some(one)) = (times.get_mut(band), more.first()) {
+                sum.ns += one.ns;
+            }
+            if batches >= 2 && WAS_INTERRUPTED.load(Ordering::SeqCst) {
+                break;
+            }
         }
-        batches += 1;
+        if batches < 2 || !WAS_INTERRUPTED.load(Ordering::SeqCst) {
+            batches += 1;
+        }
     }
 }
 
@@ -162,11 +174,10 @@ fn relative(scene: &Scene, radiance: &[[f32; 3]], standard_error: &[[f32; 3]]) -
 }
 
 /// Rays that were given up would be missing from the light.
-fn none_lost(gpu: &mut Headless, frame: &Frame) -> Result<()> {
-    let Some(lost) = frame.plan().find("lost_rays") else { return Ok(()) };
-    match gpu.read(frame, lost)?.first() {
-        None | Some(0) => Ok(()),
-        Some(count) => Err(Error::Device {
+fn none_lost(count: u32) -> Result<()> {
+    match count {
+        0 => Ok(()),
+        _ => Err(Error::Device {
             doing: "tracing paths".into(),
             reason: format!("{count} rays took more steps than a field can ask for"),
         }),
@@ -186,6 +197,8 @@ fn write(
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());
+    let unmet = plan::unmet_error(scene, args.bounces, traced.batches * REFERENCE_BATCH);
+    add("unmet_standard_error", unmet.map(|v| v.to_string()).join(","));
     for (i, ball) in scene.lights.spheres.iter().enumerate() {
         let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
         add(&format!("light{}", i + 1), format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m));
@@ -206,5 +219,17 @@ fn write(
     match &args.global.json {
         Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lost_rays_are_an_error() {
+        assert!(none_lost(0).is_ok());
+        let said = none_lost(3).unwrap_err().to_string();
+        assert!(said.contains("3 rays took more steps"), "{said}");
     }
 }
