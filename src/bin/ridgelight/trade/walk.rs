@@ -16,7 +16,7 @@ use crate::setup;
 /// Share of the budget that one setting may take.
 const DEAREST: f64 = 0.1;
 /// Share that is kept for timing what is recommended again, and moving its hull.
-const KEPT: f64 = 0.15;
+pub const KEPT: f64 = 0.15;
 
 /// What a walk has found.
 pub struct Walk {
