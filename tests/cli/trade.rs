@@ -212,12 +212,15 @@ fn gpu_trade_of_a_small_field() {
     }
     let why = report["recommendation"]["why"].as_array().unwrap();
     let why: Vec<&str> = why.iter().map(|w| w.as_str().unwrap()).collect();
-    for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured", "hull"]
-    {
+    for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured"] {
         assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
     }
+    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep.
     let hulls = report["hulls"].as_array().unwrap();
-    assert!(hulls.len() == 3 && hulls.iter().any(|h| h["time_ratio"].is_number()), "{hulls:?}");
+    let has_hull = !["brute", "exact"].iter().any(|w| point["flags"].as_str().unwrap().contains(w));
+    assert_eq!(hulls.len(), if has_hull { 3 } else { 0 }, "{hulls:?}");
+    assert_eq!(hulls.iter().any(|h| h["time_ratio"].is_number()), has_hull, "{hulls:?}");
+    assert_eq!(why.iter().any(|w| w.contains("Where the hull lives")), has_hull, "{why:?}");
     for knob in report["knobs"].as_array().unwrap() {
         let steps = knob["cheap_to_dear"].as_array().unwrap();
         assert!(steps.contains(&knob["default"]) && !knob["dearer"].as_str().unwrap().is_empty());

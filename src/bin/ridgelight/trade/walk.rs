@@ -212,7 +212,10 @@ fn visit(
         point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
     }
     walk.points.push(point);
-    for point in walk.points.iter_mut().filter(|p| !front.contains(&p.place)) {
+    // The baseline is not measured again should it come up later: it keeps its own.
+    let baseline = walk.baseline;
+    let is_off = |p: &&mut Point| !front.contains(&p.place) && p.place != baseline;
+    for point in walk.points.iter_mut().filter(is_off) {
         point.pictures = None;
     }
     Ok(())
