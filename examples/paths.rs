@@ -123,17 +123,26 @@ fn colours(texels: &[[f32; 4]]) -> Vec<f32> {
 }
 
 /// One row of the table.
-fn row(gpu: &mut Headless, name: &str, scene: &Scene, bounces: u32, truth: u32) -> Result<String> {
+fn row(
+    gpu: &mut Headless,
+    name: &str,
+    scene: &Scene,
+    bounces: u32,
+    most_paths: u32,
+) -> Result<String> {
     let cols = 3 * scene.field.cols();
     let samples = (scene.field.rows() * scene.field.cols()) as f64;
     let (truth, truth_error) = traced(gpu, scene, (bounces, 2), |tracer| {
-        for _ in 1..truth.div_ceil(REFERENCE_BATCH).max(2) {
+        for _ in 1..most_paths.div_ceil(REFERENCE_BATCH).max(2) {
             tracer.add()?;
         }
         Ok((colours(&tracer.output(0)?), colours(&tracer.output(1)?)))
     })?;
     let none = vec![0.0_f32; truth.len()];
     let mean = ImageError::of(&truth, &none, cols)?.mean_shift;
+    if mean <= 0.0 {
+        return Err(Error::setting(name, "no light", "light to follow"));
+    }
     let truth_error = ImageError::of(&truth_error, &none, cols)?.rmse / mean;
     traced(gpu, scene, (bounces, 1), |tracer| {
         // Once more, now that it is compiled.
@@ -143,6 +152,13 @@ fn row(gpu: &mut Headless, name: &str, scene: &Scene, bounces: u32, truth: u32) 
         let mut batches = 1;
         let mut reached = None;
         while reached.is_none() || spent_s < LEAST_S {
+            if batches * REFERENCE_BATCH > most_paths {
+                return Err(Error::Limit {
+                    what: format!("1 % in {name}"),
+                    needs: format!("more than {most_paths} paths a sample"),
+                    limit: "those of its truth (--truth)".into(),
+                });
+            }
             if reached.is_none() {
                 let light = colours(&tracer.output(0)?);
                 let both = ImageError::of(&light, &truth, cols)?.relative_rmse;

@@ -77,7 +77,10 @@ Met trace(Ray ray, float t_end, bool going) {
     }
     // From here on a rising ray is over everything.
     float t_over = ray.rise > 0.0 ? max(highest_m - ray.own, 0.0) / ray.rise : 1e30;
-    t_end = min(t_end, min(t_over, REACH_CELLS));
+    t_end = min(t_end, t_over);
+    if (BORDER == BORDER_PERIODIC) {
+        t_end = min(t_end, REACH_CELLS);
+    }
     bool hit = false;
     going = going && !leaves && t_end > 0.0;
     float t = 0.0;

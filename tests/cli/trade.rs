@@ -258,6 +258,10 @@ fn gpu_trade_against_a_reference() {
     assert!(why.contains("--max-error"), "{why}");
     let (run, report) = trade("--time-budget 1e-6");
     assert_eq!((run.status, &report["recommendation"]["holds"]), (Some(1), &false.into()));
+    let why = report["recommendation"]["why"][0].as_str().unwrap();
+    let told = why.split(" ms of --time-budget").next().and_then(|w| w.rsplit(' ').next());
+    let told: f64 = told.unwrap().parse().expect(why);
+    assert!((told / 1e-6 - 1.0).abs() < 0.01, "{why}");
     // Another field's truth is refused, and nothing is written.
     let before = folder.contents();
     let args = "trade a.asc -o other --reference truth.exr";

@@ -20,7 +20,7 @@ pub struct ReferenceArgs {
     /// Times that light may be reflected on its way to the sample, 0..64; 0 is direct light alone
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
     pub bounces: u32,
-    /// Ends before --spp once the standard error's rms is below this share of the mean radiance, after
+    /// Ends before --spp once the standard error, that of light not yet met too, is below this share of the mean, after
     /// 512 paths at the earliest (0.01 is 1 %)
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub until_error: Option<f64>,

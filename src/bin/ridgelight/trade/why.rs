@@ -34,7 +34,7 @@ impl Report<'_> {
             (Rule::MaxCost(most), false) => {
                 format!(
                     "Nothing measured is within the {} of --time-budget: this is the fastest.",
-                    ms(most)
+                    time(most)
                 )
             }
         });
