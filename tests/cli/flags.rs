@@ -163,8 +163,6 @@ fn not_yet() {
             ("--level-step 2", 2, &["--level-step", "not yet"]),
             ("--level-offset 1", 2, &["--level-offset", "not yet"]),
             ("--basis sh", 2, &["--basis", "not yet"]),
-            ("--max-error 0.01", 2, &["--max-error", "not yet"]),
-            ("--time-budget 5", 2, &["--time-budget", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
             ("--seed 1", 2, &["--seed", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),

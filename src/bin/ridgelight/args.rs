@@ -1,5 +1,6 @@
 //! What can be asked for, and how it is spelled.
 
+mod auto;
 mod compare;
 mod reference;
 
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub use auto::AutoArgs;
 pub use compare::CompareArgs;
 pub use reference::ReferenceArgs;
 
@@ -63,6 +65,8 @@ pub struct RenderArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
+    #[command(flatten)]
+    pub auto: AutoArgs,
     /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation)
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,
@@ -320,10 +324,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     basis: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    max_error: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    time_budget: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     seed: Option<String>,
@@ -343,8 +343,6 @@ impl LaterArgs {
             ("--level-step", self.level_step.as_ref()),
             ("--level-offset", self.level_offset.as_ref()),
             ("--basis", self.basis.as_ref()),
-            ("--max-error", self.max_error.as_ref()),
-            ("--time-budget", self.time_budget.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--seed", self.seed.as_ref()),
             ("--camera", self.camera.as_ref()),

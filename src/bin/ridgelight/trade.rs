@@ -26,6 +26,8 @@ use report::Report;
 use rig::Rig;
 use truth::Truth;
 
+pub use truth::{digits, percent};
+
 /// Share of the budget that one setting may take.
 const DEAREST: f64 = 0.1;
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use ridgelight::cpu::{light, oracle::Oracle};
 use ridgelight::files::{self, Planes};
 use ridgelight::measure::error::ImageError;
-use ridgelight::scene::{Albedo, Fuse, HeightField, Lines, Method, Quality, Scene};
+use ridgelight::scene::{Fuse, HeightField, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::rig::Rig;
@@ -202,7 +202,10 @@ impl Truth {
         let probe = |first: usize| {
             let mine = places.iter().skip(first).step_by(threads).enumerate();
             mine.take_while(|(i, _)| i * threads < FEWEST_PROBES || begun.elapsed() < most)
-                .map(|(_, &i)| (i, light_at(&oracle, scene, i / self.cols, i % self.cols)))
+                .map(|(_, &i)| {
+                    let (row, col) = (i / self.cols, i % self.cols);
+                    (i, light::scene_of(&oracle, scene, row, col, TRUE_AZIMUTHS, TRUE_STRIPS))
+                })
                 .collect::<Vec<_>>()
         };
         let probed: Vec<(usize, [f64; 3])> = std::thread::scope(|scope| {
@@ -221,27 +224,6 @@ impl Truth {
         let rmse = (squares / values).sqrt();
         (probed.len(), if rmse == 0.0 { 0.0 } else { rmse / (sum / values) })
     }
-}
-
-/// Exit radiance by the oracle, linear RGB.
-fn light_at(oracle: &Oracle, scene: &Scene, row: usize, col: usize) -> [f64; 3] {
-    let mut all = [0.0; 3];
-    let mut add = |light: [f64; 3]| all.iter_mut().zip(light).for_each(|(a, l)| *a += l);
-    if let Some(sky) = scene.lights.sky {
-        let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
-        add(sky.map(|c| f64::from(c) * share));
-    }
-    if let Some(environment) = &scene.lights.environment {
-        add(light::environment_of(oracle, row, col, environment));
-    }
-    for sun in &scene.lights.suns {
-        add(light::sun_of(oracle, row, col, sun, TRUE_STRIPS));
-    }
-    let albedo = match &scene.surface.albedo {
-        Albedo::Constant(c) => *c,
-        Albedo::Map(map) => map[row * scene.field.cols() + col],
-    };
-    [0, 1, 2].map(|c| all[c] * f64::from(albedo[c]))
 }
 
 /// All counts of the truth, halved so many times.
