@@ -1,10 +1,16 @@
 //! The fit: each part of the error measured alone, least squares on logarithms.
 
-use super::{Asked, FEATURES, Headless, PARTS, Part, Quality, Result, Scene, Statistics};
-use super::{Fuse, Lines, Method, distance, draw, scenes};
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::measure::auto::{FEATURES, PARTS, Part, Statistics};
+use ridgelight::measure::error::ImageError;
+use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
+
+use super::device::draw;
+use super::{Asked, scenes};
 
 /// Added to the squares of the normal equations' features (not of bias and power): as if each weight
-/// had been seen to be 0 once, with a spread of 1. Features are of order 1, scenes some 18.
+/// had been seen to be 0 once, with a spread of 1. Features are of order 1, scenes 24.
 const RIDGE: f64 = 1.0;
 
 const LINES: [Lines; 5] =
@@ -56,7 +62,8 @@ fn measure(gpu: &mut Headless, scene: &Scene, part: Part) -> Result<Vec<(Quality
     let mut seen = Vec::new();
     for quality in all {
         let planes = draw(gpu, scene, &quality, 0)?.planes;
-        seen.push((quality, distance(&planes, &truth, scene.field.cols())?));
+        let off = ImageError::of(&planes.concat(), &truth.concat(), scene.field.cols())?;
+        seen.push((quality, off.relative_rmse));
     }
     Ok(seen)
 }
@@ -111,6 +118,11 @@ fn least_squares(seen: &[Seen], known: Option<f64>) -> (Vec<f64>, f64) {
 
 pub fn fit(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let all = scenes(asked)?;
+    println!(
+        "// {}, middle {}² of each field, the half that is fitted",
+        gpu.report().name,
+        asked.side
+    );
     let mut seen: [Vec<Seen>; 4] = Default::default();
     let mut geometry = [[0.0; 5]; 2];
     let mut fields = 0.0_f64;

@@ -7,7 +7,7 @@
 //! A cos²ω + B sin ω cos ω: see [`slice()`]. A Phong lobe has its own: see [`Receiver`].
 
 use super::oracle::Oracle;
-use crate::scene::{Albedo, Border, Environment, HeightField, Scene, Sun};
+use crate::scene::{Border, Environment, HeightField, Sun};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -116,8 +116,8 @@ impl Receiver {
 /// One azimuth at one receiver: N·e (or r·e) = a cos ω + b sin ω, and the elevation of the plane of N.
 #[derive(Clone, Copy)]
 pub(super) struct Slice {
-    a: f64,
-    b: f64,
+    pub(super) a: f64,
+    pub(super) b: f64,
     pub(super) low: f64,
     exponent: Option<f64>,
 }
@@ -163,7 +163,13 @@ const GAUSS_4: [(f64, f64); 4] = [
 ];
 
 /// One azimuth at one sample: what arrives above its horizon.
-fn lit(oracle: &Oracle, row: usize, col: usize, receiver: Receiver, azimuth_rad: f64) -> Slice {
+pub(super) fn lit(
+    oracle: &Oracle,
+    row: usize,
+    col: usize,
+    receiver: Receiver,
+    azimuth_rad: f64,
+) -> Slice {
     receiver.slice(azimuth_rad).above(oracle.elevation_rad(row, col, azimuth_rad))
 }
 
@@ -304,37 +310,6 @@ pub(super) fn sun_on(
         lit.map(|l| l.at(sun.elevation_rad)).collect()
     };
     shares.iter().map(|share| sun.irradiance.map(|e| f64::from(e) * share / PI)).collect()
-}
-
-/// Exit radiance of a sample under sky, environment and suns together, its albedo counted, linear RGB:
-/// a sky in so many `azimuths`, each sun in so many `strips`.
-///
-/// # Panics
-/// When `row` or `col` lies outside the field.
-pub fn scene_of(
-    oracle: &Oracle,
-    scene: &Scene,
-    row: usize,
-    col: usize,
-    azimuths: usize,
-    strips: usize,
-) -> [f64; 3] {
-    let lights = &scene.lights;
-    let sky = lights.sky.map(|colour| {
-        let share = sky_of(oracle, row, col, azimuths);
-        colour.map(|c| f64::from(c) * share)
-    });
-    let environment = lights.environment.as_ref().map(|e| environment_of(oracle, row, col, e));
-    let suns = lights.suns.iter().map(|s| sun_of(oracle, row, col, s, strips));
-    let albedo = match &scene.surface.albedo {
-        Albedo::Constant(c) => *c,
-        Albedo::Map(map) => map[row * scene.field.cols() + col],
-    };
-    let mut all = [0.0; 3];
-    for light in sky.into_iter().chain(environment).chain(suns) {
-        (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
-    }
-    all
 }
 
 /// The diffuse receiver of a sample.

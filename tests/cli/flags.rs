@@ -164,7 +164,6 @@ fn not_yet() {
             ("--level-offset 1", 2, &["--level-offset", "not yet"]),
             ("--basis sh", 2, &["--basis", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
-            ("--seed 1", 2, &["--seed", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),
         ],
     );

@@ -326,8 +326,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    seed: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     camera: Option<String>,
 }
 
@@ -344,7 +342,6 @@ impl LaterArgs {
             ("--level-offset", self.level_offset.as_ref()),
             ("--basis", self.basis.as_ref()),
             ("--scene", self.scene.as_ref()),
-            ("--seed", self.seed.as_ref()),
             ("--camera", self.camera.as_ref()),
         ];
         match given.into_iter().find_map(|(name, value)| Some((name, value?))) {

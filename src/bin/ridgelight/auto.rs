@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Headless, Timing};
-use ridgelight::measure::auto::{self, Chosen, Drawn, Goal, Probes};
+use ridgelight::measure::auto::{self, Chosen, Drawn, Goal, Measured, Probes};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Hull, Quality, Scene};
 use ridgelight::{Error, Result};
@@ -12,9 +12,6 @@ use crate::args::AutoArgs;
 use crate::setup;
 use crate::trade::{digits, percent};
 
-/// Probing takes about this long.
-const PROBING: Duration = Duration::from_secs(1);
-const SEED: u64 = 1;
 /// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
 const DRAWS: usize = 3;
 const TIMING: Duration = Duration::from_secs(2);
@@ -36,14 +33,15 @@ pub fn choose(
     gpu: &mut Headless,
     limits: &Limits,
     scene: &Scene,
-    goal: Goal,
+    (goal, seed): (Goal, u32),
     hull: Hull,
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
     let contents = setup::contents(scene);
     let mut drawn = 0;
     bar.set_message("choosing settings: exact light at some samples");
-    let mut chosen = auto::choose(scene, goal, (PROBING, SEED), |quality| {
+    let probes = Probes::of(scene, Probes::affordable(scene), u64::from(seed))?;
+    let mut chosen = auto::choose(scene, goal, &probes, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality)));
         draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)
@@ -62,11 +60,9 @@ fn draw(
     let plan =
         plan::picture(scene, quality, limits, Picture { still: true, ..Picture::default() })?;
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let mut frame = gpu.frame(plan, &contents)?;
-    let timed = timed(gpu, &mut frame);
-    let pixels = timed.and_then(|times| Ok((times, gpu.pixels(&frame, 0)?)));
-    gpu.end(frame);
-    let (times, pixels) = pixels?;
+    let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
+    })?;
     let stride = pixels.channels;
     let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
         .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())
@@ -97,16 +93,19 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
 
 /// For metadata and --json.
 pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
-    let goal = match goal {
+    let asked = match goal {
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
     };
     let tried = chosen.trials.iter().map(|t| {
-        format!("{}: {}, {:.3} ms", auto::flags(&t.quality), percent(t.measured.error), t.ns / 1e6)
+        let holds = if goal.is_reached(t) { "holds" } else { "does not hold" };
+        let Measured { error, at_most } = t.measured;
+        let error = format!("{} (at most {})", percent(error), percent(at_most));
+        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality), t.ns / 1e6)
     });
     let measured = &chosen.trial.measured;
     [
-        goal,
+        asked,
         ("error_expected", chosen.expected.error.to_string()),
         ("error_expected_within_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),
@@ -119,10 +118,11 @@ pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
     .to_vec()
 }
 
-/// For people.
-pub fn sentence(chosen: &Chosen) -> String {
+/// For people: what was chosen and its error; then, where settings were drawn that do not reach the
+/// goal, that it went on from them.
+pub fn sentences(goal: Goal, chosen: &Chosen) -> Vec<String> {
     let Chosen { trial, expected, probes, trials } = chosen;
-    format!(
+    let mut all = vec![format!(
         "{}: expected {} (within a factor of {}), measured {}, at most {} with {:.0} % confidence \
          ({probes} probes); {} settings tried",
         auto::flags(&trial.quality),
@@ -132,5 +132,18 @@ pub fn sentence(chosen: &Chosen) -> String {
         percent(trial.measured.at_most),
         100.0 * Probes::CONFIDENCE,
         trials.len()
-    )
+    )];
+    let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
+    if let Some(last) = missed.last() {
+        let (went, by) = match goal {
+            Goal::MaxError(_) => ("dearer", format!("at most {}", percent(last.measured.at_most))),
+            Goal::MaxCost(_) => ("cheaper", format!("{} ms", digits(last.ns / 1e6))),
+        };
+        all.push(format!(
+            "went {went}: {} of them did not hold, the last {} ({by})",
+            missed.len(),
+            auto::flags(&last.quality)
+        ));
+    }
+    all
 }

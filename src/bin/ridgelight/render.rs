@@ -53,7 +53,14 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let progress = progress(args.global.quiet, "lighting");
     let mut chosen = None;
     if let Some(goal) = goal {
-        let found = auto::choose(&mut gpu, &limits, &scene, goal, quality.hull, &progress)?;
+        let found = auto::choose(
+            &mut gpu,
+            &limits,
+            &scene,
+            (goal, args.auto.seed),
+            quality.hull,
+            &progress,
+        )?;
         quality = found.trial.quality;
         chosen = Some((goal, found));
         progress.set_message("lighting");
@@ -105,8 +112,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             args.output.display(),
             gpu.report().name
         );
-        if let Some((_, chosen)) = &chosen {
-            crate::say!("{}", auto::sentence(chosen));
+        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c)) {
+            crate::say!("{sentence}");
         }
     }
     Ok(Outcome::Done)

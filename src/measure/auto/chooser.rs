@@ -1,6 +1,6 @@
 //! Which settings to draw next, and which to take.
 
-use super::model::{Costs, Model, PARTS, Part};
+use super::model::{Costs, Model, Part, spacing};
 use super::probes::Measured;
 use super::statistics::Statistics;
 use crate::scene::{Fuse, Lines, Method, Quality, Scene};
@@ -17,10 +17,11 @@ const TRIALS: usize = 16;
 /// What a further frame must be expected to save of the cost or to take off the error, in ln.
 const WORTH: f64 = 0.05;
 /// How much more accurate than what is asked for the control should be, and at least is, unless so many
-/// frames were not.
+/// frames were not; and how much dearer it may be than what is expected to hold.
 const CONTROL: f64 = 3.0;
 const COARSEST_CONTROL: f64 = 2.0;
 const CONTROLS: usize = 3;
+const DEAREST_CONTROL: f64 = 6.0;
 
 /// What settings are chosen for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,16 @@ pub enum Goal {
     MaxError(f64),
     /// The most accurate of at most so many nanoseconds a frame, above 0.
     MaxCost(f64),
+}
+
+impl Goal {
+    /// Whether settings that were drawn reach it: an error by its bound, not by its estimate.
+    pub fn is_reached(&self, trial: &Trial) -> bool {
+        match self {
+            Goal::MaxError(most) => trial.measured.at_most <= *most,
+            Goal::MaxCost(most) => trial.ns <= *most,
+        }
+    }
 }
 
 /// Settings that were drawn.
@@ -98,7 +109,7 @@ impl<'a> Chooser<'a> {
     fn next_within(&self, most: f64) -> Option<Quality> {
         let is_controlled = self.trials.iter().any(|t| t.measured.error <= most / COARSEST_CONTROL);
         if !is_controlled && self.trials.len() < CONTROLS {
-            return self.cheapest_within(most / CONTROL).or_else(|| self.most_accurate());
+            return self.control(most);
         }
         let most = most / self.doubt();
         let Some(best) = self.best() else {
@@ -113,6 +124,16 @@ impl<'a> Chooser<'a> {
         let gains = self.open().map(|q| (gain(q), q));
         let (gain, next) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
         (gain > WORTH).then_some(*next)
+    }
+
+    /// A frame to hold others against: finer than the goal, where that is not too dear.
+    fn control(&self, most: f64) -> Option<Quality> {
+        let Some(holds) = self.cheapest_within(most) else { return self.most_accurate() };
+        let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
+        self.cheapest_within(most / CONTROL).filter(affordable).or_else(|| {
+            let all = self.open().filter(|q| affordable(q));
+            all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
+        })
     }
 
     /// Takes a frame in: its error on the probes, nanoseconds by label of each pass.
@@ -132,17 +153,12 @@ impl<'a> Chooser<'a> {
 
     /// Of what was drawn, that which reaches the goal best; none where nothing reaches it.
     pub fn best(&self) -> Option<&Trial> {
+        let reached = self.trials.iter().filter(|t| self.goal.is_reached(t));
         match self.goal {
-            Goal::MaxError(most) => self
-                .trials
-                .iter()
-                .filter(|t| t.measured.at_most <= most)
-                .min_by(|a, b| a.ns.total_cmp(&b.ns)),
-            Goal::MaxCost(most) => self
-                .trials
-                .iter()
-                .filter(|t| t.ns <= most)
-                .min_by(|a, b| a.measured.error.total_cmp(&b.measured.error)),
+            Goal::MaxError(_) => reached.min_by(|a, b| a.ns.total_cmp(&b.ns)),
+            Goal::MaxCost(_) => {
+                reached.min_by(|a, b| a.measured.error.total_cmp(&b.measured.error))
+            }
         }
     }
 
@@ -176,13 +192,11 @@ impl<'a> Chooser<'a> {
     fn open(&self) -> impl Iterator<Item = &Quality> {
         self.candidates.iter().filter(|q| {
             self.trials.iter().all(|t| {
-                t.quality != **q
-                    && match self.goal {
-                        Goal::MaxError(most) => {
-                            t.measured.at_most <= most || !is_finer(&t.quality, q)
-                        }
-                        Goal::MaxCost(most) => t.ns <= most || !is_finer(q, &t.quality),
-                    }
+                let misses_too = match self.goal {
+                    Goal::MaxError(_) => is_finer(&t.quality, q),
+                    Goal::MaxCost(_) => is_finer(q, &t.quality),
+                };
+                t.quality != **q && (self.goal.is_reached(t) || !misses_too)
             })
         })
     }
@@ -208,8 +222,8 @@ fn normal(deviations: f64) -> f64 {
 fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
     let numbers = |q: &Quality| {
         [
-            LINES.iter().position(|l| *l == q.lines).unwrap_or(LINES.len()) as u32,
-            u32::from(q.fuse == Fuse::Aimed),
+            spacing(q) as u32,
+            u32::from(q.fuse == Fuse::Aimed || spacing(q) == LINES.len()),
             q.azimuths,
             q.table_elevations,
             q.sun_azimuths,
@@ -218,36 +232,34 @@ fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
     numbers(fine).iter().zip(numbers(coarse)).all(|(f, c)| *f >= c)
 }
 
-/// Every combination of what changes how a scene is lit.
+/// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
+/// exact: along grid vectors, of suns by brute force.
 fn candidates(scene: &Scene) -> Vec<Quality> {
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
     let plain = Quality { method: Method::Sweep, ..Quality::default() };
-    let [_, azimuths, tables, strips] = PARTS.map(|part| match part {
-        Part::Geometry => Vec::new(),
-        Part::Azimuths => of(part, &AZIMUTHS, plain.azimuths),
-        Part::Table => of(part, &TABLES, plain.table_elevations),
-        Part::Strips => of(part, &STRIPS, plain.sun_azimuths),
-    });
-    let mut all = Vec::new();
+    let exact = match scene.lights.suns.is_empty() {
+        true => Quality { lines: Lines::Exact, ..plain },
+        false => Quality { method: Method::Brute, ..plain },
+    };
+    let mut all = vec![exact];
     for lines in LINES {
-        for fuse in FUSES {
-            for &azimuths in &azimuths {
-                for &table_elevations in &tables {
-                    for &sun_azimuths in &strips {
-                        all.push(Quality {
-                            lines,
-                            fuse,
-                            azimuths,
-                            table_elevations,
-                            sun_azimuths,
-                            ..plain
-                        });
-                    }
-                }
-            }
-        }
+        all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
     }
-    all
+    let times = |all: Vec<Quality>, values: Vec<u32>, set: fn(&mut Quality, u32)| {
+        let with = |quality: Quality| {
+            values.iter().map(move |v| {
+                let mut quality = quality;
+                set(&mut quality, *v);
+                quality
+            })
+        };
+        all.into_iter().flat_map(with).collect::<Vec<_>>()
+    };
+    all = times(all, of(Part::Azimuths, &AZIMUTHS, plain.azimuths), |q, v| q.azimuths = v);
+    all = times(all, of(Part::Table, &TABLES, plain.table_elevations), |q, v| {
+        q.table_elevations = v;
+    });
+    times(all, of(Part::Strips, &STRIPS, plain.sun_azimuths), |q, v| q.sun_azimuths = v)
 }

@@ -3,7 +3,7 @@
 
 use super::fitted::{FITTED, GEOMETRY};
 use super::statistics::Statistics;
-use crate::scene::{Fuse, Lines, Quality, Scene};
+use crate::scene::{Fuse, Lines, Method, Quality, Scene};
 
 /// Logarithms of a scene's statistics that the parts are fitted on.
 pub const FEATURES: usize = 8;
@@ -39,7 +39,10 @@ impl Part {
     pub fn fineness(self, quality: &Quality) -> f64 {
         let finer = |value: u32, default: u32| (f64::from(value) / f64::from(default)).ln();
         match self {
-            Part::Geometry => -GEOMETRY[usize::from(quality.fuse == Fuse::Aimed)][spacing(quality)],
+            Part::Geometry => {
+                let table = GEOMETRY[usize::from(quality.fuse == Fuse::Aimed)];
+                table.get(spacing(quality)).map_or(EXACT_FINENESS, |ln| -ln)
+            }
             Part::Azimuths => finer(quality.azimuths, 64),
             Part::Table => finer(quality.table_elevations, 256),
             Part::Strips => finer(quality.sun_azimuths, 8),
@@ -53,19 +56,24 @@ impl Part {
             Part::Geometry => true,
             Part::Azimuths => lights.sky.is_some() || lights.environment.is_some(),
             Part::Table => lights.environment.is_some(),
-            Part::Strips => lights.suns.iter().any(|s| s.diameter_rad > 0.0),
+            Part::Strips => lights.suns.iter().any(|s| !s.is_point()),
         }
     }
 }
 
-/// Number of the spacing of lines, from 4 cells to a quarter.
-fn spacing(quality: &Quality) -> usize {
+/// Of exact horizons: what f32 leaves of the geometry's error, e⁻¹².
+const EXACT_FINENESS: f64 = 12.0;
+
+/// Number of the spacing of lines, from 4 cells to a quarter; then exact horizons.
+pub(super) fn spacing(quality: &Quality) -> usize {
     match quality.lines {
+        _ if quality.method == Method::Brute => 5,
         Lines::FourCells => 0,
         Lines::TwoCells => 1,
         Lines::Cell => 2,
         Lines::HalfCell => 3,
-        Lines::QuarterCell | Lines::Exact => 4,
+        Lines::QuarterCell => 4,
+        Lines::Exact => 5,
     }
 }
 
@@ -155,40 +163,50 @@ impl Model {
 
 /// Nanoseconds of each kind of pass for a unit of its work.
 ///
-/// Work is in proportion to azimuths: relative costs by spacing and fuse are lavapipe's (README's table
-/// of accuracy, ms an azimuth and megasample), and every measured frame sets each kind's own scale.
+/// Work is in proportion to azimuths: relative costs by spacing and fuse are lavapipe's (README's tables
+/// of accuracy and of forms, ms an azimuth and megasample), and every measured frame sets each kind's own
+/// scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Costs {
-    units_ns: [f64; 4],
+    units_ns: [f64; KINDS],
 }
 
+/// Sweeps along lines, exact horizons, shading, tables, all else.
+const KINDS: usize = 5;
+
 const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
-const SHADE: [[f64; 5]; 2] = [[2.16, 2.16, 2.46, 2.91, 4.22], [3.2, 3.35, 3.39, 3.97, 5.35]];
+/// The latter in proportion to the field's side.
+const EXACT: f64 = 171.0;
+const BRUTE: f64 = 4.7;
+const SHADE: [[f64; 6]; 2] =
+    [[2.16, 2.16, 2.46, 2.91, 4.22, 2.12], [3.2, 3.35, 3.39, 3.97, 5.35, 2.12]];
 
 impl Costs {
     /// lavapipe's, before anything is measured, for so many samples.
     pub fn guessed(samples: usize) -> Self {
         let samples = samples as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
-        Self { units_ns: [samples, samples, 67.0, 0.0] }
+        Self { units_ns: [samples, samples, samples, 67.0, 0.0] }
     }
 
-    /// Work of sweeps, shading, tables and all else.
-    fn work(scene: &Scene, quality: &Quality) -> [f64; 4] {
+    fn work(scene: &Scene, quality: &Quality) -> [f64; KINDS] {
         let circle = if Part::Azimuths.is_in(scene) { quality.azimuths } else { 0 };
-        let discs: u32 = scene
-            .lights
-            .suns
-            .iter()
-            .map(|s| if s.diameter_rad > 0.0 { quality.sun_azimuths } else { 1 })
-            .sum();
+        let suns = scene.lights.suns.iter();
+        let discs: u32 = suns.map(|s| if s.is_point() { 1 } else { quality.sun_azimuths }).sum();
         let all = f64::from(circle + discs);
         let table = match &scene.lights.environment {
             Some(_) => f64::from(circle) * f64::from(quality.table_elevations),
             None => 0.0,
         };
-        let fuse = usize::from(quality.fuse == Fuse::Aimed);
-        [all * SWEEP[spacing(quality)], all * SHADE[fuse][spacing(quality)], table, 1.0]
+        let spacing = spacing(quality);
+        let side = scene.field.rows().max(scene.field.cols()) as f64;
+        let [sweep, exact] = match SWEEP.get(spacing) {
+            Some(each) => [*each, 0.0],
+            None if quality.method == Method::Brute => [0.0, BRUTE * side],
+            None => [0.0, EXACT],
+        };
+        let shade = SHADE[usize::from(quality.fuse == Fuse::Aimed)][spacing];
+        [all * sweep, all * exact, all * shade, table, 1.0]
     }
 
     /// Nanoseconds that a frame will take.
@@ -198,13 +216,14 @@ impl Costs {
 
     /// Takes a measured frame in: nanoseconds by label of the pass.
     pub fn learn(&mut self, scene: &Scene, quality: &Quality, passes: &[(String, f64)]) {
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; KINDS];
         for (label, ns) in passes {
             let kind = match label.split([' ', '.']).next().unwrap_or_default() {
                 "horizon_sweep" | "sweep_fuse" => 0,
-                "sky_shade" | "sun_shade" => 1,
-                "env_tables" => 2,
-                _ => 3,
+                "surface_sweep" | "horizon_march" => 1,
+                "sky_shade" | "sun_shade" => 2,
+                "env_tables" => 3,
+                _ => 4,
             };
             sums[kind] += ns;
         }

@@ -1,7 +1,5 @@
 //! Choices on a small field whose pictures the oracle draws: no device, and costs that are made up.
 
-use std::time::Duration;
-
 use super::*;
 use crate::cpu::{light, oracle::Oracle};
 use crate::scene::{HeightField, Lights, Quality, Scene, Surface};
@@ -36,11 +34,14 @@ fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
     })
 }
 
-const PROBING: (Duration, u64) = (Duration::from_secs(60), 7);
+/// Every sample is a probe.
+fn whole(scene: &Scene) -> Probes {
+    Probes::of(scene, SIDE * SIDE, 7).unwrap()
+}
 
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
-    choose(&scene, goal, PROBING, |quality| draw(&scene, quality))
+    choose(&scene, goal, &whole(&scene), |quality| draw(&scene, quality))
 }
 
 /// All samples are probed, so that nothing is left to chance: what is chosen holds, and half of its
@@ -48,8 +49,7 @@ fn chosen(goal: Goal) -> Result<Chosen> {
 #[test]
 fn the_cheapest_that_holds_is_chosen() {
     let scene = scene();
-    let probes = Probes::of(&scene, PROBING.0, 1).unwrap();
-    assert_eq!(probes.len(), SIDE * SIDE);
+    let probes = whole(&scene);
     for most in [0.02, 0.003] {
         let found = chosen(Goal::MaxError(most)).unwrap();
         let Trial { quality, measured, .. } = found.trial;
@@ -66,8 +66,8 @@ fn the_cheapest_that_holds_is_chosen() {
 #[test]
 fn what_nothing_reaches_is_refused() {
     for (goal, says) in [
-        (Goal::MaxError(1e-12), ["--max-error 0.000000000001: needs finer", "at most"]),
-        (Goal::MaxCost(1e6), ["--time-budget 1: needs 8.000 ms", "the limit is 1 ms"]),
+        (Goal::MaxError(1e-12), ["--max-error 0.000000000001: needs finer", "nearest found"]),
+        (Goal::MaxCost(1e6), ["--time-budget 1: needs 8.00 ms", "the limit is 1 ms"]),
     ] {
         let error = chosen(goal).unwrap_err();
         assert!(matches!(error, Error::Limit { .. }), "{error}");
@@ -78,7 +78,7 @@ fn what_nothing_reaches_is_refused() {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
     }
     // A device's own refusal is not one of settings.
-    let broken = choose(&scene(), Goal::MaxError(0.1), PROBING, |_| {
+    let broken = choose(&scene(), Goal::MaxError(0.1), &whole(&scene()), |_| {
         Err(Error::Device { doing: "drawing".into(), reason: "lost".into() })
     });
     assert!(broken.unwrap_err().to_string().contains("lost"));
@@ -93,7 +93,7 @@ fn a_time_budget_is_kept() {
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    let small = choose(&scene, Goal::MaxCost(20e6), PROBING, |quality| {
+    let small = choose(&scene, Goal::MaxCost(20e6), &whole(&scene), |quality| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
@@ -126,7 +126,7 @@ fn expectations_are_monotone_and_learn() {
 #[test]
 fn probes_see_a_wrong_picture_and_controls_help() {
     let scene = scene();
-    let all = Probes::of(&scene, PROBING.0, 1).unwrap();
+    let all = whole(&scene);
     let right = draw(&scene, &Quality { azimuths: 720, ..Quality::default() }).unwrap().planes;
     assert!(all.error(&right, None).at_most < 1e-6);
     let bright: Vec<f32> = right[0].iter().map(|v| 1.1 * v).collect();
@@ -135,7 +135,7 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     let expected = f64::from(0.1 * square.sqrt() / mean);
     let seen = all.error(std::slice::from_ref(&bright), None);
     assert!((seen.error / expected - 1.0).abs() < 1e-3, "{seen:?} {expected}");
-    let few = Probes::of(&scene, Duration::ZERO, 1).unwrap();
+    let few = Probes::of(&scene, 64, 1).unwrap();
     assert_eq!(few.len(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
     let truth = all.error(&rough, None).error;

@@ -4,9 +4,8 @@ use super::chooser::{Chooser, Goal, Trial};
 use super::model::Expected;
 use super::probes::Probes;
 use super::statistics::Statistics;
-use crate::scene::{Quality, Scene};
+use crate::scene::{Lines, Method, Quality, Scene};
 use crate::{Error, Result};
-use std::time::Duration;
 
 /// A frame that was drawn with some settings.
 #[derive(Clone, Debug)]
@@ -30,7 +29,7 @@ pub struct Chosen {
     pub trials: Vec<Trial>,
 }
 
-/// Chooses settings for a goal: `draw` draws the scene with what it is told; probing takes about `most`.
+/// Chooses settings for a goal: `draw` draws the scene with what it is told, `probes` of it judge.
 ///
 /// # Errors
 /// A goal out of range; one that nothing reaches, with the nearest that was; what `draw` answers, but for
@@ -38,7 +37,7 @@ pub struct Chosen {
 pub fn choose(
     scene: &Scene,
     goal: Goal,
-    (most, seed): (Duration, u64),
+    probes: &Probes,
     mut draw: impl FnMut(&Quality) -> Result<Drawn>,
 ) -> Result<Chosen> {
     let (name, bound) = match goal {
@@ -48,7 +47,6 @@ pub fn choose(
     if !(bound > 0.0 && bound.is_finite()) {
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
-    let probes = Probes::of(scene, most, seed)?;
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal);
     let mut control: Option<(f64, Vec<Vec<f32>>)> = None;
     while let Some(quality) = chooser.next() {
@@ -77,14 +75,11 @@ pub fn choose(
 }
 
 fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize) -> Error {
-    let nearest = trials.iter().min_by(|a, b| {
-        let miss = |t: &Trial| match goal {
-            Goal::MaxError(_) => t.measured.at_most,
-            Goal::MaxCost(_) => t.ns,
-        };
-        miss(a).total_cmp(&miss(b))
-    });
-    let Some(nearest) = nearest else {
+    let miss = |t: &Trial| match goal {
+        Goal::MaxError(_) => t.measured.at_most,
+        Goal::MaxCost(_) => t.ns,
+    };
+    let Some(nearest) = trials.iter().min_by(|a, b| miss(a).total_cmp(&miss(b))) else {
         return Error::Limit {
             what: "choosing settings".into(),
             needs: "settings that fit the device".into(),
@@ -97,26 +92,35 @@ fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize) -> Error {
             what: format!("--max-error {most}"),
             needs: "finer settings than are chosen among".into(),
             limit: format!(
-                "a relative RMSE of at most {:.2e} on {probes} probes ({flags})",
-                nearest.measured.at_most
+                "{}, the nearest found ({flags}; measured {}, by {probes} probes)",
+                figures(nearest.measured.at_most),
+                figures(nearest.measured.error)
             ),
         },
         Goal::MaxCost(ns) => Error::Limit {
             what: format!("--time-budget {}", ns / 1e6),
-            needs: format!("{:.3} ms a frame ({flags})", nearest.ns / 1e6),
+            needs: format!("{} ms a frame ({flags})", figures(nearest.ns / 1e6)),
             limit: format!("{} ms", ns / 1e6),
         },
     }
 }
 
+/// Three figures, without an exponent.
+fn figures(x: f64) -> String {
+    let decimals = if x > 0.0 { 2.0 - x.log10().floor() } else { 0.0 };
+    format!("{x:.*}", decimals.clamp(0.0, 12.0) as usize)
+}
+
 /// Settings that are chosen, as the command line spells them.
 pub fn flags(quality: &Quality) -> String {
+    let Quality { azimuths, table_elevations, sun_azimuths, lines, fuse, .. } = quality;
+    let horizons = match (quality.method, lines) {
+        (Method::Brute, _) => "--method brute".to_owned(),
+        (_, Lines::Exact) => "--lines exact".to_owned(),
+        _ => format!("--lines {} --fuse {}", lines.name(), fuse.name()),
+    };
     format!(
-        "--lines {} --fuse {} --azimuths {} --table-elevations {} --sun-azimuths {}",
-        quality.lines.name(),
-        quality.fuse.name(),
-        quality.azimuths,
-        quality.table_elevations,
-        quality.sun_azimuths
+        "{horizons} --azimuths {azimuths} --table-elevations {table_elevations} \
+         --sun-azimuths {sun_azimuths}"
     )
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ridgelight::cpu::{light, oracle::Oracle};
+use ridgelight::cpu::lit::Lit;
 use ridgelight::files::{self, Planes};
 use ridgelight::measure::error::ImageError;
 use ridgelight::scene::{Fuse, HeightField, Lines, Method, Quality, Scene};
@@ -19,9 +19,7 @@ const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
-/// The oracle's: azimuths of the sky, strips across a sun; probes at most, and at least.
-const TRUE_AZIMUTHS: usize = 720;
-const TRUE_STRIPS: usize = 128;
+/// Probes at most, and at least.
 const PROBES: usize = 400;
 const FEWEST_PROBES: usize = 16;
 /// The layer of a reference that holds one standard deviation of its noise.
@@ -190,8 +188,7 @@ impl Truth {
 
     /// Samples all over the field against the oracle: how many, and their relative RMSE.
     fn probe(&self, scene: &Scene, most: Duration) -> (usize, f64) {
-        let (count, oracle) =
-            (self.rows * self.cols, Oracle::new(&scene.field, scene.surface.border));
+        let (count, lit) = (self.rows * self.cols, Lit::of(scene));
         let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
         // Multiples of the golden ratio's share of the field: no two near each other.
         let place = |k: usize| ((k as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize;
@@ -204,7 +201,7 @@ impl Truth {
             mine.take_while(|(i, _)| i * threads < FEWEST_PROBES || begun.elapsed() < most)
                 .map(|(_, &i)| {
                     let (row, col) = (i / self.cols, i % self.cols);
-                    (i, light::scene_of(&oracle, scene, row, col, TRUE_AZIMUTHS, TRUE_STRIPS))
+                    (i, lit.at(row, col))
                 })
                 .collect::<Vec<_>>()
         };

@@ -1,0 +1,287 @@
+//! The half that was not fitted: what was chosen, whether it holds, and what would have been cheapest.
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use ridgelight::files;
+use ridgelight::gpu::Headless;
+use ridgelight::measure::auto::{Chosen, Goal, Measured, Probes, choose, flags};
+use ridgelight::measure::trade::{Rule, Search, Value, knobs, places, recommend};
+use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
+use ridgelight::{Error, Result};
+
+use super::device::{draw, ratio};
+use super::{Asked, scenes};
+
+const ERRORS: [f64; 5] = [0.05, 0.02, 0.01, 0.005, 0.002];
+/// Samples that true errors are told by: others than those that choose, more, and beside a frame that is
+/// as good as any.
+const TRUE_PROBES: usize = 1600;
+const TRUE_SEED: u64 = 99;
+/// Above this the frame of close lines is no control for 0.2 %, and horizons are exact.
+const GOOD: f64 = 0.001;
+
+/// What pictures of a scene are held against.
+struct Truth {
+    probes: Probes,
+    control: Vec<Vec<f32>>,
+    own: Measured,
+    needs_exact: bool,
+}
+
+impl Truth {
+    fn of(gpu: &mut Headless, scene: &Scene) -> Result<Self> {
+        let dense = Quality {
+            method: Method::Sweep,
+            lines: Lines::QuarterCell,
+            fuse: Fuse::Aimed,
+            azimuths: 1024,
+            sun_azimuths: 128,
+            table_elevations: 4096,
+            ..Quality::default()
+        };
+        let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED)?;
+        let control = draw(gpu, scene, &dense, 0)?.planes;
+        let own = probes.error(&control, None);
+        let mut truth = Self { probes, control, own, needs_exact: own.error > GOOD };
+        if truth.needs_exact {
+            let exact = if scene.lights.suns.is_empty() {
+                Quality { lines: Lines::Exact, azimuths: 512, ..dense }
+            } else {
+                Quality { method: Method::Brute, azimuths: 128, sun_azimuths: 64, ..dense }
+            };
+            let control = draw(gpu, scene, &exact, 0)?.planes;
+            let own = truth.probes.error(&control, None);
+            if own.error < truth.own.error {
+                (truth.control, truth.own) = (control, own);
+            }
+        }
+        Ok(truth)
+    }
+
+    fn error(&self, planes: &[Vec<f32>]) -> Measured {
+        self.probes.error(planes, Some(&self.control))
+    }
+}
+
+/// A walk of `trade`: settings with their times and errors.
+fn walked(
+    gpu: &mut Headless,
+    scene: &Scene,
+    truth: &Truth,
+    seconds: f64,
+) -> Result<Vec<(Quality, Value)>> {
+    let start = Quality { method: Method::Sweep, ..Quality::default() };
+    let knobs = knobs(scene);
+    let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
+    let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);
+    let places: Vec<_> =
+        places(&knobs, &start).into_iter().filter(|p| is_walked(&p.quality)).collect();
+    let first = places.iter().position(|p| p.quality == start).expect("the defaults are a place");
+    let mut search = Search::new(places.iter().map(|p| p.steps.clone()).collect(), first, 0.0);
+    let (begun, mut all) = (Instant::now(), Vec::new());
+    while let Some(place) = search.next().filter(|_| begun.elapsed().as_secs_f64() < seconds) {
+        let quality = places[place].quality;
+        let drawn = match draw(gpu, scene, &quality, 1) {
+            Err(Error::Limit { .. } | Error::Setting { .. }) => {
+                search.give_up(place, false);
+                continue;
+            }
+            drawn => drawn?,
+        };
+        let cost = drawn.passes.iter().map(|p| p.1).sum();
+        let value = Value { cost, error: truth.error(&drawn.planes).error };
+        search.measured(place, value);
+        all.push((quality, value));
+    }
+    Ok(all)
+}
+
+/// One error asked for of one scene.
+struct Row {
+    label: String,
+    most: f64,
+    seconds: f64,
+    /// What was chosen and its true error, or why nothing was.
+    found: std::result::Result<(Chosen, Measured), String>,
+    own: Measured,
+    best: Option<Quality>,
+    /// Time over that of the best, where there is one.
+    times: Option<f64>,
+}
+
+impl Row {
+    fn holds(&self) -> bool {
+        self.found.as_ref().is_ok_and(|(_, off)| off.error <= self.most)
+    }
+
+    /// Whether the truth's own bound is on the other side of what was asked.
+    fn is_close(&self) -> bool {
+        let close = |off: &Measured| (off.at_most - off.error) > (off.error - self.most).abs();
+        self.found.as_ref().is_ok_and(|(_, off)| close(off))
+    }
+
+    fn text(&self) -> String {
+        let percent = |x: f64| format!("{:.3}", 100.0 * x);
+        let head = format!("| {} | {} |", self.label, 100.0 * self.most);
+        let (chosen, off) = match &self.found {
+            Ok(found) => found,
+            Err(why) => return format!("{head} refused: {why} | | | | | | | |"),
+        };
+        let Measured { error, at_most } = chosen.trial.measured;
+        format!(
+            "{head} {} | {} ×{:.1} | {} | {} | {} ({}, {}) | {} | {} {} | {} in {:.1} |",
+            flags(&chosen.trial.quality),
+            percent(chosen.expected.error),
+            chosen.expected.factor,
+            percent(error),
+            percent(at_most),
+            percent(off.error),
+            percent(off.at_most - off.error),
+            percent(self.own.error),
+            if self.holds() { "yes" } else { "no" },
+            self.times.map_or("none found".to_owned(), |t| format!("{t:.2}")),
+            self.best.as_ref().map(flags).unwrap_or_default(),
+            chosen.trials.len(),
+            self.seconds
+        )
+    }
+
+    fn json(&self) -> serde_json::Value {
+        let mut row = serde_json::json!({
+            "scene": self.label, "asked": self.most, "seconds": self.seconds,
+            "truth_own_error": self.own.error
+        });
+        match &self.found {
+            Err(why) => row["refused"] = why.as_str().into(),
+            Ok((chosen, off)) => {
+                row["settings"] = flags(&chosen.trial.quality).into();
+                row["expected"] = chosen.expected.error.into();
+                row["measured"] = chosen.trial.measured.error.into();
+                row["at_most"] = chosen.trial.measured.at_most.into();
+                row["probes"] = chosen.probes.into();
+                row["trials"] = chosen.trials.len().into();
+                row["true"] = off.error.into();
+                row["true_at_most"] = off.at_most.into();
+                row["holds"] = self.holds().into();
+                row["best"] = self.best.as_ref().map(flags).into();
+                row["time_over_best"] = self.times.into();
+            }
+        }
+        row
+    }
+}
+
+fn row(
+    gpu: &mut Headless,
+    (label, scene): (&str, &Scene),
+    truth: &Truth,
+    all: &[(Quality, Value)],
+    (seed, most): (u64, f64),
+) -> Result<Row> {
+    let begun = Instant::now();
+    let probes = Probes::of(scene, Probes::affordable(scene), seed)?;
+    let found =
+        choose(scene, Goal::MaxError(most), &probes, |quality| draw(gpu, scene, quality, 1));
+    let seconds = begun.elapsed().as_secs_f64();
+    let mut row = Row {
+        label: label.to_owned(),
+        most,
+        seconds,
+        found: Err(String::new()),
+        own: truth.own,
+        best: None,
+        times: None,
+    };
+    let values: Vec<Value> = all.iter().map(|a| a.1).collect();
+    let best = recommend(&values, Rule::MaxError(most)).filter(|r| r.holds);
+    row.best = best.map(|b| all[b.point].0);
+    row.found = match found {
+        Ok(chosen) => {
+            let quality = chosen.trial.quality;
+            let off = truth.error(&draw(gpu, scene, &quality, 0)?.planes);
+            row.times = match row.best {
+                Some(best) if best != quality => Some(ratio(gpu, scene, &quality, &best)?),
+                best => best.map(|_| 1.0),
+            };
+            Ok((chosen, off))
+        }
+        Err(error @ Error::Limit { .. }) => Err(error.to_string()),
+        Err(error) => return Err(error),
+    };
+    Ok(row)
+}
+
+/// What all rows come to, for people and machines.
+fn summary(rows: &[Row]) -> (String, serde_json::Value) {
+    let found: Vec<&Row> = rows.iter().filter(|r| r.found.is_ok()).collect();
+    let held = found.iter().filter(|r| r.holds()).count();
+    let close = found.iter().filter(|r| r.is_close()).count();
+    // Refused although the walk found settings that hold.
+    let reached = |r: &&Row| r.found.is_err() && r.best.is_some();
+    let wrongly = rows.iter().filter(reached).count();
+    let mut ratios: Vec<f64> = found.iter().filter(|r| r.holds()).filter_map(|r| r.times).collect();
+    ratios.sort_by(f64::total_cmp);
+    let at = |share: f64| ratios.get((share * (ratios.len() as f64 - 1.0)) as usize).copied();
+    let [median, ninety, worst] = [0.5, 0.9, 1.0].map(|s| at(s).unwrap_or(f64::NAN));
+    let within = ratios.iter().filter(|r| **r <= 1.3).count();
+    let text = format!(
+        "{held} of {} hold ({:.1} %; {close} are nearer to what was asked than the truth's own bound), {} refused \
+         ({wrongly} of them where the walk found settings that hold); time over the best of the walk: \
+         median {median:.2}, 90 % {ninety:.2}, worst {worst:.2}; at most 1.3 in {within} of {}",
+        found.len(),
+        100.0 * held as f64 / found.len().max(1) as f64,
+        rows.len() - found.len(),
+        ratios.len()
+    );
+    let json = serde_json::json!({
+        "asked": rows.len(), "chosen": found.len(), "held": held, "close": close,
+        "refused": rows.len() - found.len(), "refused_though_found": wrongly,
+        "ratios": ratios.len(), "ratio_median": median, "ratio_90": ninety,
+        "ratio_worst": worst, "within_1.3": within
+    });
+    (text, json)
+}
+
+pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+    let scenes = scenes(asked)?;
+    let device = gpu.report().name.clone();
+    let mut text = String::new();
+    let mut add = |line: &str| {
+        println!("{line}");
+        writeln!(text, "{line}").expect("a string takes all");
+    };
+    add(&format!(
+        "{device}; middle {}² of each field; {} pairs that nothing was fitted on; {} s of trade a pair; \
+         true errors by {TRUE_PROBES} samples of the oracle other than those that choose\n",
+        asked.side,
+        scenes.len(),
+        asked.seconds
+    ));
+    add(
+        "| field | light | asked % | chosen | expected % | probed % | at most % | true % (its bound above, error of its control) | holds | time / best, best | tried, s |",
+    );
+    add("|---|---|---|---|---|---|---|---|---|---|---|");
+    let mut rows = Vec::new();
+    for (label, scene) in &scenes {
+        let truth = Truth::of(gpu, scene)?;
+        let all = walked(gpu, scene, &truth, asked.seconds)?;
+        for (seed, most) in ERRORS.into_iter().enumerate() {
+            let row = row(gpu, (label, scene), &truth, &all, (seed as u64, most))?;
+            add(&row.text());
+            rows.push(row);
+        }
+    }
+    let (told, counts) = summary(&rows);
+    add(&format!("\n{told}"));
+    if let Some(folder) = &asked.out {
+        files::write_text(&folder.join("auto.txt"), &text)?;
+        let all: Vec<_> = rows.iter().map(Row::json).collect();
+        let json = serde_json::json!({
+            "device": device, "driver": gpu.report().driver, "side": asked.side,
+            "pairs": scenes.len(), "trade_seconds": asked.seconds, "summary": counts, "rows": all
+        });
+        files::write_json(&folder.join("auto.json"), &json)?;
+    }
+    Ok(())
+}
