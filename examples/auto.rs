@@ -119,7 +119,9 @@ fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
 fn scenes(asked: &Asked) -> Result<Vec<(String, Scene)>> {
     let lights = lights(&asked.folder)?;
     let mut all = Vec::new();
-    for (i, path) in listed(&asked.folder.join("height"))?.iter().enumerate() {
+    let fields = listed(&asked.folder.join("height"))?;
+    // From the last: the steepest of the data, which takes longest, is the first by name.
+    for (i, path) in fields.iter().enumerate().rev() {
         let field = cropped(&files::read_heights(path, &HeightOptions::default())?, asked.side)?;
         for (j, (light, lights)) in lights.iter().enumerate() {
             let label = format!("{} | {light}", name(path));

@@ -1,6 +1,5 @@
 //! The half that was not fitted: what was chosen, whether it holds, and what would have been cheapest.
 
-use std::fmt::Write as _;
 use std::time::Instant;
 
 use ridgelight::files;
@@ -15,8 +14,9 @@ use super::{Asked, scenes};
 
 const ERRORS: [f64; 5] = [0.05, 0.02, 0.01, 0.005, 0.002];
 /// Samples that true errors are told by: others than those that choose, more, and beside a frame that is
-/// as good as any.
+/// as good as any. More where that frame is not as good as it should be.
 const TRUE_PROBES: usize = 1600;
+const MORE_PROBES: usize = 5000;
 const TRUE_SEED: u64 = 99;
 /// Above this the frame of close lines is no control for 0.2 %, and horizons are exact.
 const GOOD: f64 = 0.001;
@@ -45,12 +45,14 @@ impl Truth {
         let own = probes.error(&control, None);
         let mut truth = Self { probes, control, own, needs_exact: own.error > GOOD };
         if truth.needs_exact {
+            truth.probes = Probes::of(scene, MORE_PROBES, TRUE_SEED)?;
             let exact = if scene.lights.suns.is_empty() {
                 Quality { lines: Lines::Exact, azimuths: 512, ..dense }
             } else {
                 Quality { method: Method::Brute, azimuths: 128, sun_azimuths: 64, ..dense }
             };
             let control = draw(gpu, scene, &exact, 0)?.planes;
+            truth.own = truth.probes.error(&truth.control, None);
             let own = truth.probes.error(&control, None);
             if own.error < truth.own.error {
                 (truth.control, truth.own) = (control, own);
@@ -98,8 +100,9 @@ fn walked(
 }
 
 /// One error asked for of one scene.
-struct Row {
+struct Row<'a> {
     label: String,
+    scene: &'a Scene,
     most: f64,
     seconds: f64,
     /// What was chosen and its true error, or why nothing was.
@@ -110,7 +113,7 @@ struct Row {
     times: Option<f64>,
 }
 
-impl Row {
+impl Row<'_> {
     fn holds(&self) -> bool {
         self.found.as_ref().is_ok_and(|(_, off)| off.error <= self.most)
     }
@@ -131,7 +134,7 @@ impl Row {
         let Measured { error, at_most } = chosen.trial.measured;
         format!(
             "{head} {} | {} ×{:.1} | {} | {} | {} ({}, {}) | {} | {} {} | {} in {:.1} |",
-            flags(&chosen.trial.quality),
+            flags(&chosen.trial.quality, self.scene),
             percent(chosen.expected.error),
             chosen.expected.factor,
             percent(error),
@@ -141,7 +144,7 @@ impl Row {
             percent(self.own.error),
             if self.holds() { "yes" } else { "no" },
             self.times.map_or("none found".to_owned(), |t| format!("{t:.2}")),
-            self.best.as_ref().map(flags).unwrap_or_default(),
+            self.best.as_ref().map(|q| flags(q, self.scene)).unwrap_or_default(),
             chosen.trials.len(),
             self.seconds
         )
@@ -155,16 +158,23 @@ impl Row {
         match &self.found {
             Err(why) => row["refused"] = why.as_str().into(),
             Ok((chosen, off)) => {
-                row["settings"] = flags(&chosen.trial.quality).into();
+                row["settings"] = flags(&chosen.trial.quality, self.scene).into();
                 row["expected"] = chosen.expected.error.into();
                 row["measured"] = chosen.trial.measured.error.into();
                 row["at_most"] = chosen.trial.measured.at_most.into();
                 row["probes"] = chosen.probes.into();
-                row["trials"] = chosen.trials.len().into();
+                let tried = chosen.trials.iter().map(|t| {
+                    let Measured { error, at_most } = t.measured;
+                    serde_json::json!({
+                        "settings": flags(&t.quality, self.scene), "measured": error, "at_most": at_most,
+                        "ms": t.ns / 1e6
+                    })
+                });
+                row["tried"] = tried.collect();
                 row["true"] = off.error.into();
                 row["true_at_most"] = off.at_most.into();
                 row["holds"] = self.holds().into();
-                row["best"] = self.best.as_ref().map(flags).into();
+                row["best"] = self.best.as_ref().map(|q| flags(q, self.scene)).into();
                 row["time_over_best"] = self.times.into();
             }
         }
@@ -172,13 +182,13 @@ impl Row {
     }
 }
 
-fn row(
+fn row<'a>(
     gpu: &mut Headless,
-    (label, scene): (&str, &Scene),
+    (label, scene): (&str, &'a Scene),
     truth: &Truth,
     all: &[(Quality, Value)],
     (seed, most): (u64, f64),
-) -> Result<Row> {
+) -> Result<Row<'a>> {
     let begun = Instant::now();
     let probes = Probes::of(scene, Probes::affordable(scene), seed)?;
     let found =
@@ -186,6 +196,7 @@ fn row(
     let seconds = begun.elapsed().as_secs_f64();
     let mut row = Row {
         label: label.to_owned(),
+        scene,
         most,
         seconds,
         found: Err(String::new()),
@@ -245,43 +256,43 @@ fn summary(rows: &[Row]) -> (String, serde_json::Value) {
 
 pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let scenes = scenes(asked)?;
-    let device = gpu.report().name.clone();
-    let mut text = String::new();
-    let mut add = |line: &str| {
-        println!("{line}");
-        writeln!(text, "{line}").expect("a string takes all");
-    };
-    add(&format!(
+    let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
+    let head = format!(
         "{device}; middle {}² of each field; {} pairs that nothing was fitted on; {} s of trade a pair; \
-         true errors by {TRUE_PROBES} samples of the oracle other than those that choose\n",
+         true errors by {TRUE_PROBES} samples of the oracle other than those that choose ({MORE_PROBES} \
+         where the frame beside them is more than {} % off)\n\n\
+         | field | light | asked % | chosen | expected % | probed % | at most % | true % (its bound \
+         above, error of its control) | holds | time / best, best | tried, s |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|",
         asked.side,
         scenes.len(),
-        asked.seconds
-    ));
-    add(
-        "| field | light | asked % | chosen | expected % | probed % | at most % | true % (its bound above, error of its control) | holds | time / best, best | tried, s |",
+        asked.seconds,
+        100.0 * GOOD
     );
-    add("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("{head}");
     let mut rows = Vec::new();
-    for (label, scene) in &scenes {
+    for (done, (label, scene)) in scenes.iter().enumerate() {
         let truth = Truth::of(gpu, scene)?;
         let all = walked(gpu, scene, &truth, asked.seconds)?;
         for (seed, most) in ERRORS.into_iter().enumerate() {
             let row = row(gpu, (label, scene), &truth, &all, (seed as u64, most))?;
-            add(&row.text());
+            println!("{}", row.text());
             rows.push(row);
         }
-    }
-    let (told, counts) = summary(&rows);
-    add(&format!("\n{told}"));
-    if let Some(folder) = &asked.out {
+        // After every pair: a run that is ended early has told what it found.
+        let Some(folder) = &asked.out else { continue };
+        let (told, counts) = summary(&rows);
+        let lines: Vec<String> = rows.iter().map(Row::text).collect();
+        let pairs = format!("{} of {} pairs", done + 1, scenes.len());
+        let text = format!("{head}\n{}\n\n{pairs}: {told}\n", lines.join("\n"));
         files::write_text(&folder.join("auto.txt"), &text)?;
         let all: Vec<_> = rows.iter().map(Row::json).collect();
         let json = serde_json::json!({
-            "device": device, "driver": gpu.report().driver, "side": asked.side,
-            "pairs": scenes.len(), "trade_seconds": asked.seconds, "summary": counts, "rows": all
+            "device": device, "driver": driver, "side": asked.side, "pairs": done + 1,
+            "trade_seconds": asked.seconds, "summary": counts, "rows": all
         });
         files::write_json(&folder.join("auto.json"), &json)?;
     }
+    println!("\n{}", summary(&rows).0);
     Ok(())
 }

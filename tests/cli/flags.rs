@@ -285,8 +285,13 @@ fn help_says_units_and_defaults() {
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0..1", "[default: 1]"]),
     ];
-    let render: &[(&str, &[&str])] =
-        &[("--exposure", &["[default: 1]"]), ("--layers", &["lights", "sky-view", "horizon"])];
+    let render: &[(&str, &[&str])] = &[
+        ("--exposure", &["[default: 1]"]),
+        ("--layers", &["lights", "sky-view", "horizon"]),
+        ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
+        ("--time-budget", &["<MS>", "GPU time"]),
+        ("--seed", &["[default: 0]"]),
+    ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
     let compare: &[(&str, &[&str])] = &[

@@ -15,6 +15,8 @@ use crate::trade::{digits, percent};
 /// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
 const DRAWS: usize = 3;
 const TIMING: Duration = Duration::from_secs(2);
+/// Of a first draw that takes so long compiling is little, and it counts itself.
+const LONG: Duration = Duration::from_secs(10);
 
 /// What is asked for, if anything.
 pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
@@ -43,7 +45,7 @@ pub fn choose(
     let probes = Probes::of(scene, Probes::affordable(scene), u64::from(seed))?;
     let mut chosen = auto::choose(scene, goal, &probes, |quality| {
         drawn += 1;
-        bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality)));
+        bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
         draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)
     })?;
     chosen.trial.quality.hull = hull;
@@ -73,11 +75,14 @@ fn draw(
 
 /// Times of the middle one of some draws.
 fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
-    gpu.draw(frame)?;
     let begun = Instant::now();
     let mut runs = vec![gpu.draw(frame)?];
-    while runs.len() < DRAWS && begun.elapsed() < TIMING {
-        runs.push(gpu.draw(frame)?);
+    if begun.elapsed() < LONG {
+        let begun = Instant::now();
+        runs = vec![gpu.draw(frame)?];
+        while runs.len() < DRAWS && begun.elapsed() < TIMING {
+            runs.push(gpu.draw(frame)?);
+        }
     }
     let total = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
     runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
@@ -92,7 +97,7 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
 }
 
 /// For metadata and --json.
-pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
+pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(String, String)> {
     let asked = match goal {
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
@@ -101,7 +106,7 @@ pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
         let holds = if goal.is_reached(t) { "holds" } else { "does not hold" };
         let Measured { error, at_most } = t.measured;
         let error = format!("{} (at most {})", percent(error), percent(at_most));
-        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality), t.ns / 1e6)
+        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
     });
     let measured = &chosen.trial.measured;
     [
@@ -112,6 +117,7 @@ pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
         ("error_at_most", measured.at_most.to_string()),
         ("error_confidence", Probes::CONFIDENCE.to_string()),
         ("error_probes", chosen.probes.to_string()),
+        ("seed", seed.to_string()),
         ("tried", tried.collect::<Vec<_>>().join("; ")),
     ]
     .map(|(name, value)| (name.to_owned(), value))
@@ -120,12 +126,12 @@ pub fn told(goal: Goal, chosen: &Chosen) -> Vec<(String, String)> {
 
 /// For people: what was chosen and its error; then, where settings were drawn that do not reach the
 /// goal, that it went on from them.
-pub fn sentences(goal: Goal, chosen: &Chosen) -> Vec<String> {
+pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
     let Chosen { trial, expected, probes, trials } = chosen;
     let mut all = vec![format!(
         "{}: expected {} (within a factor of {}), measured {}, at most {} with {:.0} % confidence \
          ({probes} probes); {} settings tried",
-        auto::flags(&trial.quality),
+        auto::flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),
         percent(trial.measured.error),
@@ -142,7 +148,7 @@ pub fn sentences(goal: Goal, chosen: &Chosen) -> Vec<String> {
         all.push(format!(
             "went {went}: {} of them did not hold, the last {} ({by})",
             missed.len(),
-            auto::flags(&last.quality)
+            auto::flags(&last.quality, scene)
         ));
     }
     all

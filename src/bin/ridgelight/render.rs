@@ -82,7 +82,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         Some((&args.lights, &args.surface, &scene)),
     ));
     if let Some((goal, chosen)) = &chosen {
-        metadata.extend(auto::told(*goal, chosen));
+        metadata.extend(auto::told((*goal, args.auto.seed), chosen, &scene));
     }
     let horizon = args.layers.contains(&Layer::Horizon);
     let mean_horizon =
@@ -112,7 +112,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             args.output.display(),
             gpu.report().name
         );
-        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c)) {
+        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
         }
     }

@@ -22,6 +22,11 @@ const CONTROL: f64 = 3.0;
 const COARSEST_CONTROL: f64 = 2.0;
 const CONTROLS: usize = 3;
 const DEAREST_CONTROL: f64 = 6.0;
+/// Where nothing is expected to reach the goal: how much less accurate than the best that is drawn next may
+/// be for being cheaper.
+const NEARLY: f64 = 2.0;
+/// Frames that are expected to take longer are not drawn: half a minute.
+const LONGEST_NS: f64 = 30e9;
 
 /// What settings are chosen for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,13 +196,14 @@ impl<'a> Chooser<'a> {
     /// beyond the error, or no coarser than some beyond the time.
     fn open(&self) -> impl Iterator<Item = &Quality> {
         self.candidates.iter().filter(|q| {
-            self.trials.iter().all(|t| {
+            let is_open = |t: &Trial| {
                 let misses_too = match self.goal {
                     Goal::MaxError(_) => is_finer(&t.quality, q),
                     Goal::MaxCost(_) => is_finer(q, &t.quality),
                 };
                 t.quality != **q && (self.goal.is_reached(t) || !misses_too)
-            })
+            };
+            self.cost(q) <= LONGEST_NS && self.trials.iter().all(is_open)
         })
     }
 
@@ -208,8 +214,10 @@ impl<'a> Chooser<'a> {
             .copied()
     }
 
+    /// Of what is nearly as accurate as anything the cheapest.
     fn most_accurate(&self) -> Option<Quality> {
-        self.open().min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
+        let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
+        self.cheapest_within(NEARLY * least)
     }
 }
 
@@ -222,7 +230,7 @@ fn normal(deviations: f64) -> f64 {
 fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
     let numbers = |q: &Quality| {
         [
-            spacing(q) as u32,
+            spacing(q) as u32 + u32::from(q.lines == Lines::Exact),
             u32::from(q.fuse == Fuse::Aimed || spacing(q) == LINES.len()),
             q.azimuths,
             q.table_elevations,
@@ -233,17 +241,16 @@ fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
 }
 
 /// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
-/// exact: along grid vectors, of suns by brute force.
+/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns do not have.
 fn candidates(scene: &Scene) -> Vec<Quality> {
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
     let plain = Quality { method: Method::Sweep, ..Quality::default() };
-    let exact = match scene.lights.suns.is_empty() {
-        true => Quality { lines: Lines::Exact, ..plain },
-        false => Quality { method: Method::Brute, ..plain },
-    };
-    let mut all = vec![exact];
+    let mut all = vec![Quality { method: Method::Brute, ..plain }];
+    if scene.lights.suns.is_empty() {
+        all.push(Quality { lines: Lines::Exact, ..plain });
+    }
     for lines in LINES {
         all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
     }

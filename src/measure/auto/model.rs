@@ -54,7 +54,9 @@ impl Part {
         let lights = &scene.lights;
         match self {
             Part::Geometry => true,
-            Part::Azimuths => lights.sky.is_some() || lights.environment.is_some(),
+            Part::Azimuths => {
+                lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
+            }
             Part::Table => lights.environment.is_some(),
             Part::Strips => lights.suns.iter().any(|s| !s.is_point()),
         }
@@ -175,8 +177,10 @@ pub struct Costs {
 const KINDS: usize = 5;
 
 const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
-/// The latter in proportion to the field's side.
-const EXACT: f64 = 171.0;
+/// Lines through all samples: the more azimuths to a side, the longer the grid vectors near them and the
+/// shorter the lines. Second: in proportion to azimuths over side.
+const EXACT: [f64; 2] = [130.0, 480.0];
+/// In proportion to the side.
 const BRUTE: f64 = 4.7;
 const SHADE: [[f64; 6]; 2] =
     [[2.16, 2.16, 2.46, 2.91, 4.22, 2.12], [3.2, 3.35, 3.39, 3.97, 5.35, 2.12]];
@@ -203,7 +207,7 @@ impl Costs {
         let [sweep, exact] = match SWEEP.get(spacing) {
             Some(each) => [*each, 0.0],
             None if quality.method == Method::Brute => [0.0, BRUTE * side],
-            None => [0.0, EXACT],
+            None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
         let shade = SHADE[usize::from(quality.fuse == Fuse::Aimed)][spacing];
         [all * sweep, all * exact, all * shade, table, 1.0]

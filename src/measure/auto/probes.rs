@@ -4,9 +4,9 @@ use crate::{Error, Result};
 
 /// Probes: as many as [`CELLS`] allow, within these.
 const FEWEST: usize = 64;
-const MOST: usize = 400;
+const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
-const CELLS: usize = 1 << 30;
+const CELLS: usize = 1 << 29;
 /// Quantile of the normal distribution that 1 % lie beyond. Settings are chosen among some five that
 /// are judged near the bound by the same probes: 1 % each is 5 % of all (Bonferroni), hence
 /// [`Probes::CONFIDENCE`].
@@ -60,7 +60,7 @@ impl Probes {
         Ok(Self { count: known.len(), places, light })
     }
 
-    /// How many to take so that they cost some seconds of one core: 64 to 400, fewer the larger the field.
+    /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
     pub fn affordable(scene: &Scene) -> usize {
         let side = scene.field.rows().max(scene.field.cols());
         (CELLS / (Lit::of(scene).rays() * side).max(1)).clamp(FEWEST, MOST)

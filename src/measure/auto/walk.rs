@@ -1,7 +1,7 @@
 //! Draws, judges, draws again: the whole of a choice, for a caller who can draw.
 
 use super::chooser::{Chooser, Goal, Trial};
-use super::model::Expected;
+use super::model::{Expected, PARTS, Part};
 use super::probes::Probes;
 use super::statistics::Statistics;
 use crate::scene::{Lines, Method, Quality, Scene};
@@ -64,7 +64,7 @@ pub fn choose(
         }
     }
     let Some(trial) = chooser.best() else {
-        return Err(out_of_reach(goal, chooser.trials(), probes.len()));
+        return Err(out_of_reach(goal, chooser.trials(), probes.len(), scene));
     };
     Ok(Chosen {
         trial: *trial,
@@ -74,7 +74,7 @@ pub fn choose(
     })
 }
 
-fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize) -> Error {
+fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize, scene: &Scene) -> Error {
     let miss = |t: &Trial| match goal {
         Goal::MaxError(_) => t.measured.at_most,
         Goal::MaxCost(_) => t.ns,
@@ -86,7 +86,7 @@ fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize) -> Error {
             limit: "its memory".into(),
         };
     };
-    let flags = flags(&nearest.quality);
+    let flags = flags(&nearest.quality, scene);
     match goal {
         Goal::MaxError(most) => Error::Limit {
             what: format!("--max-error {most}"),
@@ -111,16 +111,20 @@ fn figures(x: f64) -> String {
     format!("{x:.*}", decimals.clamp(0.0, 12.0) as usize)
 }
 
-/// Settings that are chosen, as the command line spells them.
-pub fn flags(quality: &Quality) -> String {
-    let Quality { azimuths, table_elevations, sun_azimuths, lines, fuse, .. } = quality;
-    let horizons = match (quality.method, lines) {
+/// Settings that are chosen, as the command line spells them: those that a scene has.
+pub fn flags(quality: &Quality, scene: &Scene) -> String {
+    let mut all = match (quality.method, quality.lines) {
         (Method::Brute, _) => "--method brute".to_owned(),
         (_, Lines::Exact) => "--lines exact".to_owned(),
-        _ => format!("--lines {} --fuse {}", lines.name(), fuse.name()),
+        (_, lines) => format!("--lines {} --fuse {}", lines.name(), quality.fuse.name()),
     };
-    format!(
-        "{horizons} --azimuths {azimuths} --table-elevations {table_elevations} \
-         --sun-azimuths {sun_azimuths}"
-    )
+    for part in PARTS.into_iter().filter(|p| p.is_in(scene)) {
+        match part {
+            Part::Geometry => {}
+            Part::Azimuths => all += &format!(" --azimuths {}", quality.azimuths),
+            Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
+            Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
+        }
+    }
+    all
 }

@@ -10,7 +10,7 @@ const CHOSEN: [&str; 7] =
 #[command(next_help_heading = "Quality")]
 pub struct AutoArgs {
     /// Choose the cheapest settings of at most this error: RMSE over the mean of the light (0.01 is 1 %),
-    /// bounded with 95 % confidence by exact light at 64 to 400 samples. Draws up to 16 frames; refused,
+    /// bounded with 95 % confidence by exact light at 64 to 1000 samples. Draws up to 16 frames; refused,
     /// with the nearest that was found, where none is that accurate
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = CHOSEN)]
     pub max_error: Option<f64>,
