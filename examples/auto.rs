@@ -1,13 +1,13 @@
 //! How often `--max-error` holds, and how near the cheapest settings it comes.
 //!
-//! `cargo run --release --example auto -- FOLDER [--fit] [--side N] [--seconds S] [--only TEXT] [--out DIR]`
+//! `cargo run --release --example auto -- FOLDER [--fit] [--side N] [--seconds S] [--only TEXT] [--json FILE]`
 //!
 //! FOLDER has height fields in `height/` and environments in `env/`. Every field (its middle N², 256) is
 //! paired with every environment and with skies and suns; pairs of an even sum of places are for fitting:
 //! `--fit` measures those and prints the table of `src/measure/auto/fitted.rs`. So every field and every
 //! light is in both halves, and no pair is. The other half is reported: per error asked for, what was
-//! chosen, its true error, and its time over that of the best of a `trade` walk of S (20) seconds, drawn
-//! in turn. `--only` takes the pairs whose name holds a text; `--out` keeps `auto.txt` and `auto.json`.
+//! chosen, its true error, and its time over that of the cheapest that truly holds of all that a `trade`
+//! walk of S (20) seconds and the choices for all errors drew, in turn. `--only` takes the pairs whose name holds a text; `--json` is for machines, written after each pair.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ struct Asked {
     side: usize,
     seconds: f64,
     only: String,
-    out: Option<PathBuf>,
+    json: Option<PathBuf>,
 }
 
 fn asked() -> Result<Asked> {
@@ -35,7 +35,7 @@ fn asked() -> Result<Asked> {
         side: 256,
         seconds: 20.0,
         only: String::new(),
-        out: None,
+        json: None,
     };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
@@ -47,7 +47,7 @@ fn asked() -> Result<Asked> {
             "--side" => asked.side = number(text()?)? as usize,
             "--seconds" => asked.seconds = number(text()?)?,
             "--only" => asked.only = text()?,
-            "--out" => asked.out = Some(PathBuf::from(text()?)),
+            "--json" => asked.json = Some(PathBuf::from(text()?)),
             _ => asked.folder = PathBuf::from(&arg),
         }
     }
