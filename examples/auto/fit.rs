@@ -72,13 +72,11 @@ fn measure(gpu: &mut Headless, scene: &Scene, part: Part) -> Result<Vec<(Quality
 fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for i in 0..n {
-        for j in i + 1..n {
-            let factor = a[j][i] / a[i][i];
-            for k in i..n {
-                let above = a[i][k];
-                a[j][k] -= factor * above;
-            }
-            b[j] -= factor * b[i];
+        let (above, below) = a.split_at_mut(i + 1);
+        for (j, row) in below.iter_mut().enumerate() {
+            let factor = row[i] / above[i][i];
+            row.iter_mut().zip(&above[i]).skip(i).for_each(|(x, pivot)| *x -= factor * pivot);
+            b[i + 1 + j] -= factor * b[i];
         }
     }
     for i in (0..n).rev() {
