@@ -41,9 +41,8 @@ pub fn choose(
 ) -> Result<Chosen> {
     let contents = setup::contents(scene);
     let mut drawn = 0;
-    bar.set_message("choosing settings: exact light at some samples");
-    let probes = Probes::of(scene, Probes::affordable(scene), u64::from(seed))?;
-    let mut chosen = auto::choose(scene, goal, &probes, |quality| {
+    let probes = (Probes::affordable(scene), u64::from(seed));
+    let mut chosen = auto::choose(scene, goal, probes, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
         draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)

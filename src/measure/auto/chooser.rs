@@ -20,7 +20,7 @@ const WORTH: f64 = 0.05;
 /// frames were not; and how much dearer it may be than what is expected to hold.
 const CONTROL: f64 = 3.0;
 const COARSEST_CONTROL: f64 = 2.0;
-const CONTROLS: usize = 3;
+const CONTROLS: usize = 4;
 const DEAREST_CONTROL: f64 = 6.0;
 /// Where nothing is expected to reach the goal: how much less accurate than the best that is drawn next may
 /// be for being cheaper.

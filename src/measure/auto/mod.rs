@@ -16,6 +16,6 @@ mod walk;
 
 pub use chooser::{Chooser, Goal, Trial};
 pub use model::{Costs, Expected, FEATURES, Model, PARTS, Part};
-pub use probes::{Measured, Probes};
+pub use probes::{Measured, Probes, apart};
 pub use statistics::Statistics;
 pub use walk::{Chosen, Drawn, choose, flags};

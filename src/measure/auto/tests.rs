@@ -34,14 +34,16 @@ fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
     })
 }
 
-/// Every sample is a probe.
+/// Every sample is a probe; any seed.
+const WHOLE: (usize, u64) = (SIDE * SIDE, 7);
+
 fn whole(scene: &Scene) -> Probes {
-    Probes::of(scene, SIDE * SIDE, 7).unwrap()
+    Probes::of(scene, SIDE * SIDE, 7, &[]).unwrap()
 }
 
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
-    choose(&scene, goal, &whole(&scene), |quality| draw(&scene, quality))
+    choose(&scene, goal, WHOLE, |quality| draw(&scene, quality))
 }
 
 /// All samples are probed, so that nothing is left to chance: what is chosen holds, and half of its
@@ -78,7 +80,7 @@ fn what_nothing_reaches_is_refused() {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
     }
     // A device's own refusal is not one of settings.
-    let broken = choose(&scene(), Goal::MaxError(0.1), &whole(&scene()), |_| {
+    let broken = choose(&scene(), Goal::MaxError(0.1), WHOLE, |_| {
         Err(Error::Device { doing: "drawing".into(), reason: "lost".into() })
     });
     assert!(broken.unwrap_err().to_string().contains("lost"));
@@ -93,7 +95,7 @@ fn a_time_budget_is_kept() {
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    let small = choose(&scene, Goal::MaxCost(20e6), &whole(&scene), |quality| {
+    let small = choose(&scene, Goal::MaxCost(20e6), WHOLE, |quality| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
@@ -135,7 +137,7 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     let expected = f64::from(0.1 * square.sqrt() / mean);
     let seen = all.error(std::slice::from_ref(&bright), None);
     assert!((seen.error / expected - 1.0).abs() < 1e-3, "{seen:?} {expected}");
-    let few = Probes::of(&scene, 64, 1).unwrap();
+    let few = Probes::of(&scene, 64, 1, &[]).unwrap();
     assert_eq!(few.len(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
     let truth = all.error(&rough, None).error;

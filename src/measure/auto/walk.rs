@@ -2,9 +2,9 @@
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::Probes;
+use super::probes::{Probes, apart};
 use super::statistics::Statistics;
-use crate::scene::{Lines, Method, Quality, Scene};
+use crate::scene::{Fuse, Hull, Lines, Method, Precision, Quality, Scene};
 use crate::{Error, Result};
 
 /// A frame that was drawn with some settings.
@@ -29,7 +29,21 @@ pub struct Chosen {
     pub trials: Vec<Trial>,
 }
 
-/// Chooses settings for a goal: `draw` draws the scene with what it is told, `probes` of it judge.
+/// Settings that are drawn first: where their pictures differ most probes are taken. The second are the
+/// defaults.
+const COARSE: Quality = Quality {
+    method: Method::Sweep,
+    azimuths: 8,
+    sun_azimuths: 2,
+    lines: Lines::FourCells,
+    fuse: Fuse::AimedNearest,
+    precision: Precision::F32,
+    hull: Hull::Auto,
+    table_elevations: 64,
+};
+
+/// Chooses settings for a goal: `draw` draws the scene with what it is told, so many samples of exact
+/// light judge, others for another `seed`.
 ///
 /// # Errors
 /// A goal out of range; one that nothing reaches, with the nearest that was; what `draw` answers, but for
@@ -37,7 +51,7 @@ pub struct Chosen {
 pub fn choose(
     scene: &Scene,
     goal: Goal,
-    probes: &Probes,
+    (probes, seed): (usize, u64),
     mut draw: impl FnMut(&Quality) -> Result<Drawn>,
 ) -> Result<Chosen> {
     let (name, bound) = match goal {
@@ -48,19 +62,33 @@ pub fn choose(
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal);
+    let mut pilots = Vec::new();
+    for quality in [Quality { method: Method::Sweep, ..Quality::default() }, COARSE] {
+        match draw(&quality) {
+            Err(Error::Limit { .. }) => chooser.refuse(&quality),
+            drawn => pilots.push((quality, drawn?)),
+        }
+    }
+    let unsure = match pilots.as_slice() {
+        [(_, a), (_, b)] => apart(&a.planes, &b.planes, scene.field.cols()),
+        _ => Vec::new(),
+    };
+    let probes = Probes::of(scene, probes, seed, &unsure)?;
     let mut control: Option<(f64, Vec<Vec<f32>>)> = None;
-    while let Some(quality) = chooser.next() {
-        let Drawn { planes, passes } = match draw(&quality) {
-            Err(Error::Limit { .. }) => {
-                chooser.refuse(&quality);
-                continue;
-            }
-            drawn => drawn?,
-        };
+    let mut judge = |chooser: &mut Chooser, quality: &Quality, Drawn { planes, passes }: Drawn| {
         let measured = probes.error(&planes, control.as_ref().map(|c| c.1.as_slice()));
-        chooser.measured(&quality, measured, &passes);
+        chooser.measured(quality, measured, &passes);
         if control.as_ref().is_none_or(|c| measured.error < c.0) {
             control = Some((measured.error, planes));
+        }
+    };
+    for (quality, drawn) in pilots {
+        judge(&mut chooser, &quality, drawn);
+    }
+    while let Some(quality) = chooser.next() {
+        match draw(&quality) {
+            Err(Error::Limit { .. }) => chooser.refuse(&quality),
+            drawn => judge(&mut chooser, &quality, drawn?),
         }
     }
     let Some(trial) = chooser.best() else {
