@@ -7,7 +7,8 @@
 //! `--fit` measures those and prints the table of `src/measure/auto/fitted.rs`. So every field and every
 //! light is in both halves, and no pair is. The other half is reported: per error asked for, what was
 //! chosen, its true error, and its time over that of the cheapest that truly holds of all that a `trade`
-//! walk of S (20) seconds and the choices for all errors drew, in turn. `--only` takes the pairs whose name holds a text; `--json` is for machines, written after each pair.
+//! walk of S (20) seconds and the choices for all errors drew, in turn. `--only` takes the pairs whose name holds a text; `--json`
+//! is for machines, written after each pair; the pairs that FILE has are kept, so that a run can go on.
 
 use std::path::{Path, PathBuf};
 

@@ -188,13 +188,14 @@ fn auto() -> Result<String> {
     writeln!(
         out,
         "5, 2, 1, 0.5 and 0.2 % asked of {} pairs of a field (its middle {}²) and lights on which nothing was \
-         fitted: {held} of {chosen} choices hold ({:.1} %), {} of {} are refused ({} of them though \
+         fitted: {held} of {chosen} choices hold ({:.1} %; {} are within the bound that they state), {} of {} are refused ({} of them though \
          settings that hold were drawn). Time over the cheapest that truly holds of all that a `trade` walk of {} s \
          and the choices drew, in turn: \
          median {:.2}, 90 % {:.2}, worst {:.2}; at most 1.3 in {} of {}.",
         whole("pairs")?,
         whole("side")?,
         100.0 * held / chosen,
+        of("within_stated_bound")?,
         of("refused")?,
         of("asked")?,
         of("refused_though_found")?,

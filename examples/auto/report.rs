@@ -1,13 +1,15 @@
 //! The half that was not fitted: what was chosen, whether it holds, and what would have been cheapest.
 
+use std::path::Path;
 use std::time::Instant;
 
 use ridgelight::files;
 use ridgelight::gpu::Headless;
 use ridgelight::measure::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight::measure::trade::{Rule, Search, Value, knobs, places, recommend};
+use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend};
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
+use serde_json::{Value, json};
 
 use super::device::{draw, ratio};
 use super::{Asked, scenes};
@@ -75,7 +77,7 @@ fn walked(
     scene: &Scene,
     truth: &Truth,
     seconds: f64,
-) -> Result<Vec<(Quality, Value)>> {
+) -> Result<Vec<(Quality, Point)>> {
     let start = Quality { method: Method::Sweep, ..Quality::default() };
     let knobs = knobs(scene);
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
@@ -95,94 +97,44 @@ fn walked(
             drawn => drawn?,
         };
         let cost = drawn.passes.iter().map(|p| p.1).sum();
-        let value = Value { cost, error: truth.error(&drawn.planes).error };
+        let value = Point { cost, error: truth.error(&drawn.planes).error };
         search.measured(place, value);
         all.push((quality, value));
     }
     Ok(all)
 }
 
-/// One error asked for of one scene.
-struct Row<'a> {
-    label: String,
-    scene: &'a Scene,
-    most: f64,
-    seconds: f64,
-    /// What was chosen and its true error, or why nothing was.
-    found: std::result::Result<(Chosen, Measured), String>,
-    own: Measured,
-    best: Option<Quality>,
-    /// Time over that of the best, where there is one.
-    times: Option<f64>,
+/// A row's number, NaN where it has none.
+fn number(row: &Value, key: &str) -> f64 {
+    row[key].as_f64().unwrap_or(f64::NAN)
 }
 
-impl Row<'_> {
-    fn holds(&self) -> bool {
-        self.found.as_ref().is_ok_and(|(_, off)| off.error <= self.most)
+/// A row of the table.
+fn text(row: &Value) -> String {
+    let percent = |key: &str| format!("{:.3}", 100.0 * number(row, key));
+    let word = |key: &str| row[key].as_str().unwrap_or_default();
+    let head = format!("| {} | {} |", word("scene"), 100.0 * number(row, "asked"));
+    if row["refused"].is_string() {
+        return format!("{head} refused: {} | | | | | | | |", word("refused"));
     }
-
-    /// Whether the truth's own bound is on the other side of what was asked.
-    fn is_close(&self) -> bool {
-        let close = |off: &Measured| (off.at_most - off.error) > (off.error - self.most).abs();
-        self.found.as_ref().is_ok_and(|(_, off)| close(off))
-    }
-
-    fn text(&self) -> String {
-        let percent = |x: f64| format!("{:.3}", 100.0 * x);
-        let head = format!("| {} | {} |", self.label, 100.0 * self.most);
-        let (chosen, off) = match &self.found {
-            Ok(found) => found,
-            Err(why) => return format!("{head} refused: {why} | | | | | | | |"),
-        };
-        let Measured { error, at_most } = chosen.trial.measured;
-        format!(
-            "{head} {} | {} ×{:.1} | {} | {} | {} ({}, {}) | {} | {} {} | {} in {:.1} |",
-            flags(&chosen.trial.quality, self.scene),
-            percent(chosen.expected.error),
-            chosen.expected.factor,
-            percent(error),
-            percent(at_most),
-            percent(off.error),
-            percent(off.at_most - off.error),
-            percent(self.own.error),
-            if self.holds() { "yes" } else { "no" },
-            self.times.map_or("none found".to_owned(), |t| format!("{t:.2}")),
-            self.best.as_ref().map(|q| flags(q, self.scene)).unwrap_or_default(),
-            chosen.trials.len(),
-            self.seconds
-        )
-    }
-
-    fn json(&self) -> serde_json::Value {
-        let mut row = serde_json::json!({
-            "scene": self.label, "asked": self.most, "seconds": self.seconds,
-            "truth_own_error": self.own.error
-        });
-        match &self.found {
-            Err(why) => row["refused"] = why.as_str().into(),
-            Ok((chosen, off)) => {
-                row["settings"] = flags(&chosen.trial.quality, self.scene).into();
-                row["expected"] = chosen.expected.error.into();
-                row["measured"] = chosen.trial.measured.error.into();
-                row["at_most"] = chosen.trial.measured.at_most.into();
-                row["probes"] = chosen.probes.into();
-                let tried = chosen.trials.iter().map(|t| {
-                    let Measured { error, at_most } = t.measured;
-                    serde_json::json!({
-                        "settings": flags(&t.quality, self.scene), "measured": error, "at_most": at_most,
-                        "ms": t.ns / 1e6
-                    })
-                });
-                row["tried"] = tried.collect();
-                row["true"] = off.error.into();
-                row["true_at_most"] = off.at_most.into();
-                row["holds"] = self.holds().into();
-                row["best"] = self.best.as_ref().map(|q| flags(q, self.scene)).into();
-                row["time_over_best"] = self.times.into();
-            }
-        }
-        row
-    }
+    let ratio = match row["time_over_best"].as_f64() {
+        Some(ratio) => format!("{ratio:.2}"),
+        None => "none found".to_owned(),
+    };
+    format!(
+        "{head} {} | {} | {} | {} | {} ({:.3}, {}) | {} | {ratio} {} | {} in {:.1} |",
+        word("settings"),
+        percent("expected"),
+        percent("measured"),
+        percent("at_most"),
+        percent("true"),
+        100.0 * (number(row, "true_at_most") - number(row, "true")),
+        percent("truth_own_error"),
+        if row["holds"] == true { "yes" } else { "no" },
+        word("best"),
+        row["tried"].as_array().map_or(0, Vec::len),
+        number(row, "seconds")
+    )
 }
 
 /// What is chosen for an error, and the seconds it took; every frame drawn on the way joins `all`.
@@ -191,14 +143,14 @@ fn chosen(
     scene: &Scene,
     truth: &Truth,
     (seed, most): (u64, f64),
-    all: &mut Vec<(Quality, Value)>,
+    all: &mut Vec<(Quality, Point)>,
 ) -> Result<(std::result::Result<Chosen, String>, f64)> {
     let begun = Instant::now();
     let probes = (Probes::affordable(scene), seed);
     let found = choose(scene, Goal::MaxError(most), probes, |quality| {
         let drawn = draw(gpu, scene, quality, 1)?;
         let cost = drawn.passes.iter().map(|p| p.1).sum();
-        all.push((*quality, Value { cost, error: truth.error(&drawn.planes).error }));
+        all.push((*quality, Point { cost, error: truth.error(&drawn.planes).error }));
         Ok(drawn)
     });
     let seconds = begun.elapsed().as_secs_f64();
@@ -211,95 +163,145 @@ fn chosen(
 
 /// All errors asked of one scene: what was chosen beside the cheapest that truly holds of all that the
 /// walk and the choices drew.
-fn rows<'a>(
-    gpu: &mut Headless,
-    (label, scene): (&str, &'a Scene),
-    seconds: f64,
-) -> Result<Vec<Row<'a>>> {
+fn rows(gpu: &mut Headless, label: &str, scene: &Scene, seconds: f64) -> Result<Vec<Value>> {
     let truth = Truth::of(gpu, scene)?;
     let mut all = walked(gpu, scene, &truth, seconds)?;
     let mut choices = Vec::new();
     for (seed, most) in ERRORS.into_iter().enumerate() {
         choices.push((most, chosen(gpu, scene, &truth, (seed as u64, most), &mut all)?));
     }
-    let values: Vec<Value> = all.iter().map(|a| a.1).collect();
+    let values: Vec<Point> = all.iter().map(|a| a.1).collect();
     let mut rows = Vec::new();
     for (most, (found, seconds)) in choices {
         let best = recommend(&values, Rule::MaxError(most)).filter(|r| r.holds);
         let best = best.map(|b| all[b.point].0);
-        let mut row = Row {
-            label: label.to_owned(),
-            scene,
-            most,
-            seconds,
-            found: Err(String::new()),
-            own: truth.own,
-            best,
-            times: None,
-        };
-        row.found = match found {
-            Ok(chosen) => {
-                let quality = chosen.trial.quality;
-                let off = truth.error(&draw(gpu, scene, &quality, 0)?.planes);
-                row.times = match best {
-                    Some(best) if best != quality => Some(ratio(gpu, scene, &quality, &best)?),
-                    best => best.map(|_| 1.0),
-                };
-                Ok((chosen, off))
-            }
-            Err(why) => Err(why),
-        };
+        let mut row = json!({
+            "scene": label, "asked": most, "seconds": seconds, "truth_own_error": truth.own.error,
+            "best": best.as_ref().map(|q| flags(q, scene))
+        });
+        match found {
+            Ok(found) => fill(gpu, scene, &truth, best.as_ref(), &found, &mut row)?,
+            Err(why) => row["refused"] = why.into(),
+        }
         rows.push(row);
     }
     Ok(rows)
 }
 
-/// What all rows come to, for people and machines.
-fn summary(rows: &[Row]) -> (String, serde_json::Value) {
-    let found: Vec<&Row> = rows.iter().filter(|r| r.found.is_ok()).collect();
-    let held = found.iter().filter(|r| r.holds()).count();
-    let close = found.iter().filter(|r| r.is_close()).count();
-    // The bound that was stated, not what was asked.
-    let covered = found
-        .iter()
-        .filter(|r| r.found.as_ref().is_ok_and(|(c, off)| off.error <= c.trial.measured.at_most));
-    let covered = covered.count();
-    // Refused although settings that hold were drawn.
-    let reached = |r: &&Row| r.found.is_err() && r.best.is_some();
-    let wrongly = rows.iter().filter(reached).count();
-    let mut ratios: Vec<f64> = found.iter().filter(|r| r.holds()).filter_map(|r| r.times).collect();
+/// What was chosen, its true error, and its time over that of the best, where there is one.
+fn fill(
+    gpu: &mut Headless,
+    scene: &Scene,
+    truth: &Truth,
+    best: Option<&Quality>,
+    found: &Chosen,
+    row: &mut Value,
+) -> Result<()> {
+    let quality = found.trial.quality;
+    let off = truth.error(&draw(gpu, scene, &quality, 0)?.planes);
+    let times = match best {
+        Some(best) if *best != quality => Some(ratio(gpu, scene, &quality, best)?),
+        best => best.map(|_| 1.0),
+    };
+    let tried = found.trials.iter().map(|t| {
+        let Measured { error, at_most } = t.measured;
+        let ms = t.ns / 1e6;
+        json!({ "settings": flags(&t.quality, scene), "measured": error, "at_most": at_most, "ms": ms })
+    });
+    row["settings"] = flags(&quality, scene).into();
+    row["expected"] = found.expected.error.into();
+    row["expected_within_factor"] = found.expected.factor.into();
+    row["measured"] = found.trial.measured.error.into();
+    row["at_most"] = found.trial.measured.at_most.into();
+    row["probes"] = found.probes.into();
+    row["tried"] = tried.collect();
+    row["true"] = off.error.into();
+    row["true_at_most"] = off.at_most.into();
+    row["holds"] = (off.error <= number(row, "asked")).into();
+    row["time_over_best"] = times.into();
+    Ok(())
+}
+
+/// What all rows come to.
+fn summary(rows: &[Value]) -> Value {
+    let count = |is: &dyn Fn(&Value) -> bool| rows.iter().filter(|r| is(r)).count();
+    let is_refused = |r: &Value| r["refused"].is_string();
+    // Whether the truth's own bound is on the other side of what was asked.
+    let is_close = |r: &Value| {
+        let [off, bound, asked] = ["true", "true_at_most", "asked"].map(|key| number(r, key));
+        bound - off > (off - asked).abs()
+    };
+    let holds = |r: &Value| r["holds"] == true;
+    let mut ratios: Vec<f64> =
+        rows.iter().filter(|r| holds(r)).filter_map(|r| r["time_over_best"].as_f64()).collect();
     ratios.sort_by(f64::total_cmp);
     let at = |share: f64| ratios.get((share * (ratios.len() as f64 - 1.0)) as usize).copied();
-    let [median, ninety, worst] = [0.5, 0.9, 1.0].map(|s| at(s).unwrap_or(f64::NAN));
-    let within = ratios.iter().filter(|r| **r <= 1.3).count();
-    let text = format!(
-        "{held} of {} hold ({:.1} %; {close} are nearer to what was asked than the truth's own bound; \
-         {covered} are within the bound that was stated), {} refused \
-         ({wrongly} of them where settings that hold were drawn); time over the cheapest drawn that holds: \
-         median {median:.2}, 90 % {ninety:.2}, worst {worst:.2}; at most 1.3 in {within} of {}",
-        found.len(),
-        100.0 * held as f64 / found.len().max(1) as f64,
-        rows.len() - found.len(),
-        ratios.len()
-    );
-    let json = serde_json::json!({
-        "asked": rows.len(), "chosen": found.len(), "held": held, "close": close, "within_stated_bound": covered,
-        "refused": rows.len() - found.len(), "refused_though_found": wrongly,
-        "ratios": ratios.len(), "ratio_median": median, "ratio_90": ninety,
-        "ratio_worst": worst, "within_1.3": within
-    });
-    (text, json)
+    json!({
+        "asked": rows.len(),
+        "chosen": count(&|r| !is_refused(r)),
+        "held": count(&holds),
+        "close": count(&is_close),
+        "within_stated_bound": count(&|r| number(r, "true") <= number(r, "at_most")),
+        "refused": count(&is_refused),
+        "refused_though_found": count(&|r| is_refused(r) && r["best"].is_string()),
+        "ratios": ratios.len(), "ratio_median": at(0.5), "ratio_90": at(0.9), "ratio_worst": at(1.0),
+        "within_1.3": ratios.iter().filter(|r| **r <= 1.3).count()
+    })
+}
+
+/// For people.
+fn told(counts: &Value) -> String {
+    let of = |key: &str| number(counts, key);
+    format!(
+        "{} of {} hold ({:.1} %; {} are nearer to what was asked than the truth's own bound; {} are \
+         within the bound that was stated), {} refused ({} of them where settings that hold were \
+         drawn); time over the cheapest drawn that holds: median {:.2}, 90 % {:.2}, worst {:.2}; at \
+         most 1.3 in {} of {}",
+        of("held"),
+        of("chosen"),
+        100.0 * of("held") / of("chosen"),
+        of("close"),
+        of("within_stated_bound"),
+        of("refused"),
+        of("refused_though_found"),
+        of("ratio_median"),
+        of("ratio_90"),
+        of("ratio_worst"),
+        of("within_1.3"),
+        of("ratios")
+    )
+}
+
+/// Rows of an earlier run that are kept: of the same device and side.
+fn kept(path: &Path, about: &Value) -> Result<Vec<Value>> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let io = |source| Error::Io { path: path.to_owned(), source };
+    let text = std::fs::read_to_string(path).map_err(io)?;
+    let old: Value = serde_json::from_str(&text)
+        .map_err(|e| Error::setting("--json", e.to_string(), "a report of an earlier run"))?;
+    for key in ["device", "side"] {
+        if old[key] != about[key] {
+            let found = format!("a report of {key} {}", old[key]);
+            return Err(Error::setting("--json", found, about[key].to_string()));
+        }
+    }
+    Ok(old["rows"].as_array().cloned().unwrap_or_default())
 }
 
 pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let scenes = scenes(asked)?;
-    let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
+    let mut about = json!({
+        "device": gpu.report().name, "driver": gpu.report().driver, "side": asked.side,
+        "trade_seconds": asked.seconds
+    });
     println!(
-        "{device}; middle {}² of each field; {} pairs that nothing was fitted on; {} s of trade a pair; \
-         true errors by {TRUE_PROBES} samples of the oracle other than those that choose ({MORE_PROBES} \
+        "{}; middle {}² of each field; pairs that nothing was fitted on; {} s of trade a pair; true \
+         errors by {TRUE_PROBES} samples of the oracle other than those that choose ({MORE_PROBES} \
          where the frame beside them is more than {} % off)\n",
+        gpu.report().name,
         asked.side,
-        scenes.len(),
         asked.seconds,
         100.0 * GOOD
     );
@@ -308,21 +310,27 @@ pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
          above, error of its control) | holds | time / best, best | tried, s |\n\
          |---|---|---|---|---|---|---|---|---|---|---|"
     );
-    let mut all: Vec<Row> = Vec::new();
-    for (done, (label, scene)) in scenes.iter().enumerate() {
-        for row in rows(gpu, (label, scene), asked.seconds)? {
-            println!("{}", row.text());
+    let mut all = match &asked.json {
+        Some(path) => kept(path, &about)?,
+        None => Vec::new(),
+    };
+    all.iter().for_each(|row| println!("{}", text(row)));
+    for (label, scene) in &scenes {
+        if all.iter().any(|row| row["scene"] == label.as_str()) {
+            continue;
+        }
+        for row in rows(gpu, label, scene, asked.seconds)? {
+            println!("{}", text(&row));
             all.push(row);
         }
-        // After every pair: a run that is ended early has told what it found.
-        let Some(path) = &asked.json else { continue };
-        let json = serde_json::json!({
-            "device": device, "driver": driver, "side": asked.side, "pairs": done + 1,
-            "trade_seconds": asked.seconds, "summary": summary(&all).1,
-            "rows": all.iter().map(Row::json).collect::<Vec<_>>()
-        });
-        files::write_json(path, &json)?;
+        // After every pair: a run that is ended early has told what it found, and can go on.
+        if let Some(path) = &asked.json {
+            about["pairs"] = (all.len() / ERRORS.len()).into();
+            about["summary"] = summary(&all);
+            about["rows"] = all.as_slice().into();
+            files::write_json(path, &about)?;
+        }
     }
-    println!("\n{}", summary(&all).0);
+    println!("\n{} pairs: {}", all.len() / ERRORS.len(), told(&summary(&all)));
     Ok(())
 }
