@@ -148,7 +148,7 @@ fn chosen(
     let begun = Instant::now();
     let probes = (Probes::affordable(scene), seed);
     let found = choose(scene, Goal::MaxError(most), probes, |quality| {
-        let drawn = draw(gpu, scene, quality, 1)?;
+        let drawn = draw(gpu, scene, quality, 3)?;
         let cost = drawn.passes.iter().map(|p| p.1).sum();
         all.push((*quality, Point { cost, error: truth.error(&drawn.planes).error }));
         Ok(drawn)

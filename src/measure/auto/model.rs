@@ -88,7 +88,7 @@ pub struct Expected {
     pub factor: f64,
 }
 
-/// Errors by settings: each part's ln with its variance, an extended Kalman filter over frames.
+/// Errors by settings: each part's ln with its variance, an iterated extended Kalman filter over frames.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// ln of each part at the defaults, none where the scene does not have it.
@@ -144,24 +144,43 @@ impl Model {
 
     /// Takes a measured relative RMSE in; `spread` is the standard deviation of its ln.
     ///
-    /// The parts' ln θ move by K (ln measured - ln expected) with K = P h / (hᵀP h + R), h the shares;
-    /// P falls by K hᵀP (Kalman 1960, linearised at θ). Below 1e-6 no frame of f32 tells errors apart.
+    /// The parts' ln θ move to θ₀ + K (ln measured - ln expected(θ) - hᵀ(θ₀ - θ)) with K = P h /
+    /// (hᵀP h + R), h the shares at θ, taken anew until θ stays (the iterated extended Kalman filter,
+    /// Bell & Cathey 1993; by halves, as one step goes far beyond where a small part becomes the
+    /// largest); P falls by K hᵀP. Below 1e-6 no frame of f32 tells errors apart.
     pub fn learn(&mut self, quality: &Quality, error: f64, spread: f64) {
-        let (shares, sum) = self.shares(quality);
-        let (variance, with) = self.variance(&shares);
+        let before = self.logs;
+        let told = error.max(1e-6).ln();
         // Squares of parts with fitted powers are themselves a tenth off or so.
-        let all = variance + spread.powi(2) + 0.1_f64.powi(2);
-        let off = error.max(1e-6).ln() - 0.5 * sum.ln();
-        for i in 0..4 {
-            if let Some(log) = &mut self.logs[i] {
-                *log += with[i] / all * off;
+        let noise = spread.powi(2) + 0.1_f64.powi(2);
+        for _ in 0..STEPS {
+            let (shares, sum) = self.shares(quality);
+            let (variance, with) = self.variance(&shares);
+            let moved = (0..4).map(|i| shares[i] * (before[i].unwrap_or(0.0) - self.log(i)));
+            let off = told - 0.5 * sum.ln() - moved.sum::<f64>();
+            for i in 0..4 {
+                if let (Some(log), Some(first)) = (&mut self.logs[i], before[i]) {
+                    let to = first + with[i] / (variance + noise) * off;
+                    *log += 0.5 * (to - *log);
+                }
             }
+        }
+        let (shares, _) = self.shares(quality);
+        let (variance, with) = self.variance(&shares);
+        for i in 0..4 {
             for j in 0..4 {
-                self.covariance[i][j] -= with[i] * with[j] / all;
+                self.covariance[i][j] -= with[i] * with[j] / (variance + noise);
             }
         }
     }
+
+    fn log(&self, part: usize) -> f64 {
+        self.logs[part].unwrap_or(0.0)
+    }
 }
+
+/// Of the filter: halves of a step, 2⁻²⁰ of which is nothing.
+const STEPS: usize = 20;
 
 /// Nanoseconds of each kind of pass for a unit of its work.
 ///

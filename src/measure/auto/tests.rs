@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::cpu::{light, oracle::Oracle};
-use crate::scene::{HeightField, Lights, Quality, Scene, Surface};
+use crate::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Surface};
 use crate::{Error, Result};
 
 const SIDE: usize = 12;
@@ -121,6 +121,21 @@ fn expectations_are_monotone_and_learn() {
     let after = model.expected(&of(16));
     assert!((after.error / told).ln().abs() < 0.3, "{before:?} {after:?}");
     assert!(after.factor < before.factor);
+}
+
+/// 64 azimuths are 0.075 % off, 8 azimuths along lines four cells apart 1.3 % (as two peaks were): no
+/// azimuths of the model are then thought worse than what was measured of fewer, and exact horizons in
+/// 1024 azimuths still better than 64 were.
+#[test]
+fn one_bad_frame_does_not_spoil_the_others() {
+    let scene = scene();
+    let mut model = Model::of(&scene, &Statistics::of(&scene));
+    let rough = Quality { azimuths: 8, lines: Lines::FourCells, ..Quality::default() };
+    model.learn(&Quality::default(), 0.00075, 0.0);
+    model.learn(&rough, 0.0133, 0.0);
+    assert!((model.expected(&rough).error / 0.0133).ln().abs() < 0.3, "{model:?}");
+    let fine = Quality { azimuths: 1024, method: Method::Brute, ..Quality::default() };
+    assert!(model.expected(&fine).error < 0.00075, "{model:?}");
 }
 
 /// Of a picture a tenth too bright everywhere: RMSE a tenth of the root mean square of the light. By 64
