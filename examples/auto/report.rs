@@ -290,6 +290,14 @@ fn kept(path: &Path, about: &Value) -> Result<Vec<Value>> {
     Ok(old["rows"].as_array().cloned().unwrap_or_default())
 }
 
+fn write(asked: &Asked, about: &mut Value, rows: &[Value]) -> Result<()> {
+    let Some(path) = &asked.json else { return Ok(()) };
+    about["pairs"] = (rows.len() / ERRORS.len()).into();
+    about["summary"] = summary(rows);
+    about["rows"] = rows.into();
+    files::write_json(path, about)
+}
+
 pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let scenes = scenes(asked)?;
     let mut about = json!({
@@ -324,13 +332,9 @@ pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
             all.push(row);
         }
         // After every pair: a run that is ended early has told what it found, and can go on.
-        if let Some(path) = &asked.json {
-            about["pairs"] = (all.len() / ERRORS.len()).into();
-            about["summary"] = summary(&all);
-            about["rows"] = all.as_slice().into();
-            files::write_json(path, &about)?;
-        }
+        write(asked, &mut about, &all)?;
     }
+    write(asked, &mut about, &all)?;
     println!("\n{} pairs: {}", all.len() / ERRORS.len(), told(&summary(&all)));
     Ok(())
 }

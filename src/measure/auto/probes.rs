@@ -133,7 +133,7 @@ impl Probes {
     }
 }
 
-/// How far two pictures of a scene lie apart at each sample, the farthest within [`REACH`] samples.
+/// How far two pictures of a scene lie apart at each sample, the farthest within 2 samples.
 pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
     let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
     let count = a[0].len();
