@@ -19,6 +19,7 @@ pub mod horizon_sweep;
 pub mod lattice;
 pub mod light;
 pub mod light_resolve;
+pub mod lit;
 pub mod oracle;
 pub mod profile;
 pub mod shared;

@@ -26,6 +26,7 @@ use picture::Tones;
 use report::Report;
 use rig::Rig;
 use truth::Truth;
+pub use truth::{digits, percent};
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
