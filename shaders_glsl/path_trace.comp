@@ -184,8 +184,8 @@ Reflected reflected_from(Place place, vec3 e) {
 // first coordinate, so that neighbouring lanes' rays are about as steep, and as long; a later vertex
 // must not know the order of the first.
 void points_of(uint index, uvec3 key, uint r, bool is_first, out vec2 u, out vec2 v) {
-    uvec4 of_u = mixed(uvec4(key.xy, 2u * r, key.z));
-    uvec4 of_v = mixed(uvec4(key.xy, 2u * r + 1u, key.z));
+    uvec4 of_u = words_of(uvec4(key.xy, 2u * r, key.z));
+    uvec4 of_v = words_of(uvec4(key.xy, 2u * r + 1u, key.z));
     uint mixed_order = shuffled(index, SET_BITS, of_u.z);
     u = net_point(is_first ? index : mixed_order, SET_BITS, of_u);
     v = net_point(shuffled(index, SET_BITS, of_v.z), SET_BITS, of_v);

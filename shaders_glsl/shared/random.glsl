@@ -15,6 +15,13 @@ uvec4 mixed(uvec4 v) {
     return v;
 }
 
+// Words for a place. Mixed once, those of neighbouring samples still go together a little: over 200 seeds
+// the mean of a picture strays 1.1 times as far as independent samples let it; mixed twice, 0.93 times
+// (each ± 0.05).
+uvec4 words_of(uvec4 place) {
+    return mixed(mixed(place).yzwx);
+}
+
 // A random permutation of words in which each bit is flipped by the bits below it alone (Laine &
 // Karras 2011 with the constants of Vegdahl 2021): of bit-reversed fractions, an Owen scramble.
 uint nested(uint x, uint seed) {
