@@ -121,7 +121,7 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     let before = folder.contents();
     for (goal, says) in [
         ("--max-error 1e-9", ["--max-error 0.000000001: needs", "nearest found", "probes"]),
-        ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths 8"]),
+        ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths"]),
     ] {
         let args = format!("render field.npy -o out.exr {goal}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
