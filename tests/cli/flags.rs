@@ -318,9 +318,9 @@ fn help_says_units_and_defaults() {
         ("--device", &["Default the first GPU"]),
     ];
     let reference: &[(&str, &[&str])] = &[
-        ("--spp", &["batches of 64", "at least 32", "[default: 1024]"]),
+        ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
         ("--bounces", &["0..64", "[default: 0]"]),
-        ("--until-error", &["0.01 is 1 %", "128 paths"]),
+        ("--until-error", &["0.01 is 1 %", "512 paths"]),
         ("--seed", &["[default: 0]"]),
         ("--light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
         ("--phong", &["0..10000", "0..1"]),
