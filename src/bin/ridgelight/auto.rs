@@ -9,6 +9,7 @@ use ridgelight::scene::{Hull, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use crate::args::AutoArgs;
+use crate::idle;
 use crate::setup;
 use crate::trade::{digits, percent};
 
@@ -31,12 +32,20 @@ pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
     Ok(error.or(cost))
 }
 
+/// Says that a seed without a goal changes nothing.
+pub fn say_idle(args: &AutoArgs, quiet: bool) {
+    let has_goal = args.max_error.is_some() || args.time_budget.is_some();
+    if let Some(seed) = args.seed.filter(|_| !has_goal && !quiet) {
+        idle::note("seed", &seed.to_string(), "without --max-error or --time-budget");
+    }
+}
+
 pub fn choose(
     gpu: &mut Headless,
     limits: &Limits,
     scene: &Scene,
     (goal, seed): (Goal, u32),
-    hull: Hull,
+    (hull, wanted): (Hull, Picture),
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
     let contents = setup::contents(scene);
@@ -45,7 +54,7 @@ pub fn choose(
     let mut chosen = auto::choose(scene, goal, probes, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
-        draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)
+        draw(gpu, limits, (scene, wanted), &Quality { hull, ..*quality }, &contents)
     })?;
     chosen.trial.quality.hull = hull;
     Ok(chosen)
@@ -54,12 +63,11 @@ pub fn choose(
 fn draw(
     gpu: &mut Headless,
     limits: &Limits,
-    scene: &Scene,
+    (scene, wanted): (&Scene, Picture),
     quality: &Quality,
     contents: &[Vec<f32>],
 ) -> Result<Drawn> {
-    let plan =
-        plan::picture(scene, quality, limits, Picture { still: true, ..Picture::default() })?;
+    let plan = plan::picture(scene, quality, limits, wanted)?;
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
         Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
