@@ -116,13 +116,14 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
         format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
     });
     let measured = &chosen.trial.measured;
+    let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
     [
         asked,
         ("error_expected", chosen.expected.error.to_string()),
         ("error_expected_within_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),
         ("error_at_most", measured.at_most.to_string()),
-        ("error_confidence", Probes::CONFIDENCE.to_string()),
+        ("error_confidence", confidence),
         ("error_probes", chosen.probes.to_string()),
         ("seed", seed.to_string()),
         ("tried", tried.collect::<Vec<_>>().join("; ")),
@@ -134,16 +135,19 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
 /// For people: what was chosen and its error; then, where settings were drawn that do not reach the
 /// goal, that it went on from them.
 pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
-    let Chosen { trial, expected, probes, trials } = chosen;
+    let Chosen { trial, expected, probes, confidence, trials } = chosen;
+    let confidence = confidence.map_or_else(
+        || "without a confidence".to_owned(),
+        |c| format!("with {:.0} % confidence", 100.0 * c),
+    );
     let mut all = vec![format!(
-        "{}: expected {} (within a factor of {}), measured {}, at most {} with {:.0} % confidence \
+        "{}: expected {} (within a factor of {}), measured {}, at most {} {confidence} \
          ({probes} probes); {} settings tried",
         auto::flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),
         percent(trial.measured.error),
         percent(trial.measured.at_most),
-        100.0 * Probes::CONFIDENCE,
         trials.len()
     )];
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();

@@ -197,6 +197,18 @@ impl<'a> Chooser<'a> {
         }
     }
 
+    /// What a refusal lacks: that which ended the search.
+    pub fn lacks(&self) -> String {
+        let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
+        if self.trials.len() >= TRIALS {
+            format!("more than the {TRIALS} frames that are drawn at most")
+        } else if self.candidates.iter().any(|q| !is_drawn(q) && self.cost(q) > LONGEST_NS) {
+            format!("frames that are expected to take more than {} s each", LONGEST_NS / 1e9)
+        } else {
+            "finer settings than are chosen among".into()
+        }
+    }
+
     /// All that was drawn, in order.
     pub fn trials(&self) -> &[Trial] {
         &self.trials

@@ -93,6 +93,11 @@ impl Probes {
         self.places.len()
     }
 
+    /// Whether they are all samples without void.
+    pub fn is_whole(&self) -> bool {
+        self.places.len() == self.count
+    }
+
     /// Never: a field of voids alone has none to give.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
@@ -148,8 +153,7 @@ impl Probes {
         let variance =
             rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
         // Of a field that is probed whole nothing is left to chance.
-        let is_whole = self.places.len() == self.count;
-        let deviation = if is_whole { 0.0 } else { (variance / count).sqrt() };
+        let deviation = if self.is_whole() { 0.0 } else { (variance / count).sqrt() };
         let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
         let skew = if variance > 0.0 { cubes / variance.powf(1.5) } else { 0.0 };
         let estimate = squares / values.max(1.0) + mean_rest;

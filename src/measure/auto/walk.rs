@@ -25,6 +25,9 @@ pub struct Chosen {
     pub expected: Expected,
     /// How many samples were held against the oracle.
     pub probes: usize,
+    /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
+    /// and may miss shadows' edges.
+    pub confidence: Option<f64>,
     /// All that was drawn, in order, the chosen among it.
     pub trials: Vec<Trial>,
 }
@@ -125,18 +128,22 @@ pub fn choose(
         chooser.judged_anew(&judge.all());
     }
     let probes = judge.probes;
+    let is_sure = !unsure.is_empty() || probes.is_whole();
+    let confidence = is_sure.then_some(Probes::CONFIDENCE);
     let Some(trial) = chooser.best() else {
-        return Err(out_of_reach(goal, chooser.trials(), probes.len(), scene));
+        return Err(out_of_reach(goal, &chooser, probes.len(), scene));
     };
     Ok(Chosen {
         trial: *trial,
         expected: chooser.expected(&trial.quality),
         probes: probes.len(),
+        confidence,
         trials: chooser.trials().to_vec(),
     })
 }
 
-fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize, scene: &Scene) -> Error {
+fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {
+    let trials = chooser.trials();
     let miss = |t: &Trial| match goal {
         Goal::MaxError(_) => t.measured.at_most,
         Goal::MaxCost(_) => t.ns,
@@ -152,7 +159,7 @@ fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize, scene: &Scene) -> E
     match goal {
         Goal::MaxError(most) => Error::Limit {
             what: format!("--max-error {most}"),
-            needs: "finer settings than are chosen among".into(),
+            needs: chooser.lacks(),
             limit: format!(
                 "{}, the nearest found ({flags}; measured {}, by {probes} probes)",
                 figures(nearest.measured.at_most),
