@@ -123,12 +123,12 @@ fn expectations_are_monotone_and_learn() {
     assert!(after.factor < before.factor);
 }
 
-/// 5 ms and 2 ms an azimuth, seen of 8, 64 and 256 azimuths: 128 are expected to take what they would.
+/// Half a second and 2 ms an azimuth, seen of 8, 64 and 256 azimuths: 128 are expected to take what they would.
 #[test]
 fn costs_have_an_overhead() {
     let scene = scene();
     let of = |azimuths: u32| Quality { azimuths, ..Quality::default() };
-    let ns = |azimuths: u32| 5e6 + 2e6 * f64::from(azimuths);
+    let ns = |azimuths: u32| 500e6 + 2e6 * f64::from(azimuths);
     let mut costs = Costs::guessed(SIDE * SIDE);
     let mut learn = |azimuths| {
         costs.learn(&scene, &of(azimuths), &[("sky_shade".to_owned(), ns(azimuths))]);
