@@ -86,8 +86,9 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// Weights of [features, bias, fineness], and the standard deviation of what is left; where the power
-/// is `known` it is held.
+/// Weights of [features, bias, fineness], and the standard deviation of what is left, for as many fewer values
+/// as there are weights (a scene's values are alike: of other scenes it is more); where the power is
+/// `known` it is held.
 fn least_squares(seen: &[Seen], known: Option<f64>) -> (Vec<f64>, f64) {
     let row = |s: &Seen| -> Vec<f64> {
         let fineness = if known.is_some() { None } else { Some(-s.fineness) };
@@ -110,7 +111,8 @@ fn least_squares(seen: &[Seen], known: Option<f64>) -> (Vec<f64>, f64) {
     a[FEATURES][FEATURES] += 1e-9;
     let weights = solve(a, b);
     let off = |s: &Seen| target(s) - row(s).iter().zip(&weights).map(|(x, w)| x * w).sum::<f64>();
-    let left = seen.iter().map(|s| off(s).powi(2)).sum::<f64>() / seen.len().max(1) as f64;
+    let free = seen.len().saturating_sub(count).max(1) as f64;
+    let left = seen.iter().map(|s| off(s).powi(2)).sum::<f64>() / free;
     (weights, left.sqrt())
 }
 

@@ -97,6 +97,10 @@ fn gpu_results_are_those_without_the_flag() {
         all.push(std::fs::read(folder.path("h.npy")).unwrap());
     }
     assert!(all[0] == all[1]);
+    let args = "render field.npy -o s.exr --seed 3";
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";
+    assert_eq!((run.status, run.err.as_str()), (Some(0), said));
     // The layer of horizons needs the circle that a sun alone does not.
     for (flags, notes) in [("", 1), (" --layers horizon", 0), (" --layers sky-view", 0)] {
         let args = format!("render field.npy -o s.exr --sun 90,30 --azimuths 8{flags}");

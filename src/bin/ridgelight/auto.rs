@@ -9,6 +9,7 @@ use ridgelight::scene::{Hull, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use crate::args::AutoArgs;
+use crate::idle;
 use crate::setup;
 use crate::trade::{digits, percent};
 
@@ -31,12 +32,20 @@ pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
     Ok(error.or(cost))
 }
 
+/// Says that a seed without a goal changes nothing.
+pub fn say_idle(args: &AutoArgs, quiet: bool) {
+    let has_goal = args.max_error.is_some() || args.time_budget.is_some();
+    if let Some(seed) = args.seed.filter(|_| !has_goal && !quiet) {
+        idle::note("seed", &seed.to_string(), "without --max-error or --time-budget");
+    }
+}
+
 pub fn choose(
     gpu: &mut Headless,
     limits: &Limits,
     scene: &Scene,
     (goal, seed): (Goal, u32),
-    hull: Hull,
+    (hull, wanted): (Hull, Picture),
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
     let contents = setup::contents(scene);
@@ -45,7 +54,7 @@ pub fn choose(
     let mut chosen = auto::choose(scene, goal, probes, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
-        draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)
+        draw(gpu, limits, (scene, wanted), &Quality { hull, ..*quality }, &contents)
     })?;
     chosen.trial.quality.hull = hull;
     Ok(chosen)
@@ -54,12 +63,11 @@ pub fn choose(
 fn draw(
     gpu: &mut Headless,
     limits: &Limits,
-    scene: &Scene,
+    (scene, wanted): (&Scene, Picture),
     quality: &Quality,
     contents: &[Vec<f32>],
 ) -> Result<Drawn> {
-    let plan =
-        plan::picture(scene, quality, limits, Picture { still: true, ..Picture::default() })?;
+    let plan = plan::picture(scene, quality, limits, wanted)?;
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
         Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
@@ -108,13 +116,14 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
         format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
     });
     let measured = &chosen.trial.measured;
+    let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
     [
         asked,
         ("error_expected", chosen.expected.error.to_string()),
         ("error_expected_within_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),
         ("error_at_most", measured.at_most.to_string()),
-        ("error_confidence", Probes::CONFIDENCE.to_string()),
+        ("error_confidence", confidence),
         ("error_probes", chosen.probes.to_string()),
         ("seed", seed.to_string()),
         ("tried", tried.collect::<Vec<_>>().join("; ")),
@@ -126,16 +135,19 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
 /// For people: what was chosen and its error; then, where settings were drawn that do not reach the
 /// goal, that it went on from them.
 pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
-    let Chosen { trial, expected, probes, trials } = chosen;
+    let Chosen { trial, expected, probes, confidence, trials } = chosen;
+    let confidence = confidence.map_or_else(
+        || "without a confidence".to_owned(),
+        |c| format!("with {:.0} % confidence", 100.0 * c),
+    );
     let mut all = vec![format!(
-        "{}: expected {} (within a factor of {}), measured {}, at most {} with {:.0} % confidence \
+        "{}: expected {} (within a factor of {}), measured {}, at most {} {confidence} \
          ({probes} probes); {} settings tried",
         auto::flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),
         percent(trial.measured.error),
         percent(trial.measured.at_most),
-        100.0 * Probes::CONFIDENCE,
         trials.len()
     )];
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();

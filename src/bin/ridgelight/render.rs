@@ -43,6 +43,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         ));
     }
     let goal = auto::goal(&args.auto)?;
+    auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
@@ -58,8 +59,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             &mut gpu,
             &limits,
             &scene,
-            (goal, args.auto.seed),
-            quality.hull,
+            (goal, args.auto.seed.unwrap_or(0)),
+            (quality.hull, wanted),
             &progress,
         )?;
         quality = found.trial.quality;
@@ -90,7 +91,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         Some((&args.lights, &args.surface, &scene)),
     ));
     if let Some((goal, chosen)) = &chosen {
-        metadata.extend(auto::told((*goal, args.auto.seed), chosen, &scene));
+        metadata.extend(auto::told((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
     }
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };

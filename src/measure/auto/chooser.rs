@@ -45,6 +45,14 @@ impl Goal {
             Goal::MaxCost(most) => trial.ns <= *most,
         }
     }
+
+    /// Whether they are known not to: an error by its estimate.
+    pub fn is_missed(&self, trial: &Trial) -> bool {
+        match self {
+            Goal::MaxError(most) => trial.measured.error > *most,
+            Goal::MaxCost(most) => trial.ns > *most,
+        }
+    }
 }
 
 /// Settings that were drawn.
@@ -144,11 +152,33 @@ impl<'a> Chooser<'a> {
     /// Takes a frame in: its error on the probes, nanoseconds by label of each pass.
     pub fn measured(&mut self, quality: &Quality, measured: Measured, passes: &[(String, f64)]) {
         let ns = passes.iter().map(|p| p.1).sum();
-        // At most is 2.3 standard deviations above, in ln about so of it.
-        let spread = (measured.at_most / measured.error.max(1e-6)).max(1.0).ln() / 2.3;
-        self.model.learn(quality, measured.error, spread);
+        let trial = Trial { quality: *quality, measured, ns };
+        self.learn(&trial);
         self.costs.learn(self.scene, quality, passes);
-        self.trials.push(Trial { quality: *quality, measured, ns });
+        self.trials.push(trial);
+    }
+
+    /// Takes other errors of all that was drawn, in order: by a better control or by more probes.
+    pub fn judged_anew(&mut self, measured: &[Measured]) {
+        self.model = self.first_guess.clone();
+        let mut trials = std::mem::take(&mut self.trials);
+        for (trial, measured) in trials.iter_mut().zip(measured) {
+            trial.measured = *measured;
+            self.learn(trial);
+        }
+        self.trials = trials;
+    }
+
+    fn learn(&mut self, trial: &Trial) {
+        let Measured { error, at_most } = trial.measured;
+        // At most is 2.7 standard deviations or more above, in ln about so of it.
+        let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
+        self.model.learn(&trial.quality, error, spread);
+    }
+
+    /// Whether nothing reaches the goal, though some may by its estimate: more probes would tell.
+    pub fn is_undecided(&self) -> bool {
+        self.best().is_none() && self.trials.iter().any(|t| !self.goal.is_missed(t))
     }
 
     /// Leaves out settings that cannot be drawn, and all that are no cheaper in any.
@@ -162,8 +192,20 @@ impl<'a> Chooser<'a> {
         match self.goal {
             Goal::MaxError(_) => reached.min_by(|a, b| a.ns.total_cmp(&b.ns)),
             Goal::MaxCost(_) => {
-                reached.min_by(|a, b| a.measured.error.total_cmp(&b.measured.error))
+                reached.min_by(|a, b| a.measured.at_most.total_cmp(&b.measured.at_most))
             }
+        }
+    }
+
+    /// What a refusal lacks: that which ended the search.
+    pub fn lacks(&self) -> String {
+        let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
+        if self.trials.len() >= TRIALS {
+            format!("more than the {TRIALS} frames that are drawn at most")
+        } else if self.candidates.iter().any(|q| !is_drawn(q) && self.cost(q) > LONGEST_NS) {
+            format!("frames that are expected to take more than {} s each", LONGEST_NS / 1e9)
+        } else {
+            "finer settings than are chosen among".into()
         }
     }
 
@@ -193,7 +235,7 @@ impl<'a> Chooser<'a> {
     }
 
     /// Not drawn, and not known to miss the goal: settings no finer in anything than some that were
-    /// beyond the error, or no coarser than some beyond the time.
+    /// estimated beyond the error, or no coarser than some beyond the time.
     fn open(&self) -> impl Iterator<Item = &Quality> {
         self.candidates.iter().filter(|q| {
             let is_open = |t: &Trial| {
@@ -201,7 +243,7 @@ impl<'a> Chooser<'a> {
                     Goal::MaxError(_) => is_finer(&t.quality, q),
                     Goal::MaxCost(_) => is_finer(q, &t.quality),
                 };
-                t.quality != **q && (self.goal.is_reached(t) || !misses_too)
+                t.quality != **q && !(self.goal.is_missed(t) && misses_too)
             };
             self.cost(q) <= LONGEST_NS && self.trials.iter().all(is_open)
         })

@@ -84,7 +84,8 @@ pub(super) fn spacing(quality: &Quality) -> usize {
 pub struct Expected {
     /// Relative RMSE.
     pub error: f64,
-    /// Two thirds of scenes are within this factor of it, 1 or more.
+    /// A standard deviation in ln, as a factor of 1 or more: before frames are measured that of the scenes
+    /// that were fitted, by which others' is underestimated.
     pub factor: f64,
 }
 
@@ -182,14 +183,18 @@ impl Model {
 /// Of the filter: halves of a step, 2⁻²⁰ of which is nothing.
 const STEPS: usize = 20;
 
-/// Nanoseconds of each kind of pass for a unit of its work.
+/// Nanoseconds of each kind of pass: an overhead, and so many for a unit of its work.
 ///
 /// Work is in proportion to azimuths: relative costs by spacing and fuse are lavapipe's (README's tables
-/// of accuracy and of forms, ms an azimuth and megasample), and every measured frame sets each kind's own
+/// of accuracy and of forms, ms an azimuth and megasample), and measured frames set each kind's own
 /// scale.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Costs {
     units_ns: [f64; KINDS],
+    /// Of a frame with any such work.
+    overheads_ns: [f64; KINDS],
+    /// Work and nanoseconds of all frames.
+    seen: [Vec<[f64; 2]>; KINDS],
 }
 
 /// Sweeps along lines, exact horizons, shading, tables, all else.
@@ -209,7 +214,11 @@ impl Costs {
     pub fn guessed(samples: usize) -> Self {
         let samples = samples as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
-        Self { units_ns: [samples, samples, samples, 67.0, 0.0] }
+        Self {
+            units_ns: [samples, samples, samples, 67.0, 0.0],
+            overheads_ns: [0.0; KINDS],
+            seen: Default::default(),
+        }
     }
 
     fn work(scene: &Scene, quality: &Quality) -> [f64; KINDS] {
@@ -234,7 +243,9 @@ impl Costs {
 
     /// Nanoseconds that a frame will take.
     pub fn expected_ns(&self, scene: &Scene, quality: &Quality) -> f64 {
-        Self::work(scene, quality).iter().zip(self.units_ns).map(|(w, u)| w * u).sum()
+        let work = Self::work(scene, quality);
+        let each = work.iter().zip(self.overheads_ns).zip(self.units_ns);
+        each.filter(|((w, _), _)| **w > 0.0).map(|((w, overhead), unit)| overhead + w * unit).sum()
     }
 
     /// Takes a measured frame in: nanoseconds by label of the pass.
@@ -250,12 +261,38 @@ impl Costs {
             };
             sums[kind] += ns;
         }
-        for ((unit, sum), work) in
-            self.units_ns.iter_mut().zip(sums).zip(Self::work(scene, quality))
-        {
+        for (kind, work) in Self::work(scene, quality).into_iter().enumerate() {
             if work > 0.0 {
-                *unit = sum / work;
+                self.seen[kind].push([work, sums[kind]]);
+                [self.overheads_ns[kind], self.units_ns[kind]] = line(&self.seen[kind]);
             }
         }
+    }
+}
+
+/// Shorter times are as uncertain: a microsecond, some devices' step of time.
+const TICK_NS: f64 = 1e3;
+
+/// [a, b] of y ≈ a + b x with the least squares of relative errors, neither below 0: where the free line
+/// has one below, that is 0. Of one x all is b's.
+fn line(points: &[[f64; 2]]) -> [f64; 2] {
+    let (mut s, mut sx, mut sxx, mut sy, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for [x, y] in points {
+        let weight = y.max(TICK_NS).powi(-2);
+        s += weight;
+        sx += weight * x;
+        sxx += weight * x * x;
+        sy += weight * y;
+        sxy += weight * x * y;
+    }
+    let spread = s * sxx - sx * sx;
+    // Rounding leaves some 1e-16 of one x.
+    if spread <= 1e-9 * s * sxx {
+        return [0.0, sxy / sxx];
+    }
+    match [(sxx * sy - sx * sxy) / spread, (s * sxy - sx * sy) / spread] {
+        [a, _] if a < 0.0 => [0.0, sxy / sxx],
+        [_, b] if b < 0.0 => [sy / s, 0.0],
+        free => free,
     }
 }

@@ -123,6 +123,53 @@ fn expectations_are_monotone_and_learn() {
     assert!(after.factor < before.factor);
 }
 
+/// Half a second and 2 ms an azimuth, seen of 8, 64 and 256 azimuths: 128 are expected to take what they would.
+#[test]
+fn costs_have_an_overhead() {
+    let scene = scene();
+    let of = |azimuths: u32| Quality { azimuths, ..Quality::default() };
+    let ns = |azimuths: u32| 500e6 + 2e6 * f64::from(azimuths);
+    let mut costs = Costs::guessed(SIDE * SIDE);
+    let mut learn = |azimuths| {
+        costs.learn(&scene, &of(azimuths), &[("sky_shade".to_owned(), ns(azimuths))]);
+        costs.expected_ns(&scene, &of(128))
+    };
+    let [_, _, last] = [8, 64, 256].map(&mut learn);
+    assert!((last / ns(128) - 1.0).abs() < 0.01, "{last}");
+}
+
+/// A device that takes a second an azimuth ends the search before all is drawn, and says so; pilots that
+/// do not fit leave no confidence.
+#[test]
+fn what_ends_a_search_and_what_bounds_it_are_said() {
+    let scene = scene();
+    let slow = choose(&scene, Goal::MaxError(1e-12), WHOLE, |quality| {
+        let mut drawn = draw(&scene, quality)?;
+        drawn.passes[0].1 *= 1e3;
+        Ok(drawn)
+    });
+    assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
+    let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
+    for (samples, confidence) in [(64, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
+        let mut frames = 0;
+        let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), |quality| {
+            frames += 1;
+            if frames == 2 { Err(full()) } else { draw(&scene, quality) }
+        });
+        assert_eq!(found.unwrap().confidence, confidence);
+    }
+}
+
+/// 768 azimuths are 1.5e-6 off those of the truth, and nothing is nearer: by 64 probes they are 1.7e-6 and
+/// at most 3.1e-6, by all samples below 2e-6.
+#[test]
+fn more_probes_are_taken_before_a_refusal() {
+    let scene = scene();
+    let goal = Goal::MaxError(2e-6);
+    let found = choose(&scene, goal, (64, 7), |quality| draw(&scene, quality)).unwrap();
+    assert!(found.probes > 64 && found.trial.measured.at_most <= 2e-6, "{found:?}");
+}
+
 /// 64 azimuths are 0.075 % off, 8 azimuths along lines four cells apart 1.3 % (as two peaks were): no
 /// azimuths of the model are then thought worse than what was measured of fewer, and exact horizons in
 /// 1024 azimuths still better than 64 were.

@@ -2,7 +2,7 @@
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::{Probes, apart};
+use super::probes::{Measured, Probes, apart};
 use super::statistics::Statistics;
 use crate::scene::{Fuse, Hull, Lines, Method, Precision, Quality, Scene};
 use crate::{Error, Result};
@@ -25,6 +25,9 @@ pub struct Chosen {
     pub expected: Expected,
     /// How many samples were held against the oracle.
     pub probes: usize,
+    /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
+    /// and may miss shadows' edges.
+    pub confidence: Option<f64>,
     /// All that was drawn, in order, the chosen among it.
     pub trials: Vec<Trial>,
 }
@@ -41,6 +44,36 @@ const COARSE: Quality = Quality {
     hull: Hull::Auto,
     table_elevations: 64,
 };
+
+/// Where bounds alone stand in the way probes are doubled up to so many, or twice.
+const MOST_PROBES: usize = 2000;
+
+/// Probes and all pictures that were drawn: at most 16, of 4 bytes a sample and channel each.
+struct Judge {
+    probes: Probes,
+    pictures: Vec<Vec<Vec<f32>>>,
+}
+
+impl Judge {
+    /// Judges a frame, and where it is the best control all others once more.
+    fn take(&mut self, chooser: &mut Chooser, quality: &Quality, Drawn { planes, passes }: Drawn) {
+        self.pictures.push(planes);
+        let all = self.all();
+        if let Some(last) = all.last() {
+            chooser.measured(quality, *last, &passes);
+        }
+        chooser.judged_anew(&all);
+    }
+
+    /// Errors of all pictures, held against that of the least by the probes alone.
+    fn all(&self) -> Vec<Measured> {
+        let own: Vec<f64> =
+            self.pictures.iter().map(|p| self.probes.error(p, None).error).collect();
+        let control = (0..own.len()).min_by(|a, b| own[*a].total_cmp(&own[*b]));
+        let control = control.map(|i| self.pictures[i].as_slice());
+        self.pictures.iter().map(|p| self.probes.error(p, control)).collect()
+    }
+}
 
 /// Chooses settings for a goal: `draw` draws the scene with what it is told, so many samples of exact
 /// light judge, others for another `seed`.
@@ -73,36 +106,44 @@ pub fn choose(
         [(_, a), (_, b)] => apart(&a.planes, &b.planes, scene.field.cols()),
         _ => Vec::new(),
     };
-    let probes = Probes::of(scene, probes, seed, &unsure)?;
-    let mut control: Option<(f64, Vec<Vec<f32>>)> = None;
-    let mut judge = |chooser: &mut Chooser, quality: &Quality, Drawn { planes, passes }: Drawn| {
-        let measured = probes.error(&planes, control.as_ref().map(|c| c.1.as_slice()));
-        chooser.measured(quality, measured, &passes);
-        if control.as_ref().is_none_or(|c| measured.error < c.0) {
-            control = Some((measured.error, planes));
-        }
-    };
+    let mut judge = Judge { probes: Probes::of(scene, probes, seed, &unsure)?, pictures: vec![] };
     for (quality, drawn) in pilots {
-        judge(&mut chooser, &quality, drawn);
+        judge.take(&mut chooser, &quality, drawn);
     }
-    while let Some(quality) = chooser.next() {
-        match draw(&quality) {
-            Err(Error::Limit { .. }) => chooser.refuse(&quality),
-            drawn => judge(&mut chooser, &quality, drawn?),
+    loop {
+        while let Some(quality) = chooser.next() {
+            match draw(&quality) {
+                Err(Error::Limit { .. }) => chooser.refuse(&quality),
+                drawn => judge.take(&mut chooser, &quality, drawn?),
+            }
         }
+        let count = judge.probes.len();
+        if !chooser.is_undecided() || count >= MOST_PROBES {
+            break;
+        }
+        judge.probes = Probes::of(scene, 2 * count, seed, &unsure)?;
+        if judge.probes.len() == count {
+            break;
+        }
+        chooser.judged_anew(&judge.all());
     }
+    let probes = judge.probes;
+    let is_sure = !unsure.is_empty() || probes.is_whole();
+    let confidence = is_sure.then_some(Probes::CONFIDENCE);
     let Some(trial) = chooser.best() else {
-        return Err(out_of_reach(goal, chooser.trials(), probes.len(), scene));
+        return Err(out_of_reach(goal, &chooser, probes.len(), scene));
     };
     Ok(Chosen {
         trial: *trial,
         expected: chooser.expected(&trial.quality),
         probes: probes.len(),
+        confidence,
         trials: chooser.trials().to_vec(),
     })
 }
 
-fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize, scene: &Scene) -> Error {
+fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {
+    let trials = chooser.trials();
     let miss = |t: &Trial| match goal {
         Goal::MaxError(_) => t.measured.at_most,
         Goal::MaxCost(_) => t.ns,
@@ -118,7 +159,7 @@ fn out_of_reach(goal: Goal, trials: &[Trial], probes: usize, scene: &Scene) -> E
     match goal {
         Goal::MaxError(most) => Error::Limit {
             what: format!("--max-error {most}"),
-            needs: "finer settings than are chosen among".into(),
+            needs: chooser.lacks(),
             limit: format!(
                 "{}, the nearest found ({flags}; measured {}, by {probes} probes)",
                 figures(nearest.measured.at_most),

@@ -207,7 +207,10 @@ impl Truth {
         };
         let probed: Vec<(usize, [f64; 3])> = std::thread::scope(|scope| {
             let all: Vec<_> = (0..threads).map(|first| scope.spawn(move || probe(first))).collect();
-            all.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
+            let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
+            joined
+                .flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+                .collect()
         });
         let last = self.planes.len() - 1;
         let mut sum = 0.0;
