@@ -292,7 +292,7 @@ fn help_says_units_and_defaults() {
         ("--layers", &["lights", "sky-view", "horizon"]),
         ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
         ("--time-budget", &["<MS>", "GPU time"]),
-        ("--seed", &["[default: 0]"]),
+        ("--seed", &["0 where none is given"]),
     ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
