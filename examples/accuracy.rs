@@ -82,13 +82,8 @@ fn picture(
     quality: &Quality,
 ) -> Result<(Vec<f32>, usize, Vec<Timing>)> {
     let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
-    let env: Option<Vec<f32>> = scene
-        .lights
-        .environment
-        .as_ref()
-        .map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
-    let mut contents = vec![scene.field.heights_m()];
-    contents.extend(env.as_deref());
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let (mut runs, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
         let runs = (0..3).map(|_| gpu.draw(frame)).collect::<Result<Vec<_>>>()?;

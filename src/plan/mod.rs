@@ -25,7 +25,7 @@ pub use edit::{Reach, Rectangle};
 pub use horizons::horizons;
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
-pub use picture::{Picture, picture};
+pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub use sweeping::circle_rad;

@@ -94,6 +94,21 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
 }
 
+/// Texels of the inputs of a [`picture`](picture()), in its plan's order: "heights"; "environment" and
+/// "albedo", opaque, where the scene has them.
+pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
+    let opaque =
+        |texels: &[[f32; 3]]| texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+    let mut all = vec![scene.field.heights_m().to_vec()];
+    if let Some(environment) = &scene.lights.environment {
+        all.push(opaque(environment.texels()));
+    }
+    if let Albedo::Map(map) = &scene.surface.albedo {
+        all.push(opaque(map));
+    }
+    all
+}
+
 /// What only the reference can light so far.
 fn refuse_later(surface: &Surface, lights: &Lights) -> Result<()> {
     let expected = "none: it is not yet there for pictures, only for the reference";

@@ -97,13 +97,8 @@ impl Device {
 
     fn picture_within(&mut self, scene: &Scene, quality: &Quality, limits: &Limits) -> Pixels {
         let plan = plan::picture(scene, quality, limits, Picture::default()).expect("a plan");
-        let environment: Option<Vec<f32>> = scene
-            .lights
-            .environment
-            .as_ref()
-            .map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
-        let mut contents = vec![scene.field.heights_m()];
-        contents.extend(environment.as_deref());
+        let contents = plan::picture_inputs(scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         self.draw(plan, &contents).remove(0)
     }
 }

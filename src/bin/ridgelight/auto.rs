@@ -48,7 +48,7 @@ pub fn choose(
     (hull, wanted): (Hull, Picture),
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
-    let contents = setup::contents(scene);
+    let contents = plan::picture_inputs(scene);
     let mut drawn = 0;
     let probes = (Probes::affordable(scene), u64::from(seed));
     let mut chosen = auto::choose(scene, goal, probes, |quality| {

@@ -82,7 +82,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         all.extend(table);
     } else {
         check_names(&args.passes, &plan, args.forms)?;
-        let contents = setup::contents(&scene);
+        let contents = plan::picture_inputs(&scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &contents)?;
         let timed = time(&gpu, &mut frame, args, quality.azimuths, &bar);

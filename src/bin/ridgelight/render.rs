@@ -75,7 +75,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let contents = setup::contents(&scene);
+    let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
     let (times, pixels, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {

@@ -156,20 +156,6 @@ pub fn device(global: &GlobalArgs) -> Result<(Headless, Limits)> {
     Ok((gpu, limits))
 }
 
-/// Texels of a plan's inputs, in its order.
-pub fn contents(scene: &Scene) -> Vec<Vec<f32>> {
-    let opaque =
-        |texels: &[[f32; 3]]| texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
-    let mut all = vec![scene.field.heights_m().to_vec()];
-    if let Some(environment) = &scene.lights.environment {
-        all.push(opaque(environment.texels()));
-    }
-    if let Albedo::Map(map) = &scene.surface.albedo {
-        all.push(opaque(map));
-    }
-    all
-}
-
 /// What was used and how long it took, for files' metadata and --json.
 pub fn metadata(
     gpu: &Headless,

@@ -119,7 +119,7 @@ pub fn run(
                 if form.shades { shade(pass) } else { !after(pass) }
             })
             .collect();
-        let contents = crate::setup::contents(scene);
+        let contents = plan::picture_inputs(scene);
         let inputs = if form.slow { &contents[..1] } else { &contents[..] };
         let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &inputs)?;

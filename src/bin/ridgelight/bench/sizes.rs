@@ -26,7 +26,7 @@ pub fn run(
     for &size in sizes {
         let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
         let truth = Truth::of(&scene);
-        let contents = crate::setup::contents(&scene);
+        let contents = plan::picture_inputs(&scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         for &count in azimuths {
             bar.set_message(format!("{size}², {count} azimuths"));

@@ -113,7 +113,7 @@ impl Verifier {
         limits: &Limits,
     ) -> Result<(f64, f64)> {
         let plan = plan::picture(&self.scene, quality, limits, Picture::default())?;
-        let contents = crate::setup::contents(&self.scene);
+        let contents = plan::picture_inputs(&self.scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &contents)?;
         let drawn = gpu.draw(&mut frame).and_then(|_| gpu.pixels(&frame, 0));

@@ -23,7 +23,7 @@ impl<'a> Rig<'a> {
     pub fn new(gpu: Headless, limits: Limits, scene: &'a Scene, budget: Duration) -> Self {
         // The baseline's frame stays beside the one that is measured.
         let limits = Limits { memory_budget: limits.memory_budget / 2, ..limits };
-        let contents = setup::contents(scene);
+        let contents = plan::picture_inputs(scene);
         Self { gpu, limits, scene, contents, begun: Instant::now(), budget }
     }
 
@@ -61,7 +61,7 @@ impl<'a> Rig<'a> {
     /// The radiance of another scene of the same field, drawn once.
     pub fn draw_once(&mut self, scene: &Scene, quality: &Quality) -> Result<Vec<Vec<f32>>> {
         let plan = self.plan(scene, quality)?;
-        let contents = setup::contents(scene);
+        let contents = plan::picture_inputs(scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = self.gpu.frame(plan, &contents)?;
         let drawn = self.gpu.draw(&mut frame).and_then(|_| self.radiance(&frame));
@@ -76,7 +76,7 @@ impl<'a> Rig<'a> {
         let few = Quality { azimuths: 8, sun_azimuths: 2, ..*quality };
         let plan = self.plan(&piece, &few)?;
         let azimuths = plan.azimuths.len() as f64;
-        let contents = setup::contents(&piece);
+        let contents = plan::picture_inputs(&piece);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = self.gpu.frame(plan, &contents)?;
         // The first compiles.
