@@ -2,9 +2,11 @@ use std::f64::consts::TAU;
 
 use super::azimuths::{self, Azimuth};
 use super::batch::{self, Axis, Batch, bytes_text};
+use super::pyramid::Pyramid;
 use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Builder, Format, Limits, Owner, ResourceId};
-use crate::scene::{Border, HeightField, Lines, Method, Quality};
+use crate::passes::pyramid_march;
+use crate::scene::{Border, HeightField, Levels, Lines, Method, Quality};
 use crate::{Error, Result, passes};
 
 /// What every sweep of a plan shares.
@@ -16,6 +18,8 @@ pub(super) struct Sweeping {
     lane_heights: [Option<ResourceId>; 2],
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
+    /// Levels of a height pyramid, where some are looked at.
+    levels: Option<pyramid_march::Images>,
     /// Each batch's; several may have the same in turn.
     lattices: Vec<Lattice>,
 }
@@ -92,6 +96,11 @@ impl Sweeping {
                 passes::horizon_sweep::plan(builder, lines, batch, part, &images);
             }
             Sweep::Crossings => {}
+            Sweep::Pyramid(pyramid) => {
+                let ids = [self.heights, self.azimuths, self.written(batch)];
+                let levels = self.levels.as_ref();
+                pyramid_march::plan(builder, pyramid, batch, part, ids, levels);
+            }
             Sweep::Surface { hull_depth, distances } => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
@@ -133,7 +142,7 @@ impl LatticeShape {
                 height: axis.steps + axis.warm_up,
             },
             Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
-            Sweep::Surface { .. } | Sweep::March { .. } => Self {
+            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => Self {
                 occluders: None,
                 slopes: Some(Format::R32Uint),
                 width: axis.lanes,
@@ -166,6 +175,10 @@ pub(super) fn prepare(
         used.then(|| Axis::of(marches_rows, size, border))
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
+    let levels = match &sweep {
+        Sweep::Pyramid(pyramid) => level_images(builder, pyramid),
+        _ => None,
+    };
     let shapes = shapes(&lists, &axes, &sweep);
     let batches = cut_lists(&mut lists, builder.bytes(), &axes, &shapes, &sweep, limits)?;
     let shape_of =
@@ -210,10 +223,20 @@ pub(super) fn prepare(
             passes::height_transpose::plan(builder, *axis, border, heights, lanes);
         }
     }
+    if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
+        for level in 1..=pyramid.levels() {
+            let ids = [heights, images.levels, images.table];
+            passes::height_reduce::plan(builder, pyramid, level, ids);
+        }
+        if let Some(stack) = images.stack {
+            let ids = [images.levels, images.table, stack];
+            passes::height_expand::plan(builder, pyramid, ids);
+        }
+    }
     // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
-    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, lattices };
+    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, levels, lattices };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -222,6 +245,25 @@ fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
     let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
     let name = format!("lane_heights_{}", axis.name());
     builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
+}
+
+/// Images of a pyramid's levels beside the field itself; none where no march looks at any.
+fn level_images(builder: &mut Builder, pyramid: &Pyramid) -> Option<pyramid_march::Images> {
+    let count = pyramid.levels();
+    if count == 0 {
+        return None;
+    }
+    let mut image = |name: &str, format: Format, extent: [u32; 3], layered: bool| {
+        builder.image(name, Owner::Internal, format, extent, layered)
+    };
+    let width = 1 << pyramid.width_shift();
+    let height = pyramid.all_texels().div_ceil(u64::from(width)) as u32;
+    let levels = image("height_levels", Format::R32Float, [width, height, 1], false);
+    let table = image("level_table", Format::Rgba32Uint, [count, 1, 1], false);
+    let [cols, rows] = pyramid.size;
+    let stack = (pyramid.stored == Levels::Stack)
+        .then(|| image("height_stack", Format::R32Float, [cols, rows, count], true));
+    Some(pyramid_march::Images { levels, table, stack })
 }
 
 /// Bytes of the lattice of one azimuth, of those along each axis that need most.
@@ -352,6 +394,13 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
         }
         Sweep::Crossings => add("method", "first crossings".into()),
         Sweep::March { .. } => add("method", "brute".into()),
+        Sweep::Pyramid(pyramid) => {
+            add("method", "pyramid".into());
+            add("level_step", pyramid.level_step.to_string());
+            add("level_offset", pyramid.level_offset.to_string());
+            add("levels", pyramid.stored.name().into());
+            add("level_count", (1 + pyramid.levels()).to_string());
+        }
     }
     all
 }

@@ -18,6 +18,15 @@ pub struct Quality {
     pub precision: Precision,
     /// Where the sweep's hull lives: never changes the result.
     pub hull: Hull,
+    /// Levels a doubling of distance in a height pyramid, k, [1..16], default 4. Fewer: faster and
+    /// less memory, horizons of what stands between two samples smeared.
+    pub level_step: u32,
+    /// Doublings of resolution by which a march over a pyramid looks at finer levels than its
+    /// distance asks for, o, [0..4], default 2. Fewer: soft distant horizons; more: narrow distant
+    /// ridges seen or missed by chance.
+    pub level_offset: u32,
+    /// What is stored of a pyramid's levels.
+    pub levels: Levels,
     /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, the light of
     /// small bright places smeared over elevation.
     pub table_elevations: u32,
@@ -33,6 +42,9 @@ impl Default for Quality {
             fuse: Fuse::AimedNearest,
             precision: Precision::F32,
             hull: Hull::Auto,
+            level_step: 4,
+            level_offset: 2,
+            levels: Levels::default(),
             table_elevations: 256,
         }
     }
@@ -57,6 +69,8 @@ impl Quality {
         };
         within("--azimuths", self.azimuths, 4, 1024)?;
         within("--sun-azimuths", self.sun_azimuths, 1, 256)?;
+        within("--level-step", self.level_step, 1, 16)?;
+        within("--level-offset", self.level_offset, 0, 4)?;
         within("--table-elevations", self.table_elevations, 8, 4096)?;
         Ok(())
     }
@@ -70,6 +84,9 @@ pub enum Method {
     Auto,
     /// Hull sweeps along lines (Timonen & Westerholm 2010): time in proportion to the samples.
     Sweep,
+    /// One sample a level of a height pyramid (Nowrouzezahrai & Snyder 2009): time in proportion to
+    /// the samples and the logarithm of the side, error whatever the settings.
+    Pyramid,
     /// Every crossing of every sample's own line: exact, and slower in proportion to the side.
     Brute,
 }
@@ -150,6 +167,27 @@ pub enum Hull {
     Shared,
     /// Nowhere: the stored occluders are a linked list of hull vertices.
     List,
+}
+
+/// What is stored of a height pyramid's levels. Both hold the same B-spline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// Each at every sample of the field, read bilinearly: fast, and the field's memory for each.
+    #[default]
+    Stack,
+    /// Each at the texels it needs, its B-spline found at every look: slow, and a few times the
+    /// field's memory in all.
+    Pyramid,
+}
+
+impl Levels {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Levels::Stack => "stack",
+            Levels::Pyramid => "pyramid",
+        }
+    }
 }
 
 impl Fuse {
