@@ -1,14 +1,13 @@
 // Computes: horizons from a height pyramid: along each azimuth one sample a level, at distances that
-// grow by 2^(1/k), each the angle between heights of one level at both ends; then the largest value of
-// the cubic B-spline over them, at its knots and midpoints (Nowrouzezahrai & Snyder 2009, eq. 14-17).
+// grow by 2^(1/k) and are rounded to whole march steps, each the angle between heights of one level at
+// both ends; then the largest value of the cubic B-spline over them, at its knots and midpoints
+// (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 // Reads: heights, height_levels or height_stack, level_table, azimuths.
 // Writes: slopes (f32 bits) at [layer][step][lane].
 // One invocation is one sample in one azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
-
-#include "shared/surface.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
@@ -35,8 +34,9 @@ layout(push_constant) uniform PyramidMarchPush {
 };
 
 #include "shared/angle.glsl"
-#include "shared/heights.glsl"
 #include "shared/spline.glsl"
+
+Azimuth azimuth;
 
 // The last four angles, the newest in w, and the largest value of the spline so far. Before the first
 // and after the last, angles go on as they are, so that the spline begins and ends with them.
@@ -54,61 +54,56 @@ Blocked blocked_by(Blocked b, float angle, bool is_first) {
     return Blocked(four, is_first ? angle : highest);
 }
 
-// Rise over `own` of the surface `back` steps along the march from a sample.
-float surface_rise_at(int lane, int step, float own, float back, bool split_along) {
-    precise float aside = back * (float(azimuth.shear) * (1.0 / float(CELL)));
-    int whole = int(ceil(back));
-    int lower = int(ceil(aside));
-    int cell = lane - lower;
-    int at = step - whole;
-    return surface_rise(height_at(cell, at), height_at(cell, at + 1), height_at(cell + 1, at),
-                        height_at(cell + 1, at + 1), own, float(whole) - back, float(lower) - aside, split_along);
-}
-
-// Column and row that lie `back` steps along the march from a sample.
-vec2 place_at(int lane, int step, float back) {
-    precise float aside = back * (float(azimuth.shear) * (1.0 / float(CELL)));
-    float from_lane = float(lane_position(azimuth, lane, lanes));
-    float from_step = float(march_position(azimuth, step, steps));
-    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
-    float lane_after = from_lane + aside;
-    float lane_before = from_lane - aside;
-    float step_after = from_step + back;
-    float step_before = from_step - back;
-    float at_lane = flips_lanes ? lane_after : lane_before;
-    float at_step = flips_march ? step_after : step_before;
+// Where a lane and step lie in images of the field's size.
+ivec2 texel_of(int lane, int step) {
+    int lane_round = wrapped(lane, lanes);
+    int step_round = wrapped(step, steps);
+    int lane_held = clamp(lane, 0, lanes - 1);
+    lane = lane_position(azimuth, PERIODIC ? lane_round : lane_held, lanes);
+    step = march_position(azimuth, PERIODIC ? step_round : step, steps);
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-    return vec2(by_row ? at_lane : at_step, by_row ? at_step : at_lane);
+    return ivec2(by_row ? lane : step, by_row ? step : lane);
 }
 
-float stack_texel(int x, int y, ivec2 size, int level) {
-    ivec2 held = clamp(ivec2(x, y), ivec2(0), size - 1);
-    ivec2 round = ivec2(wrapped(x, size.x), wrapped(y, size.y));
-    return texelFetch(height_stack, ivec3(PERIODIC ? round : held, level - 1), 0).x;
-}
-
-// Height of a level at a column and row: of the stack bilinearly.
-float level_height(int level, vec2 place, ivec2 size) {
-    if (!STACK) {
-        Level l = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
-        precise vec2 at = place * l.per_sample;
-        return spline_at(l, at, width_shift);
+// Height of a level (0 is the field itself) of a stack where a line crosses a march step.
+float line_height(int level, int cell, float f, int step) {
+    ivec2 low = texel_of(cell, step);
+    ivec2 high = texel_of(cell + 1, step);
+    float h;
+    float next;
+    if (level == 0) {
+        h = texelFetch(heights, low, 0).x;
+        next = texelFetch(heights, high, 0).x;
+    } else {
+        h = texelFetch(height_stack, ivec3(low, level - 1), 0).x;
+        next = texelFetch(height_stack, ivec3(high, level - 1), 0).x;
     }
-    vec2 cell = floor(place);
-    ivec2 c = ivec2(cell);
-    vec2 t = place - cell;
-    float nw = stack_texel(c.x, c.y, size, level);
-    float ne = stack_texel(c.x + 1, c.y, size, level);
-    float sw = stack_texel(c.x, c.y + 1, size, level);
-    float se = stack_texel(c.x + 1, c.y + 1, size, level);
-    float north = nw + t.x * (ne - nw);
-    float south = sw + t.x * (se - sw);
-    return north + t.y * (south - north);
+    return h + f * (next - h);
 }
 
-float own_height(int level, vec2 place, ivec2 size) {
-    return STACK ? texelFetch(height_stack, ivec3(ivec2(place), level - 1), 0).x : level_height(level, place, size);
+// The same by the level's own spline.
+float spline_height(Level level, int cell, float f, int step) {
+    float from_end_lane = float(lanes - 1 - cell) - f;
+    float from_begin_lane = float(cell) + f;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    float at_lane = flips_lanes ? from_end_lane : from_begin_lane;
+    float at_step = float(march_position(azimuth, step, steps));
+    bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
+    vec2 place = vec2(by_row ? at_lane : at_step, by_row ? at_step : at_lane);
+    precise vec2 at = place * level.per_sample;
+    return spline_at(level, at, width_shift);
+}
+
+// Rise of a level from the sample to `whole` steps along.
+float rise_to(int level, int lane, int step, int whole) {
+    int y = lane * CELL - whole * azimuth.shear;
+    int cell = y >> CELL_SHIFT;
+    float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
+    if (STACK || level == 0) {
+        return line_height(level, cell, f, step - whole) - line_height(level, lane, 0.0, step);
+    }
+    Level l = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
+    return spline_height(l, cell, f, step - whole) - spline_height(l, lane, 0.0, step);
 }
 
 void main() {
@@ -118,56 +113,40 @@ void main() {
     bool exists = lane < lanes && step < steps;
     lane = min(lane, lanes - 1);
     step = min(step, steps - 1);
-    bool split_along = splits_along();
-    // Steps until the march leaves the field.
-    float across = float(lane) * float(CELL) / float(max(azimuth.shear, 1));
-    float reach = float(step + warm_up);
+    // Whole steps until the march leaves the field.
+    int across = lane * CELL / max(azimuth.shear, 1);
+    int reach = step + warm_up;
     reach = !PERIODIC && azimuth.shear > 0 ? min(reach, across) : reach;
-    float own = height_at(lane, step);
     Blocked blocked = Blocked(vec4(0.0), 0.0);
-    bool on = exists && reach > 0.0;
-    bool any_met = on;
+    bool meets = exists && reach > 0;
+    bool on = meets;
     float back = 1.0;
-    for (int i = 0; i < fine_samples; i++) {
+    int before = 0;
+    float angle = 0.0;
+    for (int i = 0;; i++) {
         // Left by all lanes together, as in horizon_sweep.
         if (!subgroupAny(on)) {
             break;
         }
-        bool is_last = back >= reach * (1.0 - HAIR);
-        float at = is_last ? reach : back;
-        float rise = surface_rise_at(lane, step, own, at, split_along);
-        float angle = arc_tangent(vec4(rise / (at * azimuth.step_m))).x;
+        int whole = int(back + 0.5);
+        // Near samples may fall on one step: nothing new is looked at.
+        if (whole > before) {
+            int at = clamp(whole, 1, max(reach, 1));
+            int level = clamp(i + 1 - fine_samples, 0, LEVELS);
+            angle = arc_tangent(vec4(rise_to(level, lane, step, at) / (float(at) * azimuth.step_m))).x;
+        }
         Blocked with = blocked_by(blocked, angle, i == 0);
         blocked.angles = on ? with.angles : blocked.angles;
         blocked.highest = on ? with.highest : blocked.highest;
-        on = on && !is_last;
+        on = on && whole < reach;
+        before = whole;
         back *= growth;
-    }
-    if (LEVELS > 0) {
-        vec2 here = place_at(lane, step, 0.0);
-        bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
-        ivec2 size = by_row ? ivec2(lanes, steps) : ivec2(steps, lanes);
-        for (int i = 1;; i++) {
-            if (!subgroupAny(on)) {
-                break;
-            }
-            int level = min(i, LEVELS);
-            bool is_last = back >= reach * (1.0 - HAIR);
-            float at = is_last ? reach : back;
-            float rise = level_height(level, place_at(lane, step, at), size) - own_height(level, here, size);
-            float angle = arc_tangent(vec4(rise / (at * azimuth.step_m))).x;
-            Blocked with = blocked_by(blocked, angle, false);
-            blocked.angles = on ? with.angles : blocked.angles;
-            blocked.highest = on ? with.highest : blocked.highest;
-            on = on && !is_last;
-            back *= growth;
-        }
     }
     float last = blocked.angles.w;
     blocked = blocked_by(blocked, last, false);
     blocked = blocked_by(blocked, last, false);
     if (exists) {
-        float slope = any_met ? tangent(blocked.highest) : NO_SLOPE;
+        float slope = meets ? tangent(blocked.highest) : NO_SLOPE;
         imageStore(slopes, ivec3(lane, step, int(azimuth.layer)), uvec4(floatBitsToUint(slope)));
     }
 }

@@ -1,11 +1,11 @@
-//! Horizons from a height pyramid: one sample a level along each azimuth, the largest value of the
-//! cubic B-spline over their angles (Nowrouzezahrai & Snyder 2009, eq. 14-17).
+//! Horizons from a height pyramid: one sample a level along each azimuth, at distances that grow by
+//! 2^(1/k) and are rounded to whole march steps; the largest value of the cubic B-spline over their
+//! angles (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 
 use super::lattice::Lattice;
 use super::shared::levels::LevelTexels;
-use super::shared::surface::{HAIR, surface_rise};
-use super::shared::sweep::{Heights, March, NO_SLOPE, PER_CELL, wrapped};
-use crate::plan::azimuths::{Azimuth, FLIPS_LANES, FLIPS_MARCH};
+use super::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, wrapped};
+use crate::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
 use crate::plan::pyramid::Pyramid;
 
 /// The levels beside the field itself, as they are stored.
@@ -48,86 +48,77 @@ struct PyramidMarch<'a> {
 }
 
 impl PyramidMarch<'_> {
-    /// Lanes that lie between a sample and the march `back` steps along.
-    fn aside(&self, back: f32) -> f32 {
-        back * (self.march.azimuth.shear as f32 * PER_CELL)
-    }
-
-    /// Rise of the surface over the sample itself.
-    fn surface_rise_at(&self, lane: i32, step: i32, back: f32) -> f32 {
-        let aside = self.aside(back);
-        let (whole, lower) = (back.ceil(), aside.ceil());
-        let (cell, at) = (lane - lower as i32, step - whole as i32);
-        let h = |lane, step| self.march.height_at(lane, step);
-        let corners = [h(cell, at), h(cell, at + 1), h(cell + 1, at), h(cell + 1, at + 1)];
-        let own = h(lane, step);
-        surface_rise(corners, own, whole - back, lower - aside, self.march.split_along())
-    }
-
-    /// Column and row `back` steps along.
-    fn place_at(&self, lane: i32, step: i32, back: f32) -> [f32; 2] {
-        let flags = self.march.azimuth.flags;
-        let along = |from: i32, by: f32, flips: bool| {
-            if flips { from as f32 + by } else { from as f32 - by }
+    /// Column and row of a lane and step, wrapped where the field repeats, else held at the edge.
+    fn texel_of(&self, lane: i32, step: i32) -> (i32, i32) {
+        let march = &self.march;
+        let inside = |i: i32, n: i32| {
+            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
         };
-        let (lane, step) = (self.march.lane_position(lane), self.march.march_position(step));
-        let lane = along(lane, self.aside(back), flags & FLIPS_LANES != 0);
-        let step = along(step, back, flags & FLIPS_MARCH != 0);
-        if self.march.azimuth.marches_rows() { [lane, step] } else { [step, lane] }
+        let lane = march.lane_position(inside(lane, march.lanes));
+        let step = march.march_position(inside(step, march.steps));
+        if march.azimuth.marches_rows() { (lane, step) } else { (step, lane) }
     }
 
-    fn level_height(&self, number: u32, place: [f32; 2]) -> f32 {
-        let [cols, rows] = self.pyramid.size.map(|n| n as i32);
+    /// Height of level `number` where a line crosses a march step, `f` past the lane `cell`.
+    fn height(&self, number: u32, (cell, f): (i32, f32), step: i32) -> f32 {
+        let [cols, rows] = self.pyramid.size.map(|n| n as usize);
+        let on_line = |texel: &dyn Fn((i32, i32)) -> f32| {
+            let h = texel(self.texel_of(cell, step));
+            h + f * (texel(self.texel_of(cell + 1, step)) - h)
+        };
         match self.stored {
-            Stored::Levels(texels) => {
-                let level = self.pyramid.level(number);
-                let at = [place[0] * level.per_sample[0], place[1] * level.per_sample[1]];
-                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, at)
-            }
+            _ if number == 0 => on_line(&|(col, row)| self.march.heights.at(col, row)),
             Stored::Stack(stack) => {
-                let inside = |i: i32, n: i32| {
-                    if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
-                };
-                let texel = |x: i32, y: i32| {
-                    let row = (number as i32 - 1) * rows + inside(y, rows);
-                    stack[(row * cols + inside(x, cols)) as usize]
-                };
-                let cell = place.map(f32::floor);
-                let t = [place[0] - cell[0], place[1] - cell[1]];
-                let [x, y] = cell.map(|c| c as i32);
-                let row = |y: i32| texel(x, y) + t[0] * (texel(x + 1, y) - texel(x, y));
-                row(y) + t[1] * (row(y + 1) - row(y))
+                let first = (number as usize - 1) * rows * cols;
+                on_line(&|(col, row)| stack[first + row as usize * cols + col as usize])
+            }
+            Stored::Levels(texels) => {
+                let march = &self.march;
+                let level = self.pyramid.level(number);
+                let flips = march.azimuth.flags & FLIPS_LANES != 0;
+                let from_end = (march.lanes - 1 - cell) as f32 - f;
+                let lane = if flips { from_end } else { cell as f32 + f };
+                let step = march.march_position(step) as f32;
+                let [x, y] = if march.azimuth.marches_rows() { [lane, step] } else { [step, lane] };
+                let place = [x * level.per_sample[0], y * level.per_sample[1]];
+                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place)
             }
         }
+    }
+
+    /// Rise of a level from a sample to `whole` steps along.
+    fn rise_to(&self, number: u32, lane: i32, step: i32, whole: i32) -> f32 {
+        let y = lane * CELL - whole * self.march.azimuth.shear;
+        let line = (y >> CELL_SHIFT, (y & (CELL - 1)) as f32 * PER_CELL);
+        self.height(number, line, step - whole) - self.height(number, (lane, 0.0), step)
     }
 
     /// Slope of the horizon of a sample.
     fn slope(&self, lane: i32, step: i32, warm_up: i32) -> f32 {
         let azimuth = &self.march.azimuth;
-        let across = lane as f32 / (azimuth.shear.max(1) as f32 * PER_CELL);
-        let all = (step + warm_up) as f32;
-        let bounded = !self.march.periodic() && azimuth.shear > 0;
+        let across = lane * CELL / azimuth.shear.max(1);
+        let all = step + warm_up;
+        let bounded = !self.pyramid.periodic && azimuth.shear > 0;
         let reach = if bounded { all.min(across) } else { all };
-        if reach <= 0.0 {
+        if reach <= 0 {
             return NO_SLOPE;
         }
-        let here = self.place_at(lane, step, 0.0);
-        let (mut back, mut blocked): (f32, Option<Blocked>) = (1.0, None);
-        for i in 0.. {
-            let is_last = back >= reach * (1.0 - HAIR);
-            let at = if is_last { reach } else { back };
-            let rise = if i < self.pyramid.fine_samples() {
-                self.surface_rise_at(lane, step, at)
-            } else {
-                let number = (i + 1 - self.pyramid.fine_samples()).min(self.pyramid.levels());
-                self.level_height(number, self.place_at(lane, step, at))
-                    - self.level_height(number, here)
-            };
-            let angle = (rise / (at * azimuth.step_m)).atan();
+        let (mut back, mut before, mut angle) = (1.0_f32, 0, 0.0);
+        let mut blocked: Option<Blocked> = None;
+        for i in 1.. {
+            let whole = (back + 0.5) as i32;
+            if whole > before {
+                let at = whole.min(reach);
+                let number = (i - self.pyramid.fine_samples() as i32).max(0) as u32;
+                let number = number.min(self.pyramid.levels());
+                let rise = self.rise_to(number, lane, step, at);
+                angle = (rise / (at as f32 * azimuth.step_m)).atan();
+            }
             blocked = Some(blocked.map_or(Blocked::first(angle), |b| b.by(angle)));
-            if is_last {
+            if whole >= reach {
                 break;
             }
+            before = whole;
             back *= self.pyramid.growth();
         }
         let blocked = blocked.expect("one sample at least");

@@ -5,7 +5,7 @@ use crate::scene::{Border, Levels, Quality};
 
 /// Horizons from a pyramid of filtered heights (Nowrouzezahrai & Snyder 2009, §5.2).
 ///
-/// Sample i of a march stands 2^(i/k) march steps away and looks at level i - k·o, or at the field
+/// Sample i of a march stands 2^(i/k) march steps away, rounded to whole steps, and looks at level i - k·o, or at the field
 /// itself (level 0) where that is below 1: the paper's f_(i + k o) counts levels from the coarsest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pyramid {
@@ -55,10 +55,13 @@ impl Pyramid {
     pub fn samples(&self) -> u32 {
         let longest = |n: u32| if self.periodic { n * (1 + WARM_UP_PERIODS) } else { n };
         let reach = self.size.map(longest).into_iter().max().unwrap_or(1) - 1;
-        match reach {
-            0 => 0,
-            _ => (f64::from(self.level_step) * f64::from(reach).log2() - 1e-6).ceil() as u32 + 1,
+        // As the march counts them.
+        let (mut samples, mut back) = (u32::from(reach > 0), 1.0_f32);
+        while ((back + 0.5) as u32) < reach {
+            back *= self.growth();
+            samples += 1;
         }
+        samples
     }
 
     /// Samples that look at the field itself.
