@@ -65,23 +65,19 @@ ivec2 texel_of(int lane, int step) {
     return ivec2(by_row ? lane : step, by_row ? step : lane);
 }
 
-// Height of a level (0 is the field itself) of a stack where a line crosses a march step.
-float line_height(int level, int cell, float f, int step) {
-    ivec2 low = texel_of(cell, step);
-    ivec2 high = texel_of(cell + 1, step);
-    float h;
-    float next;
-    if (level == 0) {
-        h = texelFetch(heights, low, 0).x;
-        next = texelFetch(heights, high, 0).x;
-    } else {
-        h = texelFetch(height_stack, ivec3(low, level - 1), 0).x;
-        next = texelFetch(height_stack, ivec3(high, level - 1), 0).x;
-    }
-    return h + f * (next - h);
+// Height of the field itself where a line is `f` past the lane `cell` at a march step.
+float field_height(int cell, float f, int step) {
+    float h = texelFetch(heights, texel_of(cell, step), 0).x;
+    return h + f * (texelFetch(heights, texel_of(cell + 1, step), 0).x - h);
 }
 
-// The same by the level's own spline.
+// The same of a level in the stack.
+float stack_height(int level, int cell, float f, int step) {
+    float h = texelFetch(height_stack, ivec3(texel_of(cell, step), level - 1), 0).x;
+    return h + f * (texelFetch(height_stack, ivec3(texel_of(cell + 1, step), level - 1), 0).x - h);
+}
+
+// The same of a level by its own spline.
 float spline_height(Level level, int cell, float f, int step) {
     float from_end_lane = float(lanes - 1 - cell) - f;
     float from_begin_lane = float(cell) + f;
@@ -94,16 +90,33 @@ float spline_height(Level level, int cell, float f, int step) {
     return spline_at(level, at, width_shift);
 }
 
-// Rise of a level from the sample to `whole` steps along.
-float rise_to(int level, int lane, int step, int whole) {
-    int y = lane * CELL - whole * azimuth.shear;
-    int cell = y >> CELL_SHIFT;
-    float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
-    if (STACK || level == 0) {
-        return line_height(level, cell, f, step - whole) - line_height(level, lane, 0.0, step);
+// Rise of a level other than the field from a sample to a place on a line.
+float level_rise(int level, int lane, int step, int cell, float f, int at) {
+    if (STACK) {
+        float own = texelFetch(height_stack, ivec3(texel_of(lane, step), level - 1), 0).x;
+        return stack_height(level, cell, f, at) - own;
     }
     Level l = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
-    return spline_height(l, cell, f, step - whole) - spline_height(l, lane, 0.0, step);
+    return spline_height(l, cell, f, at) - spline_height(l, lane, 0.0, step);
+}
+
+// The march: which sample is next, how far away, and whether this invocation's goes on.
+int next = 0;
+float back = 1.0;
+bool on;
+Blocked blocked = Blocked(vec4(0.0), 0.0);
+
+// Takes a rise `at` steps away as this sample's angle, and as that of the following ones that round to
+// as many steps: these need no look of their own.
+void take(float rise, int at, int whole) {
+    float angle = arc_tangent(vec4(rise / (float(at) * azimuth.step_m))).x;
+    do {
+        Blocked with = blocked_by(blocked, angle, next == 0);
+        blocked.angles = on ? with.angles : blocked.angles;
+        blocked.highest = on ? with.highest : blocked.highest;
+        next++;
+        back *= growth;
+    } while (int(back + 0.5) == whole);
 }
 
 void main() {
@@ -117,30 +130,26 @@ void main() {
     int across = lane * CELL / max(azimuth.shear, 1);
     int reach = step + warm_up;
     reach = !PERIODIC && azimuth.shear > 0 ? min(reach, across) : reach;
-    Blocked blocked = Blocked(vec4(0.0), 0.0);
     bool meets = exists && reach > 0;
-    bool on = meets;
-    float back = 1.0;
-    int before = 0;
-    float angle = 0.0;
-    for (int i = 0;; i++) {
-        // Left by all lanes together, as in horizon_sweep.
-        if (!subgroupAny(on)) {
-            break;
-        }
+    on = meets;
+    float own = texelFetch(heights, texel_of(lane, step), 0).x;
+    // Both loops are left by all lanes together, as in horizon_sweep.
+    while (next < fine_samples && subgroupAny(on)) {
         int whole = int(back + 0.5);
-        // Near samples may fall on one step: nothing new is looked at.
-        if (whole > before) {
-            int at = clamp(whole, 1, max(reach, 1));
-            int level = clamp(i + 1 - fine_samples, 0, LEVELS);
-            angle = arc_tangent(vec4(rise_to(level, lane, step, at) / (float(at) * azimuth.step_m))).x;
-        }
-        Blocked with = blocked_by(blocked, angle, i == 0);
-        blocked.angles = on ? with.angles : blocked.angles;
-        blocked.highest = on ? with.highest : blocked.highest;
+        int at = clamp(whole, 1, max(reach, 1));
+        int y = lane * CELL - at * azimuth.shear;
+        float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
+        take(field_height(y >> CELL_SHIFT, f, step - at) - own, at, whole);
         on = on && whole < reach;
-        before = whole;
-        back *= growth;
+    }
+    while (LEVELS > 0 && subgroupAny(on)) {
+        int whole = int(back + 0.5);
+        int at = clamp(whole, 1, max(reach, 1));
+        int y = lane * CELL - at * azimuth.shear;
+        float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
+        int level = min(next + 1 - fine_samples, LEVELS);
+        take(level_rise(level, lane, step, y >> CELL_SHIFT, f, step - at), at, whole);
+        on = on && whole < reach;
     }
     float last = blocked.angles.w;
     blocked = blocked_by(blocked, last, false);
