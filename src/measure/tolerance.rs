@@ -131,6 +131,26 @@ pub fn twin_spline(largest_m: f64) -> f64 {
     2.0 * 40.0 * EPSILON * largest_m
 }
 
+/// Slope of `pyramid_march` on a plane, where every level is the plane itself, against the truth.
+///
+/// After j octaves of reductions, 18 ε H each, and a spline, 40 ε H, an end errs by (18 j + 40) ε H, seen
+/// 2^j steps away or more: 58 ε H at most, at j = 1. A place errs by 2 ε of the whole side along either
+/// axis, across which a plane rises by 2 H: 8 ε H. Two ends; product and quotient 6 ε of a slope of 2 H / s.
+pub fn pyramid_plane_slope(largest_m: f64, step_m: f64) -> f64 {
+    (2.0 * (58.0 + 8.0) + 12.0) * EPSILON * largest_m / step_m
+}
+
+/// What an elevation of `pyramid_march` errs by besides its slopes' errors, radians.
+///
+/// A spline of angles, 12 ε; a tangent, 3e-8 and 12 ε of itself, which turns an angle by slope / (1 +
+/// slope²) of that; a steep one's complement errs by 2 ε.
+pub fn pyramid_angle(slope: f64) -> f64 {
+    let angle = slope.abs().atan();
+    12.0 * EPSILON * angle
+        + (3e-8 + 12.0 * EPSILON) * angle.min(1.0)
+        + 2.0 * EPSILON * angle.min(1.0)
+}
+
 /// Slope of `pyramid_march` against its twin, from given levels; `slope` is what is found.
 ///
 /// A rise: two ends of a level ([`twin_spline`]; bilinear samples of a stack and the surface itself err
