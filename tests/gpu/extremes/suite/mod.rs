@@ -74,6 +74,8 @@ pub struct Found<'a> {
     pub azimuths: Vec<Azimuth>,
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
+    /// Relief of heights that are no plane's, else 0.
+    uneven_m: f64,
     /// Which azimuth each layer of the first output is.
     layers: Vec<u32>,
     outputs: Vec<Pixels>,
@@ -120,12 +122,7 @@ impl Found<'_> {
     /// over angles: what is found and what is there both lie between 0 and atan(relief / step). Planes
     /// stay planes at every level.
     fn smoothed(&self, azimuth: &Azimuth) -> f64 {
-        let field = &self.scene.field;
-        if !self.method.is_pyramid() || is_plane(field) {
-            return 0.0;
-        }
-        let all = || field.heights_m().iter().copied().map(f64::from);
-        let relief = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+        let relief = if self.method.is_pyramid() { self.uneven_m } else { 0.0 };
         (relief / f64::from(azimuth.step_m)).atan()
     }
 
@@ -206,6 +203,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
+        uneven_m: uneven(field),
         layers,
         outputs: outputs?,
     };
@@ -277,19 +275,22 @@ fn white(field: HeightField, lights: Lights) -> Scene {
     Scene { field, surface, lights }
 }
 
-/// Whether the heights are a plane's, each rounded to f32.
-fn is_plane(field: &HeightField) -> bool {
+/// Relief of the heights; 0 where they are a plane's, each rounded to f32.
+fn uneven(field: &HeightField) -> f64 {
     let (rows, cols) = (field.rows(), field.cols());
     let at = |r: usize, c: usize| f64::from(field.heights_m()[r * cols + c]);
     let by_row = (at(rows - 1, 0) - at(0, 0)) / (rows - 1).max(1) as f64;
     let by_col = (at(0, cols - 1) - at(0, 0)) / (cols - 1).max(1) as f64;
     // Three roundings: of a height and of the two ends that it is held against.
     let rounding = 3.0 * ridgelight::measure::tolerance::EPSILON * largest(field);
-    (0..rows * cols).all(|i| {
+    let is_plane = (0..rows * cols).all(|i| {
         let (r, c) = (i / cols, i % cols);
         let plane = at(0, 0) + by_row * r as f64 + by_col * c as f64;
         (at(r, c) - plane).abs() <= rounding
-    })
+    });
+    let all = || field.heights_m().iter().copied().map(f64::from);
+    let relief = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+    if is_plane { 0.0 } else { relief }
 }
 
 /// The largest |height above the base|.
