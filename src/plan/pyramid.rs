@@ -1,6 +1,8 @@
 //! The levels of a height pyramid: how many a scene needs, how large each is, where it lies.
 
 use super::sweep::WARM_UP_PERIODS;
+use super::{Builder, Format, Owner, ResourceId};
+use crate::passes::{self, pyramid_march::Images};
 use crate::scene::{Border, Levels, Quality};
 
 /// Horizons from a pyramid of filtered heights (Nowrouzezahrai & Snyder 2009, §5.2).
@@ -131,5 +133,35 @@ impl Pyramid {
     pub fn all_texels(&self) -> u64 {
         let last = self.level(self.levels());
         if self.levels() == 0 { 0 } else { last.first + last.texels() }
+    }
+
+    /// Images of the levels beside the field itself; none where no march looks at any.
+    pub(super) fn images(&self, builder: &mut Builder) -> Option<Images> {
+        let count = self.levels();
+        if count == 0 {
+            return None;
+        }
+        let mut image = |name: &str, format: Format, extent: [u32; 3], layered: bool| {
+            builder.image(name, Owner::Internal, format, extent, layered)
+        };
+        let width = 1 << self.width_shift();
+        let height = self.all_texels().div_ceil(u64::from(width)) as u32;
+        let levels = image("height_levels", Format::R32Float, [width, height, 1], false);
+        let table = image("level_table", Format::Rgba32Uint, [count, 1, 1], false);
+        let [cols, rows] = self.size;
+        let stack = (self.stored == Levels::Stack)
+            .then(|| image("height_stack", Format::R32Float, [cols, rows, count], true));
+        Some(Images { levels, table, stack })
+    }
+
+    /// Passes that fill them from the heights.
+    pub(super) fn record(&self, builder: &mut Builder, heights: ResourceId, images: &Images) {
+        let Images { levels, table, stack } = *images;
+        for level in 1..=self.levels() {
+            passes::height_reduce::plan(builder, self, level, [heights, levels, table]);
+        }
+        if let Some(stack) = stack {
+            passes::height_expand::plan(builder, self, [levels, table, stack]);
+        }
     }
 }

@@ -2,11 +2,10 @@ use std::f64::consts::TAU;
 
 use super::azimuths::{self, Azimuth};
 use super::batch::{self, Axis, Batch, bytes_text};
-use super::pyramid::Pyramid;
 use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::pyramid_march;
-use crate::scene::{Border, HeightField, Levels, Lines, Method, Quality};
+use crate::scene::{Border, HeightField, Lines, Method, Quality};
 use crate::{Error, Result, passes};
 
 /// What every sweep of a plan shares.
@@ -176,7 +175,7 @@ pub(super) fn prepare(
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
     let levels = match &sweep {
-        Sweep::Pyramid(pyramid) => level_images(builder, pyramid),
+        Sweep::Pyramid(pyramid) => pyramid.images(builder),
         _ => None,
     };
     let shapes = shapes(&lists, &axes, &sweep);
@@ -224,14 +223,7 @@ pub(super) fn prepare(
         }
     }
     if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
-        for level in 1..=pyramid.levels() {
-            let ids = [heights, images.levels, images.table];
-            passes::height_reduce::plan(builder, pyramid, level, ids);
-        }
-        if let Some(stack) = images.stack {
-            let ids = [images.levels, images.table, stack];
-            passes::height_expand::plan(builder, pyramid, ids);
-        }
+        pyramid.record(builder, heights, images);
     }
     // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
@@ -245,25 +237,6 @@ fn lane_image(builder: &mut Builder, axis: Axis) -> ResourceId {
     let extent = [axis.lanes.div_ceil(4), axis.steps, 1];
     let name = format!("lane_heights_{}", axis.name());
     builder.image(name, Owner::Internal, Format::Rgba32Float, extent, false)
-}
-
-/// Images of a pyramid's levels beside the field itself; none where no march looks at any.
-fn level_images(builder: &mut Builder, pyramid: &Pyramid) -> Option<pyramid_march::Images> {
-    let count = pyramid.levels();
-    if count == 0 {
-        return None;
-    }
-    let mut image = |name: &str, format: Format, extent: [u32; 3], layered: bool| {
-        builder.image(name, Owner::Internal, format, extent, layered)
-    };
-    let width = 1 << pyramid.width_shift();
-    let height = pyramid.all_texels().div_ceil(u64::from(width)) as u32;
-    let levels = image("height_levels", Format::R32Float, [width, height, 1], false);
-    let table = image("level_table", Format::Rgba32Uint, [count, 1, 1], false);
-    let [cols, rows] = pyramid.size;
-    let stack = (pyramid.stored == Levels::Stack)
-        .then(|| image("height_stack", Format::R32Float, [cols, rows, count], true));
-    Some(pyramid_march::Images { levels, table, stack })
 }
 
 /// Bytes of the lattice of one azimuth, of those along each axis that need most.
