@@ -1,11 +1,11 @@
 //! Measures how far horizons and light are from the truth, and what they cost: the tables of README.
 //!
-//! `cargo run --release --example accuracy -- FIELD [--cell X,Y] [--env FILE] [--samples N]`
+//! `cargo run --release --example accuracy -- FIELD [--cell X,Y] [--env FILE] [--samples N] [--pyramids]`
 //!
 //! Horizons: 64 azimuths at N random samples against the f64 oracle on the triangulated surface.
 //! Sky: the light of a uniform sky at N / 8 samples against the oracle in 360 azimuths. Environment:
-//! at N / 20 samples against the quadrature of all its pixels. Pyramids: the same as of sweeps, the floor
-//! of their errors last (k = 16, o = 4), each drawn in turn with the default's sweep.
+//! at N / 20 samples against the quadrature of all its pixels. Pyramids: the same as of sweeps, the path of
+//! the paper's figure 10 first, each drawn in turn with the default's sweep; `--pyramids`: these alone.
 
 use std::path::PathBuf;
 
@@ -24,11 +24,12 @@ struct Asked {
     field: HeightField,
     environment: Option<Environment>,
     samples: usize,
+    pyramids_alone: bool,
 }
 
 fn asked() -> Result<Asked> {
     let mut options = HeightOptions::default();
-    let (mut path, mut env, mut samples) = (None, None, 4000);
+    let (mut path, mut env, mut samples, mut pyramids_alone) = (None, None, 4000, false);
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or_else(|| Error::setting(&arg, "nothing", "a value"));
@@ -41,6 +42,7 @@ fn asked() -> Result<Asked> {
                 };
                 options.cell_m = Some([*x, *y]);
             }
+            "--pyramids" => pyramids_alone = true,
             "--env" => env = Some(PathBuf::from(value()?)),
             "--samples" => {
                 let text = value()?;
@@ -57,6 +59,7 @@ fn asked() -> Result<Asked> {
         field: files::read_heights(&path, &options)?,
         environment,
         samples: samples.max(40),
+        pyramids_alone,
     })
 }
 
@@ -240,7 +243,7 @@ fn pyramids(
 }
 
 fn main() -> Result<()> {
-    let Asked { field, environment, samples } = asked()?;
+    let Asked { field, environment, samples, pyramids_alone } = asked()?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let oracle = Oracle::new(&field, Border::Plane);
     let picks = pick(&field, samples);
@@ -252,6 +255,10 @@ fn main() -> Result<()> {
     let sky = scene(Lights { sky: Some([1.0; 3]), ..Lights::default() });
     let megasamples = (field.rows() * field.cols()) as f64 / 1e6;
     println!("{} × {} samples, 64 azimuths, {}\n", field.cols(), field.rows(), gpu.report().name);
+    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
+    if pyramids_alone {
+        return pyramids(&mut gpu, &sky, (&picks, &even), (lit, &sky_truth));
+    }
     println!(
         "| lines | fuse | mean ° | median ° | 99 % ° | 99.9 % ° | worst ° (row, column) | sky RMSE % | sweep ms | shade ms |"
     );
@@ -269,7 +276,6 @@ fn main() -> Result<()> {
     if megasamples * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::Brute, Lines::Cell, Fuse::AimedNearest));
     }
-    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
         let quality = Quality { method, lines, fuse, ..Quality::default() };

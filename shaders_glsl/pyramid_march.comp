@@ -4,7 +4,7 @@
 // (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 // Reads: heights, height_levels or height_stack, level_table, azimuths.
 // Writes: slopes (f32 bits) at [layer][step][lane].
-// One invocation is one sample in one azimuth.
+// One invocation is one sample in all azimuths of a batch.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -28,6 +28,7 @@ layout(push_constant) uniform PyramidMarchPush {
     int steps;
     int warm_up;  // steps marched beyond the field: whole periods, or 0
     uint first_azimuth;
+    uint azimuth_count;
     int fine_samples;  // that look at the field itself
     int width_shift;
     float growth;      // of distances: 2^(1/k)
@@ -90,26 +91,35 @@ float spline_height(Level level, int cell, float f, int step) {
     return spline_at(level, at, width_shift);
 }
 
-// Rise of a level other than the field from a sample to a place on a line.
-float level_rise(int level, int lane, int step, int cell, float f, int at) {
+// The same of a level as it is stored.
+float level_height(int level, int cell, float f, int step) {
     if (STACK) {
-        float own = texelFetch(height_stack, ivec3(texel_of(lane, step), level - 1), 0).x;
-        return stack_height(level, cell, f, at) - own;
+        return stack_height(level, cell, f, step);
     }
-    Level l = level_of(texelFetch(level_table, ivec2(level - 1, 0), 0));
-    return spline_height(l, cell, f, at) - spline_height(l, lane, 0.0, step);
+    return spline_height(level_of(texelFetch(level_table, ivec2(level - 1, 0), 0)), cell, f, step);
 }
 
+// The same at a sample.
+float own_height(int level, int lane, int step) {
+    if (STACK) {
+        return texelFetch(height_stack, ivec3(texel_of(lane, step), level - 1), 0).x;
+    }
+    return level_height(level, lane, 0.0, step);
+}
+
+// Of every level, the field first: they are the same in all azimuths.
+float own_heights[LEVELS + 1];
+
 // The march: which sample is next, how far away, and whether this invocation's goes on.
-int next = 0;
-float back = 1.0;
+int next;
+float back;
 bool on;
-Blocked blocked = Blocked(vec4(0.0), 0.0);
+Blocked blocked;
 
 // Takes a rise `at` steps away as this sample's angle, and as that of the following ones that round to
 // as many steps: these need no look of their own.
 void take(float rise, int at, int whole) {
-    float angle = arc_tangent(vec4(rise / (float(at) * azimuth.step_m))).x;
+    float angle = arc_tangent(vec4(rise / (float(max(at, 1)) * azimuth.step_m))).x;
     do {
         Blocked with = blocked_by(blocked, angle, next == 0);
         blocked.angles = on ? with.angles : blocked.angles;
@@ -119,43 +129,61 @@ void take(float rise, int at, int whole) {
     } while (int(back + 0.5) == whole);
 }
 
-void main() {
-    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
-    int lane = int(gl_GlobalInvocationID.x);
-    int step = int(gl_GlobalInvocationID.y);
-    bool exists = lane < lanes && step < steps;
-    lane = min(lane, lanes - 1);
-    step = min(step, steps - 1);
+// Horizon of a sample in `azimuth`.
+float horizon(int lane, int step, bool exists) {
     // Whole steps until the march leaves the field.
     int across = lane * CELL / max(azimuth.shear, 1);
     int reach = step + warm_up;
     reach = !PERIODIC && azimuth.shear > 0 ? min(reach, across) : reach;
     bool meets = exists && reach > 0;
     on = meets;
-    float own = texelFetch(heights, texel_of(lane, step), 0).x;
+    next = 0;
+    back = 1.0;
+    blocked = Blocked(vec4(0.0), 0.0);
     // Both loops are left by all lanes together, as in horizon_sweep.
     while (next < fine_samples && subgroupAny(on)) {
         int whole = int(back + 0.5);
-        int at = clamp(whole, 1, max(reach, 1));
+        int at = min(whole, reach);
         int y = lane * CELL - at * azimuth.shear;
         float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
-        take(field_height(y >> CELL_SHIFT, f, step - at) - own, at, whole);
+        take(field_height(y >> CELL_SHIFT, f, step - at) - own_heights[0], at, whole);
         on = on && whole < reach;
     }
     while (LEVELS > 0 && subgroupAny(on)) {
         int whole = int(back + 0.5);
-        int at = clamp(whole, 1, max(reach, 1));
+        int at = min(whole, reach);
         int y = lane * CELL - at * azimuth.shear;
         float f = float(y & (CELL - 1)) * (1.0 / float(CELL));
         int level = min(next + 1 - fine_samples, LEVELS);
-        take(level_rise(level, lane, step, y >> CELL_SHIFT, f, step - at), at, whole);
+        take(level_height(level, y >> CELL_SHIFT, f, step - at) - own_heights[level], at, whole);
         on = on && whole < reach;
     }
     float last = blocked.angles.w;
     blocked = blocked_by(blocked, last, false);
     blocked = blocked_by(blocked, last, false);
-    if (exists) {
-        float slope = meets ? tangent(blocked.highest) : NO_SLOPE;
-        imageStore(slopes, ivec3(lane, step, int(azimuth.layer)), uvec4(floatBitsToUint(slope)));
+    return meets ? tangent(blocked.highest) : NO_SLOPE;
+}
+
+void main() {
+    int lane_at = int(gl_GlobalInvocationID.x);
+    int step_at = int(gl_GlobalInvocationID.y);
+    bool exists = lane_at < lanes && step_at < steps;
+    lane_at = min(lane_at, lanes - 1);
+    step_at = min(step_at, steps - 1);
+    azimuth = azimuth_at(azimuths, first_azimuth);
+    int lane = lane_position(azimuth, lane_at, lanes);
+    int step = march_position(azimuth, step_at, steps);
+    own_heights[0] = texelFetch(heights, texel_of(lane, step), 0).x;
+    for (int level = 1; level <= LEVELS; level++) {
+        own_heights[level] = own_height(level, lane, step);
+    }
+    for (uint k = 0u; k < azimuth_count; k++) {
+        azimuth = azimuth_at(azimuths, first_azimuth + k);
+        lane = lane_position(azimuth, lane_at, lanes);
+        step = march_position(azimuth, step_at, steps);
+        float slope = horizon(lane, step, exists);
+        if (exists) {
+            imageStore(slopes, ivec3(lane, step, int(azimuth.layer)), uvec4(floatBitsToUint(slope)));
+        }
     }
 }

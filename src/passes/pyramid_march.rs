@@ -10,6 +10,7 @@ struct PyramidMarchPush {
     steps: i32,
     warm_up: i32,
     first_azimuth: u32,
+    azimuth_count: u32,
     fine_samples: i32,
     width_shift: i32,
     growth: f32,
@@ -22,6 +23,7 @@ same_layout!(
     steps = STEPS,
     warm_up = WARM_UP,
     first_azimuth = FIRST_AZIMUTH,
+    azimuth_count = AZIMUTH_COUNT,
     fine_samples = FINE_SAMPLES,
     width_shift = WIDTH_SHIFT,
     growth = GROWTH,
@@ -54,26 +56,30 @@ pub(crate) fn plan(
         None => {}
     }
     let is_stack = pyramid.stored == Levels::Stack;
-    let texels = if is_stack { 1 + 4 } else { 16 + 16 };
-    let looked_at = pyramid.fine_samples().min(pyramid.samples()) * 4 + pyramid.levels() * texels;
+    // A sample of its own at every level, once; then one a level and azimuth.
+    let (own, far) = if is_stack { (1, 2) } else { (16, 16) };
+    let fine = pyramid.fine_samples().min(pyramid.samples());
+    let looked_at = u64::from(2 * fine + far * pyramid.levels());
+    let own = u64::from(1 + own * pyramid.levels());
     let samples = axis.samples() * u64::from(batch.count);
     let pass = builder.pass(
         &shaders::PYRAMID_MARCH,
         part,
         format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
-        [axis.lanes.div_ceil(8), axis.steps.div_ceil(8), batch.count],
+        [axis.lanes.div_ceil(8), axis.steps.div_ceil(8), 1],
         &[(0, u32::from(pyramid.periodic)), (1, u32::from(is_stack)), (2, pyramid.levels())],
         &PyramidMarchPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
+            azimuth_count: batch.count,
             fine_samples: pyramid.fine_samples() as i32,
             width_shift: pyramid.width_shift() as i32,
             growth: pyramid.growth(),
         },
         &bound,
-        samples * 4 * (2 + u64::from(looked_at)),
+        4 * (samples * (1 + looked_at) + axis.samples() * own),
         samples,
     );
     pass.azimuths = batch.azimuths();

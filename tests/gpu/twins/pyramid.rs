@@ -76,9 +76,8 @@ pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let levels = run.floats(pass, "height_levels").unwrap_or_default();
     let stored = stack.as_ref().map_or(Stored::Levels(&levels), |s| Stored::Stack(s));
     let [largest, relief] = run.relief();
-    let first = pushed(pass, offsets::pyramid_march_push::FIRST_AZIMUTH) as usize;
     let mut pairs = Vec::new();
-    for k in first..first + pass.groups[2] as usize {
+    for k in pass.azimuths.clone().map(|k| k as usize) {
         let azimuth = run.plan.azimuths[k];
         let alone = Azimuth { layer: 0, ..azimuth };
         let march = March::new(run.heights(), &alone);
