@@ -47,6 +47,9 @@ fn quality() {
             ("--nosuch", 2, &["--nosuch"]),
         ],
     );
+    let distances = "horizon a.asc -o h.npy --distances d.npy --method pyramid";
+    let words = ["--distances", "--method pyramid", "sweep or brute"];
+    refused(&folder, &[(distances, 2, &words)]);
 }
 
 #[test]
@@ -162,7 +165,6 @@ fn not_yet() {
             ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--bounces 2", 2, &["--bounces", "not yet"]),
             ("--subsample 2", 2, &["--subsample", "not yet"]),
-            ("--level-offset 1", 2, &["--level-offset", "not yet"]),
             ("--basis sh", 2, &["--basis", "not yet"]),
             ("--max-error 0.01", 2, &["--max-error", "not yet"]),
             ("--time-budget 5", 2, &["--time-budget", "not yet"]),
@@ -272,7 +274,10 @@ fn help_says_units_and_defaults() {
         ("--z-scale", &["[default: 1]"]),
         ("--border", &["[default: plane]"]),
         ("--nodata", &["Default the file's"]),
-        ("--method", &["[default: auto]", "not yet"]),
+        ("--method", &["[default: auto]", "pyramid"]),
+        ("--level-step", &["1..16", "[default: 4]"]),
+        ("--level-offset", &["0..4", "[default: 2]"]),
+        ("--levels", &["[default: stack]"]),
         ("--azimuths", &["4..1024", "[default: 64]"]),
         ("--sun-azimuths", &["1..256", "[default: 8]"]),
         ("--lines", &["Cells", "[default: 1]"]),
