@@ -44,7 +44,7 @@ float cosine(float x) {
     return sine(HALF_PI - abs(x));
 }
 
-// Tangent on (-pi/2, pi/2), to 2e-8 of itself on [0, pi/4] (Abramowitz & Stegun 4.3.101), its
+// Tangent on (-pi/2, pi/2), to 3e-8 of itself on [0, pi/4] (Abramowitz & Stegun 4.3.101), its
 // reciprocal at the complement beyond. The built-in may be off by 2^-11 in its sine and cosine.
 float tangent(float x) {
     float a = abs(x);

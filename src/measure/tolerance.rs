@@ -146,9 +146,7 @@ pub fn pyramid_plane_slope(largest_m: f64, step_m: f64) -> f64 {
 /// slope²) of that; a steep one's complement errs by 2 ε.
 pub fn pyramid_angle(slope: f64) -> f64 {
     let angle = slope.abs().atan();
-    12.0 * EPSILON * angle
-        + (3e-8 + 12.0 * EPSILON) * angle.min(1.0)
-        + 2.0 * EPSILON * angle.min(1.0)
+    12.0 * EPSILON * angle + (3e-8 + 14.0 * EPSILON) * angle.min(1.0)
 }
 
 /// Slope of `pyramid_march` against its twin, from given levels; `slope` is what is found.
