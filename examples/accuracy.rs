@@ -1,10 +1,11 @@
 //! Measures how far horizons and light are from the truth, and what they cost: the tables of README.
 //!
-//! `cargo run --release --example accuracy -- FIELD [--cell X,Y] [--env FILE] [--samples N]`
+//! `cargo run --release --example accuracy -- FIELD [--cell X,Y] [--env FILE] [--samples N] [--pyramids]`
 //!
 //! Horizons: 64 azimuths at N random samples against the f64 oracle on the triangulated surface.
 //! Sky: the light of a uniform sky at N / 8 samples against the oracle in 360 azimuths. Environment:
-//! at N / 20 samples against the quadrature of all its pixels.
+//! at N / 20 samples against the quadrature of all its pixels. Pyramids: the same as of sweeps, the path of
+//! the paper's figure 10 first, each drawn in turn with the default's sweep; `--pyramids`: these alone.
 
 use std::path::PathBuf;
 
@@ -15,7 +16,7 @@ use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
 use ridgelight::measure::error::{HorizonError, ImageError};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Border, Environment, Fuse, HeightField, Lights, Lines, Method, Quality, Scene, Surface,
+    Border, Environment, Fuse, HeightField, Levels, Lights, Lines, Method, Quality, Scene, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -23,11 +24,12 @@ struct Asked {
     field: HeightField,
     environment: Option<Environment>,
     samples: usize,
+    pyramids_alone: bool,
 }
 
 fn asked() -> Result<Asked> {
     let mut options = HeightOptions::default();
-    let (mut path, mut env, mut samples) = (None, None, 4000);
+    let (mut path, mut env, mut samples, mut pyramids_alone) = (None, None, 4000, false);
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or_else(|| Error::setting(&arg, "nothing", "a value"));
@@ -40,6 +42,7 @@ fn asked() -> Result<Asked> {
                 };
                 options.cell_m = Some([*x, *y]);
             }
+            "--pyramids" => pyramids_alone = true,
             "--env" => env = Some(PathBuf::from(value()?)),
             "--samples" => {
                 let text = value()?;
@@ -56,6 +59,7 @@ fn asked() -> Result<Asked> {
         field: files::read_heights(&path, &options)?,
         environment,
         samples: samples.max(40),
+        pyramids_alone,
     })
 }
 
@@ -162,8 +166,79 @@ fn occluders(
     )
 }
 
+/// Levels an octave and the offset of each row, and what is stored.
+const PYRAMIDS: [(u32, u32, Levels); 15] = [
+    (1, 0, Levels::Stack),
+    (2, 1, Levels::Stack),
+    (4, 2, Levels::Stack),
+    (8, 3, Levels::Stack),
+    (16, 4, Levels::Stack),
+    (1, 2, Levels::Stack),
+    (2, 2, Levels::Stack),
+    (8, 2, Levels::Stack),
+    (16, 2, Levels::Stack),
+    (4, 0, Levels::Stack),
+    (4, 1, Levels::Stack),
+    (4, 3, Levels::Stack),
+    (4, 4, Levels::Stack),
+    (4, 2, Levels::Pyramid),
+    (16, 4, Levels::Pyramid),
+];
+
+/// The table of pyramids.
+fn pyramids(
+    gpu: &mut Headless,
+    sky: &Scene,
+    (picks, truth): (&[[usize; 2]], &[Option<Horizon>]),
+    (lit, sky_truth): (&[[usize; 2]], &[f64]),
+) -> Result<()> {
+    println!(
+        "\n| k | o | stored | levels MiB | mean ° | median ° | 99 % ° | sky RMSE % | mean shift % | levels ms | march ms | × sweep |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
+    let field = &sky.field;
+    let elevations: Vec<f32> =
+        truth.iter().map(|h| elevation_of(Border::Plane, *h) as f32).collect();
+    for (level_step, level_offset, levels) in PYRAMIDS {
+        let method = Method::Pyramid;
+        let quality = Quality { method, level_step, level_offset, levels, ..Quality::default() };
+        let [angles, _] = horizons(gpu, field, &quality, picks, false)?;
+        let e = HorizonError::of(&angles, &elevations, 1, picks.len())?;
+        let (values, channels, times) = picture(gpu, sky, &quality)?;
+        let (_, _, beside) = picture(gpu, sky, &Quality::default())?;
+        let ours: Vec<f64> =
+            lit.iter().map(|[r, c]| f64::from(values[(r * field.cols() + c) * channels])).collect();
+        let light = ImageError::of(&ours, sky_truth, lit.len())?;
+        let plan = plan::picture(sky, &quality, &gpu.report().limits, Picture::default())?;
+        let of_levels = ["height_levels", "level_table", "height_stack"];
+        let bytes: u64 = plan
+            .resources
+            .iter()
+            .filter(|r| of_levels.contains(&r.name.as_str()))
+            .map(ridgelight::plan::Resource::bytes)
+            .sum();
+        let made = ms(&times, "height_reduce") + ms(&times, "height_expand");
+        let marched = ms(&times, "pyramid_march");
+        println!(
+            "| {level_step} | {level_offset} | {} | {:.1} | {:.3} | {:.3} | {:.2} | {:.3} | {:+.3} | {made:.1} | {marched:.1} | {:.1} |",
+            levels.name(),
+            bytes as f64 / 1_048_576.0,
+            e.mean,
+            e.median,
+            e.p99,
+            100.0 * light.relative_rmse,
+            100.0 * light.relative_mean_shift,
+            (made + marched) / ms(&beside, "horizon_sweep")
+        );
+    }
+    println!(
+        "ms of 64 azimuths; × sweep: of levels and march over the default sweep's, drawn in turn."
+    );
+    Ok(())
+}
+
 fn main() -> Result<()> {
-    let Asked { field, environment, samples } = asked()?;
+    let Asked { field, environment, samples, pyramids_alone } = asked()?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let oracle = Oracle::new(&field, Border::Plane);
     let picks = pick(&field, samples);
@@ -175,6 +250,10 @@ fn main() -> Result<()> {
     let sky = scene(Lights { sky: Some([1.0; 3]), ..Lights::default() });
     let megasamples = (field.rows() * field.cols()) as f64 / 1e6;
     println!("{} × {} samples, 64 azimuths, {}\n", field.cols(), field.rows(), gpu.report().name);
+    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
+    if pyramids_alone {
+        return pyramids(&mut gpu, &sky, (&picks, &even), (lit, &sky_truth));
+    }
     println!(
         "| lines | fuse | mean ° | median ° | 99 % ° | 99.9 % ° | worst ° (row, column) | sky RMSE % | sweep ms | shade ms |"
     );
@@ -192,7 +271,6 @@ fn main() -> Result<()> {
     if megasamples * (field.cols().max(field.rows()) as f64) < 200.0 {
         rows.push((Method::Brute, Lines::Cell, Fuse::AimedNearest));
     }
-    let even = truth(&oracle, &plan::circle_rad(&Quality::default(), field.cell_m())?, &picks);
     let mut same_occluders = String::new();
     for (method, lines, fuse) in rows {
         let quality = Quality { method, lines, fuse, ..Quality::default() };
@@ -231,6 +309,7 @@ fn main() -> Result<()> {
             ms(&times, "sky_shade") / 64.0 / megasamples
         );
     }
+    pyramids(&mut gpu, &sky, (&picks, &even), (lit, &sky_truth))?;
     println!(
         "\n{same_occluders}\nms an azimuth and megasample. Exact horizons are in the azimuths of grid vectors near the even ones."
     );

@@ -2,7 +2,7 @@
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Precision,
+    Albedo, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision,
     Quality, Scene, Sun, Surface,
 };
 
@@ -268,6 +268,8 @@ fn plans() -> Vec<Plan> {
         Quality { precision: Precision::Packed, ..base },
         Quality { method: Method::Brute, ..base },
         Quality { lines: Lines::Exact, ..base },
+        Quality { method: Method::Pyramid, ..base },
+        Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
     ];
     let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
     let mut all = Vec::new();

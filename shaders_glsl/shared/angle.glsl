@@ -43,3 +43,23 @@ float sine(float x) {
 float cosine(float x) {
     return sine(HALF_PI - abs(x));
 }
+
+// Tangent on (-pi/2, pi/2), to 3e-8 of itself on [0, pi/4] (Abramowitz & Stegun 4.3.101), its
+// reciprocal at the complement beyond. The built-in may be off by 2^-11 in its sine and cosine.
+float tangent(float x) {
+    float a = abs(x);
+    float complement = max(HALF_PI - a, 1e-9);
+    bool steep = a > 0.25 * PI;
+    float z = steep ? complement : a;
+    float s = z * z;
+    float p = 0.0095168091;
+    p = p * s + 0.0029005250;
+    p = p * s + 0.0245650893;
+    p = p * s + 0.0533740603;
+    p = p * s + 0.1333923995;
+    p = p * s + 0.3333314036;
+    p = z + z * s * p;
+    float inverse = 1.0 / p;
+    float t = steep ? inverse : p;
+    return x < 0.0 ? -t : t;
+}

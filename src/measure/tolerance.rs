@@ -114,6 +114,55 @@ pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
     128.0 * EPSILON * largest_m / step_m
 }
 
+/// Level of a height pyramid that `height_reduce` makes of a given one.
+///
+/// Places are equal (`precise`). A bilinear sample is three interpolations, each of a difference of
+/// 2 H, a product, up to 2 beyond an end, and a sum: 5 ε H, and passes on what it is given: 15 ε H. Four
+/// of them: 3 ε H. The twin errs by as much.
+pub fn twin_level(largest_m: f64) -> f64 {
+    2.0 * 18.0 * EPSILON * largest_m
+}
+
+/// Height that a level's B-spline has at a place.
+///
+/// A weight is a sum of at most 4, products and powers, over 6: 4 ε. Four of them along either axis err
+/// by 32 ε H in all, sums of four by 4 ε H each: 40 ε H. The twin errs by as much.
+pub fn twin_spline(largest_m: f64) -> f64 {
+    2.0 * 40.0 * EPSILON * largest_m
+}
+
+/// Slope of `pyramid_march` on a plane, where every level is the plane itself, against the truth.
+///
+/// After j octaves of reductions, 18 ε H each, and a spline, 40 ε H, an end errs by (18 j + 40) ε H, seen
+/// 2^j steps away or more: 58 ε H at most, at j = 1. A place errs by 2 ε of the whole side along either
+/// axis, across which a plane rises by 2 H: 8 ε H. Two ends; product and quotient 6 ε of a slope of 2 H / s.
+pub fn pyramid_plane_slope(largest_m: f64, step_m: f64) -> f64 {
+    (2.0 * (58.0 + 8.0) + 12.0) * EPSILON * largest_m / step_m
+}
+
+/// What an elevation of `pyramid_march` errs by besides its slopes' errors, radians.
+///
+/// A spline of angles, 12 ε; a tangent, 3e-8 and 12 ε of itself, which turns an angle by slope / (1 +
+/// slope²) of that; a steep one's complement errs by 2 ε.
+pub fn pyramid_angle(slope: f64) -> f64 {
+    let angle = slope.abs().atan();
+    12.0 * EPSILON * angle + (3e-8 + 14.0 * EPSILON) * angle.min(1.0)
+}
+
+/// Slope of `pyramid_march` against its twin, from given levels; `slope` is what is found.
+///
+/// A rise: two ends of a level ([`twin_spline`]; bilinear samples of a stack and the surface itself err
+/// by less), at equal places a step or more away; product and quotient 6 ε of a slope of R / s at most,
+/// on both sides 12 ε. An angle errs by no more, by an arc tangent, and by 2 ε of the twin's; the
+/// spline's weights are positive and sum to 1: 12 ε. A tangent grows by 1 + slope² of that, and errs by
+/// 3e-8 and 12 ε of itself (a complement's 2 ε, in 1 + slope²).
+pub fn twin_pyramid_slope(slope: f64, largest_m: f64, relief_m: f64, step_m: f64) -> f64 {
+    let rise = (2.0 * twin_spline(largest_m) + 12.0 * EPSILON * relief_m) / step_m;
+    let angle = rise + ARC_TANGENT + 16.0 * EPSILON;
+    let steepest = slope.abs() + angle;
+    (1.0 + steepest * steepest) * angle + steepest * (3e-8 + 12.0 * EPSILON)
+}
+
 /// Elevation of a slope that errs by `slope_error`, radians.
 pub fn twin_angle(slope: f64, slope_error: f64) -> f64 {
     let flattest = (slope.abs() - slope_error).max(0.0);

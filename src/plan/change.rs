@@ -74,7 +74,7 @@ impl Plan {
 mod tests {
     use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan};
-    use crate::scene::{Environment, Lights, Quality, Scene, Sun, Surface};
+    use crate::scene::{Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
     fn scene() -> Scene {
         let texels = (0..32 * 16).map(|i| [i as f32, 1.0, 2.0]).collect();
@@ -162,6 +162,22 @@ mod tests {
         let needed = names(&plan, &plan.passes_after(&plan, &[heights]));
         assert!(!needed.iter().any(|n| n.starts_with("env_")), "{needed:?}");
         assert!(needed.contains(&"horizon_sweep") && needed.contains(&"sun_shade"));
+    }
+
+    #[test]
+    fn a_new_field_makes_its_pyramid_anew() {
+        let quality = Quality { method: Method::Pyramid, azimuths: 16, ..Quality::default() };
+        let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+        let mut scene = scene();
+        let before = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
+        let heights = before.find("heights").unwrap();
+        let needed = names(&before, &before.passes_after(&before, &[heights]));
+        for name in ["height_reduce", "height_expand", "pyramid_march"] {
+            assert!(needed.contains(&name), "{name}: {needed:?}");
+        }
+        scene.lights.suns[0].irradiance = [9.0; 3];
+        let after = plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap();
+        assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod limits;
 mod pass;
 mod picture;
 mod print;
+pub mod pyramid;
 mod reference;
 mod resource;
 mod shining;

@@ -1,6 +1,7 @@
 //! How horizons of a field are found: which form of sweep, what it stores, how much it takes.
 
 use super::azimuths::{Azimuth, CELL};
+use super::pyramid::Pyramid;
 use super::{Axis, Limits};
 use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
 use crate::{Error, Result};
@@ -88,6 +89,8 @@ pub enum Sweep {
         /// Whether distances are stored beside slopes.
         distances: bool,
     },
+    /// Marches over a height pyramid.
+    Pyramid(Pyramid),
 }
 
 /// Periods of a periodic field that are marched before the one whose horizons are kept.
@@ -119,6 +122,17 @@ impl Sweep {
         let longest = field.cols().max(field.rows()) as u32;
         let total =
             if border == Border::Periodic { longest * (1 + WARM_UP_PERIODS) } else { longest };
+        if quality.method == Method::Pyramid {
+            if distances {
+                return Err(Error::setting(
+                    "distances to the horizon",
+                    "--method pyramid",
+                    "a method that knows its occluders: sweep or brute",
+                ));
+            }
+            let size = [field.cols() as u32, field.rows() as u32];
+            return Ok(Sweep::Pyramid(Pyramid::new(quality, size, border)));
+        }
         if quality.method == Method::Brute {
             if total > MARCH_STEPS_LIMIT {
                 return Err(Error::Limit {
@@ -259,7 +273,7 @@ impl Sweep {
 
     pub(crate) fn lattice_has_distances(&self) -> bool {
         match self {
-            Sweep::Lines(_) | Sweep::Crossings => false,
+            Sweep::Lines(_) | Sweep::Crossings | Sweep::Pyramid(_) => false,
             Sweep::Surface { distances, .. } | Sweep::March { distances } => *distances,
         }
     }
@@ -279,7 +293,7 @@ impl Sweep {
         let (unit, shear) = match self {
             Sweep::Lines(lines) => (1_u64 << lines.line_shift, azimuth.shear as u64),
             Sweep::Surface { .. } => (1, azimuth.vector_lane as u64),
-            Sweep::March { .. } | Sweep::Crossings => return axis.lanes,
+            Sweep::March { .. } | Sweep::Pyramid(_) | Sweep::Crossings => return axis.lanes,
         };
         let cell = match self {
             Sweep::Lines(_) => CELL as u64,
@@ -302,7 +316,7 @@ impl Sweep {
                     * u64::from(1 + axis.warm_up / axis.steps)
             }
             Sweep::Surface { .. } => axis.samples() * azimuth.vector_march as u64,
-            Sweep::March { .. } => axis.samples(),
+            Sweep::March { .. } | Sweep::Pyramid(_) => axis.samples(),
             Sweep::Crossings => 0,
         }
     }

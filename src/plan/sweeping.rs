@@ -4,6 +4,7 @@ use super::azimuths::{self, Azimuth};
 use super::batch::{self, Axis, Batch, bytes_text};
 use super::sweep::{HullPlace, LineSweep, Sweep};
 use super::{Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::pyramid_march;
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
 use crate::{Error, Result, passes};
 
@@ -16,6 +17,8 @@ pub(super) struct Sweeping {
     lane_heights: [Option<ResourceId>; 2],
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
+    /// Levels of a height pyramid, where some are looked at.
+    levels: Option<pyramid_march::Images>,
     /// Each batch's; several may have the same in turn.
     lattices: Vec<Lattice>,
 }
@@ -92,6 +95,11 @@ impl Sweeping {
                 passes::horizon_sweep::plan(builder, lines, batch, part, &images);
             }
             Sweep::Crossings => {}
+            Sweep::Pyramid(pyramid) => {
+                let ids = [self.heights, self.azimuths, self.written(batch)];
+                let levels = self.levels.as_ref();
+                pyramid_march::plan(builder, pyramid, batch, part, ids, levels);
+            }
             Sweep::Surface { hull_depth, distances } => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
                 passes::surface_sweep::plan(builder, batch, part, *hull_depth, *distances, ids);
@@ -133,7 +141,7 @@ impl LatticeShape {
                 height: axis.steps + axis.warm_up,
             },
             Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
-            Sweep::Surface { .. } | Sweep::March { .. } => Self {
+            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => Self {
                 occluders: None,
                 slopes: Some(Format::R32Uint),
                 width: axis.lanes,
@@ -166,6 +174,10 @@ pub(super) fn prepare(
         used.then(|| Axis::of(marches_rows, size, border))
     });
     let lane_heights = axes.map(|axis| axis.map(|axis| lane_image(builder, axis)));
+    let levels = match &sweep {
+        Sweep::Pyramid(pyramid) => pyramid.images(builder),
+        _ => None,
+    };
     let shapes = shapes(&lists, &axes, &sweep);
     let batches = cut_lists(&mut lists, builder.bytes(), &axes, &shapes, &sweep, limits)?;
     let shape_of =
@@ -210,10 +222,13 @@ pub(super) fn prepare(
             passes::height_transpose::plan(builder, *axis, border, heights, lanes);
         }
     }
+    if let (Sweep::Pyramid(pyramid), Some(images)) = (&sweep, &levels) {
+        pyramid.record(builder, heights, images);
+    }
     // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
-    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, lattices };
+    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, levels, lattices };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -352,6 +367,13 @@ pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<
         }
         Sweep::Crossings => add("method", "first crossings".into()),
         Sweep::March { .. } => add("method", "brute".into()),
+        Sweep::Pyramid(pyramid) => {
+            add("method", "pyramid".into());
+            add("level_step", pyramid.level_step.to_string());
+            add("level_offset", pyramid.level_offset.to_string());
+            add("levels", pyramid.stored.name().into());
+            add("level_count", (1 + pyramid.levels()).to_string());
+        }
     }
     all
 }

@@ -19,6 +19,15 @@ pub struct Quality {
     pub precision: Precision,
     /// Where the sweep's hull lives: never changes the result.
     pub hull: Hull,
+    /// Levels a doubling of distance in a height pyramid, k, [1..16], default 4. Fewer: faster and
+    /// less memory, horizons of what stands between two samples smeared.
+    pub level_step: u32,
+    /// Doublings of resolution by which a march over a pyramid looks at finer levels than its
+    /// distance asks for, o, [0..4], default 2. Fewer: soft distant horizons; more: narrow distant
+    /// ridges seen or missed by chance.
+    pub level_offset: u32,
+    /// What is stored of a pyramid's levels.
+    pub levels: Levels,
     /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, the light of
     /// small bright places smeared over elevation.
     pub table_elevations: u32,
@@ -34,6 +43,9 @@ impl Default for Quality {
             fuse: Fuse::AimedNearest,
             precision: Precision::F32,
             hull: Hull::Auto,
+            level_step: 4,
+            level_offset: 2,
+            levels: Levels::default(),
             table_elevations: 256,
         }
     }
@@ -44,6 +56,10 @@ impl Quality {
     pub const AZIMUTHS: RangeInclusive<u32> = 4..=1024;
     /// What [`sun_azimuths`](Self::sun_azimuths) may be.
     pub const SUN_AZIMUTHS: RangeInclusive<u32> = 1..=256;
+    /// What [`level_step`](Self::level_step) may be.
+    pub const LEVEL_STEP: RangeInclusive<u32> = 1..=16;
+    /// What [`level_offset`](Self::level_offset) may be.
+    pub const LEVEL_OFFSET: RangeInclusive<u32> = 0..=4;
     /// What [`table_elevations`](Self::table_elevations) may be.
     pub const TABLE_ELEVATIONS: RangeInclusive<u32> = 8..=4096;
 
@@ -65,6 +81,8 @@ impl Quality {
         };
         within("--azimuths", self.azimuths, Self::AZIMUTHS)?;
         within("--sun-azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
+        within("--level-step", self.level_step, Self::LEVEL_STEP)?;
+        within("--level-offset", self.level_offset, Self::LEVEL_OFFSET)?;
         within("--table-elevations", self.table_elevations, Self::TABLE_ELEVATIONS)?;
         Ok(())
     }
@@ -78,6 +96,9 @@ pub enum Method {
     Auto,
     /// Hull sweeps along lines (Timonen & Westerholm 2010): time in proportion to the samples.
     Sweep,
+    /// One sample a level of a height pyramid (Nowrouzezahrai & Snyder 2009): time in proportion to
+    /// the samples and the logarithm of the side, error whatever the settings.
+    Pyramid,
     /// Every crossing of every sample's own line: exact, and slower in proportion to the side.
     Brute,
 }
@@ -158,6 +179,27 @@ pub enum Hull {
     Shared,
     /// Nowhere: the stored occluders are a linked list of hull vertices.
     List,
+}
+
+/// What is stored of a height pyramid's levels. Both hold the same B-spline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// Each at every sample of the field, read bilinearly: fast, and the field's memory for each.
+    #[default]
+    Stack,
+    /// Each at the texels it needs, its B-spline found at every look: slow, and a few times the
+    /// field's memory in all.
+    Pyramid,
+}
+
+impl Levels {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Levels::Stack => "stack",
+            Levels::Pyramid => "pyramid",
+        }
+    }
 }
 
 impl Fuse {

@@ -36,7 +36,9 @@ fn quality() {
             ("--sun-azimuths 257", 2, &["--sun-azimuths: found 257"]),
             ("--table-elevations 7", 2, &["--table-elevations: found 7", "8 to 4096"]),
             ("--table-elevations 4097", 2, &["--table-elevations: found 4097"]),
-            ("--method pyramid", 2, &["--method: found pyramid", "not yet"]),
+            ("--method pyramid --level-step 17", 2, &["--level-step: found 17", "1 to 16"]),
+            ("--method pyramid --level-offset 5", 2, &["--level-offset: found 5", "0 to 4"]),
+            ("--levels mips", 2, &["mips", "stack"]),
             ("--method magic", 2, &["--method", "magic", "sweep"]),
             ("--lines 3", 2, &["--lines", "'3'", "exact"]),
             ("--fuse x", 2, &["--fuse"]),
@@ -45,6 +47,9 @@ fn quality() {
             ("--nosuch", 2, &["--nosuch"]),
         ],
     );
+    let distances = "horizon a.asc -o h.npy --distances d.npy --method pyramid";
+    let words = ["--distances", "--method pyramid", "sweep or brute"];
+    refused(&folder, &[(distances, 2, &words)]);
 }
 
 #[test]
@@ -160,8 +165,6 @@ fn not_yet() {
             ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--bounces 2", 2, &["--bounces", "not yet"]),
             ("--subsample 2", 2, &["--subsample", "not yet"]),
-            ("--level-step 2", 2, &["--level-step", "not yet"]),
-            ("--level-offset 1", 2, &["--level-offset", "not yet"]),
             ("--basis sh", 2, &["--basis", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),
@@ -270,7 +273,10 @@ fn help_says_units_and_defaults() {
         ("--z-scale", &["[default: 1]"]),
         ("--border", &["[default: plane]"]),
         ("--nodata", &["Default the file's"]),
-        ("--method", &["[default: auto]", "not yet"]),
+        ("--method", &["[default: auto]", "pyramid"]),
+        ("--level-step", &["1..16", "[default: 4]"]),
+        ("--level-offset", &["0..4", "[default: 2]"]),
+        ("--levels", &["[default: stack]"]),
         ("--azimuths", &["4..1024", "[default: 64]"]),
         ("--sun-azimuths", &["1..256", "[default: 8]"]),
         ("--lines", &["Cells", "[default: 1]"]),

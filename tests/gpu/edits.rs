@@ -254,6 +254,7 @@ fn edits_that_cannot_be_are_refused() {
         (&scene, Quality { fuse: Fuse::Slopes, ..quality }, true),
         (&periodic, quality, true),
         (&scene, Quality { method: Method::Brute, ..quality }, true),
+        (&scene, Quality { method: Method::Pyramid, ..quality }, true),
     ] {
         let plan = planned(gpu, scene, &quality, keeps);
         let error = plan.check_edit(all).expect_err("no passes for edits");

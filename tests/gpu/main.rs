@@ -11,6 +11,7 @@ mod flight;
 mod forms;
 mod goldens;
 mod pruned;
+mod pyramid;
 mod real;
 mod reference_edges;
 mod reference_truth;

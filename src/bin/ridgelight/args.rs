@@ -15,7 +15,9 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 pub use auto::AutoArgs;
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
-pub use quality::{FuseName, HullName, LinesName, MethodName, PrecisionName, QualityArgs};
+pub use quality::{
+    FuseName, HullName, LevelsName, LinesName, MethodName, PrecisionName, QualityArgs,
+};
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 pub use values::albedo_colour;

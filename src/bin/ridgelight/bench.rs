@@ -142,7 +142,13 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
     let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
     known.dedup();
     if forms {
-        known.extend(["horizon_sweep", "sky_shade", "surface_sweep", "horizon_march"]);
+        known.extend([
+            "horizon_sweep",
+            "sky_shade",
+            "surface_sweep",
+            "pyramid_march",
+            "horizon_march",
+        ]);
     }
     known.sort_unstable();
     known.dedup();

@@ -3,8 +3,18 @@
 use std::io::Write as _;
 
 /// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 7] =
-    ["azimuths", "sun_azimuths", "lines", "fuse", "precision", "hull", "table_elevations"];
+const SETTINGS: [&str; 10] = [
+    "azimuths",
+    "sun_azimuths",
+    "lines",
+    "fuse",
+    "precision",
+    "hull",
+    "level_step",
+    "level_offset",
+    "levels",
+    "table_elevations",
+];
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
@@ -37,6 +47,8 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("azimuths", ..) => "without a sky or an environment".into(),
         ("sun_azimuths", ..) => "without a sun wider than 0.01°".into(),
         ("table_elevations", ..) => "without an environment".into(),
+        ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
+        (_, Some("pyramid"), _) => "with --method pyramid".into(),
         (_, Some("brute"), _) => "with --method brute".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),

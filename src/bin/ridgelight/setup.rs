@@ -4,15 +4,15 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Fuse, HeightField, Hull, Lights, Lines, Method, Precision, Quality, Scene,
-    Surface,
+    Albedo, Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision, Quality,
+    Scene, Surface,
 };
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LightArgs, LinesName, MethodName,
-    PrecisionName, QualityArgs, SurfaceArgs, albedo_colour,
+    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs, LinesName,
+    MethodName, PrecisionName, QualityArgs, SurfaceArgs, albedo_colour,
 };
 
 /// How a command ended that did not fail.
@@ -95,13 +95,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             MethodName::Auto => Method::Auto,
             MethodName::Sweep => Method::Sweep,
             MethodName::Brute => Method::Brute,
-            MethodName::Pyramid => {
-                return Err(Error::setting(
-                    "--method",
-                    "pyramid",
-                    "auto, sweep or brute: pyramid is not yet there",
-                ));
-            }
+            MethodName::Pyramid => Method::Pyramid,
         },
         azimuths: args.azimuths,
         sun_azimuths: args.sun_azimuths,
@@ -130,6 +124,12 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             HullName::Private => Hull::Private,
             HullName::Shared => Hull::Shared,
             HullName::List => Hull::List,
+        },
+        level_step: args.level_step,
+        level_offset: args.level_offset,
+        levels: match args.levels {
+            LevelsName::Stack => Levels::Stack,
+            LevelsName::Pyramid => Levels::Pyramid,
         },
         table_elevations: args.table_elevations,
     };

@@ -3,5 +3,6 @@
 pub mod field;
 pub mod fuse;
 pub mod gather;
+pub mod levels;
 pub mod surface;
 pub mod sweep;

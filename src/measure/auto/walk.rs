@@ -4,7 +4,7 @@ use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Measured, Probes, apart};
 use super::statistics::Statistics;
-use crate::scene::{Fuse, Hull, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
 use crate::{Error, Result};
 
 /// A frame that was drawn with some settings.
@@ -43,6 +43,10 @@ const COARSE: Quality = Quality {
     precision: Precision::F32,
     hull: Hull::Auto,
     table_elevations: 64,
+    // Of pyramids alone.
+    level_step: 4,
+    level_offset: 2,
+    levels: Levels::Stack,
 };
 
 /// Where bounds alone stand in the way probes are doubled up to so many, or twice.

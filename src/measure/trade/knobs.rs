@@ -40,8 +40,15 @@ const LINES: [(Lines, &str); 6] = [
 const FUSES: [Fuse; 5] = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
+const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
+const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
+
 fn has_no_lines(quality: &Quality) -> bool {
-    quality.method == Method::Brute || quality.lines == Lines::Exact
+    matches!(quality.method, Method::Brute | Method::Pyramid) || quality.lines == Lines::Exact
+}
+
+fn has_no_levels(quality: &Quality) -> bool {
+    quality.method != Method::Pyramid
 }
 
 /// The knobs that change how a scene is lit: no azimuths without a sky, no table without an
@@ -55,13 +62,15 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             steps: LINES
                 .iter()
                 .map(|(_, name)| format!("--lines {name}"))
-                .chain(["--method brute".to_owned()])
+                .chain(["pyramid", "brute"].map(|method| format!("--method {method}")))
                 .collect(),
             range: None,
             default: 0,
-            dearer: "closer lines, then every sample on a line, then brute force: small occluders",
+            dearer: "closer lines, then every sample on a line: small occluders; a pyramid of heights, \
+                     which only costs more; brute force",
             set: |quality, step| match LINES.get(step) {
                 Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
+                None if step == LINES.len() => quality.method = Method::Pyramid,
                 None => quality.method = Method::Brute,
             },
             idle: |_| false,
@@ -83,6 +92,24 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             dearer: "more bits: heights on the hull, stored slopes",
             set: |quality, step| quality.precision = PRECISIONS[step],
             idle: has_no_lines,
+        },
+        Knob {
+            name: "level step",
+            steps: spell("--level-step", &LEVEL_STEPS),
+            range: Some(Quality::LEVEL_STEP),
+            default: 0,
+            dearer: "more levels of a pyramid: what stands between two samples",
+            set: |quality, step| quality.level_step = LEVEL_STEPS[step],
+            idle: has_no_levels,
+        },
+        Knob {
+            name: "level offset",
+            steps: spell("--level-offset", &LEVEL_OFFSETS),
+            range: Some(Quality::LEVEL_OFFSET),
+            default: 0,
+            dearer: "finer levels of a pyramid: sharp distant horizons",
+            set: |quality, step| quality.level_offset = LEVEL_OFFSETS[step],
+            idle: has_no_levels,
         },
     ];
     if lights.sky.is_some() || lights.environment.is_some() {
@@ -210,19 +237,21 @@ mod tests {
     #[test]
     fn only_knobs_that_change_something_are_walked() {
         let names = |lights| knobs(&scene(lights)).iter().map(|k| k.name).collect::<Vec<_>>();
-        assert_eq!(names(sky()), ["sweep", "fuse", "precision", "azimuths"]);
-        assert_eq!(names(sun(0.01)), ["sweep", "fuse", "precision", "sun azimuths"]);
-        assert_eq!(names(sun(0.0)), ["sweep", "fuse", "precision"]);
+        let always = ["sweep", "fuse", "precision", "level step", "level offset"];
+        let with = |more: &[&'static str]| [&always, more].concat();
+        assert_eq!(names(sky()), with(&["azimuths"]));
+        assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
+        assert_eq!(names(sun(0.0)), with(&[]));
     }
 
-    /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone, each
-    /// with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
+    /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone
+    /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
     #[test]
     fn places_are_all_that_differ() {
         let knobs = knobs(&scene(sky()));
         let start = start();
         let all = places(&knobs, &start);
-        assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2) * 6);
+        assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2 + 5 * 5) * 6);
         for (i, place) in all.iter().enumerate() {
             place.quality.check().unwrap();
             assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
@@ -233,7 +262,7 @@ mod tests {
         let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
         assert_eq!(brute.len(), 6);
         assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
-        assert_eq!(brute[0].steps, [Some(6), None, None, Some(0)]);
+        assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
     }
 
     /// Steps rise within the range, differ, and the default is the command line's.
@@ -252,6 +281,8 @@ mod tests {
             ("sweep", "--lines 1"),
             ("fuse", "--fuse aimed-nearest"),
             ("precision", "--precision f32"),
+            ("level step", "--level-step 4"),
+            ("level offset", "--level-offset 2"),
             ("azimuths", "--azimuths 64"),
             ("sun azimuths", "--sun-azimuths 8"),
             ("table elevations", "--table-elevations 256"),

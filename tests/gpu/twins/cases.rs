@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Environment, Fuse, HeightField, Hull, Lights, Lines, Method, Phong, Precision,
-    Quality, Scene, SphereLight, Sun, Surface,
+    Albedo, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Phong,
+    Precision, Quality, Scene, SphereLight, Sun, Surface,
 };
 
 use crate::{field, random};
@@ -156,6 +156,32 @@ pub(super) fn samples() -> Vec<Case> {
         horizons("exact, periodic", rough(9, 10, 8), Border::Periodic, exact, true),
         horizons("brute", rough(19, 14, 9), Border::Open, brute, true),
         horizons("brute, periodic", rough(10, 9, 10), Border::Periodic, brute, true),
+    ]
+}
+
+/// The passes of a height pyramid: both stores, all borders, few and many levels an octave, and fields
+/// with one sample across, few of them, or no level but themselves.
+pub(super) fn pyramids() -> Vec<Case> {
+    let base = Quality { azimuths: 12, method: Method::Pyramid, ..Quality::default() };
+    let looks =
+        |levels, level_step, level_offset| Quality { levels, level_step, level_offset, ..base };
+    let on = |name, field, border, quality| horizons(name, field, border, quality, false);
+    use Levels::{Pyramid, Stack};
+    vec![
+        on("stack", rough(37, 23, 31), Border::Plane, looks(Stack, 3, 0)),
+        on("stack, periodic", rough(11, 14, 32), Border::Periodic, looks(Stack, 2, 1)),
+        on("levels", rough(23, 41, 33), Border::Open, looks(Pyramid, 4, 1)),
+        on("levels, periodic", rough(13, 9, 34), Border::Periodic, looks(Pyramid, 5, 0)),
+        on("levels, 16 an octave", rough(17, 31, 35), Border::Plane, looks(Pyramid, 16, 0)),
+        on("levels, one sample across", rough(1, 29, 36), Border::Plane, looks(Pyramid, 1, 0)),
+        on(
+            "stack of a column that repeats",
+            rough(23, 1, 37),
+            Border::Periodic,
+            looks(Stack, 1, 0),
+        ),
+        on("the field alone", rough(2, 3, 38), Border::Plane, looks(Stack, 4, 2)),
+        on("one sample", rough(1, 1, 39), Border::Open, looks(Stack, 1, 0)),
     ]
 }
 

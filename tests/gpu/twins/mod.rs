@@ -5,6 +5,7 @@ mod cases;
 mod edit;
 mod light;
 mod paths;
+mod pyramid;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -15,7 +16,7 @@ use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Fuse, Scene};
+use ridgelight::scene::{Border, Fuse, Quality, Scene};
 
 use crate::Device;
 use cases::Case;
@@ -54,6 +55,9 @@ type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
 const TWINS: &[(&str, Twin)] = &[
     ("dirty_list", edit::dirty_list),
     ("dirty_mark", edit::dirty_mark),
+    ("height_expand", pyramid::height_expand),
+    ("height_reduce", pyramid::height_reduce),
+    ("pyramid_march", pyramid::pyramid_march),
     ("height_transpose", sweep::height_transpose),
     ("horizon_resweep", edit::horizon_resweep),
     ("height_cells", paths::height_cells),
@@ -81,6 +85,7 @@ struct Run<'a> {
     frame: Frame,
     plan: Plan,
     scene: &'a Scene,
+    quality: Quality,
     /// What the device's sweeps left, by azimuth, as lattices of one layer.
     lattices: Vec<Option<Lattice>>,
     /// Where the azimuths of the light that is being summed begin.
@@ -104,6 +109,7 @@ impl<'a> Run<'a> {
             gpu,
             frame,
             scene: &case.scene,
+            quality: case.quality,
             lattices: vec![None; plan.azimuths.len()],
             light_begins: 0,
             radiance: Vec::new(),
@@ -258,8 +264,16 @@ fn check(device: &mut Device, case: &Case) -> usize {
 
 #[test]
 fn every_shader_has_a_twin_and_a_case() {
-    let cases = [cases::sweeps(), cases::samples(), cases::pictures(), cases::references()];
-    let cases: Vec<Case> = cases.into_iter().flatten().collect();
+    let cases: Vec<Case> = [
+        cases::sweeps(),
+        cases::samples(),
+        cases::pyramids(),
+        cases::pictures(),
+        cases::references(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
     let planned: Vec<&str> = cases
         .iter()
         .map(|case| case.plan(&Limits::lavapipe()))
@@ -286,6 +300,14 @@ fn sweeps_in_every_form_are_their_twins() {
 fn sweeps_of_one_value_a_sample_are_their_twins() {
     let mut device = Device::new();
     for case in cases::samples() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn pyramids_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::pyramids() {
         check(&mut device, &case);
     }
 }

@@ -12,10 +12,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     subsample: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    level_step: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    level_offset: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     basis: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
@@ -32,8 +28,6 @@ impl LaterArgs {
             ("--phong", self.phong.as_ref()),
             ("--bounces", self.bounces.as_ref()),
             ("--subsample", self.subsample.as_ref()),
-            ("--level-step", self.level_step.as_ref()),
-            ("--level-offset", self.level_offset.as_ref()),
             ("--basis", self.basis.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--camera", self.camera.as_ref()),

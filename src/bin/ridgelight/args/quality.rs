@@ -27,6 +27,16 @@ pub struct QualityArgs {
     /// Where a sweep's hull lives; never changes the result
     #[arg(long, default_value = "auto")]
     pub hull: HullName,
+    /// Levels of a height pyramid a doubling of distance, 1..16
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    pub level_step: u32,
+    /// Doublings of resolution by which a pyramid's levels are finer than distance asks for, 0..4:
+    /// more, sharper distant horizons, and more of them missed between samples
+    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
+    pub level_offset: u32,
+    /// What is stored of a pyramid's levels
+    #[arg(long, default_value = "stack")]
+    pub levels: LevelsName,
     /// Elevations of an environment's table, 8..4096
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
     pub table_elevations: u32,
@@ -53,7 +63,7 @@ pub enum MethodName {
     Auto,
     /// Hull sweeps along lines
     Sweep,
-    /// Height pyramid (not yet)
+    /// One sample a level of a height pyramid: soft, in error whatever the settings
     Pyramid,
     /// Every crossing of every sample's own line: exact and slow
     Brute,
@@ -94,6 +104,14 @@ pub enum PrecisionName {
     F32,
     F16,
     Packed,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum LevelsName {
+    /// Each at every sample: faster
+    Stack,
+    /// Each at the texels it needs: a few times the field's memory in all
+    Pyramid,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -9,7 +9,7 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::measure::scalar_sweep::ScalarSweep;
 use ridgelight::measure::statistics::Summary;
 use ridgelight::plan::{self, Limits, Pass, Picture};
-use ridgelight::scene::{Fuse, Hull, Lines, Method, Precision, Quality, Scene};
+use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
 
 use super::rows::{Row, figure, sums};
 use super::verify::Verifier;
@@ -72,6 +72,11 @@ fn forms(quality: &Quality) -> Vec<Form> {
         false,
         true,
     ));
+    for levels in [Levels::Stack, Levels::Pyramid] {
+        let name = format!("pyramid_march {}", levels.name());
+        let method = Method::Pyramid;
+        all.push(form(name, Quality { method, levels, ..base }, false, false));
+    }
     all.push(form(
         "horizon_march brute".into(),
         Quality { method: Method::Brute, ..base },

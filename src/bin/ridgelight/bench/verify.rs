@@ -155,6 +155,10 @@ impl Verifier {
 fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
     let transfer = match (quality.method, quality.lines.shift()) {
         (Method::Brute, _) | (_, None) => 0.001,
+        (Method::Pyramid, _) => {
+            // Offsets 0, 1, 2 and more, on the same moss with one level an octave: the least there are.
+            2.0 * [0.46, 0.35, 0.28][quality.level_offset.min(2) as usize]
+        }
         (_, Some(shift)) => {
             // 1/4, 1/2, 1, 2, 4 cells between lines.
             let measured = match quality.fuse {

@@ -1,12 +1,13 @@
 //! The methods that every case is put to, and what each may err by.
 
 use ridgelight::measure::tolerance::{
-    ARC_TANGENT, EPSILON, march_slope, surface_slope, sweep_slope, twin_fused_slope,
-    twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed, twin_surface_slope,
+    ARC_TANGENT, EPSILON, march_slope, pyramid_angle, pyramid_plane_slope, surface_slope,
+    sweep_slope, twin_fused_slope, twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed,
+    twin_surface_slope,
 };
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
-use ridgelight::scene::{self, Fuse, Hull, Lines, Precision, Quality};
+use ridgelight::scene::{self, Fuse, Hull, Levels, Lines, Precision, Quality};
 
 /// A way to find horizons, as the page names it.
 pub struct Method {
@@ -17,6 +18,7 @@ pub struct Method {
 /// Every method. A new one is enrolled by an entry here.
 pub fn all() -> Vec<Method> {
     let base = Quality { azimuths: 16, sun_azimuths: 32, ..Quality::default() };
+    let pyramid = Quality { method: scene::Method::Pyramid, ..base };
     let fused = |fuse| Quality { fuse, ..base };
     let spaced = |lines, fuse| Quality { lines, fuse, ..base };
     let kept = |precision, fuse| Quality { precision, fuse, ..base };
@@ -36,6 +38,11 @@ pub fn all() -> Vec<Method> {
         ("1, nearest, f16", kept(Precision::F16, Fuse::Nearest)),
         ("1, nearest, packed", kept(Precision::Packed, Fuse::Nearest)),
         ("1, aimed-nearest, packed", kept(Precision::Packed, Fuse::AimedNearest)),
+        ("pyramid, stack", pyramid),
+        (
+            "pyramid, levels, 3, 0",
+            Quality { levels: Levels::Pyramid, level_step: 3, level_offset: 0, ..pyramid },
+        ),
     ]
     .map(|(name, quality)| Method { name, quality })
     .into()
@@ -48,12 +55,20 @@ impl Method {
 
     /// Whether it sweeps along grid vectors, where every crossing is on the hull.
     pub fn is_exact(&self) -> bool {
-        !self.is_brute() && self.quality.lines == Lines::Exact
+        self.has_lines() && self.quality.lines == Lines::Exact
+    }
+
+    pub fn is_pyramid(&self) -> bool {
+        self.quality.method == scene::Method::Pyramid
+    }
+
+    fn has_lines(&self) -> bool {
+        !self.is_brute() && !self.is_pyramid()
     }
 
     /// Whether a line of the sweep runs through the samples of this lane in azimuths along the grid.
     pub fn has_line_at(&self, lane: usize) -> bool {
-        self.is_brute()
+        !self.has_lines()
             || self.quality.lines.shift().is_none_or(|s| (lane << 15).is_multiple_of(1 << s))
     }
 
@@ -67,9 +82,11 @@ impl Method {
     }
 
     /// What counts of heights up to `largest_m` along a level line: their differences are 0, exactly, but
-    /// for packed entries, which are rounded and seen from what is not.
+    /// for packed entries, which are rounded and seen from what is not, and for a pyramid's levels, whose
+    /// splines round.
     pub fn level(&self, largest_m: f64) -> f64 {
-        if self.quality.precision == Precision::Packed { largest_m } else { 0.0 }
+        let rounds = self.quality.precision == Precision::Packed || self.is_pyramid();
+        if rounds { largest_m } else { 0.0 }
     }
 
     /// Slope by which a plane that rises by `rise_m` from lane to lane may be missed between lines.
@@ -79,7 +96,7 @@ impl Method {
     /// line meets on a plane ties, and where rounding picks other distances the two do not cancel:
     /// t (1 - t) rise_m / step at most.
     pub fn ties(&self, rise_m: f64, step_m: f64) -> f64 {
-        let is_own = !self.is_brute() && !self.is_exact() && self.quality.fuse == Fuse::Own;
+        let is_own = self.has_lines() && !self.is_exact() && self.quality.fuse == Fuse::Own;
         if is_own { 0.25 * rise_m / step_m } else { 0.0 }
     }
 
@@ -100,6 +117,9 @@ impl Method {
             let vector = [azimuth.vector_march, azimuth.vector_lane];
             let twin = twin_surface_slope(largest_m, near_m, vector);
             return rounded + surface_slope(largest_m, near_m) + twin;
+        }
+        if self.is_pyramid() {
+            return rounded + pyramid_plane_slope(largest_m, near_m);
         }
         let swept = sweep_slope(largest_m, near_m) + 2.0 * twin_fused_slope(largest_m, near_m);
         let reduced = match self.quality.precision {
@@ -127,6 +147,8 @@ impl Method {
             Precision::F32 | Precision::Packed => 0.0,
         };
         let turned = (error / (1.0 + flattest * flattest)).min(std::f64::consts::FRAC_PI_2);
-        turned + ARC_TANGENT * (slope.abs() + error).min(1.0) + saturated
+        // A pyramid's angles are added up by a spline and turned back and forth.
+        let added = if self.is_pyramid() { pyramid_angle(slope.abs() + error) } else { 0.0 };
+        turned + ARC_TANGENT * (slope.abs() + error).min(1.0) + saturated + added
     }
 }

@@ -74,6 +74,8 @@ pub struct Found<'a> {
     pub azimuths: Vec<Azimuth>,
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
+    /// Relief of heights that are no plane's, else 0.
+    uneven_m: f64,
     /// Which azimuth each layer of the first output is.
     layers: Vec<u32>,
     outputs: Vec<Pixels>,
@@ -107,9 +109,21 @@ impl Found<'_> {
     ) -> Option<Probe> {
         let [k, row, col] = at;
         let found = self.horizon(k, row, col)?;
-        let bounds = slopes.map(|s| self.method.angle_error(s, rounded, ties, &self.azimuths[k]));
+        let azimuth = &self.azimuths[k];
+        let bounds = slopes.map(|s| self.method.angle_error(s, rounded, ties, azimuth));
         let expected = slopes.map(f64::atan);
-        Some(Probe { found, expected, bound: bounds[0].max(bounds[1]), at })
+        let smoothed = self.smoothed(azimuth);
+        Some(Probe { found, expected, bound: bounds[0].max(bounds[1]) + smoothed, at })
+    }
+
+    /// Angle by which a horizon may be wrong because heights were smoothed.
+    ///
+    /// A pyramid's levels are means of heights with positive weights that sum to 1, and so is its spline
+    /// over angles: what is found and what is there both lie between 0 and atan(relief / step). Planes
+    /// stay planes at every level.
+    fn smoothed(&self, azimuth: &Azimuth) -> f64 {
+        let relief = if self.method.is_pyramid() { self.uneven_m } else { 0.0 };
+        (relief / f64::from(azimuth.step_m)).atan()
     }
 
     /// First channel of a layer at a sample.
@@ -189,6 +203,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
+        uneven_m: uneven(field),
         layers,
         outputs: outputs?,
     };
@@ -258,6 +273,24 @@ fn white(field: HeightField, lights: Lights) -> Scene {
     let surface =
         Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane, phong: None };
     Scene { field, surface, lights }
+}
+
+/// Relief of the heights; 0 where they are a plane's, each rounded to f32.
+fn uneven(field: &HeightField) -> f64 {
+    let (rows, cols) = (field.rows(), field.cols());
+    let at = |r: usize, c: usize| f64::from(field.heights_m()[r * cols + c]);
+    let by_row = (at(rows - 1, 0) - at(0, 0)) / (rows - 1).max(1) as f64;
+    let by_col = (at(0, cols - 1) - at(0, 0)) / (cols - 1).max(1) as f64;
+    // Three roundings: of a height and of the two ends that it is held against.
+    let rounding = 3.0 * ridgelight::measure::tolerance::EPSILON * largest(field);
+    let is_plane = (0..rows * cols).all(|i| {
+        let (r, c) = (i / cols, i % cols);
+        let plane = at(0, 0) + by_row * r as f64 + by_col * c as f64;
+        (at(r, c) - plane).abs() <= rounding
+    });
+    let all = || field.heights_m().iter().copied().map(f64::from);
+    let relief = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
+    if is_plane { 0.0 } else { relief }
 }
 
 /// The largest |height above the base|.

@@ -21,6 +21,7 @@ horizon, at the distance d of what makes it, with heights up to H:
 | brute | (2 + 76 + 208) ε H / d: heights in, march, device |
 | exact | (2 + 540 + 40 (1 + march / lane)) ε H / d along the grid vector (march, lane) |
 | all others | (2 + 38 + 256) ε H / d and 6 ε of the slope: heights in, sweep, fuse |
+| pyramid, on planes | (2 + 144) ε H / d: heights in, levels; elsewhere the angle atan(relief / step) besides: levels are means of heights |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
 

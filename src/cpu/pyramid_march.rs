@@ -1,0 +1,149 @@
+//! Horizons from a height pyramid: one sample a level along each azimuth, at distances that grow by
+//! 2^(1/k) and are rounded to whole march steps; the largest value of the cubic B-spline over their
+//! angles (Nowrouzezahrai & Snyder 2009, eq. 14-17).
+
+use super::lattice::Lattice;
+use super::shared::levels::LevelTexels;
+use super::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, wrapped};
+use crate::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
+use crate::plan::pyramid::Pyramid;
+
+/// The levels beside the field itself, as they are stored.
+#[derive(Clone, Copy, Debug)]
+pub enum Stored<'a> {
+    /// At every sample of the field, level after level.
+    Stack(&'a [f32]),
+    /// At their own texels.
+    Levels(&'a [f32]),
+}
+
+/// The last four angles, the newest last, and the largest value of the spline so far.
+///
+/// Angles, not slopes: these have no bound, and one of them would outweigh the others. Before the
+/// first and after the last, angles go on as they are, so that the spline begins and ends with them.
+#[derive(Clone, Copy, Debug)]
+struct Blocked {
+    angles: [f32; 4],
+    highest: f32,
+}
+
+impl Blocked {
+    fn first(angle: f32) -> Self {
+        Self { angles: [angle; 4], highest: angle }
+    }
+
+    fn by(self, angle: f32) -> Self {
+        let [_, a, b, c] = self.angles;
+        let knot = (b + 4.0 * c + angle) * (1.0 / 6.0);
+        let middle = ((a + angle) + 23.0 * (b + c)) * (1.0 / 48.0);
+        Self { angles: [a, b, c, angle], highest: self.highest.max(knot.max(middle)) }
+    }
+}
+
+/// A march over a pyramid.
+struct PyramidMarch<'a> {
+    march: March<'a>,
+    pyramid: &'a Pyramid,
+    stored: Stored<'a>,
+}
+
+impl PyramidMarch<'_> {
+    /// Column and row of a lane and step, wrapped where the field repeats, else held at the edge.
+    fn texel_of(&self, lane: i32, step: i32) -> (i32, i32) {
+        let march = &self.march;
+        let inside = |i: i32, n: i32| {
+            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
+        };
+        let lane = march.lane_position(inside(lane, march.lanes));
+        let step = march.march_position(inside(step, march.steps));
+        if march.azimuth.marches_rows() { (lane, step) } else { (step, lane) }
+    }
+
+    /// Height of level `number` where a line crosses a march step, `f` past the lane `cell`.
+    fn height(&self, number: u32, (cell, f): (i32, f32), step: i32) -> f32 {
+        let [cols, rows] = self.pyramid.size.map(|n| n as usize);
+        let on_line = |texel: &dyn Fn((i32, i32)) -> f32| {
+            let h = texel(self.texel_of(cell, step));
+            h + f * (texel(self.texel_of(cell + 1, step)) - h)
+        };
+        match self.stored {
+            _ if number == 0 => on_line(&|(col, row)| self.march.heights.at(col, row)),
+            Stored::Stack(stack) => {
+                let first = (number as usize - 1) * rows * cols;
+                on_line(&|(col, row)| stack[first + row as usize * cols + col as usize])
+            }
+            Stored::Levels(texels) => {
+                let march = &self.march;
+                let level = self.pyramid.level(number);
+                let flips = march.azimuth.flags & FLIPS_LANES != 0;
+                let from_end = (march.lanes - 1 - cell) as f32 - f;
+                let lane = if flips { from_end } else { cell as f32 + f };
+                let step = march.march_position(step) as f32;
+                let [x, y] = if march.azimuth.marches_rows() { [lane, step] } else { [step, lane] };
+                let place = [x * level.per_sample[0], y * level.per_sample[1]];
+                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place)
+            }
+        }
+    }
+
+    /// Rise of a level from a sample to `whole` steps along.
+    fn rise_to(&self, number: u32, lane: i32, step: i32, whole: i32) -> f32 {
+        let y = lane * CELL - whole * self.march.azimuth.shear;
+        let line = (y >> CELL_SHIFT, (y & (CELL - 1)) as f32 * PER_CELL);
+        self.height(number, line, step - whole) - self.height(number, (lane, 0.0), step)
+    }
+
+    /// Slope of the horizon of a sample.
+    fn slope(&self, lane: i32, step: i32, warm_up: i32) -> f32 {
+        let azimuth = &self.march.azimuth;
+        let across = lane * CELL / azimuth.shear.max(1);
+        let all = step + warm_up;
+        let bounded = !self.pyramid.periodic && azimuth.shear > 0;
+        let reach = if bounded { all.min(across) } else { all };
+        if reach <= 0 {
+            return NO_SLOPE;
+        }
+        let (mut back, mut before, mut angle) = (1.0_f32, 0, 0.0);
+        let mut blocked: Option<Blocked> = None;
+        for i in 1.. {
+            let whole = (back + 0.5) as i32;
+            if whole > before {
+                let at = whole.min(reach);
+                let number = (i - self.pyramid.fine_samples() as i32).max(0) as u32;
+                let number = number.min(self.pyramid.levels());
+                let rise = self.rise_to(number, lane, step, at);
+                angle = (rise / (at as f32 * azimuth.step_m)).atan();
+            }
+            blocked = Some(blocked.map_or(Blocked::first(angle), |b| b.by(angle)));
+            if whole >= reach {
+                break;
+            }
+            before = whole;
+            back *= self.pyramid.growth();
+        }
+        let blocked = blocked.expect("one sample at least");
+        let last = blocked.angles[3];
+        blocked.by(last).by(last).highest.tan()
+    }
+}
+
+/// Marches every sample in one azimuth: `slopes` of its layer, one slot a lane.
+///
+/// # Panics
+/// When the lattice is not one slot a lane, or levels lack texels.
+pub fn pyramid_march(
+    heights: Heights,
+    azimuth: &Azimuth,
+    pyramid: &Pyramid,
+    stored: Stored,
+    warm_up: i32,
+    lattice: &mut Lattice,
+) {
+    let march = PyramidMarch { march: March::new(heights, azimuth), pyramid, stored };
+    for step in 0..march.march.steps {
+        for lane in 0..march.march.lanes {
+            let texel = lattice.texel(lane, march.march.march_position(step), azimuth.layer);
+            lattice.slopes[texel] = march.slope(lane, step, warm_up);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The passes of a height pyramid.
+
+use ridgelight::cpu::lattice::Lattice;
+use ridgelight::cpu::pyramid_march::{Stored, pyramid_march as march_twin};
+use ridgelight::cpu::shared::levels::LevelTexels;
+use ridgelight::cpu::shared::sweep::March;
+use ridgelight::cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
+use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::{Azimuth, Pass};
+
+use super::{Pair, Run, pushed};
+
+impl Run<'_> {
+    fn pyramid(&self) -> Pyramid {
+        Pyramid::new(&self.quality, self.plan.size, self.border())
+    }
+}
+
+/// A level, and what the table says of it.
+pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let pyramid = run.pyramid();
+    let number = pushed(pass, offsets::height_reduce_push::LEVEL);
+    let level = pyramid.level(number);
+    let texels = run.floats(pass, "height_levels").expect("written");
+    let table = run.words(pass, "level_table").expect("written");
+    let want = reduce_twin::height_reduce(&run.heights(), &pyramid, number, &texels);
+    let tolerance = twin_level(run.relief()[0]);
+    let [cols, _] = level.size.map(|n| n as usize);
+    let made = texels[level.first as usize..].iter().zip(&want).enumerate();
+    let mut pairs: Vec<Pair> = made
+        .map(|(i, (got, want))| {
+            let at = [number as usize, i / cols, i % cols];
+            Pair { got: (*got).into(), want: (*want).into(), tolerance, at }
+        })
+        .collect();
+    let [x, y] = level.per_sample.map(f32::to_bits);
+    let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
+    let row = &table[4 * (number as usize - 1)..];
+    pairs.extend(want.iter().zip(row).enumerate().map(|(i, (want, got))| Pair {
+        got: (*got).into(),
+        want: (*want).into(),
+        tolerance: 0.0,
+        at: [number as usize, 0, i],
+    }));
+    pairs
+}
+
+pub(super) fn height_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let pyramid = run.pyramid();
+    let texels = run.floats(pass, "height_levels").expect("written");
+    let stack = run.floats(pass, "height_stack").expect("written");
+    let levels = LevelTexels { pyramid: &pyramid, texels: &texels };
+    let tolerance = twin_spline(run.relief()[0]);
+    let [cols, rows] = run.size();
+    let mut pairs = Vec::new();
+    for number in 1..=pyramid.levels() {
+        let layer = (number as usize - 1) * cols * rows;
+        let want = expand_twin::height_expand(&levels, number);
+        pairs.extend(stack[layer..].iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
+            got: (*got).into(),
+            want: want.into(),
+            tolerance,
+            at: [number as usize, i / cols, i % cols],
+        }));
+    }
+    pairs
+}
+
+pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let pyramid = run.pyramid();
+    let words = run.words(pass, "slopes").expect("written");
+    let [width, height] = run.extent(pass, "slopes");
+    let stack = run.floats(pass, "height_stack");
+    let levels = run.floats(pass, "height_levels").unwrap_or_default();
+    let stored = stack.as_ref().map_or(Stored::Levels(&levels), |s| Stored::Stack(s));
+    let [largest, relief] = run.relief();
+    let mut pairs = Vec::new();
+    for k in pass.azimuths.clone().map(|k| k as usize) {
+        let azimuth = run.plan.azimuths[k];
+        let alone = Azimuth { layer: 0, ..azimuth };
+        let march = March::new(run.heights(), &alone);
+        let mut left = Lattice::new(1, march.lanes as usize, march.steps as usize);
+        let mut twin = left.clone();
+        let warm_up = run.warm_up(azimuth.marches_rows());
+        march_twin(run.heights(), &alone, &pyramid, stored, warm_up, &mut twin);
+        for (step, lane) in (0..march.steps).flat_map(|s| (0..march.lanes).map(move |l| (s, l))) {
+            let texel = left.texel(lane, march.march_position(step), 0);
+            let (row, col) = (step as usize, lane as usize);
+            let word = words[(azimuth.layer as usize * height + row) * width + col];
+            left.slopes[texel] = f32::from_bits(word);
+            let want = f64::from(twin.slopes[texel]);
+            let tolerance = twin_pyramid_slope(want, largest, relief, azimuth.step_m.into());
+            let got = left.slopes[texel].into();
+            pairs.push(Pair { got, want, tolerance, at: [k, row, col] });
+        }
+        run.lattices[k] = Some(left);
+    }
+    pairs
+}
