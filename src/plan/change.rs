@@ -15,7 +15,8 @@ impl Plan {
         if self.resources != before.resources || !self.has_passes_of(before) {
             return (0..count).collect();
         }
-        let is_new = |id: ResourceId| changed.contains(&id);
+        let told = (self.constants != before.constants).then(|| self.find("constants")).flatten();
+        let is_new = |id: ResourceId| changed.contains(&id) || told == Some(id);
         let mut runs: Vec<bool> = (0..count)
             .map(|i| {
                 let (pass, old) = (&self.passes[i], &before.passes[i]);

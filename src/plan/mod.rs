@@ -13,6 +13,7 @@ mod picture;
 mod print;
 mod reference;
 mod resource;
+pub(crate) mod sh;
 mod shining;
 pub mod sweep;
 mod sweeping;
@@ -43,6 +44,8 @@ pub struct Plan {
     pub edit_passes: Vec<Pass>,
     /// Contents of the buffer "azimuths".
     pub azimuths: Vec<Azimuth>,
+    /// Contents of the buffer "constants", four f32 a texel; none without spherical harmonics.
+    pub constants: Vec<f32>,
     /// For horizons: which azimuth k of the circle each layer of the outputs is.
     pub layer_azimuths: Vec<u32>,
     /// What was left out or changed, and why.

@@ -13,7 +13,10 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
-pub use quality::{FuseName, HullName, LinesName, MethodName, PrecisionName, QualityArgs};
+pub use quality::{
+    BasisName, FuseName, HullName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName,
+    WedgesName, WindowName,
+};
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 pub use values::albedo_colour;

@@ -3,8 +3,20 @@
 use std::io::Write as _;
 
 /// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 7] =
-    ["azimuths", "sun_azimuths", "lines", "fuse", "precision", "hull", "table_elevations"];
+const SETTINGS: [&str; 12] = [
+    "azimuths",
+    "sun_azimuths",
+    "lines",
+    "fuse",
+    "precision",
+    "hull",
+    "table_elevations",
+    "basis",
+    "sh_order",
+    "wedges",
+    "receiver",
+    "window",
+];
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
@@ -36,7 +48,13 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
     match (setting, of("method"), of("lines")) {
         ("azimuths", ..) => "without a sky or an environment".into(),
         ("sun_azimuths", ..) => "without a sun wider than 0.01°".into(),
-        ("table_elevations", ..) => "without an environment".into(),
+        ("table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window", ..) => {
+            match (setting, of("basis")) {
+                (_, None) => "without an environment".into(),
+                ("table_elevations", _) => "with --basis sh".into(),
+                _ => "without --basis sh".into(),
+            }
+        }
         (_, Some("brute"), _) => "with --method brute".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),

@@ -5,6 +5,7 @@ mod cases;
 mod edit;
 mod light;
 mod paths;
+mod sh;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -14,8 +15,9 @@ use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
+use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Fuse, Scene};
+use ridgelight::scene::{Border, Fuse, Quality, Scene};
 
 use crate::Device;
 use cases::Case;
@@ -65,6 +67,10 @@ const TWINS: &[(&str, Twin)] = &[
     ("sweep_fuse", sweep::sweep_fuse),
     ("env_wedges", light::env_wedges),
     ("env_tables", light::env_tables),
+    ("env_turns", sh::env_turns),
+    ("light_matrix", sh::light_matrix),
+    ("sh_visibility", sh::sh_visibility),
+    ("sh_shade", sh::sh_shade),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
     ("light_resolve", light::light_resolve),
@@ -81,6 +87,7 @@ struct Run<'a> {
     frame: Frame,
     plan: Plan,
     scene: &'a Scene,
+    quality: Quality,
     /// What the device's sweeps left, by azimuth, as lattices of one layer.
     lattices: Vec<Option<Lattice>>,
     /// Where the azimuths of the light that is being summed begin.
@@ -104,6 +111,7 @@ impl<'a> Run<'a> {
             gpu,
             frame,
             scene: &case.scene,
+            quality: case.quality,
             lattices: vec![None; plan.azimuths.len()],
             light_begins: 0,
             radiance: Vec::new(),
@@ -176,6 +184,12 @@ impl<'a> Run<'a> {
         let all = || self.scene.field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
         [low.abs().max(high.abs()), high - low]
+    }
+
+    /// How far a normal may be turned, radians.
+    fn normal_error(&self) -> f64 {
+        let [x, y] = self.scene.field.cell_m();
+        ShadeError::new(0.0, self.relief()[1], x.min(y), 1).normal()
     }
 
     fn warm_up(&self, marches_rows: bool) -> i32 {
@@ -310,10 +324,16 @@ fn paths_are_their_twins_pass_by_pass() {
 #[test]
 fn a_value_beyond_its_tolerance_is_seen() {
     let mut device = Device::new();
-    let case = &cases::pictures()[1];
-    let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
-    let all = run.pairs();
-    run.gpu.end(run.frame);
+    let cases = cases::pictures();
+    let mut all = Vec::new();
+    for case in cases
+        .iter()
+        .filter(|c| ["environment on a plane", "harmonics of order 3"].contains(&c.name))
+    {
+        let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
+        all.extend(run.pairs());
+        run.gpu.end(run.frame);
+    }
     for (label, pairs) in all.iter().filter(|a| !a.1.is_empty()) {
         for picked in [0, pairs.len() / 2, pairs.len() - 1] {
             let mut spoiled = pairs.clone();

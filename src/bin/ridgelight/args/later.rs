@@ -16,8 +16,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     level_offset: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    basis: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     max_error: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     time_budget: Option<String>,
@@ -40,7 +38,6 @@ impl LaterArgs {
             ("--subsample", self.subsample.as_ref()),
             ("--level-step", self.level_step.as_ref()),
             ("--level-offset", self.level_offset.as_ref()),
-            ("--basis", self.basis.as_ref()),
             ("--max-error", self.max_error.as_ref()),
             ("--time-budget", self.time_budget.as_ref()),
             ("--scene", self.scene.as_ref()),
