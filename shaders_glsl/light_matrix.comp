@@ -1,8 +1,8 @@
 // Computes: what the environment makes of what is seen: the matrix that takes a series of visibility to
-// exit radiance. First the environment's integrals with Y_lm, from the sums of its rows; then the matrix,
-// which is linear in them.
+// exit radiance. First the environment's own series, from the sums of its rows; then the matrix, which is
+// linear in it.
 // Reads: env_turns, constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
-// One group is all; one invocation is some integrals, then some entries.
+// One group is all; one invocation is a coefficient of the series, then some entries.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -18,17 +18,17 @@ layout(push_constant) uniform LightMatrixPush {
     int order;        // of what is seen
     int receivers;    // rows of the matrix
     int row_first;    // in constants: weights of four rows a texel, (l, m) after (l, m), m from 0
-    int matrix_first; // in constants: entry after entry, four integrals a texel
+    int matrix_first; // in constants: entry after entry, four coefficients a texel
 };
 
 const int MAX_COUNT = 36;
 // Rows of a sum of its own, in texels of constants.
 const int BLOCK = 8;
 
-shared vec4 integrals[MAX_COUNT];
+shared vec4 series[MAX_COUNT];
 
-// Integral of the environment and Y_lm, place l (l + 1) + m.
-vec3 integral(int place) {
+// Of the environment, place l (l + 1) + m.
+vec3 coefficient(int place) {
     int l = 0;
     while ((l + 1) * (l + 1) <= place) {
         l++;
@@ -56,8 +56,8 @@ vec3 integral(int place) {
 void main() {
     int self = int(gl_LocalInvocationIndex);
     int count = light_order * light_order;
-    if (self < MAX_COUNT) {
-        integrals[self] = self < count ? vec4(integral(self), 0.0) : vec4(0.0);
+    if (self < count) {
+        series[self] = vec4(coefficient(self), 0.0);
     }
     barrier();
     int size = order * order;
@@ -66,8 +66,9 @@ void main() {
         vec3 sum = vec3(0.0);
         for (int i = 0; i < fours; i++) {
             vec4 weight = texelFetch(constants, matrix_first + entry * fours + i);
+            // Weights beyond the last coefficient are 0.
             for (int k = 0; k < 4; k++) {
-                sum += weight[k] * integrals[min(4 * i + k, MAX_COUNT - 1)].rgb;
+                sum += weight[k] * series[min(4 * i + k, count - 1)].rgb;
             }
         }
         imageStore(light_matrix, ivec2(entry % size, entry / size), vec4(sum, 0.0));

@@ -160,12 +160,11 @@ pub fn twin_turn(columns: usize) -> f64 {
     2.0 * PI.sqrt() * (35.0 + columns as f64 / 32.0) * EPSILON
 }
 
-/// An entry of `light_matrix` whose weights' magnitudes sum to 1, from sums of `rows` rows of 1 at most.
+/// An entry of `light_matrix` from sums of `rows` rows: of the magnitudes of all products that it sums.
 ///
-/// Θ_lm over all rows is √2 at most; an integral rounds as [`twin_turn`], its weight, product and 36 sums
-/// besides.
+/// A coefficient rounds as [`twin_turn`]; its weight, product and 36 sums besides.
 pub fn twin_light_matrix(rows: usize) -> f64 {
-    2.0_f64.sqrt() * (73.0 + rows as f64 / 32.0) * EPSILON
+    (73.0 + rows as f64 / 32.0) * EPSILON
 }
 
 /// `sh_shade` from a given series of `order` and matrix, whose products' magnitudes sum to 1, of normals

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::basis::light::{fit_above_ground, lobe, plane};
 use crate::basis::product::triples;
-use crate::basis::slice::Slices;
-use crate::basis::{bands, window};
+use crate::basis::slice::{Slices, parts, slice_index};
+use crate::basis::{bands, index, window};
 use crate::scene::{Border, Environment, Quality, Receiver, Window};
 
 /// Sizes, and where things lie in [`Plan::constants`](super::Plan::constants), in texels of four.
@@ -46,9 +46,10 @@ impl Sh {
         };
         let mut constants = columns(environment, light_order);
         let row_first = constants.len() / 4;
-        constants.extend(elevations(environment.height(), rows, light_order, lowest_rad));
+        let fit = is_fitted.then(|| fit_above_ground(light_order));
+        constants.extend(elevations((environment.height(), rows), light_order, lowest_rad, fit));
         let matrix_first = constants.len() / 4;
-        let entries = matrix(quality, light_order, is_fitted);
+        let entries = matrix(quality, light_order);
         let receivers = entries.len() / (order * order);
         constants.extend(entries.iter().flat_map(|entry| by_fours(entry)));
         let sh = Self {
@@ -96,33 +97,40 @@ fn columns(environment: &Environment, order: usize) -> Vec<f32> {
     turns.flat_map(|t| by_fours(&(0..width).map(|c| weight(t, c)).collect::<Vec<_>>())).collect()
 }
 
-/// ∫ over each row above `lowest_rad` of Θ_lm dz: `[(l, m)][row]`.
-fn elevations(height: usize, rows: usize, order: usize, lowest_rad: f64) -> Vec<f32> {
+/// ∫ over each row above `lowest_rad` of Θ_lm dz, or what a fit makes of them, m ≥ 0: `[(l, m)][row]`.
+fn elevations(
+    (height, rows): (usize, usize),
+    order: usize,
+    lowest_rad: f64,
+    fit: Option<Vec<Vec<f64>>>,
+) -> Vec<f32> {
     let slices = Slices::new(order);
     let edge = |row: usize| (FRAC_PI_2 - PI * row as f64 / height as f64).max(lowest_rad);
     let all: Vec<Vec<f64>> =
         (0..rows).map(|row| slices.between(edge(row + 1), edge(row))).collect();
-    (0..slices.parts().len())
-        .flat_map(|part| by_fours(&all.iter().map(|slice| slice[part]).collect::<Vec<_>>()))
+    let weight = |(l, m): (usize, usize), slice: &[f64]| match &fit {
+        None => slice[slice_index(l, m)],
+        Some(fit) => {
+            let row = &fit[index(l, m as isize)];
+            (m..order).map(|k| row[index(k, m as isize)] * slice[slice_index(k, m)]).sum()
+        }
+    };
+    parts(order)
+        .flat_map(|part| by_fours(&all.iter().map(|s| weight(part, s)).collect::<Vec<_>>()))
         .collect()
 }
 
-/// How each entry of the light's matrix follows from the environment's integrals with Y:
-/// `[entry][integral]`. One light of one band at a time makes a column of it.
-fn matrix(quality: &Quality, light_order: usize, is_fitted: bool) -> Vec<Vec<f64>> {
+/// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
+/// The light of one coefficient at a time makes a column of it.
+fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
     let order = quality.sh_order as usize;
     let triples = triples(order);
     let factors = factors(quality.window, light_order);
-    let fit = is_fitted.then(|| fit_above_ground(light_order));
     let columns: Vec<Vec<f64>> = bands(light_order)
         .enumerate()
         .map(|(i, (l, _))| {
-            let light: Vec<f64> = match &fit {
-                Some(fit) => fit.iter().map(|row| row[i]).collect(),
-                None => (0..light_order * light_order)
-                    .map(|j| if i == j { factors[l] } else { 0.0 })
-                    .collect(),
-            };
+            let mut light = vec![0.0; light_order * light_order];
+            light[i] = factors[l];
             match quality.receiver {
                 Receiver::Plane => plane(&triples, order, &light).concat(),
                 Receiver::Lobe => lobe(&triples, order, &light).concat(),

@@ -58,25 +58,30 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect();
     assert_eq!(turns.len(), rows);
     let (quality, fitted) = (run.quality, is_fitted(&run.quality, run.border()));
-    let lowest_rad = if fitted { 0.0 } else { -std::f64::consts::FRAC_PI_2 };
     let height = environment(run).height();
-    let integrals = matrix_twin::integrals(&turns, height, light_order, lowest_rad);
-    let want = matrix_twin::light_matrix(&quality, &integrals, fitted);
-    // The same from magnitudes: what is summed where signs cancel.
-    let brightest: DVec3 = turns.iter().flatten().fold(DVec3::ZERO, |m, t| m.max(t.abs()));
+    let series = matrix_twin::series(&turns, height, light_order, fitted);
+    let want = matrix_twin::light_matrix(&quality, &series);
+    // Of a light of 1 in one coefficient, and in one row alone: what is summed, whatever its sign.
     let share = |i: usize| {
-        let mut unit = vec![DVec3::ZERO; integrals.len()];
+        let mut unit = vec![DVec3::ZERO; series.len()];
         unit[i] = DVec3::ONE;
-        matrix_twin::light_matrix(&quality, &unit, fitted)
+        matrix_twin::light_matrix(&quality, &unit)
     };
-    let shares: Vec<_> = (0..integrals.len()).map(share).collect();
+    let shares: Vec<_> = (0..series.len()).map(share).collect();
+    let mut summed = vec![DVec3::ZERO; series.len()];
+    for row in 0..rows {
+        let mut alone = vec![vec![DVec3::ZERO; 2 * light_order - 1]; rows];
+        alone[row].clone_from(&turns[row]);
+        let of_row = matrix_twin::series(&alone, height, light_order, fitted);
+        summed.iter_mut().zip(of_row).for_each(|(s, r)| *s += r.abs());
+    }
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
     let mut pairs = Vec::new();
     for (entry, got) in got.into_iter().enumerate() {
         let (receiver, k) = (entry / (order * order), entry % (order * order));
-        let weights: f64 = shares.iter().map(|s| s[receiver][k].x.abs()).sum();
-        let tolerance = twin_light_matrix(height) * weights * brightest;
+        let all = shares.iter().zip(&summed).map(|(t, s)| t[receiver][k].abs() * *s);
+        let tolerance = twin_light_matrix(height) * all.sum::<DVec3>();
         pairs.extend(three(got, want[receiver][k], tolerance, [0, receiver, k]));
     }
     pairs
