@@ -8,6 +8,9 @@
 //! - [`lobe`]: V ends at the horizon alone and the maximum is a series of three bands (NS09 §7), so V does
 //!   not depend on the normal. V, L and the lobe are all cut off; L has order n.
 //!
+//! V first, then the matrix: n² products an azimuth and 9 n² (27 n² of a lobe) a sample. Light summed over
+//! azimuths without V would take 9 n(n+1)/2 an azimuth: 90 against 16 at order 4.
+//!
 //! Both are linear in L: one matrix of constants takes its series to the light's matrix.
 
 use std::f64::consts::PI;

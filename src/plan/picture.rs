@@ -22,7 +22,8 @@ pub struct Picture {
     /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
-    /// then also take edits ([`Plan::edit_passes`]). Memory: a quarter of a byte a sample.
+    /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics.
+    /// Memory: a quarter of a byte a sample.
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
