@@ -187,6 +187,39 @@ fn edits() -> Result<String> {
     Ok(format!("{summary}\n*{device}{}*\n", made(&path)?))
 }
 
+/// What examples/auto found of `render --max-error`.
+fn auto() -> Result<String> {
+    let figures = Figures::read("auto")?;
+    let whole = |key| figures.number(&figures.all, key);
+    let of = |key| figures.number(&figures.all["summary"], key);
+    let (held, chosen) = (of("held")?, of("chosen")?);
+    let mut out = String::new();
+    writeln!(
+        out,
+        "5, 2, 1, 0.5 and 0.2 % asked of {} pairs of a field (its middle {}²) and lights on which nothing was \
+         fitted: {held} of {chosen} choices hold ({:.1} %; {} are within the bound that they state), {} of {} are refused ({} of them though \
+         settings that hold were drawn). Time over the cheapest that truly holds of all that a `trade` walk of {} s \
+         and the choices drew, in turn: \
+         median {:.2}, 90 % {:.2}, worst {:.2}; at most 1.3 in {} of {}.",
+        whole("pairs")?,
+        whole("side")?,
+        100.0 * held / chosen,
+        of("within_stated_bound")?,
+        of("refused")?,
+        of("asked")?,
+        of("refused_though_found")?,
+        whole("trade_seconds")?,
+        of("ratio_median")?,
+        of("ratio_90")?,
+        of("ratio_worst")?,
+        of("within_1.3")?,
+        of("ratios")?
+    )
+    .unwrap();
+    writeln!(out, "\n{}", figures.caption()?).unwrap();
+    Ok(out)
+}
+
 /// `readme` with what stands between the marks of `name` replaced.
 fn with(readme: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
@@ -207,10 +240,11 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 5] = [
+    let sections: [Section; 6] = [
         ("picture", picture),
         ("sizes", sizes),
         ("accuracy", accuracy),
+        ("auto", auto),
         ("forms", forms),
         ("edits", edits),
     ];

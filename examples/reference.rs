@@ -20,7 +20,7 @@ use ridgelight::{Error, Result, files, plan};
 use scenes::{Agreement, scenes};
 
 /// Batches of each picture, and a sample's paths in them.
-const BATCHES: u32 = 256;
+const BATCHES: u32 = 64;
 const PATHS: f64 = (BATCHES * plan::REFERENCE_BATCH) as f64;
 /// What f32 may take from a value.
 const ROUNDING: f64 = 1e-5;
@@ -69,14 +69,15 @@ fn traced(gpu: &mut Headless, scene: &Scene, bounces: usize) -> Result<[Vec<[f64
     let limits = gpu.report().limits;
     // Seeds of their own: no row shares its paths with another of its scene.
     let plan = plan::reference(scene, bounces as u32, 1 + bounces as u32, &limits)?;
-    let last = plan.passes.len() - 1;
+    let bands: Vec<_> =
+        (0..plan.passes.len()).filter(|p| plan.passes[*p].name() == "path_trace").collect();
     let lost = plan.find("lost_rays");
     let contents = plan::reference_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
         for _ in 1..BATCHES {
-            gpu.draw_passes(frame, &[last])?;
+            gpu.draw_passes(frame, &bands)?;
         }
         let lost = lost.map(|lost| gpu.read(frame, lost)).transpose()?;
         if lost.is_some_and(|lost| lost.first() != Some(&0)) {

@@ -1,9 +1,11 @@
-// Computes: one more batch of 2^SET_BITS light paths a sample, and the mean of all batches so far with its
-// standard error, from the spread between batches.
+// Computes: one more batch of 2^SET_BITS light paths from each sample of some rows, and the mean of all batches
+// so far with its standard error, from the spread between batches.
 // Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map. Reads and writes:
-// batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it). Writes: radiance,
-// standard_error. Adds to lost_rays.
+// batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays). Writes:
+// radiance, standard_error (w: rays so far). Adds to lost_rays.
 // One invocation is one sample.
+//
+// Of what a scene has not, nothing is compiled: llvmpipe runs every branch for all lanes. Only loops end.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -20,6 +22,11 @@ layout(constant_id = 2) const uint SET_BITS = 4u;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 5) const bool HAS_LOBE = false;
+layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns or balls
+layout(constant_id = 8) const bool HAS_BALLS = false;
+layout(constant_id = 9) const bool HAS_BOUNCES = false;
+// More than a ray of this field can ask for; 60,000 at most, as llvmpipe ends any loop after 65,535 turns.
+layout(constant_id = 10) const int MOST_STEPS = 60000;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -27,6 +34,7 @@ layout(binding = 2) uniform texture2D ground;
 // One a row. A sun: its direction and 1 - cos of its radius; irradiance facing it, spread over its cone.
 // A ball: its place above the base and its radius; radiance.
 layout(binding = 3) uniform texture2D lights;
+// Radiance; w: how densely a texel's directions are chosen, 1/sr.
 layout(binding = 4) uniform texture2D environment;
 // First column: the share of the rows down to each. Then each row's own: of its texels up to each.
 layout(binding = 5) uniform texture2D environment_cdf;
@@ -56,6 +64,7 @@ layout(push_constant) uniform PathTracePush {
     uint seed;
     vec4 albedo;           // where it is constant
     vec4 sky;
+    int first_row;
 };
 
 #include "shared/trace.glsl"
@@ -95,23 +104,6 @@ int picked(float u, ivec2 at, ivec2 step, int n) {
         low = low < high && !above ? middle + 1 : low;
     }
     return low;
-}
-
-// Share of entry i.
-float share(int i, ivec2 at, ivec2 step) {
-    float before = texelFetch(environment_cdf, at + max(i - 1, 0) * step, 0).x;
-    return texelFetch(environment_cdf, at + i * step, 0).x - (i > 0 ? before : 0.0);
-}
-
-// Density of the environment's sampling in a texel, a steradian; its solid angle is
-// (2 pi / width) (cos a - cos b), written without cancellation.
-float texel_density(ivec2 texel, ivec2 size) {
-    float half_row = 0.5 * PI / float(size.y);
-    float middle = (2.0 * float(texel.y) + 1.0) * half_row;
-    float solid = 2.0 * PI / float(size.x) * 2.0 * sin(middle) * sin(half_row);
-    float row_share = share(texel.y, ivec2(0), ivec2(0, 1));
-    float texel_share = share(texel.x, ivec2(1, texel.y), ivec2(1, 0));
-    return row_share * texel_share / solid;
 }
 
 ivec2 texel_towards(vec3 e, ivec2 size) {
@@ -158,126 +150,151 @@ Place place_of(Met met) {
     return place;
 }
 
-// Light of one path that begins at the sample.
-vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uint lost) {
+// What a place reflects from e, the cosine included; how densely scattered rays are sent there, 1/sr; and the
+// first over the second.
+struct Reflected {
+    float facing;
+    vec3 light;
+    float density;
+    vec3 scattered;
+};
+
+// Share of scattered rays that the lobe sends, where there is one.
+float lobe_choice(vec3 diffuse) {
+    float most_diffuse = max(diffuse.r, max(diffuse.g, diffuse.b));
+    return most_diffuse + lobe_share > 0.0 ? lobe_share / (most_diffuse + lobe_share) : 0.0;
+}
+
+Reflected reflected_from(Place place, vec3 e) {
+    float facing = dot(place.normal, e);
+    float density = facing / PI;
+    Reflected of = Reflected(facing, place.albedo * density, density, place.albedo);
+    if (HAS_LOBE) {
+        float lobe = lobe_density(e);
+        float both = mix(density, lobe, lobe_choice(place.albedo));
+        vec3 sum = of.light + lobe_share * lobe;
+        of.density = place.has_lobe ? both : of.density;
+        of.light = place.has_lobe ? sum : of.light;
+        of.scattered = place.has_lobe ? sum / max(both, 1e-30) : of.scattered;
+    }
+    return of;
+}
+
+// Two points of the sets that belong to ray r of a vertex. Those of the first vertex come in the order of their
+// first coordinate, so that neighbouring lanes' rays are about as steep, and as long; a later vertex
+// must not know the order of the first.
+void points_of(uint index, uvec3 key, uint r, bool is_first, out vec2 u, out vec2 v) {
+    uvec4 of_u = words_of(uvec4(key.xy, 2u * r, key.z));
+    uvec4 of_v = words_of(uvec4(key.xy, 2u * r + 1u, key.z));
+    uint mixed_order = shuffled(index, SET_BITS, of_u.z);
+    u = net_point(is_first ? index : mixed_order, SET_BITS, of_u);
+    v = net_point(shuffled(index, SET_BITS, of_v.z), SET_BITS, of_v);
+}
+
+// Light of one path that begins at the sample. Adds to rays: how many were traced, how many lost.
+vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays) {
     vec2 cell_m = vec2(cell_x_m, cell_y_m);
     ivec2 env_size = HAS_ENVIRONMENT ? textureSize(environment, 0) : ivec2(1);
-    int rays = light_count + (HAS_ENVIRONMENT ? 2 : 1);
     vec3 light = vec3(0.0);
     vec3 carried = vec3(1.0);
+    vec2 u;
+    vec2 v;
     for (int bounce = 0; bounce <= bounces; bounce++) {
-        if (!subgroupAny(alive)) {
-            break;
-        }
-        Place next = place;
-        vec3 onward = vec3(0.0);
-        bool goes_on = false;
+        bool is_first = bounce == 0;
+        uint first_ray = uint(bounce * (light_count + 2));
         // Where a field that repeats begins again stands its first sample.
         vec2 from = vec2(place.base) + place.offset;
         from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(cols, rows))) : from;
         vec3 centre = vec3(from.x * cell_x_m, (float(rows - 1) - from.y) * cell_y_m, place.own);
-        // First towards each light, then where the surface scatters to.
-        for (int r = 0; r < rays; r++) {
-            uint dimension = 2u * uint(bounce * rays + r);
-            vec2 u = set_point(index, SET_BITS, mixed(uvec4(key.xy, dimension, key.z)));
-            vec2 v = set_point(index, SET_BITS, mixed(uvec4(key.xy, dimension + 1u, key.z)));
-            bool scatters = r == rays - 1;
-            bool is_sun = r < suns;
-            bool is_light = r < light_count;
-            vec4 source = texelFetch(lights, ivec2(0, min(r, max(light_count - 1, 0))), 0);
-            vec3 colour = texelFetch(lights, ivec2(1, min(r, max(light_count - 1, 0))), 0).rgb;
-            vec3 e;
-            float end_m = 1e30;
-            bool shines = true;
-            float env_density = 0.0;
-            vec3 weight = vec3(0.0);
-            if (is_light) {
+        if (HAS_LIGHTS) {
+            for (int r = 0; r < light_count; r++) {
+                points_of(index, key, first_ray + uint(r), is_first, u, v);
+                bool is_sun = r < suns;
+                vec4 source = texelFetch(lights, ivec2(0, r), 0);
+                vec3 colour = texelFetch(lights, ivec2(1, r), 0).rgb;
                 vec3 to = is_sun ? source.xyz : source.xyz - centre;
                 float away = length(to);
                 float sine2 = source.w / away;
                 sine2 *= sine2;
                 float cone = is_sun ? source.w : sine2 / (1.0 + sqrt(max(1.0 - sine2, 0.0)));
                 // Inside a ball the scattered ray finds it.
-                shines = is_sun || sine2 < 1.0;
+                bool shines = is_sun || sine2 < 1.0;
                 float off = u.x * cone;
-                e = direction_about(away > 0.0 ? to / away : vec3(0.0, 0.0, 1.0), off, u.y);
+                vec3 e = direction_about(away > 0.0 ? to / away : vec3(0.0, 0.0, 1.0), off, u.y);
                 float beside2 = off * (2.0 - off) * away * away;
                 float entry = (1.0 - off) * away - sqrt(max(source.w * source.w - beside2, 0.0));
-                end_m = is_sun ? 1e30 : max(entry, 0.0);
-                weight = colour * (is_sun ? 1.0 : 2.0 * PI * cone);
-            } else if (!scatters) {
-                ivec2 texel;
-                e = towards_light(u, v, env_size, texel);
-                env_density = texel_density(texel, env_size);
-                weight = texelFetch(environment, texel, 0).rgb;
-            } else {
-                float most = max(place.albedo.r, max(place.albedo.g, place.albedo.b));
-                bool by_lobe = HAS_LOBE && place.has_lobe && v.x * (most + lobe_share) < lobe_share;
-                float cosine = by_lobe ? pow(max(u.x, 1e-30), 1.0 / (exponent + 1.0)) : sqrt(1.0 - u.x);
-                e = direction_about(by_lobe ? mirror : place.normal, 1.0 - cosine, u.y);
-            }
-            float facing = dot(place.normal, e);
-            shines = shines && facing > 0.0;
-            // What the surface reflects from e, the cosine included, and the density of the scattered ray.
-            float density = facing / PI;
-            vec3 reflected = place.albedo * density;
-            vec3 scattered = place.albedo;
-            if (HAS_LOBE) {
-                float lobe = lobe_density(e);
-                float most = max(place.albedo.r, max(place.albedo.g, place.albedo.b));
-                float by_lobe = most + lobe_share > 0.0 ? lobe_share / (most + lobe_share) : 0.0;
-                float both = mix(density, lobe, by_lobe);
-                vec3 sum = reflected + lobe_share * lobe;
-                density = place.has_lobe ? both : density;
-                reflected = place.has_lobe ? sum : reflected;
-                scattered = place.has_lobe ? sum / max(both, 1e-30) : scattered;
-            }
-            // The balance heuristic (Veach & Guibas 1995).
-            bool is_env = HAS_ENVIRONMENT && !is_light && !scatters;
-            weight = is_env ? weight / max(env_density + density, 1e-30) : weight;
-            vec3 share_of = scatters ? scattered : reflected * weight;
-            bool going = alive && shines && max(share_of.r, max(share_of.g, share_of.b)) > 0.0;
-            Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
-            float t_end = end_m * min(ray.scale, 1e6);
-            Met met = trace(ray, t_end, going);
-            lost += going && met.what == RAY_LOST ? 1u : 0u;
-            bool is_free = met.what == RAY_FREE;
-            if (!scatters) {
-                bool is_ball = is_light && !is_sun;
-                bool in_view = is_ball ? met.what != RAY_HIT || met.t >= t_end : is_free;
-                light += going && in_view ? carried * share_of : vec3(0.0);
-            } else {
-                vec3 seen = sky.rgb;
-                if (HAS_ENVIRONMENT) {
-                    ivec2 texel = texel_towards(e, env_size);
-                    float other = texel_density(texel, env_size);
-                    seen += texelFetch(environment, texel, 0).rgb * (density / max(density + other, 1e-30));
-                }
-                seen = is_free ? seen : vec3(0.0);
-                for (int i = suns; i < light_count; i++) {
-                    vec4 ball = texelFetch(lights, ivec2(0, i), 0);
-                    vec3 to = ball.xyz - centre;
-                    float ahead = dot(to, e);
-                    float inside = ball.w * ball.w - dot(to, to);
-                    float exit_m = ahead + sqrt(max(ahead * ahead + inside, 0.0));
-                    bool in_view = inside >= 0.0 && (met.what != RAY_HIT || met.t >= exit_m * ray.scale);
-                    seen += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);
-                }
-                light += going ? carried * share_of * seen : vec3(0.0);
-                goes_on = going && met.what == RAY_HIT;
-                next = place_of(met);
-                onward = share_of;
+                float end_m = is_sun ? 1e30 : max(entry, 0.0);
+                Reflected of = reflected_from(place, e);
+                vec3 brought = of.light * colour * (is_sun ? 1.0 : 2.0 * PI * cone);
+                bool going = alive && shines && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
+                Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
+                float t_end = end_m * min(ray.scale, 1e6);
+                Met met = trace(ray, t_end, going);
+                rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
+                bool in_view = met.what == RAY_FREE || (!is_sun && (met.what != RAY_HIT || met.t >= t_end));
+                light += going && in_view ? carried * brought : vec3(0.0);
             }
         }
-        carried *= onward;
-        place = next;
-        alive = goes_on;
+        if (HAS_ENVIRONMENT) {
+            points_of(index, key, first_ray + uint(light_count), is_first, u, v);
+            ivec2 texel;
+            vec3 e = towards_light(u, v, env_size, texel);
+            vec4 from_there = texelFetch(environment, texel, 0);
+            Reflected of = reflected_from(place, e);
+            // The balance heuristic (Veach & Guibas 1995).
+            vec3 brought = of.light * from_there.rgb / max(from_there.w + of.density, 1e-30);
+            bool going = alive && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
+            Met met = trace(ray_from(place.base, place.offset, place.own, e, cell_m), 1e30, going);
+            rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
+            light += going && met.what == RAY_FREE ? carried * brought : vec3(0.0);
+        }
+        points_of(index, key, first_ray + uint(light_count + 1), is_first, u, v);
+        bool by_lobe = HAS_LOBE && place.has_lobe && v.x < lobe_choice(place.albedo);
+        // Evenly over a sphere that touches the place, seen from there: as the cosine.
+        vec3 e = normalize(place.normal + vec3(on_circle(u.y) * sqrt(4.0 * u.x * (1.0 - u.x)), 1.0 - 2.0 * u.x));
+        if (HAS_LOBE) {
+            float near_mirror = pow(max(u.x, 1e-30), 1.0 / (exponent + 1.0));
+            vec3 glossy = direction_about(mirror, 1.0 - near_mirror, u.y);
+            e = by_lobe ? glossy : e;
+        }
+        Reflected of = reflected_from(place, e);
+        float most_scattered = max(of.scattered.r, max(of.scattered.g, of.scattered.b));
+        bool going = alive && of.facing > 0.0 && most_scattered > 0.0;
+        Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
+        Met met = trace(ray, 1e30, going);
+        rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
+        vec3 seen = sky.rgb;
+        if (HAS_ENVIRONMENT) {
+            vec4 from_there = texelFetch(environment, texel_towards(e, env_size), 0);
+            seen += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
+        }
+        seen = met.what == RAY_FREE ? seen : vec3(0.0);
+        if (HAS_BALLS) {
+            for (int i = suns; i < light_count; i++) {
+                vec4 ball = texelFetch(lights, ivec2(0, i), 0);
+                vec3 to = ball.xyz - centre;
+                float ahead = dot(to, e);
+                float inside = ball.w * ball.w - dot(to, to);
+                float exit_m = ahead + sqrt(max(ahead * ahead + inside, 0.0));
+                bool in_view = inside >= 0.0 && (met.what != RAY_HIT || met.t >= exit_m * ray.scale);
+                seen += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);
+            }
+        }
+        light += going ? carried * of.scattered * seen : vec3(0.0);
+        if (HAS_BOUNCES) {
+            alive = going && met.what == RAY_HIT;
+            place = place_of(met);
+            carried *= of.scattered;
+        }
+        if (!HAS_BOUNCES || !subgroupAny(alive)) {
+            break;
+        }
     }
     return light;
 }
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     bool alive = at.x < cols && at.y < rows;
     ivec2 here = min(at, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
@@ -295,27 +312,29 @@ void main() {
     mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
     vec4 before = imageLoad(batch_mean, here);
     uvec3 key = uvec3(uint(here.y * cols + here.x), uint(before.w), seed);
-    uint lost = 0u;
+    uvec2 rays = uvec2(0u);
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < (1u << SET_BITS); i++) {
-        sum += path_light(place, i, key, alive, lost);
+        sum += path_light(place, i, key, alive, rays);
     }
     // Welford 1962, over batches.
     vec3 batch = sum / float(1u << SET_BITS);
     float n = before.w + 1.0;
     vec3 off = batch - before.rgb;
     vec3 mean = before.rgb + off / n;
-    vec3 spread = before.w > 0.0 ? imageLoad(batch_spread, here).rgb : vec3(0.0);
+    vec4 kept = imageLoad(batch_spread, here);
+    vec3 spread = before.w > 0.0 ? kept.rgb : vec3(0.0);
+    float rays_so_far = float(rays.x) + (before.w > 0.0 ? kept.w : 0.0);
     spread += off * (batch - mean);
     // One batch says nothing of the spread.
     vec3 error = n > 1.0 ? sqrt(max(spread, 0.0) / (n * (n - 1.0))) : vec3(uintBitsToFloat(0x7f800000u));
     if (alive) {
         imageStore(batch_mean, at, vec4(mean, n));
-        imageStore(batch_spread, at, vec4(spread, 0.0));
+        imageStore(batch_spread, at, vec4(spread, rays_so_far));
         imageStore(radiance, at, vec4(mean, 1.0));
-        imageStore(standard_error, at, vec4(error, 0.0));
-        if (lost > 0u) {
-            atomicAdd(lost_rays[0], lost);
+        imageStore(standard_error, at, vec4(error, rays_so_far));
+        if (rays.y > 0u) {
+            atomicAdd(lost_rays[0], rays.y);
         }
     }
 }

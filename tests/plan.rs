@@ -419,6 +419,11 @@ fn a_reference() {
     for after in [of(5, 5, 1, 0), of(5, 5, 0, 1)] {
         assert_eq!(after.passes_after(&before, &[]), [0, 1, 2]);
     }
+    // In bands of 2^24 paths' vertices, in eights of rows: 512 samples a row, 64 paths, two vertices.
+    let bands = of(515, 512, 1, 0);
+    let parts =
+        ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
+    assert_eq!(labels(&bands)[labels(&bands).len() - 3..], parts);
     let dark = Scene { lights: Lights::default(), ..under_sky(flat(2, 2)) };
     let refused = plan::reference(&dark, 0, 0, &Limits::lavapipe()).unwrap_err().to_string();
     assert!(refused.contains("lights: found none"), "{refused}");

@@ -15,13 +15,43 @@ uvec4 mixed(uvec4 v) {
     return v;
 }
 
-// Point `index` of the 2^bits points of a Hammersley set, in [0, 1)². `words` shift the set around the
-// torus (Cranley & Patterson 1976), so that every point is uniform by itself, and put its points in an
-// order of its own, so that sets of other words are independent of it.
-vec2 set_point(uint index, uint bits, uvec4 words) {
-    uint i = (index * (words.z | 1u) ^ words.w) & ((1u << bits) - 1u);
-    uvec2 at = uvec2(i << (32u - bits), bitfieldReverse(i)) + words.xy;
-    return vec2(at >> 8) * (1.0 / 16777216.0);
+// Words for a place. Mixed once, those of neighbouring samples still go together a little: over 200 seeds
+// the mean of a picture strays 1.1 times as far as independent samples let it; mixed twice, 0.93 times
+// (each ± 0.05).
+uvec4 words_of(uvec4 place) {
+    return mixed(mixed(place).yzwx);
+}
+
+// A random permutation of words in which each bit is flipped by the bits below it alone (Laine &
+// Karras 2011 with the constants of Vegdahl 2021): of bit-reversed fractions, an Owen scramble.
+uint nested(uint x, uint seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16u) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// Point of an Owen-scrambled Sobol' net of 2^bits points in [0, 1)^2 (bits up to 8; Burley 2020, "Practical
+// hash-based Owen scrambling"): the one whose first coordinate lies in the part `order` of 2^bits.
+// Every point is uniform by itself; sets of other words are independent of it.
+vec2 net_point(uint order, uint bits, uvec4 words) {
+    uint reversed = bitfieldReverse(order << (32u - bits));
+    uint mask = (1u << bits) - 1u;
+    uint i = nested(reversed, words.x) & mask;
+    uint x = (nested(i, words.w) & ~mask) | reversed;
+    // The second dimension, bit-reversed: Pascal's triangle modulo 2 as a matrix.
+    uint y = i ^ ((i & 0xaau) >> 1u);
+    y ^= (y & 0xccu) >> 2u;
+    y ^= (y & 0xf0u) >> 4u;
+    y = nested(y, words.y);
+    return vec2(bitfieldReverse(x) >> 8u, bitfieldReverse(y) >> 8u) * (1.0 / 16777216.0);
+}
+
+// The place of `order` in a shuffled row of 2^bits.
+uint shuffled(uint order, uint bits, uint word) {
+    return nested(bitfieldReverse(order << (32u - bits)), word) & ((1u << bits) - 1u);
 }
 
 // (cos, sin) of `turn` turns, 0 .. 1. Drivers may be off by 2^-11 (Vulkan's bound); Taylor's series

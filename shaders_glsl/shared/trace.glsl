@@ -1,5 +1,5 @@
-// Rays over the triangulated surface. Needs bindings cells and maxima, constants BORDER, THIN_ROWS, THIN_COLS, and
-// push constants cells_x, cells_y, padded_rows, top_level, highest_m before it.
+// Rays over the triangulated surface. Needs bindings cells and maxima, constants BORDER, THIN_ROWS, THIN_COLS,
+// MOST_STEPS, and push constants cells_x, cells_y, padded_rows, top_level, highest_m before it.
 //
 // A ray starts at a place on the surface: cell `base` (counted past the edge in neither direction),
 // `offset` in it (0 .. 1 towards east and south), height `own`. Everything is counted from there, so a
@@ -18,9 +18,6 @@ const uint RAY_LOST = 3u;     // took more steps than there can be
 // A ray over a field that repeats is given up after this many cells. What goes on so long is within
 // relief / REACH_CELLS of horizontal; what falls there counts as ground.
 const float REACH_CELLS = 16384.0;
-// Two cells a unit of t, and half as many changes of level, over the longest field or reach; below the
-// 65,535 turns after which llvmpipe ends any loop.
-const int MAX_STEPS = 60000;
 
 struct Ray {
     ivec2 base;
@@ -80,23 +77,20 @@ Met trace(Ray ray, float t_end, bool going) {
     }
     // From here on a rising ray is over everything.
     float t_over = ray.rise > 0.0 ? max(highest_m - ray.own, 0.0) / ray.rise : 1e30;
-    t_end = min(t_end, min(t_over, REACH_CELLS));
+    t_end = min(t_end, t_over);
+    if (BORDER == BORDER_PERIODIC) {
+        t_end = min(t_end, REACH_CELLS);
+    }
     bool hit = false;
-    bool lost = going;
     going = going && !leaves && t_end > 0.0;
     float t = 0.0;
     float t_next = 0.0;
     int level = 0;
-    for (int turn = 0; turn < MAX_STEPS; turn++) {
-        // Left by all lanes together, as in horizon_sweep.
-        if (!subgroupAny(going)) {
-            lost = false;
-            break;
-        }
+    for (int turn = 0; turn < MOST_STEPS; turn++) {
         int bits = LEVEL_BITS * level;
         ivec2 low = (at >> bits) << bits;
         ivec2 high = min(low + (1 << bits), cells_of);
-        ivec2 seen = at - cell;
+        ivec2 seen = BORDER == BORDER_PERIODIC ? at - cell : ivec2(0);
         ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - seen - ray.base;
         // Along a grid line the edges beside it are never reached, not even where it is one of them.
         vec2 to_edge = mix((vec2(edge) - ray.offset) * inverse, vec2(1e30), along_line);
@@ -129,7 +123,7 @@ Met trace(Ray ray, float t_end, bool going) {
         ivec2 onto = ivec2(by_x ? across.x : other.x, by_x ? other.y : across.y);
         bool moves = going && clear;
         ivec2 next = moves ? onto : cell;
-        ivec2 at_next = at + (next - cell);
+        ivec2 at_next = BORDER == BORDER_PERIODIC ? at + (next - cell) : next;
         if (BORDER == BORDER_PERIODIC) {
             at_next.x += at_next.x < 0 ? cells_of.x : (at_next.x >= cells_of.x ? -cells_of.x : 0);
             at_next.y += at_next.y < 0 ? cells_of.y : (at_next.y >= cells_of.y ? -cells_of.y : 0);
@@ -142,6 +136,10 @@ Met trace(Ray ray, float t_end, bool going) {
         cell = next;
         at = at_next;
         going = going && !out_now && t < t_end;
+        // Left by all lanes together, as in horizon_sweep; asked last, as llvmpipe runs a turn to its end.
+        if (!subgroupAny(going)) {
+            break;
+        }
     }
     Met met;
     met.t = t;
@@ -173,6 +171,6 @@ Met trace(Ray ray, float t_end, bool going) {
     bool below = BORDER == BORDER_PLANE && leaves && ray.rise <= 0.0;
     // A ray that repetitions have not met within its reach rises free or sinks into the ground.
     bool sinks = BORDER == BORDER_PERIODIC && ray.rise <= 0.0 && t_end >= REACH_CELLS;
-    met.what = lost ? RAY_LOST : (hit ? RAY_HIT : (below || sinks ? RAY_GROUND : RAY_FREE));
+    met.what = going ? RAY_LOST : (hit ? RAY_HIT : (below || sinks ? RAY_GROUND : RAY_FREE));
     return met;
 }

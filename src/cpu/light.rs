@@ -116,8 +116,8 @@ impl Receiver {
 /// One azimuth at one receiver: N·e (or r·e) = a cos ω + b sin ω, and the elevation of the plane of N.
 #[derive(Clone, Copy)]
 pub(super) struct Slice {
-    a: f64,
-    b: f64,
+    pub(super) a: f64,
+    pub(super) b: f64,
     pub(super) low: f64,
     exponent: Option<f64>,
 }
@@ -163,7 +163,13 @@ const GAUSS_4: [(f64, f64); 4] = [
 ];
 
 /// One azimuth at one sample: what arrives above its horizon.
-fn lit(oracle: &Oracle, row: usize, col: usize, receiver: Receiver, azimuth_rad: f64) -> Slice {
+pub(super) fn lit(
+    oracle: &Oracle,
+    row: usize,
+    col: usize,
+    receiver: Receiver,
+    azimuth_rad: f64,
+) -> Slice {
     receiver.slice(azimuth_rad).above(oracle.elevation_rad(row, col, azimuth_rad))
 }
 

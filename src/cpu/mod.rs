@@ -21,6 +21,7 @@ pub mod lattice;
 pub mod light;
 pub mod light_matrix;
 pub mod light_resolve;
+pub mod lit;
 pub mod oracle;
 pub mod profile;
 pub mod sh_shade;

@@ -1,5 +1,6 @@
 //! Error metrics and statistics.
 
+pub mod auto;
 pub mod error;
 pub mod flip;
 pub mod fractal;

@@ -1,10 +1,12 @@
+use std::ops::Range;
+
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
 use crate::scene::{Albedo, Border, Scene};
 
-/// log2 of the paths a sample of one batch. Fewer: more dispatches. More: a set fills its square more
-/// evenly, but fewer batches tell the standard error.
-const SET_BITS: u32 = 4;
+/// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
+/// more evenly, but fewer batches tell the standard error.
+const SET_BITS: u32 = 6;
 
 /// Paths a sample that one run of the pass adds.
 pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
@@ -30,6 +32,7 @@ struct PathTracePush {
     seed: u32,
     albedo: [f32; 4],
     sky: [f32; 4],
+    first_row: i32,
 }
 
 same_layout!(
@@ -53,6 +56,7 @@ same_layout!(
     seed = SEED,
     albedo = ALBEDO,
     sky = SKY,
+    first_row = FIRST_ROW,
 );
 
 /// What rays skip by: cells, rows of the image that the levels' places follow from, levels.
@@ -62,17 +66,32 @@ pub(crate) struct Blocks {
     pub top_level: u32,
 }
 
-/// One batch of paths from every sample.
+/// Steps that no ray of a field can ask for: over its longest side, or as far as a ray over repetitions is
+/// followed, two cells a cell along it, and half as many changes of level; and those of the last block.
+fn most_steps([cells_x, cells_y]: [u32; 2], border: Border) -> u32 {
+    let reach = if border == Border::Periodic { REACH_CELLS } else { cells_x.max(cells_y) };
+    3 * reach + 64
+}
+
+/// As in `trace.glsl`.
+const REACH_CELLS: u32 = 16384;
+
+/// One batch of paths from every sample of some rows, counted in eights.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
     (bounces, seed): (u32, u32),
+    band: Range<u32>,
     bound: &[(&str, ResourceId)],
 ) {
     let Scene { field, surface, lights } = scene;
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(rows);
+    let samples = u64::from(cols) * u64::from(band.end - band.start);
+    let part = match band.end - band.start {
+        all if all == rows => String::new(),
+        _ => format!("rows {}..{}", band.start, band.end),
+    };
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let is_line = |n| surface.border != Border::Periodic && n == 1;
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
@@ -85,9 +104,9 @@ pub(crate) fn plan(
     };
     builder.pass(
         &shaders::PATH_TRACE,
-        "",
+        &part,
         format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
         &[
             (0, surface.border as u32),
             (1, u32::from(is_line(rows))),
@@ -96,6 +115,10 @@ pub(crate) fn plan(
             (3, u32::from(is_map)),
             (4, u32::from(lights.environment.is_some())),
             (5, u32::from(surface.phong.is_some())),
+            (7, u32::from(lights.suns.len() + lights.spheres.len() > 0)),
+            (8, u32::from(!lights.spheres.is_empty())),
+            (9, u32::from(bounces > 0)),
+            (10, most_steps(blocks.cells, surface.border)),
         ],
         &PathTracePush {
             cols: cols as i32,
@@ -116,6 +139,7 @@ pub(crate) fn plan(
             seed,
             albedo: four(albedo),
             sky: four(lights.sky.unwrap_or_default()),
+            first_row: band.start as i32,
         },
         bound,
         samples * 7 * 16,

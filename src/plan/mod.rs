@@ -5,6 +5,7 @@ pub mod azimuths;
 mod batch;
 mod builder;
 mod change;
+mod choice;
 mod edit;
 mod horizons;
 mod limits;
@@ -26,7 +27,7 @@ pub use horizons::horizons;
 pub use limits::Limits;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture};
-pub use reference::{REFERENCE_BATCH, reference, reference_inputs};
+pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub use sweeping::circle_rad;
 

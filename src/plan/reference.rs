@@ -1,7 +1,8 @@
+use super::choice::{choice_density, environment_cdf, most_light};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::path_trace::{self, BATCH_PATHS, Blocks};
 use crate::passes::{height_bounds, height_cells};
-use crate::scene::{Albedo, Border, Environment, Lights, Scene};
+use crate::scene::{Albedo, Border, Lights, Scene};
 use crate::{Error, Result};
 
 /// Paths a sample of one batch of a [`reference`](reference()).
@@ -14,10 +15,13 @@ const MOST_BOUNCES: u32 = 64;
 /// [`cpu::bounce`](crate::cpu::bounce) defines, with all bounces up to `bounces`.
 ///
 /// Inputs: those of [`reference_inputs`]. Outputs: "radiance", the mean of all batches so far, and
-/// "standard_error", that of the mean, from the spread between batches, infinite after the first; four
-/// channels each. Running the whole plan begins anew; running its last pass alone adds a batch. The
-/// same seed gives the same batches on the same device. Buffer "lost_rays" counts rays that were given
-/// up: 0 in a right result.
+/// "standard_error", that of the mean, infinite after the first batch; four channels each, the fourth of the
+/// error being the rays that were traced. Running the whole plan begins anew; running its passes
+/// `path_trace` alone, one for each band of rows, adds a batch. The same seed gives the same bits on the
+/// same device. Buffer "lost_rays" counts rays that were given up: 0 in a right result.
+///
+/// A batch's paths are one randomised net, batches are independent: the standard error is from the
+/// spread between batches. It knows nothing of light that no path has met: see [`unmet_error`].
 ///
 /// # Errors
 /// Bounces, surface or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -85,7 +89,12 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
         let ids = [cells, maxima];
         height_bounds::plan(&mut builder, blocks.cells, blocks.padded_rows, level, ids);
     }
-    path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), &bound);
+    let rows = size[1];
+    let band_rows = band_rows(size[0], bounces);
+    for first in (0..rows).step_by(band_rows as usize) {
+        let band = first..rows.min(first + band_rows);
+        path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), band, &bound);
+    }
     let used = vec![
         ("method".to_owned(), "path tracing".to_owned()),
         ("border".to_owned(), format!("{:?}", surface.border).to_lowercase()),
@@ -94,6 +103,25 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
         ("paths_of_a_batch".to_owned(), BATCH_PATHS.to_string()),
     ];
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
+}
+
+/// Vertices of paths that one dispatch follows, about: tenths of a second on a slow device, so that none
+/// is taken for hung.
+const BAND_VERTICES: u64 = 1 << 24;
+
+/// Rows of a band, in eights; few paths go on beyond a few bounces.
+fn band_rows(cols: u32, bounces: u32) -> u32 {
+    let row = u64::from(cols) * u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
+    (BAND_VERTICES / row / 8 * 8).clamp(8, 1 << 24) as u32
+}
+
+/// The standard error of light that none of `paths` paths a sample of a [`reference`](reference()) may have met,
+/// R, G, B: to be added to that of their spread as the root of the sum of squares.
+///
+/// An event that N paths have not met has, with 95 %, a share of at most 3/N of them (the rule of three).
+/// Its light, with the most W that one path can bring, then has the variance 3W²/N² at most.
+pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
+    most_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
 }
 
 /// Levels of 4 by 4 up to one block that holds all cells. A field without cells has one that is not
@@ -108,8 +136,9 @@ fn blocks([cols, rows]: [u32; 2], border: Border) -> Blocks {
     Blocks { cells, padded_rows: cells[1].next_multiple_of(4_u32.pow(top_level)), top_level }
 }
 
-/// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" and
-/// its "environment_cdf" where there is one; "lights"; "albedo" where it is a map.
+/// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" (fourth
+/// channel: how densely directions of the texel are chosen, 1/sr) and its "environment_cdf" where there is
+/// one; "lights"; "albedo" where it is a map.
 pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
@@ -117,8 +146,11 @@ pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let Scene { field, surface, lights } = scene;
     let mut all = vec![field.heights_m().to_vec()];
     if let Some(environment) = &lights.environment {
-        all.push(opaque(environment.texels()));
-        all.push(environment_cdf(environment, surface.border));
+        let cdf = environment_cdf(environment, surface.border);
+        let density = choice_density(environment, &cdf);
+        let texels = environment.texels().iter().zip(&density);
+        all.push(texels.flat_map(|(t, d)| [t[0], t[1], t[2], *d as f32]).collect());
+        all.push(cdf);
     }
     all.push(light_texels(lights, field.base_m()));
     if let Albedo::Map(map) = &surface.albedo {
@@ -154,41 +186,4 @@ fn light_texels(lights: &Lights, base_m: f64) -> Vec<f32> {
         all.resize(8, 0.0);
     }
     all
-}
-
-/// How an environment's texels are chosen, in proportion to the light of all channels that they give:
-/// rows of width + 1. First column: the share of the rows from the zenith down to this one; then the
-/// share, in this row, of the texels up to each. Rows below horizontal count under `open` alone.
-fn environment_cdf(environment: &Environment, border: Border) -> Vec<f32> {
-    let (width, height) = (environment.width(), environment.height());
-    let seen = environment.rows_above_ground(border);
-    let rows: Vec<Vec<f64>> = environment
-        .texels()
-        .chunks_exact(width)
-        .map(|row| {
-            let light = row.iter().map(|t| t.iter().map(|v| f64::from(*v)).sum());
-            running_shares(light)
-        })
-        .collect();
-    let of_row = |row: usize| -> f64 {
-        let texels = &environment.texels()[row * width..(row + 1) * width];
-        let sum: f64 = texels.iter().flatten().map(|v| f64::from(*v)).sum();
-        let middle = std::f64::consts::PI * (row as f64 + 0.5) / height as f64;
-        if row < seen { sum * middle.sin() } else { 0.0 }
-    };
-    let down = running_shares((0..height).map(of_row));
-    let texels = down.iter().zip(&rows).flat_map(|(d, row)| std::iter::once(d).chain(row));
-    texels.map(|v| *v as f32).collect()
-}
-
-/// Running sums over the whole sum; 0 where that is 0.
-fn running_shares(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sum = 0.0;
-    let sums: Vec<f64> = values
-        .map(|v| {
-            sum += v;
-            sum
-        })
-        .collect();
-    sums.into_iter().map(|s| if sum > 0.0 { s / sum } else { 0.0 }).collect()
 }

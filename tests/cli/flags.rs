@@ -164,10 +164,7 @@ fn not_yet() {
             ("--subsample 2", 2, &["--subsample", "not yet"]),
             ("--level-step 2", 2, &["--level-step", "not yet"]),
             ("--level-offset 1", 2, &["--level-offset", "not yet"]),
-            ("--max-error 0.01", 2, &["--max-error", "not yet"]),
-            ("--time-budget 5", 2, &["--time-budget", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
-            ("--seed 1", 2, &["--seed", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),
         ],
     );
@@ -296,8 +293,13 @@ fn help_says_units_and_defaults() {
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0..1", "[default: 1]"]),
     ];
-    let render: &[(&str, &[&str])] =
-        &[("--exposure", &["[default: 1]"]), ("--layers", &["lights", "sky-view", "horizon"])];
+    let render: &[(&str, &[&str])] = &[
+        ("--exposure", &["[default: 1]"]),
+        ("--layers", &["lights", "sky-view", "horizon"]),
+        ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
+        ("--time-budget", &["<MS>", "GPU time"]),
+        ("--seed", &["[default: 0]"]),
+    ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
     let compare: &[(&str, &[&str])] = &[

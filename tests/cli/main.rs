@@ -1,6 +1,7 @@
 //! The binary as scripts meet it: exit status 0 done, 1 failed, 2 wrong usage; one sentence on
 //! stderr where something is wrong, and then no file changed and none left behind.
 
+mod auto;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;

@@ -5,9 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use ridgelight::cpu::light;
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::plan;
 use ridgelight::scene::{Albedo, Border, Lights, Phong, Sun};
 
-use crate::reference_truth::traced;
+use crate::reference_truth::{traced, traced_by};
 use crate::{Device, field, under_sky};
 
 fn point(azimuth_rad: f64, elevation_rad: f64) -> Sun {
@@ -69,4 +70,17 @@ fn a_narrow_lobe_keeps_its_digits() {
             "{exponent} {off}: {found} for {expected} ± {bound}"
         );
     }
+}
+
+/// The bound on steps, constant 10 of `path_trace`, set too low for rays over a ridge: they are counted.
+#[test]
+fn rays_that_are_given_up_are_counted() {
+    let mut device = Device::new();
+    let ridge = field(40, 40, [1.0, 1.0], |_, c| 9.0 - (c as f64 - 20.0).abs().min(9.0));
+    let scene = under_sky(ridge, Border::Plane);
+    let mut plan = plan::reference(&scene, 0, 1, &device.limits()).expect("a plan");
+    assert_eq!(traced_by(&mut device, &scene, plan.clone(), 1).1, 0);
+    let constants = &mut plan.passes.last_mut().expect("path_trace").constants;
+    constants.iter_mut().find(|(id, _)| *id == 10).expect("the bound").1 = 2;
+    assert!(traced_by(&mut device, &scene, plan, 1).1 > 0);
 }

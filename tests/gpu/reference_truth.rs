@@ -1,8 +1,8 @@
 //! The path tracer against the f64 quadrature, and against what is known without either.
 
 use ridgelight::cpu::bounce::{Fineness, truth};
-use ridgelight::plan;
-use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Surface};
+use ridgelight::plan::{self, Plan};
+use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
 
 use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};
@@ -10,39 +10,7 @@ use crate::{Device, field, under_sky};
 /// Radiance and its standard error.
 pub(crate) type Traced = [Vec<[f64; 3]>; 2];
 
-/// `batches` of a scene with up to these bounces, by one renderer.
-fn traced_each<const N: usize>(
-    device: &mut Device,
-    scene: &Scene,
-    bounces: [u32; N],
-    seed: u32,
-    batches: usize,
-) -> [Traced; N] {
-    let limits = device.limits();
-    let plans = bounces.map(|b| plan::reference(scene, b, seed, &limits).expect("a plan"));
-    let last = plans[0].passes.len() - 1;
-    let lost = plans[0].find("lost_rays").expect("a buffer");
-    let contents = plan::reference_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let gpu = device.gpu.as_mut().expect("alive");
-    let mut frame = gpu.frame(plans[0].clone(), &contents).expect("a frame");
-    let all = plans.map(|plan| {
-        gpu.replace_plan(&mut frame, plan).expect("the same passes");
-        gpu.draw(&mut frame).expect("drawn");
-        for _ in 1..batches {
-            gpu.draw_passes(&mut frame, &[last]).expect("drawn on");
-        }
-        assert_eq!(gpu.read(&frame, lost).expect("read back")[0], 0, "rays were lost");
-        [0, 1].map(|output| {
-            let pixels = gpu.pixels(&frame, output).expect("pixels");
-            let texels = pixels.values.chunks_exact(4);
-            texels.map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
-        })
-    });
-    gpu.end(frame);
-    all
-}
-
+/// `batches` of a scene with up to these bounces.
 pub(crate) fn traced(
     device: &mut Device,
     scene: &Scene,
@@ -50,8 +18,38 @@ pub(crate) fn traced(
     seed: u32,
     batches: usize,
 ) -> Traced {
-    let [only] = traced_each(device, scene, [bounces], seed, batches);
-    only
+    let plan = plan::reference(scene, bounces, seed, &device.limits()).expect("a plan");
+    let (light, lost) = traced_by(device, scene, plan, batches);
+    assert_eq!(lost, 0, "rays were lost");
+    light
+}
+
+/// `batches` by this plan, and how many rays were lost.
+pub(crate) fn traced_by(
+    device: &mut Device,
+    scene: &Scene,
+    plan: Plan,
+    batches: usize,
+) -> (Traced, u32) {
+    let paths: Vec<usize> =
+        (0..plan.passes.len()).filter(|p| plan.passes[*p].name() == "path_trace").collect();
+    let lost = plan.find("lost_rays").expect("a buffer");
+    let contents = plan::reference_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let all = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        for _ in 1..batches {
+            gpu.draw_passes(frame, &paths)?;
+        }
+        let pictures = [0, 1].map(|output| {
+            let pixels = gpu.pixels(frame, output).expect("pixels");
+            let texels = pixels.values.chunks_exact(4);
+            texels.map(|t| [0, 1, 2].map(|c| f64::from(t[c]))).collect()
+        });
+        Ok((pictures, gpu.read(frame, lost)?[0]))
+    });
+    all.expect("traced")
 }
 
 /// Batches that the comparisons draw, and a sample's paths in them.
@@ -69,8 +67,8 @@ fn paths_agree_with_the_quadrature_on_every_scene() {
             let right = [&truth.radiance[b][..], &truth.error[b]];
             Agreement::of([light, error], right, PATHS, 1e-5)
         };
-        let all = traced_each(&mut device, &scene, [0, 2], 1, BATCHES);
-        for (both, b) in all.iter().zip([0, 2]) {
+        for b in [0, 2] {
+            let both = &traced(&mut device, &scene, b as u32, 1, BATCHES);
             let of = agreement(both, b);
             println!(
                 "{name}, {b} bounces: rms {:.3}, worst {:.2}, mean {:.2} of {}",
@@ -154,4 +152,38 @@ fn standard_errors_say_how_far_two_seeds_differ() {
     let expected = (BATCHES - 1) as f64 / (BATCHES - 3) as f64;
     println!("mean z² {mean:.3}, expected {expected:.3}, of {count}");
     assert!((mean - expected).abs() < 5.0 * (2.0 / count).sqrt(), "{mean} of {count}");
+}
+
+/// A needle in the shadow of a wall reaches into bright sun with its tip alone: few paths from the shade
+/// meet that. By their spread alone samples that none has met would be dark without doubt.
+#[test]
+fn light_that_no_path_has_met_is_allowed_for() {
+    const FEW: usize = 8;
+    let mut device = Device::new();
+    let needle = field(13, 13, [1.0, 1.0], |r, c| match (r, c) {
+        (_, 0) => 6.0,
+        (6, 4) => 3.0,
+        _ => 0.0,
+    });
+    let mut scene = under_sky(needle, Border::Plane);
+    let sun = Sun {
+        azimuth_rad: std::f64::consts::PI,
+        elevation_rad: 0.8,
+        diameter_rad: 0.0,
+        irradiance: [100.0; 3],
+    };
+    scene.lights = Lights { suns: vec![sun], ..Lights::default() };
+    let fineness = Fineness { azimuths: 48, divisions: 1, strips: 16 };
+    let truth = truth(&scene, 1, fineness).expect("a truth");
+    let [light, error] = traced(&mut device, &scene, 1, 1, FEW);
+    let unmet = (0..light.len()).filter(|i| error[*i][0] == 0.0 && truth.radiance[1][*i][0] > 1e-3);
+    assert!(unmet.count() > 0, "every sample has met the light");
+    let against = |sigma: &[[f64; 3]]| {
+        let right = [&truth.radiance[1][..], &truth.error[1]];
+        Agreement::of([&light, sigma], right, f64::INFINITY, 1e-5)
+    };
+    let unmet = plan::unmet_error(&scene, 1, FEW as u32 * plan::REFERENCE_BATCH);
+    let sigma: Vec<_> = error.iter().map(|e| [0, 1, 2].map(|c| e[c].hypot(unmet[c]))).collect();
+    assert!(against(&sigma).holds(), "{:?}", against(&sigma));
+    assert!(!against(&error).holds(), "deaf to what was not met");
 }

@@ -162,7 +162,7 @@ fn grooves_lit(bounces: usize) -> Closed {
             let away = (i % (2 * HALF)).abs_diff(HALF);
             let s = away as f64 * SQRT_2;
             let light = || parts[..=bounces].iter().map(|part| part(s)).sum();
-            (away % HALF != 0).then(|| (i, light(), 0.0))
+            (!away.is_multiple_of(HALF)).then(|| (i, light(), 0.0))
         })
         .collect();
     Closed {

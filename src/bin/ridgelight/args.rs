@@ -1,5 +1,6 @@
 //! What can be asked for, and how it is spelled.
 
+mod auto;
 mod compare;
 mod later;
 mod quality;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+pub use auto::AutoArgs;
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
 pub use quality::{
@@ -98,6 +100,8 @@ pub struct RenderArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
+    #[command(flatten)]
+    pub auto: AutoArgs,
     /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation)
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,

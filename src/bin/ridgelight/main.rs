@@ -24,6 +24,7 @@ fn said(written: std::io::Result<()>) {
 }
 
 mod args;
+mod auto;
 mod bench;
 mod compare;
 mod devices;

@@ -15,7 +15,7 @@ use crate::setup::{self, Outcome};
 const LEAST_BATCHES: u32 = 8;
 
 /// Batches between two looks at the error.
-const BATCHES_A_LOOK: u32 = 8;
+const BATCHES_A_LOOK: u32 = 4;
 
 /// Whether a signal is to end the tracing, not the program.
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
@@ -70,6 +70,11 @@ fn check(args: &ReferenceArgs) -> Result<()> {
     if args.spp == 0 {
         return Err(Error::setting("--spp", "0", "a whole number, 1 or more"));
     }
+    // Whole batches are counted as paths.
+    let most = u32::MAX / REFERENCE_BATCH * REFERENCE_BATCH;
+    if args.spp > most {
+        return Err(Error::setting("--spp", args.spp.to_string(), format!("at most {most}")));
+    }
     match args.until_error {
         Some(e) if !(e.is_finite() && e > 0.0) => {
             Err(Error::setting("--until-error", e.to_string(), "a number above 0"))
@@ -94,11 +99,15 @@ fn scene(args: &ReferenceArgs) -> Result<Scene> {
 
 /// What the paths have come to.
 struct Traced {
+    /// Of every sample; an interrupted one may have reached some rows more.
     batches: u32,
     radiance: Vec<[f32; 3]>,
+    /// From the spread between batches.
     standard_error: Vec<[f32; 3]>,
     /// Root of the mean squared standard error over the mean radiance.
     error: f64,
+    /// Of light that no path has met, by channel: [`plan::unmet_error`].
+    unmet: [f64; 3],
     /// Sums, by pass.
     times: Vec<Timing>,
 }
@@ -109,7 +118,8 @@ fn trace(
     gpu: &mut Headless,
     frame: &mut Frame,
 ) -> Result<Traced> {
-    let last = frame.plan().passes.len() - 1;
+    let passes = frame.plan().passes.iter().enumerate();
+    let bands: Vec<usize> = passes.filter(|(_, p)| p.name() == "path_trace").map(|b| b.0).collect();
     let wanted = args.spp.div_ceil(REFERENCE_BATCH).max(2);
     let progress = crate::render::progress(args.global.quiet, "tracing");
     let mut times = gpu.draw(frame)?;
@@ -120,25 +130,37 @@ fn trace(
         // Two batches at least: of one, no error is known.
         if batches >= 2 && (batches >= wanted || interrupted || looks) {
             let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
-            let error = relative(scene, &radiance, &standard_error);
+            let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
+            let unmet = plan::unmet_error(scene, args.bounces, batches * REFERENCE_BATCH);
+            let both = relative(error.hypot(root_mean_square(unmet)), mean);
             progress.set_message(format!(
                 "{} of {} paths a sample, {:.3} % off",
                 batches * REFERENCE_BATCH,
                 wanted * REFERENCE_BATCH,
-                100.0 * error
+                100.0 * both
             ));
-            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
+            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| both < e);
             if batches >= wanted || interrupted || enough {
                 progress.finish_and_clear();
-                none_lost(gpu, frame)?;
-                return Ok(Traced { batches, radiance, standard_error, error, times });
+                if let Some(lost) = frame.plan().find("lost_rays") {
+                    none_lost(gpu.read(frame, lost)?[0])?;
+                }
+                let error = relative(error, mean);
+                return Ok(Traced { batches, radiance, standard_error, error, unmet, times });
             }
         }
-        let more = gpu.draw_passes(frame, &[last])?;
-        for (sum, one) in times.iter_mut().rev().zip(&more) {
-            sum.ns += one.ns;
+        for &band in &bands {
+            let more = gpu.draw_passes(frame, &[band])?;
+            if let (Some(sum), Some(one)) = (times.get_mut(band), more.first()) {
+                sum.ns += one.ns;
+            }
+            if batches >= 2 && WAS_INTERRUPTED.load(Ordering::SeqCst) {
+                break;
+            }
         }
-        batches += 1;
+        if batches < 2 || !WAS_INTERRUPTED.load(Ordering::SeqCst) {
+            batches += 1;
+        }
     }
 }
 
@@ -147,10 +169,24 @@ fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32;
     Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
 }
 
-/// Over all channels of the samples that are no voids; 0 where all is dark.
-fn relative(scene: &Scene, radiance: &[[f32; 3]], standard_error: &[[f32; 3]]) -> f64 {
+/// Share of the mean: 0 of nothing, infinite where all is dark but might not be.
+fn relative(error: f64, mean: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / mean }
+}
+
+fn root_mean_square(v: [f64; 3]) -> f64 {
+    (v.iter().map(|v| v * v).sum::<f64>() / 3.0).sqrt()
+}
+
+/// Mean radiance, and the root of the mean squared standard error, over all channels of the samples that
+/// are no voids.
+fn mean_and_error(
+    scene: &Scene,
+    radiance: &[[f32; 3]],
+    standard_error: &[[f32; 3]],
+) -> Result<(f64, f64)> {
     let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
-    let (mut light, mut squares, mut count) = (0.0, 0.0, 0.0);
+    let (mut light, mut squares, mut count) = (0.0, 0.0, 0.0_f64);
     for i in (0..radiance.len()).filter(|i| !is_void(*i)) {
         for c in 0..3 {
             light += f64::from(radiance[i][c]);
@@ -158,15 +194,19 @@ fn relative(scene: &Scene, radiance: &[[f32; 3]], standard_error: &[[f32; 3]]) -
             count += 1.0;
         }
     }
-    if light > 0.0 { (squares * count).sqrt() / light } else { 0.0 }
+    if !(light + squares).is_finite() {
+        let most = "radiances whose sum over 64 paths is within 32-bit numbers: below 1e36";
+        return Err(Error::setting("lights", "light beyond them", most));
+    }
+    let count = count.max(1.0);
+    Ok((light / count, (squares / count).sqrt()))
 }
 
 /// Rays that were given up would be missing from the light.
-fn none_lost(gpu: &mut Headless, frame: &Frame) -> Result<()> {
-    let Some(lost) = frame.plan().find("lost_rays") else { return Ok(()) };
-    match gpu.read(frame, lost)?.first() {
-        None | Some(0) => Ok(()),
-        Some(count) => Err(Error::Device {
+fn none_lost(count: u32) -> Result<()> {
+    match count {
+        0 => Ok(()),
+        _ => Err(Error::Device {
             doing: "tracing paths".into(),
             reason: format!("{count} rays took more steps than a field can ask for"),
         }),
@@ -186,6 +226,7 @@ fn write(
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());
+    add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
     for (i, ball) in scene.lights.spheres.iter().enumerate() {
         let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
         add(&format!("light{}", i + 1), format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m));
@@ -206,5 +247,33 @@ fn write(
     match &args.global.json {
         Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::HeightField;
+
+    #[test]
+    fn lost_rays_are_an_error() {
+        assert!(none_lost(0).is_ok());
+        let said = none_lost(3).unwrap_err().to_string();
+        assert!(said.contains("3 rays took more steps"), "{said}");
+    }
+
+    /// 1 and 3 with errors 3 and 4: mean 2, root of the mean square √12.5. Dark samples with an error are
+    /// no 0 % off; sums beyond f32 are no number.
+    #[test]
+    fn errors_are_shares_of_the_mean() {
+        let field = HeightField::new(1, 2, &[0.0; 2], [1.0; 2], None).unwrap();
+        let scene = Scene { field, surface: Surface::default(), lights: Lights::default() };
+        let both = [[1.0; 3], [3.0; 3]];
+        let (mean, error) = mean_and_error(&scene, &both, &[[3.0; 3], [4.0; 3]]).unwrap();
+        assert!((mean - 2.0).abs() < 1e-12 && (error - 12.5_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(relative(0.0, 0.0), 0.0);
+        assert_eq!(relative(1e-9, 0.0), f64::INFINITY);
+        let said = mean_and_error(&scene, &both, &[[0.0; 3], [f32::NAN; 3]]).unwrap_err();
+        assert!(said.to_string().contains("below 1e36"), "{said}");
     }
 }

@@ -1,10 +1,11 @@
 use ridgelight::Result;
 use ridgelight::files::{self, Channels, Layer as FileLayer, Tone};
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan;
-use ridgelight::scene::HeightField;
+use ridgelight::plan::{self, Limits};
+use ridgelight::scene::{HeightField, Quality, Scene};
 
 use crate::args::{Layer, RenderArgs};
+use crate::auto;
 use crate::idle;
 use crate::setup::{self, Outcome};
 
@@ -41,14 +42,31 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             "a .png output: an .exr keeps linear radiance",
         ));
     }
-    let quality = setup::quality(&args.quality)?;
+    let goal = auto::goal(&args.auto)?;
+    let mut quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let wanted = setup::wanted(&args.layers);
-    let picture = |limits: &plan::Limits| plan::picture(&scene, &quality, limits, wanted);
-    setup::check_plan(&args.global, picture)?;
+    let picture =
+        |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
+    setup::check_plan(&args.global, |limits| picture(&quality, limits))?;
     let (mut gpu, limits) = setup::device(&args.global)?;
-    let plan = picture(&limits)?;
+    let progress = progress(args.global.quiet, "lighting");
+    let mut chosen = None;
+    if let Some(goal) = goal {
+        let found = auto::choose(
+            &mut gpu,
+            &limits,
+            &scene,
+            (goal, args.auto.seed),
+            quality.hull,
+            &progress,
+        )?;
+        quality = found.trial.quality;
+        chosen = Some((goal, found));
+        progress.set_message("lighting");
+    }
+    let plan = picture(&quality, &limits)?;
     let horizon = args.layers.contains(&Layer::Horizon);
     let mut used = plan.settings.clone();
     if horizon {
@@ -59,7 +77,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let contents = setup::contents(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
-    let progress = progress(args.global.quiet, "lighting");
     let (times, pixels, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
         let times = gpu.draw(frame)?;
         let pixels: Vec<Pixels> =
@@ -75,8 +92,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     ));
+    if let Some((goal, chosen)) = &chosen {
+        metadata.extend(auto::told((*goal, args.auto.seed), chosen, &scene));
+    }
     let mean_horizon =
-        if horizon { Some(mean_horizon(&mut gpu, &scene.field, args, &limits)?) } else { None };
+        if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
     if is_exr {
@@ -102,6 +122,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             args.output.display(),
             gpu.report().name
         );
+        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
+            crate::say!("{sentence}");
+        }
     }
     Ok(Outcome::Done)
 }
@@ -128,17 +151,17 @@ fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
 /// Mean elevation of the horizon over the azimuths, radians.
 fn mean_horizon(
     gpu: &mut Headless,
-    field: &HeightField,
-    args: &RenderArgs,
-    limits: &plan::Limits,
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
 ) -> Result<Vec<f32>> {
-    let quality = setup::quality(&args.quality)?;
+    let field = &scene.field;
     let mut sum = vec![0.0_f64; field.rows() * field.cols()];
     crate::horizon::for_each(
         gpu,
         field,
-        setup::border(&args.surface.field),
-        &quality,
+        scene.surface.border,
+        quality,
         limits,
         false,
         &mut |_, angles, _| {

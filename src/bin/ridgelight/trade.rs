@@ -10,6 +10,7 @@ mod report;
 mod rig;
 mod truth;
 mod walk;
+mod why;
 
 use std::path::Path;
 use std::time::Duration;
@@ -25,6 +26,7 @@ use picture::Tones;
 use report::Report;
 use rig::Rig;
 use truth::Truth;
+pub use truth::{digits, percent};
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 

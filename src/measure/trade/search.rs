@@ -77,6 +77,8 @@ pub struct Search {
     /// For each place the largest bound from below and whose it is: cost, error.
     bounds: Vec<[Option<(f64, usize)>; 2]>,
     front: Vec<usize>,
+    /// For each knob, by its step + 1 (0: idle), what was measured with all others as at the start.
+    alone: Vec<Vec<Option<Value>>>,
 }
 
 impl Search {
@@ -88,6 +90,8 @@ impl Search {
         let knobs = steps[start].len();
         assert!(steps.iter().all(|s| s.len() == knobs), "one step a knob");
         let count = steps.len();
+        let most = |knob: usize| steps.iter().filter_map(|s| s[knob]).max().map_or(0, |s| s + 1);
+        let alone = (0..knobs).map(|knob| vec![None; most(knob) + 1]).collect();
         Self {
             steps,
             start,
@@ -100,6 +104,7 @@ impl Search {
             breaks: Vec::new(),
             bounds: vec![[None; 2]; count],
             front: Vec::new(),
+            alone,
         }
     }
 
@@ -122,6 +127,12 @@ impl Search {
         let value = Value { cost: value.cost, error: value.error.max(self.floor) };
         self.values[place] = Some(value);
         self.measured.push(place);
+        for knob in 0..self.alone.len() {
+            if self.differing(place, self.start).all(|k| k == knob) {
+                let step = self.steps[place][knob].map_or(0, |s| s + 1);
+                self.alone[knob][step].get_or_insert(value);
+            }
+        }
         if self.find_breaks(place) {
             self.bounds.fill([None; 2]);
             for i in self.measured.clone() {
@@ -201,18 +212,23 @@ impl Search {
 
     /// What a place is expected to have: the nearest measured one's value, changed as each knob that
     /// differs changes it at the start. Costs multiply; squares of errors add, as those of
-    /// independent causes do.
+    /// independent causes do. Nearest are those whose every difference was seen at the start.
     pub fn predicted(&self, place: usize) -> Value {
+        let alone =
+            |knob: usize, i: usize| self.alone[knob][self.steps[i][knob].map_or(0, |s| s + 1)];
         let near = self.measured.iter().copied().min_by_key(|&i| {
-            (self.differing(i, place).count(), self.distance(i, place), usize::MAX - i)
+            let unseen = self
+                .differing(i, place)
+                .filter(|&knob| alone(knob, i).is_none() || alone(knob, place).is_none());
+            let differing = self.differing(i, place).count();
+            (unseen.count(), differing, self.distance(i, place), usize::MAX - i)
         });
         let Some((near, value)) = near.and_then(|i| Some((i, self.values[i]?))) else {
             return Value { cost: 0.0, error: self.floor };
         };
         let (mut cost, mut squared) = (value.cost, value.error.powi(2));
         for knob in self.differing(near, place) {
-            let at = |i: usize| self.alone(knob, self.steps[i][knob]);
-            if let (Some(from), Some(to)) = (at(near), at(place)) {
+            if let (Some(from), Some(to)) = (alone(knob, near), alone(knob, place)) {
                 cost *= to.cost / from.cost.max(f64::MIN_POSITIVE);
                 squared += to.error.powi(2) - from.error.powi(2);
             }
@@ -232,14 +248,6 @@ impl Search {
             (c - cost).max(e - error)
         };
         self.front.iter().map(past).fold(f64::INFINITY, f64::min)
-    }
-
-    /// What was measured with all but one knob as at the start.
-    fn alone(&self, knob: usize, step: Option<usize>) -> Option<Value> {
-        let is_it = |&&i: &&usize| {
-            self.steps[i][knob] == step && self.differing(i, self.start).all(|k| k == knob)
-        };
-        self.values[*self.measured.iter().find(is_it)?]
     }
 
     /// Knobs on different steps in two places; an idle one is on every step.

@@ -231,3 +231,25 @@ fn a_corrected_value_is_as_if_it_were_the_first() {
         }
     }
 }
+
+/// A dear place beside which a knob is idle differs from a cheap one in a single knob, too; but how that
+/// knob changes costs is not known, so what is expected of the cheap one comes from the start.
+#[test]
+fn what_is_expected_comes_from_differences_that_were_seen() {
+    let steps = grid(&[3, 3, 3]);
+    let at = |wanted: [Option<usize>; 3]| steps.iter().position(|s| s[..] == wanted).unwrap();
+    let start = at([Some(1); 3]);
+    let mut search = Search::new(steps.clone(), start, 0.0);
+    for (place, cost, error) in [
+        (start, 1.0, 1.0),
+        (at([Some(1), Some(0), Some(1)]), 0.5, 2.0),
+        (at([Some(1), Some(1), Some(0)]), 0.8, 1.5),
+        (at([Some(2), Some(0), None]), 1000.0, 0.0),
+    ] {
+        search.measured(place, Value { cost, error });
+    }
+    let found = search.predicted(at([Some(1), Some(0), Some(0)]));
+    assert!((found.cost - 0.4).abs() < 1e-12, "{found:?}");
+    // 2² + 1.5² - 1².
+    assert!((found.error - 5.25_f64.sqrt()).abs() < 1e-12, "{found:?}");
+}

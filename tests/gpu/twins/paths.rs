@@ -5,7 +5,7 @@ use ridgelight::cpu::height_bounds as bounds_twin;
 use ridgelight::cpu::height_cells as cells_twin;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::EPSILON;
-use ridgelight::plan::{Pass, REFERENCE_BATCH};
+use ridgelight::plan::{Pass, REFERENCE_BATCH, unmet_error};
 
 use super::{Pair, Run, pushed};
 
@@ -56,7 +56,7 @@ pub(super) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// Against the quadrature, which knows no chance: six standard errors, as `Agreement` takes them and with
-/// Bernstein's share of rare events, and what the quadrature itself may be off by, thrice, as single
+/// that of light that no path has met, and what the quadrature itself may be off by, thrice, as single
 /// samples may do worse than it states.
 pub(super) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const BATCHES: u32 = 64;
@@ -71,12 +71,10 @@ pub(super) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let light = run.floats(pass, "radiance").expect("written");
     let error = run.floats(pass, "standard_error").expect("written");
     let [cols, _] = run.size();
-    let paths = f64::from(BATCHES * REFERENCE_BATCH);
-    let brightest = [0, 1, 2].map(|c| want.iter().fold(0.0_f64, |m, v| m.max(v[c])));
+    let unmet = unmet_error(run.scene, bounces as u32, BATCHES * REFERENCE_BATCH);
     let pair = |i: usize, c: usize| {
         let (got, want) = (f64::from(light[4 * i + c]), want[i][c]);
-        let rare = brightest[c] * (got - want).abs() / (3.0 * paths);
-        let sigma = (f64::from(error[4 * i + c]).powi(2) + rare).sqrt();
+        let sigma = f64::from(error[4 * i + c]).hypot(unmet[c]);
         let tolerance = 6.0 * sigma + 3.0 * stated[i][c] + 1e-5 * want;
         Pair { got, want, tolerance, at: [c, i / cols, i % cols] }
     };

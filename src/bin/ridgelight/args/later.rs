@@ -16,13 +16,7 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     level_offset: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    max_error: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    time_budget: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    seed: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     camera: Option<String>,
 }
@@ -38,10 +32,7 @@ impl LaterArgs {
             ("--subsample", self.subsample.as_ref()),
             ("--level-step", self.level_step.as_ref()),
             ("--level-offset", self.level_offset.as_ref()),
-            ("--max-error", self.max_error.as_ref()),
-            ("--time-budget", self.time_budget.as_ref()),
             ("--scene", self.scene.as_ref()),
-            ("--seed", self.seed.as_ref()),
             ("--camera", self.camera.as_ref()),
         ];
         match given.into_iter().find_map(|(name, value)| Some((name, value?))) {

@@ -214,8 +214,8 @@ fn code(flags: &str) -> String {
 /// Of a round number: no zeros at its end.
 fn short_percent(share: f64) -> String {
     let text = digits(100.0 * share);
-    let text =
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let is_plain = text.contains('.') && !text.contains('e');
+    let text = if is_plain { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     format!("{text} %")
 }
 

@@ -7,6 +7,7 @@ use ridgelight::{Error, Result};
 
 use super::rig::Rig;
 use super::truth::digits;
+use super::walk::KEPT;
 
 /// Draws in each place, each beside one in the planner's, after one that warms up.
 const DRAWS: usize = 5;
@@ -22,7 +23,8 @@ pub struct Place {
     pub ratio: std::result::Result<f64, String>,
 }
 
-/// Settings without a hull have no places. A draw is expected to take `draw_s`.
+/// Settings without a hull have no places. A draw is expected to take `draw_s`; three of them are drawn where
+/// they fit into a place's share of the time kept, even if that is spent.
 ///
 /// # Errors
 /// A place that changes the picture.
@@ -39,8 +41,8 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
             let used = own.plan().settings.iter().find(|(n, _)| n == "hull");
             let is_own = used.is_some_and(|(_, place)| place == name);
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
-            if rig.left() < 3.0 * draw_s {
-                return none("the budget had ended".to_owned());
+            if 3.0 * draw_s > rig.left().max(KEPT * rig.budget.as_secs_f64() / 3.0) {
+                return none("too dear for what was left of the budget".to_owned());
             }
             let mut frame = match rig.frame(&Quality { hull, ..*quality }) {
                 Ok(frame) => frame,

@@ -109,8 +109,10 @@ pub fn svg(report: &Report) -> String {
     let is_front = |p: &Point| front.iter().any(|f| f.place == p.place);
     let best = report.recommended();
     let baseline = points.iter().find(|p| p.place == report.walk.baseline);
-    let mut named = vec![(best, "name", "recommended")];
-    named.extend(baseline.filter(|b| b.place != best.place).map(|b| (b, "small", "the defaults")));
+    let mut named = vec![(best, "name", "recommended", -10.0)];
+    // Below its point: the two may be neighbours.
+    let other = baseline.filter(|b| b.place != best.place);
+    named.extend(other.map(|b| (b, "small", "the defaults", 20.0)));
     // The frontier on top.
     let mut order: Vec<&Point> = points.iter().collect();
     order.sort_by_key(|p| is_front(p));
@@ -138,14 +140,14 @@ pub fn svg(report: &Report) -> String {
         );
     }
     // Above and to the right no point of the frontier is near; where the page ends, to the left.
-    for (point, class, name) in named {
+    for (point, class, name, down) in named {
         let (px, py) = place(point);
         let (dx, anchor) =
             if px > WIDTH - right - 120.0 { (-12.0, "end") } else { (12.0, "start") };
         svg += &format!(
             "<text class=\"{class} halo\" x={:.1} y={:.1} text-anchor={anchor}>{name}</text>\n",
             px + dx,
-            py - 10.0
+            py + down
         );
     }
     svg + "</svg>\n"

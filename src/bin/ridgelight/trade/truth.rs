@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ridgelight::cpu::{light, oracle::Oracle};
+use ridgelight::cpu::lit::Lit;
 use ridgelight::files::{self, Planes};
 use ridgelight::measure::error::ImageError;
-use ridgelight::scene::{Albedo, Fuse, HeightField, Lines, Method, Quality, Scene};
+use ridgelight::scene::{Fuse, HeightField, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::rig::Rig;
@@ -19,9 +19,7 @@ const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
-/// The oracle's: azimuths of the sky, strips across a sun; probes at most, and at least.
-const TRUE_AZIMUTHS: usize = 720;
-const TRUE_STRIPS: usize = 128;
+/// Probes at most, and at least.
 const PROBES: usize = 400;
 const FEWEST_PROBES: usize = 16;
 /// The layer of a reference that holds one standard deviation of its noise.
@@ -190,8 +188,7 @@ impl Truth {
 
     /// Samples all over the field against the oracle: how many, and the relative RMSE that they allow.
     fn probe(&self, scene: &Scene, most: Duration) -> (usize, f64) {
-        let (count, oracle) =
-            (self.rows * self.cols, Oracle::new(&scene.field, scene.surface.border));
+        let (count, lit) = (self.rows * self.cols, Lit::of(scene));
         let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
         // Multiples of the golden ratio's share of the field: no two near each other.
         let place = |k: usize| ((k as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize;
@@ -202,7 +199,10 @@ impl Truth {
         let probe = |first: usize| {
             let mine = places.iter().skip(first).step_by(threads).enumerate();
             mine.take_while(|(i, _)| i * threads < FEWEST_PROBES || begun.elapsed() < most)
-                .map(|(_, &i)| (i, light_at(&oracle, scene, i / self.cols, i % self.cols)))
+                .map(|(_, &i)| {
+                    let (row, col) = (i / self.cols, i % self.cols);
+                    (i, lit.at(row, col))
+                })
                 .collect::<Vec<_>>()
         };
         let probed: Vec<(usize, [f64; 3])> = std::thread::scope(|scope| {
@@ -232,27 +232,6 @@ fn most_mean(sample: &[f64]) -> f64 {
     let mean = sample.iter().sum::<f64>() / count;
     let variance = sample.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
     mean + 2.0 * (variance / count).sqrt()
-}
-
-/// Exit radiance by the oracle, linear RGB.
-fn light_at(oracle: &Oracle, scene: &Scene, row: usize, col: usize) -> [f64; 3] {
-    let mut all = [0.0; 3];
-    let mut add = |light: [f64; 3]| all.iter_mut().zip(light).for_each(|(a, l)| *a += l);
-    if let Some(sky) = scene.lights.sky {
-        let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
-        add(sky.map(|c| f64::from(c) * share));
-    }
-    if let Some(environment) = &scene.lights.environment {
-        add(light::environment_of(oracle, row, col, environment));
-    }
-    for sun in &scene.lights.suns {
-        add(light::sun_of(oracle, row, col, sun, TRUE_STRIPS));
-    }
-    let albedo = match &scene.surface.albedo {
-        Albedo::Constant(c) => *c,
-        Albedo::Map(map) => map[row * scene.field.cols() + col],
-    };
-    [0, 1, 2].map(|c| all[c] * f64::from(albedo[c]))
 }
 
 /// All counts of the truth, halved so many times.

@@ -16,7 +16,7 @@ use crate::setup;
 /// Share of the budget that one setting may take.
 const DEAREST: f64 = 0.1;
 /// Share that is kept for timing what is recommended again, and moving its hull.
-const KEPT: f64 = 0.15;
+pub const KEPT: f64 = 0.15;
 
 /// What a walk has found.
 pub struct Walk {
@@ -212,7 +212,10 @@ fn visit(
         point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
     }
     walk.points.push(point);
-    for point in walk.points.iter_mut().filter(|p| !front.contains(&p.place)) {
+    // The baseline is not measured again should it come up later: it keeps its own.
+    let baseline = walk.baseline;
+    let is_off = |p: &&mut Point| !front.contains(&p.place) && p.place != baseline;
+    for point in walk.points.iter_mut().filter(is_off) {
         point.pictures = None;
     }
     Ok(())

@@ -1,0 +1,36 @@
+use clap::Args;
+
+use super::values::whole;
+
+/// What `--max-error` and `--time-budget` choose themselves.
+const CHOSEN: [&str; 12] = [
+    "method",
+    "azimuths",
+    "sun_azimuths",
+    "lines",
+    "fuse",
+    "precision",
+    "table_elevations",
+    "basis",
+    "sh_order",
+    "wedges",
+    "receiver",
+    "window",
+];
+
+#[derive(Args)]
+#[command(next_help_heading = "Quality")]
+pub struct AutoArgs {
+    /// Choose the cheapest settings of at most this error: RMSE over the mean of the light (0.01 is 1 %),
+    /// bounded with 95 % confidence by exact light at 64 to 1000 samples. Draws up to 16 frames; refused,
+    /// with the nearest that was found, where none is that accurate
+    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = CHOSEN)]
+    pub max_error: Option<f64>,
+    /// Choose the most accurate settings of at most this GPU time a frame on this device, and state
+    /// their error
+    #[arg(long, value_name = "MS", allow_negative_numbers = true, conflicts_with_all = CHOSEN)]
+    pub time_budget: Option<f64>,
+    /// Another number, other samples of exact light for --max-error and --time-budget: 0..4294967295
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    pub seed: u32,
+}

@@ -1,0 +1,154 @@
+//! Settings chosen for an error or a time.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::measure::auto::{self, Chosen, Drawn, Goal, Measured, Probes};
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Hull, Quality, Scene};
+use ridgelight::{Error, Result};
+
+use crate::args::AutoArgs;
+use crate::setup;
+use crate::trade::{digits, percent};
+
+/// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
+const DRAWS: usize = 3;
+const TIMING: Duration = Duration::from_secs(2);
+/// Of a first draw that takes so long compiling is little, and it counts itself.
+const LONG: Duration = Duration::from_secs(10);
+
+/// What is asked for, if anything.
+pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
+    let positive = |flag: &str, value: Option<f64>| match value {
+        Some(x) if !(x.is_finite() && x > 0.0) => {
+            Err(Error::setting(flag, x.to_string(), "a number above 0"))
+        }
+        other => Ok(other),
+    };
+    let error = positive("--max-error", args.max_error)?.map(Goal::MaxError);
+    let cost = positive("--time-budget", args.time_budget)?.map(|ms| Goal::MaxCost(ms * 1e6));
+    Ok(error.or(cost))
+}
+
+pub fn choose(
+    gpu: &mut Headless,
+    limits: &Limits,
+    scene: &Scene,
+    (goal, seed): (Goal, u32),
+    hull: Hull,
+    bar: &indicatif::ProgressBar,
+) -> Result<Chosen> {
+    let contents = setup::contents(scene);
+    let mut drawn = 0;
+    let probes = (Probes::affordable(scene), u64::from(seed));
+    let mut chosen = auto::choose(scene, goal, probes, |quality| {
+        drawn += 1;
+        bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
+        draw(gpu, limits, scene, &Quality { hull, ..*quality }, &contents)
+    })?;
+    chosen.trial.quality.hull = hull;
+    Ok(chosen)
+}
+
+fn draw(
+    gpu: &mut Headless,
+    limits: &Limits,
+    scene: &Scene,
+    quality: &Quality,
+    contents: &[Vec<f32>],
+) -> Result<Drawn> {
+    let plan =
+        plan::picture(scene, quality, limits, Picture { still: true, ..Picture::default() })?;
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
+    })?;
+    let stride = pixels.channels;
+    let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
+        .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())
+        .collect();
+    planes.iter_mut().for_each(|plane| setup::mask_voids(&scene.field, plane, 1));
+    Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
+}
+
+/// Times of the middle one of some draws.
+fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
+    let begun = Instant::now();
+    let mut runs = vec![gpu.draw(frame)?];
+    if begun.elapsed() < LONG {
+        let begun = Instant::now();
+        runs = vec![gpu.draw(frame)?];
+        while runs.len() < DRAWS && begun.elapsed() < TIMING {
+            runs.push(gpu.draw(frame)?);
+        }
+    }
+    let total = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
+    runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
+    let middle = runs.swap_remove(runs.len() / 2);
+    if total(&middle) > 0.0 {
+        return Ok(middle);
+    }
+    Err(Error::Device {
+        doing: "timing a frame".into(),
+        reason: "the device has no timestamps".into(),
+    })
+}
+
+/// For metadata and --json.
+pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(String, String)> {
+    let asked = match goal {
+        Goal::MaxError(most) => ("max_error", most.to_string()),
+        Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
+    };
+    let tried = chosen.trials.iter().map(|t| {
+        let holds = if goal.is_reached(t) { "holds" } else { "does not hold" };
+        let Measured { error, at_most } = t.measured;
+        let error = format!("{} (at most {})", percent(error), percent(at_most));
+        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
+    });
+    let measured = &chosen.trial.measured;
+    [
+        asked,
+        ("error_expected", chosen.expected.error.to_string()),
+        ("error_expected_within_factor", chosen.expected.factor.to_string()),
+        ("error_measured", measured.error.to_string()),
+        ("error_at_most", measured.at_most.to_string()),
+        ("error_confidence", Probes::CONFIDENCE.to_string()),
+        ("error_probes", chosen.probes.to_string()),
+        ("seed", seed.to_string()),
+        ("tried", tried.collect::<Vec<_>>().join("; ")),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .to_vec()
+}
+
+/// For people: what was chosen and its error; then, where settings were drawn that do not reach the
+/// goal, that it went on from them.
+pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
+    let Chosen { trial, expected, probes, trials } = chosen;
+    let mut all = vec![format!(
+        "{}: expected {} (within a factor of {}), measured {}, at most {} with {:.0} % confidence \
+         ({probes} probes); {} settings tried",
+        auto::flags(&trial.quality, scene),
+        percent(expected.error),
+        digits(expected.factor),
+        percent(trial.measured.error),
+        percent(trial.measured.at_most),
+        100.0 * Probes::CONFIDENCE,
+        trials.len()
+    )];
+    let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
+    if let Some(last) = missed.last() {
+        let (went, by) = match goal {
+            Goal::MaxError(_) => ("dearer", format!("at most {}", percent(last.measured.at_most))),
+            Goal::MaxCost(_) => ("cheaper", format!("{} ms", digits(last.ns / 1e6))),
+        };
+        all.push(format!(
+            "went {went}: {} of them did not hold, the last {} ({by})",
+            missed.len(),
+            auto::flags(&last.quality, scene)
+        ));
+    }
+    all
+}

@@ -1,0 +1,272 @@
+//! Which settings to draw next, and which to take.
+
+use super::model::{Costs, Model, Part, spacing};
+use super::probes::Measured;
+use super::statistics::Statistics;
+use crate::scene::{Fuse, Lines, Method, Quality, Scene};
+
+const AZIMUTHS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
+const TABLES: [u32; 8] = [32, 64, 128, 256, 512, 1024, 2048, 4096];
+const STRIPS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
+const LINES: [Lines; 5] =
+    [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell];
+const FUSES: [Fuse; 2] = [Fuse::AimedNearest, Fuse::Aimed];
+
+/// Frames that are tried at most.
+const TRIALS: usize = 16;
+/// What a further frame must be expected to save of the cost or to take off the error, in ln.
+const WORTH: f64 = 0.05;
+/// How much more accurate than what is asked for the control should be, and at least is, unless so many
+/// frames were not; and how much dearer it may be than what is expected to hold.
+const CONTROL: f64 = 3.0;
+const COARSEST_CONTROL: f64 = 2.0;
+const CONTROLS: usize = 4;
+const DEAREST_CONTROL: f64 = 6.0;
+/// Where nothing is expected to reach the goal: how much less accurate than the best that is drawn next may
+/// be for being cheaper.
+const NEARLY: f64 = 2.0;
+/// Frames that are expected to take longer are not drawn: half a minute.
+const LONGEST_NS: f64 = 30e9;
+
+/// What settings are chosen for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The cheapest of at most this relative RMSE, above 0.
+    MaxError(f64),
+    /// The most accurate of at most so many nanoseconds a frame, above 0.
+    MaxCost(f64),
+}
+
+impl Goal {
+    /// Whether settings that were drawn reach it: an error by its bound, not by its estimate.
+    pub fn is_reached(&self, trial: &Trial) -> bool {
+        match self {
+            Goal::MaxError(most) => trial.measured.at_most <= *most,
+            Goal::MaxCost(most) => trial.ns <= *most,
+        }
+    }
+}
+
+/// Settings that were drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// The settings.
+    pub quality: Quality,
+    /// Their error on the probes.
+    pub measured: Measured,
+    /// Nanoseconds of a frame.
+    pub ns: f64,
+}
+
+/// Walks settings towards a goal: [`next`](Self::next) says what to draw, [`measured`](Self::measured)
+/// takes what came of it.
+#[derive(Clone, Debug)]
+pub struct Chooser<'a> {
+    scene: &'a Scene,
+    goal: Goal,
+    model: Model,
+    first_guess: Model,
+    costs: Costs,
+    candidates: Vec<Quality>,
+    trials: Vec<Trial>,
+}
+
+impl<'a> Chooser<'a> {
+    /// For a scene and what [`Statistics`] say of it.
+    pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal) -> Self {
+        let model = Model::of(scene, statistics);
+        let samples = scene.field.rows() * scene.field.cols();
+        Self {
+            scene,
+            goal,
+            first_guess: model.clone(),
+            model,
+            costs: Costs::guessed(samples),
+            candidates: candidates(scene),
+            trials: Vec::new(),
+        }
+    }
+
+    /// What to draw next; none where nothing is expected to be better than [`best`](Self::best).
+    pub fn next(&self) -> Option<Quality> {
+        if self.trials.len() >= TRIALS {
+            return None;
+        }
+        match self.goal {
+            Goal::MaxError(most) => self.next_within(most),
+            Goal::MaxCost(most) => {
+                let affordable = self.open().filter(|q| self.cost(q) <= most).copied();
+                let next = affordable.min_by(|a, b| self.error(a).total_cmp(&self.error(b)));
+                match self.best() {
+                    Some(best) => {
+                        next.filter(|q| self.error(q) < (1.0 - WORTH) * best.measured.error)
+                    }
+                    None => next.or_else(|| {
+                        self.open().min_by(|a, b| self.cost(a).total_cmp(&self.cost(b))).copied()
+                    }),
+                }
+            }
+        }
+    }
+
+    /// First a control for [`Probes::error`](super::Probes::error), finer than the goal; then the cheapest
+    /// that is expected to hold; where nothing is, the most accurate.
+    fn next_within(&self, most: f64) -> Option<Quality> {
+        let is_controlled = self.trials.iter().any(|t| t.measured.error <= most / COARSEST_CONTROL);
+        if !is_controlled && self.trials.len() < CONTROLS {
+            return self.control(most);
+        }
+        let most = most / self.doubt();
+        let Some(best) = self.best() else {
+            return self.cheapest_within(most).or_else(|| self.most_accurate());
+        };
+        // What is saved, in ln, times the chance that it holds.
+        let gain = |q: &Quality| {
+            let expected = self.model.expected(q);
+            let deviations = (most / expected.error).ln() / expected.factor.ln().max(0.05);
+            (best.ns / self.cost(q)).ln().max(0.0) * normal(deviations)
+        };
+        let gains = self.open().map(|q| (gain(q), q));
+        let (gain, next) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (gain > WORTH).then_some(*next)
+    }
+
+    /// A frame to hold others against: finer than the goal, where that is not too dear.
+    fn control(&self, most: f64) -> Option<Quality> {
+        let Some(holds) = self.cheapest_within(most) else { return self.most_accurate() };
+        let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
+        self.cheapest_within(most / CONTROL).filter(affordable).or_else(|| {
+            let all = self.open().filter(|q| affordable(q));
+            all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
+        })
+    }
+
+    /// Takes a frame in: its error on the probes, nanoseconds by label of each pass.
+    pub fn measured(&mut self, quality: &Quality, measured: Measured, passes: &[(String, f64)]) {
+        let ns = passes.iter().map(|p| p.1).sum();
+        // At most is 2.3 standard deviations above, in ln about so of it.
+        let spread = (measured.at_most / measured.error.max(1e-6)).max(1.0).ln() / 2.3;
+        self.model.learn(quality, measured.error, spread);
+        self.costs.learn(self.scene, quality, passes);
+        self.trials.push(Trial { quality: *quality, measured, ns });
+    }
+
+    /// Leaves out settings that cannot be drawn, and all that are no cheaper in any.
+    pub fn refuse(&mut self, quality: &Quality) {
+        self.candidates.retain(|q| !is_finer(q, quality));
+    }
+
+    /// Of what was drawn, that which reaches the goal best; none where nothing reaches it.
+    pub fn best(&self) -> Option<&Trial> {
+        let reached = self.trials.iter().filter(|t| self.goal.is_reached(t));
+        match self.goal {
+            Goal::MaxError(_) => reached.min_by(|a, b| a.ns.total_cmp(&b.ns)),
+            Goal::MaxCost(_) => {
+                reached.min_by(|a, b| a.measured.error.total_cmp(&b.measured.error))
+            }
+        }
+    }
+
+    /// All that was drawn, in order.
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
+    }
+
+    /// The error that was expected of settings before anything was drawn.
+    pub fn expected(&self, quality: &Quality) -> super::Expected {
+        self.first_guess.expected(quality)
+    }
+
+    /// Nanoseconds expected of a frame.
+    pub fn cost(&self, quality: &Quality) -> f64 {
+        self.costs.expected_ns(self.scene, quality)
+    }
+
+    fn error(&self, quality: &Quality) -> f64 {
+        self.model.expected(quality).error
+    }
+
+    /// How far bounds lie above estimates, by the last frame that was not its own control.
+    fn doubt(&self) -> f64 {
+        let last = self.trials.last().filter(|_| self.trials.len() > 1);
+        last.map_or(1.05, |t| t.measured.at_most / t.measured.error.max(1e-12)).clamp(1.0, 1.5)
+    }
+
+    /// Not drawn, and not known to miss the goal: settings no finer in anything than some that were
+    /// beyond the error, or no coarser than some beyond the time.
+    fn open(&self) -> impl Iterator<Item = &Quality> {
+        self.candidates.iter().filter(|q| {
+            let is_open = |t: &Trial| {
+                let misses_too = match self.goal {
+                    Goal::MaxError(_) => is_finer(&t.quality, q),
+                    Goal::MaxCost(_) => is_finer(q, &t.quality),
+                };
+                t.quality != **q && (self.goal.is_reached(t) || !misses_too)
+            };
+            self.cost(q) <= LONGEST_NS && self.trials.iter().all(is_open)
+        })
+    }
+
+    fn cheapest_within(&self, most: f64) -> Option<Quality> {
+        self.open()
+            .filter(|q| self.error(q) <= most)
+            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
+            .copied()
+    }
+
+    /// Of what is nearly as accurate as anything the cheapest.
+    fn most_accurate(&self) -> Option<Quality> {
+        let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
+        self.cheapest_within(NEARLY * least)
+    }
+}
+
+/// The normal distribution, to 0.01, by a logistic one (Bowling et al. 2009).
+fn normal(deviations: f64) -> f64 {
+    1.0 / (1.0 + (-1.702 * deviations).exp())
+}
+
+/// Whether `fine` is at least as fine as `coarse` in every setting.
+fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
+    let numbers = |q: &Quality| {
+        [
+            spacing(q) as u32 + u32::from(q.lines == Lines::Exact),
+            u32::from(q.fuse == Fuse::Aimed || spacing(q) == LINES.len()),
+            q.azimuths,
+            q.table_elevations,
+            q.sun_azimuths,
+        ]
+    };
+    numbers(fine).iter().zip(numbers(coarse)).all(|(f, c)| *f >= c)
+}
+
+/// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
+/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns do not have.
+fn candidates(scene: &Scene) -> Vec<Quality> {
+    let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
+        if part.is_in(scene) { values.to_vec() } else { vec![default] }
+    };
+    let plain = Quality { method: Method::Sweep, ..Quality::default() };
+    let mut all = vec![Quality { method: Method::Brute, ..plain }];
+    if scene.lights.suns.is_empty() {
+        all.push(Quality { lines: Lines::Exact, ..plain });
+    }
+    for lines in LINES {
+        all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
+    }
+    let times = |all: Vec<Quality>, values: Vec<u32>, set: fn(&mut Quality, u32)| {
+        let with = |quality: Quality| {
+            values.iter().map(move |v| {
+                let mut quality = quality;
+                set(&mut quality, *v);
+                quality
+            })
+        };
+        all.into_iter().flat_map(with).collect::<Vec<_>>()
+    };
+    all = times(all, of(Part::Azimuths, &AZIMUTHS, plain.azimuths), |q, v| q.azimuths = v);
+    all = times(all, of(Part::Table, &TABLES, plain.table_elevations), |q, v| {
+        q.table_elevations = v;
+    });
+    times(all, of(Part::Strips, &STRIPS, plain.sun_azimuths), |q, v| q.sun_azimuths = v)
+}

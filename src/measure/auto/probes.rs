@@ -1,0 +1,293 @@
+use crate::cpu::lit::Lit;
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// Probes: as many as [`CELLS`] allow, within these.
+const FEWEST: usize = 64;
+const MOST: usize = 1000;
+/// Cells that the oracle's rays may cross: some seconds of one core.
+const CELLS: usize = 1 << 29;
+/// Samples about a difference of pictures in which others' errors are expected, too: a shadow of 40 cells
+/// moves its edge by so much for the 3° of 64 azimuths.
+const REACH: usize = 2;
+/// Quantile of the normal distribution that 1 % lie beyond. Settings are chosen among some five that
+/// are judged near the bound by the same probes: 1 % each is 5 % of all (Bonferroni), hence
+/// [`Probes::CONFIDENCE`].
+const DEVIATIONS: f64 = 2.326;
+
+/// Samples all over a field, and their light by the f64 oracle.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    count: usize,
+    places: Vec<usize>,
+    /// 1 / (count · chance of the place): 1 where all are as likely.
+    factors: Vec<f64>,
+    light: Vec<[f64; 3]>,
+}
+
+/// A relative RMSE as probes tell it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The estimate: RMSE over all samples and channels, over the mean of the truth.
+    pub error: f64,
+    /// With [`Probes::CONFIDENCE`] it is no more than this.
+    pub at_most: f64,
+}
+
+impl Probes {
+    /// One-sided, of what is chosen; by the normal approximation of a mean of 64 or more.
+    pub const CONFIDENCE: f64 = 0.95;
+
+    /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
+    /// all cores.
+    ///
+    /// `unsure`, of each sample how far pictures of it lie apart ([`apart`]), draws half of the probes to
+    /// where errors are: shadows' edges are few samples with nearly all of the error. Empty: all alike.
+    ///
+    /// # Errors
+    /// A field of voids alone.
+    pub fn of(scene: &Scene, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
+        let field = &scene.field;
+        let known: Vec<usize> = (0..field.rows() * field.cols())
+            .filter(|i| field.voids().is_none_or(|v| !v[*i]))
+            .collect();
+        if known.is_empty() {
+            return Err(Error::setting("field", "voids alone", "samples to light"));
+        }
+        let weights: Vec<f64> =
+            known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
+        let (picks, factors) = picks(&weights, wanted, seed);
+        let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
+        let lit = Lit::of(scene);
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let light = std::thread::scope(|scope| {
+            let at = |i: &usize| lit.at(i / field.cols(), i % field.cols());
+            let parts = places.chunks(places.len().div_ceil(threads).max(1));
+            let all: Vec<_> = parts
+                .map(|part| scope.spawn(move || part.iter().map(at).collect::<Vec<_>>()))
+                .collect();
+            all.into_iter().flat_map(|t| t.join().unwrap_or_default()).collect()
+        });
+        Ok(Self { count: known.len(), places, factors, light })
+    }
+
+    /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
+    pub fn affordable(scene: &Scene) -> usize {
+        let side = scene.field.rows().max(scene.field.cols());
+        (CELLS / (Lit::of(scene).rays() * side).max(1)).clamp(FEWEST, MOST)
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Never: a field of voids alone has none to give.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids.
+    ///
+    /// A `control` is a better picture of the same scene, of which all samples are known: with T, C and
+    /// L for picture, control and truth, mean (T-L)² = mean of (T-C)² over all samples + mean of
+    /// (T-L)² - (T-C)² over the probes (the difference estimator, Cochran 1977 §7.9 with slope 1), each by
+    /// its chance (Hansen & Hurwitz 1943). The nearer the control is to the truth, the less is left to
+    /// chance. Without one the picture is its own.
+    pub fn error(&self, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) -> Measured {
+        let control = control.unwrap_or(picture);
+        let at =
+            |planes: &[Vec<f32>], c: usize, i: usize| f64::from(planes[c.min(planes.len() - 1)][i]);
+        let (mut squares, mut sum, mut values) = (0.0, 0.0, 0.0_f64);
+        for c in 0..3 {
+            for i in 0..picture[0].len() {
+                let (t, k) = (at(picture, c, i), at(control, c, i));
+                if !k.is_nan() {
+                    squares += (t - k).powi(2);
+                    sum += k;
+                    values += 1.0;
+                }
+            }
+        }
+        let count = self.places.len() as f64;
+        let (mut rest, mut shift) = (Vec::new(), 0.0);
+        for ((i, factor), light) in self.places.iter().zip(&self.factors).zip(&self.light) {
+            let mut square = 0.0;
+            for (c, l) in light.iter().enumerate() {
+                let (t, k) = (at(picture, c, *i), at(control, c, *i));
+                square += ((t - l).powi(2) - (t - k).powi(2)) / 3.0;
+                shift += factor * (l - k) / (3.0 * count);
+            }
+            rest.push(factor * square);
+        }
+        let mean_rest = rest.iter().sum::<f64>() / count;
+        let variance =
+            rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+        // Of a field that is probed whole nothing is left to chance.
+        let is_whole = self.places.len() == self.count;
+        let deviation = if is_whole { 0.0 } else { (variance / count).sqrt() };
+        let square = (squares / values.max(1.0) + mean_rest).max(0.0);
+        let mean = (sum / values.max(1.0) + shift).abs();
+        let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / mean };
+        Measured { error: relative(square), at_most: relative(square + DEVIATIONS * deviation) }
+    }
+}
+
+/// How far two pictures of a scene lie apart at each sample, the farthest within 2 samples.
+pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
+    let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
+    let count = a[0].len();
+    let off: Vec<f64> = (0..count)
+        .map(|i| (0..3).map(|c| f64::from((last(a, c, i) - last(b, c, i)).abs())).sum::<f64>())
+        // Voids are NaN.
+        .map(|d| if d.is_nan() { 0.0 } else { d })
+        .collect();
+    let farthest = |values: &[f64], i: usize, at: usize, length: usize, stride: usize| {
+        let (from, to) = (at.saturating_sub(REACH), (at + REACH).min(length - 1));
+        (from..=to).map(|j| values[i - at * stride + j * stride]).fold(0.0, f64::max)
+    };
+    let along: Vec<f64> = (0..count).map(|i| farthest(&off, i, i % cols, cols, 1)).collect();
+    (0..count).map(|i| farthest(&along, i, i / cols, count / cols, cols)).collect()
+}
+
+/// `wanted` of the weights' places, half by weight and half by number alone, one in each of as many equal
+/// parts of the chances in reading order, within a part by chance; and 1 / (number · chance) of each.
+/// All once where all are wanted.
+fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
+    let count = weights.len();
+    if wanted >= count {
+        return ((0..count).collect(), vec![1.0; count]);
+    }
+    // SplitMix64 (Steele, Lea & Flood 2014).
+    let chance = |k: u64| {
+        let mut z = seed.wrapping_add((k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let sum: f64 = weights.iter().sum();
+    // In units of the mean chance.
+    let of = |i: usize| {
+        if sum > 0.0 { 0.5 + 0.5 * weights[i] / sum * count as f64 } else { 1.0 }
+    };
+    let (mut all, mut factors) = (Vec::with_capacity(wanted), Vec::with_capacity(wanted));
+    let (mut i, mut until) = (0, of(0));
+    for k in 0..wanted {
+        let place = (k as f64 + chance(k as u64)) / wanted as f64 * count as f64;
+        while until < place && i + 1 < count {
+            i += 1;
+            until += of(i);
+        }
+        all.push(i);
+        factors.push(1.0 / of(i));
+    }
+    (all, factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 64;
+    const SEEDS: u64 = 200;
+
+    fn noise(k: u64) -> f64 {
+        let z = k
+            .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+            .rotate_left(31)
+            .wrapping_mul(0xD6E8_FEB8_6659_FD93);
+        ((z ^ (z >> 29)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+
+    /// Shares of seeds whose bound, and whose bare estimate, is no less than the true error of a picture
+    /// of light 1 with `off` at each sample; and the mean of the estimate's square over it.
+    fn covered(
+        off: impl Fn(usize) -> f64,
+        probes: usize,
+        control: Option<f64>,
+        unsure: &[f64],
+    ) -> [f64; 3] {
+        let count = SIDE * SIDE;
+        let square = (0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64;
+        let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * off(i)) as f32).collect()];
+        let picture: Vec<Vec<f32>> = of(1.0);
+        let control: Option<Vec<Vec<f32>>> = control.map(of);
+        let mut sums = [0.0; 3];
+        for seed in 0..SEEDS {
+            let (places, factors) = picks(unsure, probes, seed);
+            let light = vec![[1.0; 3]; places.len()];
+            let probes = Probes { count, places, factors, light };
+            let seen = probes.error(&picture, control.as_deref());
+            sums[0] += f64::from(u8::from(seen.at_most >= square.sqrt()));
+            sums[1] += f64::from(u8::from(seen.error >= square.sqrt()));
+            sums[2] += seen.error.powi(2) / square;
+        }
+        sums.map(|s| s / SEEDS as f64)
+    }
+
+    /// Errors everywhere, errors along a twentieth of the samples (as shadows' edges make), errors that
+    /// grow across the field: the bound holds as often as it says, less three standard deviations of so
+    /// many seeds; the estimate's square is right in the mean (that of the twentieth wavers by
+    /// √(19 / probes), here by no more than 0.55, and its mean by 0.55/√200); and the bare estimate
+    /// would not do as a bound, but across, where equal parts leave nothing to chance.
+    #[test]
+    fn the_bound_covers_as_often_as_it_says() {
+        let everywhere = |i: usize| 0.02 * noise(i as u64);
+        let edges = |i: usize| if noise(i as u64) > 0.45 { 0.1 * noise(!i as u64) } else { 0.0 };
+        let across = |i: usize| 0.03 * (i / SIDE) as f64 / SIDE as f64;
+        let confidence = Probes::CONFIDENCE;
+        let slack = 3.0 * (confidence * (1.0 - confidence) / SEEDS as f64).sqrt();
+        for (name, off) in
+            [("everywhere", everywhere as fn(usize) -> f64), ("edges", edges), ("across", across)]
+        {
+            for (probes, control) in [(200, None), (400, None), (200, Some(0.3)), (64, Some(-0.2))]
+            {
+                let [bound, bare, mean] = covered(off, probes, control, &vec![0.0; SIDE * SIDE]);
+                let said = format!("{name}, {probes} probes, {control:?}: {bound} {bare} {mean}");
+                assert!(bound >= confidence - slack, "{said}");
+                assert!(bare < 0.8 || name == "across", "{said}");
+                assert!((mean - 1.0).abs() < 3.0 * 0.55 / (SEEDS as f64).sqrt(), "{said}");
+            }
+        }
+    }
+
+    /// All of the error in 9 of 4096 samples, as the edge of a short shadow makes it: even probes mostly
+    /// miss them, and their bound does not hold. Where pictures lay apart within 2 samples of them (and in
+    /// 300 samples elsewhere), half of the probes are there, and it does.
+    #[test]
+    fn errors_of_few_samples_are_found_where_pictures_differ() {
+        let is_edge = |i: usize| i / SIDE == 20 && (30..39).contains(&(i % SIDE));
+        let off = |i: usize| if is_edge(i) { 0.5 } else { 0.0 };
+        let even = covered(off, 300, None, &vec![0.0; SIDE * SIDE]);
+        assert!(even[0] < 0.8, "{even:?}");
+        let drawn = |scale: f32| -> Vec<f32> {
+            let at = |i| if is_edge(i) || (1000..1300).contains(&i) { scale } else { 0.0 };
+            (0..SIDE * SIDE).map(at).collect()
+        };
+        let unsure = apart(&[drawn(0.3)], &[drawn(0.5)], SIDE);
+        let touched = unsure.iter().filter(|u| **u > 0.0).count();
+        assert!((5 * 13 + 300..5 * 13 + 1000).contains(&touched), "{touched}");
+        let aimed = covered(off, 300, None, &unsure);
+        assert!(aimed[0] >= 0.9, "{aimed:?}");
+    }
+
+    /// One in each of as many equal parts, the same for the same seed; all where all are wanted. Of
+    /// weights, the factors' mean over draws is 1 and heavy places are met often.
+    #[test]
+    fn probes_are_spread() {
+        let even = vec![0.0; 1000];
+        let (places, factors) = picks(&even, 10, 5);
+        assert!(places.iter().enumerate().all(|(k, p)| p / 100 == k), "{places:?}");
+        assert_eq!(factors, vec![1.0; 10]);
+        assert_eq!(places, picks(&even, 10, 5).0);
+        assert_ne!(places, picks(&even, 10, 6).0);
+        assert_eq!(picks(&even, 5000, 1).0, (0..1000).collect::<Vec<_>>());
+        let weights: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i >= 900))).collect();
+        let (places, factors) = picks(&weights, 200, 1);
+        // Half of all draws, and a tenth of the other half.
+        let heavy = places.iter().filter(|p| **p >= 900).count();
+        assert!((109..=111).contains(&heavy), "{heavy}");
+        let mean = factors.iter().sum::<f64>() / 200.0;
+        assert!((mean - 1.0).abs() < 0.02, "{mean}");
+    }
+}

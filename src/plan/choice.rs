@@ -1,0 +1,119 @@
+//! How paths choose directions of an environment, and the most that one of them can bring.
+
+use std::f64::consts::PI;
+
+use crate::scene::{Albedo, Border, Environment, Scene, Sun};
+
+/// How an environment's texels are chosen, in proportion to the light of all channels that they give:
+/// rows of width + 1. First column: the share of the rows from the zenith down to this one; then the
+/// share, in this row, of the texels up to each. Rows below horizontal count under `open` alone.
+pub(super) fn environment_cdf(environment: &Environment, border: Border) -> Vec<f32> {
+    let (width, height) = (environment.width(), environment.height());
+    let seen = environment.rows_above_ground(border);
+    let rows: Vec<Vec<f64>> = environment
+        .texels()
+        .chunks_exact(width)
+        .map(|row| {
+            let light = row.iter().map(|t| t.iter().map(|v| f64::from(*v)).sum());
+            running_shares(light)
+        })
+        .collect();
+    let of_row = |row: usize| -> f64 {
+        let texels = &environment.texels()[row * width..(row + 1) * width];
+        let sum: f64 = texels.iter().flatten().map(|v| f64::from(*v)).sum();
+        let middle = PI * (row as f64 + 0.5) / height as f64;
+        if row < seen { sum * middle.sin() } else { 0.0 }
+    };
+    let down = running_shares((0..height).map(of_row));
+    let texels = down.iter().zip(&rows).flat_map(|(d, row)| std::iter::once(d).chain(row));
+    texels.map(|v| *v as f32).collect()
+}
+
+/// Running sums over the whole sum; 0 where that is 0.
+fn running_shares(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sum = 0.0;
+    let sums: Vec<f64> = values
+        .map(|v| {
+            sum += v;
+            sum
+        })
+        .collect();
+    sums.into_iter().map(|s| if sum > 0.0 { s / sum } else { 0.0 }).collect()
+}
+
+/// How densely the directions of each texel are chosen, 1/sr: the shares as they were rounded, over the
+/// texel's solid angle (2π/width)(cos a - cos b), written without cancellation.
+pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64> {
+    let (width, height) = (environment.width(), environment.height());
+    let at = |row: usize, col: usize| f64::from(cdf[row * (width + 1) + col]);
+    let half_row = 0.5 * PI / height as f64;
+    let density = |i: usize| {
+        let (row, col) = (i / width, i % width);
+        let of_row = at(row, 0) - if row > 0 { at(row - 1, 0) } else { 0.0 };
+        let of_texel = at(row, col + 1) - if col > 0 { at(row, col) } else { 0.0 };
+        let middle = (2 * row + 1) as f64 * half_row;
+        let solid = 4.0 * PI / width as f64 * middle.sin() * half_row.sin();
+        of_row * of_texel / solid
+    };
+    (0..width * height).map(density).collect()
+}
+
+/// The most that one path of up to `bounces` can bring, R, G, B.
+///
+/// With f the most that a vertex scatters of what arrives, and R the most it reflects of an irradiance, a
+/// vertex brings from a sun of irradiance E at most R·E, from a ball of radiance L at most 2π·R·L, and
+/// from the environment, chosen with density p and weighed by the balance heuristic, at most f·L and
+/// R·L/p; its scattered ray then meets the lights, or the next vertex.
+pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
+    let Scene { surface, lights, .. } = scene;
+    let albedo = match &surface.albedo {
+        Albedo::Constant(colour) => *colour,
+        Albedo::Map(map) => {
+            map.iter().fold([0.0; 3], |most, t| [0, 1, 2].map(|c| t[c].max(most[c])))
+        }
+    };
+    let lobe = surface.phong.map_or([0.0; 2], |p| [p.scale, p.exponent].map(f64::from));
+    let brightest = albedo.into_iter().fold(0.0_f32, f32::max);
+    let shares = lights.environment.as_ref().map(|environment| {
+        let cdf = environment_cdf(environment, surface.border);
+        (environment, choice_density(environment, &cdf))
+    });
+    [0, 1, 2].map(|c| {
+        // Radiance, and radiance over density.
+        let mut environment = [0.0_f64; 2];
+        let seen = |e: &Environment| e.rows_above_ground(surface.border) * e.width();
+        let texels = shares.iter().flat_map(|(e, d)| e.texels().iter().zip(d).take(seen(e)));
+        for (of, density) in texels {
+            let of = f64::from(of[c]);
+            let over = if of > 0.0 { of / density } else { 0.0 };
+            environment = [environment[0].max(of), environment[1].max(over)];
+        }
+        let sky = lights.sky.map_or(0.0, |s| f64::from(s[c]));
+        let suns: f64 = lights.suns.iter().map(|s| sun_facing(s, c)).sum();
+        let balls: f64 = lights.spheres.iter().map(|s| f64::from(s.radiance[c])).sum();
+        let diffuse = f64::from(albedo[c]);
+        // Scattered, reflected at most, chosen directly, met by the scattered ray.
+        let vertex = |scattered: f64, reflected: f64, dense: f64| {
+            let chosen = (scattered * environment[0]).min(reflected * environment[1]);
+            let direct = reflected * (suns + 2.0 * PI * balls) + chosen;
+            let met = environment[0].min(dense * environment[1]);
+            (direct, scattered * (sky + met + balls), scattered)
+        };
+        let mut later = 0.0;
+        let (direct, met, scattered) = vertex(diffuse, diffuse / PI, 1.0 / PI);
+        for _ in 0..bounces {
+            later = direct + met.max(scattered * later);
+        }
+        // The lobe is seen from above alone, at the first vertex.
+        let peak = (lobe[1] + 1.0) / (2.0 * PI);
+        let all = if surface.phong.is_some() { f64::from(brightest) + lobe[0] } else { diffuse };
+        let dense = if surface.phong.is_some() { peak.max(1.0 / PI) } else { 1.0 / PI };
+        let (direct, met, scattered) = vertex(all, diffuse / PI + lobe[0] * peak, dense);
+        direct + met.max(scattered * later)
+    })
+}
+
+/// Irradiance facing a sun, spread over all of its cone: see [`super::reference_inputs`].
+fn sun_facing(sun: &Sun, channel: usize) -> f64 {
+    2.0 / (1.0 + (0.5 * sun.diameter_rad).cos()) * f64::from(sun.irradiance[channel])
+}
