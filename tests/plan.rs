@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision,
-    Quality, Scene, Sun, Surface,
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method,
+    Precision, Quality, Receiver, Scene, Sun, Surface,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -373,6 +373,34 @@ fn devices_limits_are_kept() {
     let lights = Lights { environment: Some(sky), ..Lights::default() };
     let said = refused(&few, &Scene { lights, ..under_sky(flat(4, 4)) }, &quality);
     assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
+}
+
+/// n² numbers a sample, four a texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
+/// sky stays in closed form, and edits draw everything.
+#[test]
+fn harmonics() {
+    let scene = under_everything(flat(7, 13), Border::Plane);
+    let limits = Limits::lavapipe();
+    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::Lobe, [4, 9, 9, 9, 9])] {
+        for (sh_order, rows) in (2..=6).zip(rows) {
+            let quality = Quality { basis: Basis::Sh, sh_order, receiver, ..Quality::default() };
+            let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+            let plan = plan::picture(&scene, &quality, &limits, wanted).expect("a plan");
+            let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
+            let count = u64::from(sh_order * sh_order);
+            assert_eq!(bytes("visibility"), 7 * 13 * 16 * count.div_ceil(4));
+            assert_eq!(bytes("light_matrix"), 16 * rows * count);
+            assert_eq!(bytes("constants"), 4 * plan.constants.len() as u64);
+            assert!(plan.find("env_tables").is_none() && plan.find("sky_sum").is_some());
+            assert!(plan.edit_passes.is_empty() && missing_barriers(&plan.passes).is_empty());
+            let told =
+                |name: &str| plan.settings.iter().find(|s| s.0 == name).map(|s| s.1.as_str());
+            assert_eq!(told("sh_order"), Some(sh_order.to_string().as_str()));
+            assert_eq!((told("basis"), told("table_elevations")), (Some("sh"), None));
+        }
+    }
+    let tables = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+    assert!(tables.expect("a plan").constants.is_empty());
 }
 
 /// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.

@@ -2,7 +2,7 @@
 #include "shared/dirty.glsl"
 
 // Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
-// constant RELIGHTS and defines add_light.
+// constants RELIGHTS and OWN_PLANE_HIDES and defines add_light.
 
 layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
@@ -49,8 +49,11 @@ void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         Azimuth azimuth = azimuth_at(azimuths, k);
         vec4 horizon = fused(azimuth, q, lanes, steps, warm_up).slope;
-        // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
-        vec4 lowest = max(horizon, east * azimuth.cos_phi + north * azimuth.sin_phi);
+        vec4 lowest = horizon;
+        if (OWN_PLANE_HIDES) {
+            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+            lowest = max(horizon, east * azimuth.cos_phi + north * azimuth.sin_phi);
+        }
         if (BORDER != BORDER_OPEN) {
             lowest = max(lowest, vec4(0.0));
         }

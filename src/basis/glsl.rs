@@ -1,13 +1,13 @@
-//! GLSL text made from the basis' constants: products of series that both change from place to place, and
-//! the numbers of a slice.
+//! GLSL text made from the basis' constants: products of series that both change from place to place, the
+//! numbers of a slice, and sums of slices.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::bands;
 use super::legendre::occlusion_polynomials;
 use super::product::{orders, triples};
-use super::slice::{Slices, parts};
+use super::slice::{Above, Slices, from_nlp, parts};
+use super::{MAX_ORDER, bands, index};
 
 /// What is known of the second factor of a [`glsl_product`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,15 +70,7 @@ pub fn glsl_slice(name: &str, order: usize) -> String {
         "void {name}(in float rise, in float sin_, in float cos_, out float slice[{count}])\n{{\n"
     );
     for (i, ((l, m), part)) in parts(order).zip(slices.parts()).enumerate() {
-        let inner = horner(&part.polynomial);
-        let whole = number(part.whole);
-        let line = match (part.odd, part.whole.abs() < 1e-14) {
-            (true, true) => format!("cos_ * ({inner})"),
-            (true, false) => format!("{whole} * rise + cos_ * ({inner})"),
-            (false, true) => inner,
-            (false, false) => format!("{whole} + {inner}"),
-        };
-        writeln!(text, "    slice[{i}] = {line}; // l {l}, m {m}").unwrap();
+        writeln!(text, "    slice[{i}] = {}; // l {l}, m {m}", above(part)).unwrap();
     }
     text + "}\n"
 }
@@ -88,13 +80,32 @@ pub fn glsl_slice(name: &str, order: usize) -> String {
 pub fn glsl_visibility_nlp(name: &str, order: usize) -> String {
     let mut text =
         format!("void {name}(in float sin_, in float cos2, out float nlp[{order}])\n{{\n");
-    let half = number(std::f64::consts::FRAC_1_SQRT_2);
-    writeln!(text, "    nlp[0] = {half} * (1.0 - sin_);").unwrap();
-    for (l, below) in occlusion_polynomials(order).iter().enumerate() {
-        let above: Vec<f64> = below.iter().map(|c| -c).collect();
-        writeln!(text, "    nlp[{}] = cos2 * ({});", l + 1, horner(&above)).unwrap();
+    for (l, line) in visibility_nlp(order).iter().enumerate() {
+        writeln!(text, "    nlp[{l}] = {line};").unwrap();
     }
     text + "}\n"
+}
+
+fn visibility_nlp(order: usize) -> Vec<String> {
+    let half = number(std::f64::consts::FRAC_1_SQRT_2);
+    let rest = occlusion_polynomials(order);
+    let rest = rest.iter().map(|below| {
+        let above: Vec<f64> = below.iter().map(|c| -c).collect();
+        format!("cos2 * ({})", horner(&above))
+    });
+    std::iter::once(format!("{half} * (1.0 - sin_)")).chain(rest).collect()
+}
+
+/// One part of a slice.
+fn above(part: &Above) -> String {
+    let inner = horner(&part.polynomial);
+    let whole = number(part.whole);
+    match (part.odd, part.whole.abs() < 1e-14) {
+        (true, true) => format!("cos_ * ({inner})"),
+        (true, false) => format!("{whole} * rise + cos_ * ({inner})"),
+        (false, true) => inner,
+        (false, false) => format!("{whole} + {inner}"),
+    }
 }
 
 /// A polynomial in `sin_`; coefficients that are rounding's are none.
@@ -114,4 +125,58 @@ fn horner(polynomial: &[f64]) -> String {
 /// Shortest text of the nearest f32.
 fn number(value: f64) -> String {
     format!("{:?}", value as f32)
+}
+
+/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, four samples
+/// at a time, for every order that `ORDER` may be.
+///
+/// `add_slices` has the exact slices, `add_nlps` what n NLP coefficients keep of them ([`from_nlp`]).
+pub fn glsl_seen() -> String {
+    let mut text = String::from(
+        "// Made by basis::glsl::glsl_seen, and held to it by a test.\n//\n\
+         // Adds what is seen along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
+         // the zenith, to the series of four samples. The including shader declares ORDER, the azimuth's\n\
+         // weights float turn[11], of m at m + 5, and vec4 series[36].\n\n\
+         // By exact integrals over elevation.\n\
+         void add_slices(vec4 rise, vec4 sin_, vec4 cos_) {\n    vec4 t;\n",
+    );
+    let slices = Slices::new(MAX_ORDER);
+    let exact: Vec<String> = slices.parts().iter().map(above).collect();
+    add_parts(&mut text, &exact);
+    text += "}\n\n// By ORDER coefficients of normalised Legendre polynomials (NS09 eq. 11).\n\
+             void add_nlps(vec4 sin_, vec4 cos_) {\n    vec4 t;\n    vec4 cos2 = cos_ * cos_;\n";
+    for (l, line) in visibility_nlp(MAX_ORDER).iter().enumerate() {
+        let line = format!("vec4 nlp{l} = {line}");
+        match l {
+            0 | 1 => writeln!(text, "    {line};").unwrap(),
+            _ => writeln!(text, "    {line} * (ORDER > {l} ? 1.0 : 0.0);").unwrap(),
+        }
+    }
+    let kept: Vec<String> = from_nlp(MAX_ORDER)
+        .iter()
+        .map(|row| {
+            let terms = row.iter().enumerate().filter(|(_, f)| f.abs() >= 1e-14);
+            let sum: Vec<String> = terms.map(|(c, f)| format!("{} * nlp{c}", number(*f))).collect();
+            sum.join(" + ")
+        })
+        .collect();
+    add_parts(&mut text, &kept);
+    text + "}\n"
+}
+
+/// Adds each part of a slice, times its weights, to its one or two coefficients.
+fn add_parts(text: &mut String, slice: &[String]) {
+    for ((l, m), part) in parts(MAX_ORDER).zip(slice) {
+        let indent = if l < 2 { "    " } else { "        " };
+        if m == 0 && l >= 2 {
+            writeln!(text, "    if (ORDER > {l}) {{").unwrap();
+        }
+        writeln!(text, "{indent}t = {part};").unwrap();
+        for m in std::collections::BTreeSet::from([-(m as isize), m as isize]) {
+            writeln!(text, "{indent}series[{}] += turn[{}] * t;", index(l, m), 5 + m).unwrap();
+        }
+        if m == l && l >= 2 {
+            writeln!(text, "    }}").unwrap();
+        }
+    }
 }

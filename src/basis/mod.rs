@@ -20,6 +20,7 @@ pub mod glsl;
 pub mod harmonics;
 pub mod key;
 pub mod legendre;
+pub mod light;
 pub mod product;
 pub mod quadrature;
 pub mod slice;

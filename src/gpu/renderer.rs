@@ -135,7 +135,7 @@ impl Renderer {
             self.pending[pass] = true;
         }
         self.plan = plan;
-        self.write_azimuths()?;
+        self.write_tables()?;
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
     }
 

@@ -6,6 +6,13 @@
 //! diagonal at 1/(1 + shear) of the first. Slopes err the most there, by the error of the rise over
 //! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
 
+use std::f64::consts::PI;
+
+use crate::basis::MAX_ORDER;
+use crate::basis::legendre::occlusion_polynomials;
+use crate::basis::slice::{Slices, from_nlp, slice_index};
+use crate::scene::Wedges;
+
 /// The largest relative error of one rounding to f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;
 
@@ -194,6 +201,30 @@ pub fn twin_table(sum: f64, largest: f64, pieces: f64) -> f64 {
     EPSILON * (20.0 * sum + (0.6 * pieces + 2.0) * largest)
 }
 
+/// An integral of `env_turns` around a row of `columns`, for a mean radiance of 1.
+///
+/// Weights are at most 2 √π / columns. Each is rounded, as are its product, 32 sums within a block and one
+/// a block.
+pub fn twin_turn(columns: usize) -> f64 {
+    2.0 * PI.sqrt() * (35.0 + columns as f64 / 32.0) * EPSILON
+}
+
+/// An entry of `light_matrix` from sums of `rows` rows: of the magnitudes of all products that it sums.
+///
+/// A coefficient rounds as [`twin_turn`]; its weight, product and 36 sums besides.
+pub fn twin_light_matrix(rows: usize) -> f64 {
+    (73.0 + rows as f64 / 32.0) * EPSILON
+}
+
+/// `sh_shade` from a given series of `order` and matrix, whose products' magnitudes sum to 1, of normals
+/// turned by `normal_error`.
+///
+/// Polynomials of the normal are 2 at most, change by 6 a radian and cost 4 roundings; then 9 products and
+/// sums in a column, and one of each for every coefficient.
+pub fn twin_sh_shade(order: usize, normal_error: f64) -> f64 {
+    2.0 * (24.0 + (order * order) as f64) * EPSILON + 6.0 * normal_error
+}
+
 /// What the light that a sample gets through its horizons errs by.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadeError {
@@ -259,7 +290,51 @@ impl ShadeError {
     /// As [`sky`](Self::sky), between two slopes, with weights over π instead of wedges.
     pub fn sun(&self, weights: f64) -> f64 {
         let slice = self.lowest_slope + 2.1 * self.normal + ARC_TANGENT + 33.0 * EPSILON;
-        weights / std::f64::consts::PI * slice + self.count * EPSILON
+        weights / PI * slice + self.count * EPSILON
+    }
+
+    /// A coefficient of band `l` of `sh_visibility`.
+    ///
+    /// Azimuths' weights sum to 2 √π at most and err by 26 ε: five complex products of 4 ε from the cosine
+    /// and sine. A slice's end moves by the slope's error, where Θ_lm is √((2l+1)/2) at most. Its
+    /// polynomial of degree 6, of coefficients that sum to C, errs by 12 ε C itself, by 6 · 7 ε C of the
+    /// sine (`inversesqrt`, two products, a sum) and by 6 ε C of the cosine and sum; its angle by an arc
+    /// tangent. By Legendre coefficients, it is a sum of up to six such. Sums of √2 · 2 √π at most round
+    /// once an azimuth.
+    pub fn series(&self, l: usize, wedges: Wedges) -> f64 {
+        let magnitude = |c: &[f64]| c.iter().map(|v| v.abs()).sum::<f64>();
+        let sharpest = |l: usize| (l as f64 + 0.5).sqrt();
+        let slices = Slices::new(l + 1);
+        let of_band = slice_index(l, 0)..slice_index(l + 1, 0);
+        let [end, sum, angle] = match wedges {
+            Wedges::Slices => {
+                let parts = &slices.parts()[of_band];
+                let angle = parts.iter().map(|p| p.whole.abs()).fold(0.0, f64::max);
+                let sum = parts.iter().map(|p| magnitude(&p.polynomial)).fold(0.0, f64::max);
+                [sharpest(l), sum + PI * angle, angle]
+            }
+            Wedges::Nlp => {
+                // Whatever the order is, up to the highest.
+                let occlusion = occlusion_polynomials(MAX_ORDER);
+                let kept = |c: usize| {
+                    c.checked_sub(1).map_or(2.0_f64.sqrt(), |i| magnitude(&occlusion[i]))
+                };
+                let worst = |of: &dyn Fn(usize) -> f64| {
+                    let rows = &from_nlp(MAX_ORDER)[of_band.clone()];
+                    let sum = |row: &Vec<f64>| (0..MAX_ORDER).map(|c| row[c].abs() * of(c)).sum();
+                    rows.iter().map(sum).fold(0.0, f64::max)
+                };
+                [worst(&sharpest), 2.0 * worst(&kept), 0.0]
+            }
+        };
+        let slice = end * self.lowest_slope + 60.0 * EPSILON * sum + ARC_TANGENT * angle;
+        let weights = 2.0 * PI.sqrt();
+        weights * (slice + 2.0_f64.sqrt() * (26.0 + self.count) * EPSILON)
+    }
+
+    /// How far a normal is turned, radians.
+    pub fn normal(&self) -> f64 {
+        self.normal
     }
 
     /// How near to a point sun a horizon has to stand for the two to disagree on what is lit.

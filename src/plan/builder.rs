@@ -9,13 +9,15 @@ use crate::{Error, Result};
 pub(crate) struct Builder {
     resources: Vec<Resource>,
     passes: Vec<Pass>,
+    /// Contents of the buffer "constants".
+    pub(super) constants: Vec<f32>,
     /// Of an edit; none until [`edits`](Self::edits).
     edit_passes: Option<Vec<Pass>>,
 }
 
 impl Builder {
     pub(super) fn new() -> Self {
-        Self { resources: Vec::new(), passes: Vec::new(), edit_passes: None }
+        Self { resources: Vec::new(), passes: Vec::new(), constants: Vec::new(), edit_passes: None }
     }
 
     /// From here on, passes are those of an edit.
@@ -100,6 +102,13 @@ impl Builder {
         passes.last_mut().expect("pushed above")
     }
 
+    /// The buffer that the host fills with constants.
+    pub(super) fn constants(&mut self, constants: Vec<f32>) -> ResourceId {
+        let bytes = size_of_val(constants.as_slice()) as u64;
+        self.constants = constants;
+        self.buffer("constants", bytes, true)
+    }
+
     pub(super) fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
     }
@@ -119,7 +128,7 @@ impl Plan {
         settings: Vec<(String, String)>,
         limits: &Limits,
     ) -> Result<Plan> {
-        let Builder { resources, mut passes, edit_passes } = builder;
+        let Builder { resources, mut passes, constants, edit_passes } = builder;
         let all = edit_passes.iter().flatten().chain(&passes);
         for pass in all {
             let binds = pass.shader.bindings.iter().zip(&pass.bindings);
@@ -141,6 +150,7 @@ impl Plan {
             passes,
             edit_passes,
             azimuths,
+            constants,
             layer_azimuths,
             notes,
             settings,

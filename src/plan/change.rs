@@ -15,7 +15,8 @@ impl Plan {
         if self.resources != before.resources || !self.has_passes_of(before) {
             return (0..count).collect();
         }
-        let is_new = |id: ResourceId| changed.contains(&id);
+        let told = (self.constants != before.constants).then(|| self.find("constants")).flatten();
+        let is_new = |id: ResourceId| changed.contains(&id) || told == Some(id);
         let mut runs: Vec<bool> = (0..count)
             .map(|i| {
                 let (pass, old) = (&self.passes[i], &before.passes[i]);
@@ -74,7 +75,7 @@ impl Plan {
 mod tests {
     use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan};
-    use crate::scene::{Environment, Lights, Method, Quality, Scene, Sun, Surface};
+    use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
     fn scene() -> Scene {
         let texels = (0..32 * 16).map(|i| [i as f32, 1.0, 2.0]).collect();
@@ -112,6 +113,22 @@ mod tests {
     fn nothing_new_needs_nothing() {
         let plan = plan(&scene(), true);
         assert!(plan.passes_after(&plan, &[]).is_empty());
+    }
+
+    /// A turned environment is other constants, and no other push constant.
+    #[test]
+    fn a_turned_environment_needs_its_harmonics_anew() {
+        let mut scene = scene();
+        let quality = Quality { azimuths: 16, basis: Basis::Sh, ..Quality::default() };
+        let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+        let plan = |s: &Scene| plan::picture(s, &quality, &Limits::lavapipe(), wanted).unwrap();
+        let before = plan(&scene);
+        assert!(before.passes_after(&before, &[]).is_empty());
+        let texels = scene.lights.environment.as_ref().unwrap().texels().to_vec();
+        scene.lights.environment = Some(Environment::new(32, 16, texels, 0.1).unwrap());
+        let after = plan(&scene);
+        let needed = names(&after, &after.passes_after(&before, &[]));
+        assert_eq!(needed, ["env_turns", "light_matrix", "sh_shade", "light_resolve"]);
     }
 
     #[test]

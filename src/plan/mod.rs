@@ -15,6 +15,7 @@ mod print;
 pub mod pyramid;
 mod reference;
 mod resource;
+pub(crate) mod sh;
 mod shining;
 pub mod sweep;
 mod sweeping;
@@ -45,6 +46,8 @@ pub struct Plan {
     pub edit_passes: Vec<Pass>,
     /// Contents of the buffer "azimuths".
     pub azimuths: Vec<Azimuth>,
+    /// Contents of the buffer "constants", four f32 a texel; none without spherical harmonics.
+    pub constants: Vec<f32>,
     /// For horizons: which azimuth k of the circle each layer of the outputs is.
     pub layer_azimuths: Vec<u32>,
     /// What was left out or changed, and why.

@@ -6,9 +6,9 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Border, Lights, Quality, Scene, Surface};
+use crate::scene::{Albedo, Basis, Border, Lights, Quality, Scene, Surface};
 use crate::{Error, Result};
-use images::{Images, Tables};
+use images::{Harmonics, Images, Tables};
 
 /// What a picture should hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +22,8 @@ pub struct Picture {
     /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
-    /// then also take edits ([`Plan::edit_passes`]). Memory: a quarter of a byte a sample.
+    /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics.
+    /// Memory: a quarter of a byte a sample.
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
@@ -63,13 +64,18 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
     let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes)?;
-    let tables =
-        shining.environment.map(|e| Tables::make(&mut builder, (e, surface.border), quality));
-    if tables.is_none() && shining.sky.is_some() {
-        notes.push("no environment: no table".into());
+    let (mut tables, mut harmonics) = (None, None);
+    match shining.environment.map(|e| (e, surface.border)) {
+        Some(lit) if quality.basis == Basis::Sh => {
+            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality));
+        }
+        Some(lit) => tables = Some(Tables::make(&mut builder, lit, quality)),
+        None if shining.sky.is_some() => notes.push("no environment: no table".into()),
+        None => {}
     }
     let keeps = wanted.keeps_horizons;
-    let takes_edits = keeps && !wanted.still && sweep.editable(surface.border).is_some();
+    let is_editable = sweep.editable(surface.border).is_some() && harmonics.is_none();
+    let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     let held = (limits, keeps);
     let (sweeping, lists) =
@@ -81,6 +87,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         shining,
         images,
         tables,
+        harmonics,
         sweeping,
         edited: None,
         is_begun: false,
@@ -128,6 +135,7 @@ struct Drawing<'a> {
     shining: Shining<'a>,
     images: Images,
     tables: Option<Tables>,
+    harmonics: Option<Harmonics>,
     sweeping: Sweeping,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     edited: Option<[ResourceId; 2]>,
@@ -141,19 +149,22 @@ impl Drawing<'_> {
     }
 
     fn fill_tables(&mut self, quality: &Quality) {
-        let (Some(e), Some(image), Some(tables)) =
-            (self.shining.environment, self.images.environment, &self.tables)
-        else {
+        let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
             return;
         };
-        let Tables { wedge_rows, tables } = *tables;
-        let wedges = [image, self.sweeping.azimuths, wedge_rows];
         let (border, count) = (self.border(), quality.azimuths);
-        let seen = (e, border);
-        passes::env_wedges::plan(&mut self.builder, seen, count, wedges);
-        let nodes = quality.table_elevations;
-        let ids = [wedge_rows, tables];
-        passes::env_tables::plan(&mut self.builder, seen, nodes, count, ids);
+        let builder = &mut self.builder;
+        if let Some(Tables { wedge_rows, tables }) = self.tables {
+            let seen = (e, border);
+            let wedges = [image, self.sweeping.azimuths, wedge_rows];
+            passes::env_wedges::plan(builder, seen, count, wedges);
+            let nodes = quality.table_elevations;
+            passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
+        }
+        if let Some(Harmonics { sh, constants, env_turns, light_matrix, .. }) = &self.harmonics {
+            passes::env_turns::plan(builder, e, sh, [image, *constants, *env_turns]);
+            passes::light_matrix::plan(builder, sh, [*env_turns, *constants, *light_matrix]);
+        }
     }
 
     /// Passes from the field to the lit picture; of an edit, from its lattices.
@@ -190,16 +201,32 @@ impl Drawing<'_> {
             if self.edited.is_none() {
                 sweeping.record(builder, batch, &part);
             }
-            let images = passes::sky_shade::Images {
-                lane_heights: sweeping.lane_heights(batch),
-                lattice: sweeping.lattice(batch),
-                azimuths: sweeping.azimuths,
-                sky_sum,
-                environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
-                edited: self.edited,
-            };
-            let sweep = &sweeping.sweep;
-            passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
+            let (lane_heights, lattice) = (sweeping.lane_heights(batch), sweeping.lattice(batch));
+            let (azimuths, sweep) = (sweeping.azimuths, &sweeping.sweep);
+            if sky_sum.is_some() || self.tables.is_some() {
+                let images = passes::sky_shade::Images {
+                    lane_heights,
+                    lattice,
+                    azimuths,
+                    sky_sum,
+                    environment: env_sum.zip(self.tables.as_ref()).map(|(sum, t)| [sum, t.tables]),
+                    edited: self.edited,
+                };
+                passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
+            }
+            if let Some(Harmonics { sh, wedges, visibility, .. }) = &self.harmonics {
+                let visibility = *visibility;
+                let images =
+                    passes::sh_visibility::Images { lane_heights, lattice, azimuths, visibility };
+                let (field, seen) = ((border, cell_m), (sh, *wedges));
+                passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
+            }
+        }
+        if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
+            let lane_heights = self.sweeping.lane_heights(batch);
+            let ids = [lane_heights, h.visibility, h.light_matrix, sum];
+            let field = (batch.axis, border, cell_m);
+            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids);
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -320,8 +347,20 @@ fn used(
     if images.need_circle() {
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
-    if shining.environment.is_some() {
-        used.push(("table_elevations".into(), quality.table_elevations.to_string()));
+    let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
+    match (shining.environment, quality.basis) {
+        (Some(_), Basis::Sh) => {
+            add("basis", "sh");
+            add("sh_order", &quality.sh_order.to_string());
+            add("wedges", quality.wedges.name());
+            add("receiver", quality.receiver.name());
+            add("window", quality.window.name());
+        }
+        (Some(_), _) => {
+            add("basis", "table");
+            add("table_elevations", &quality.table_elevations.to_string());
+        }
+        (None, _) => {}
     }
     if shining.suns.iter().any(|(_, s)| !s.is_point()) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));

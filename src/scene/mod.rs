@@ -9,7 +9,9 @@ mod surface;
 pub use environment::Environment;
 pub use field::HeightField;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
-pub use quality::{Fuse, Hull, Levels, Lines, Method, Precision, Quality};
+pub use quality::{
+    Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Wedges, Window,
+};
 pub use surface::{Albedo, Border, Phong, Surface};
 
 /// A field, what it is made of, and the light that falls on it.

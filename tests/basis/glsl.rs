@@ -1,7 +1,7 @@
 //! The texts are run by a small reader of GLSL's sums and products: what they say, in f64.
 
 use crate::{ORDERS, noise, within};
-use ridgelight::basis::glsl::{Factor, glsl_product, glsl_slice, glsl_visibility_nlp};
+use ridgelight::basis::glsl::{Factor, glsl_product, glsl_seen, glsl_slice, glsl_visibility_nlp};
 use ridgelight::basis::harmonics::turned;
 use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::product::{product, triples};
@@ -182,4 +182,15 @@ fn visibility_is_what_is_not_occluded() {
             }
         }
     }
+}
+
+/// The shaders' copy is the text. `RIDGELIGHT_BLESS=1` writes it anew.
+#[test]
+fn the_shaders_sum_is_the_text() {
+    let path =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl/shared/seen.glsl");
+    if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
+        std::fs::write(&path, glsl_seen()).expect("written");
+    }
+    assert!(std::fs::read_to_string(&path).expect("kept") == glsl_seen(), "RIDGELIGHT_BLESS=1");
 }

@@ -6,6 +6,7 @@ mod glsl;
 mod harmonics;
 mod key;
 mod legendre;
+mod light;
 mod product;
 mod slice;
 mod wedge;

@@ -37,6 +37,12 @@ fn flags_that_change_nothing_are_said() {
         ("--lines exact --fuse aimed", &["--fuse aimed changes nothing with --lines exact"]),
         ("--precision f16", &["--precision f16 changes nothing with --fuse aimed-nearest"]),
         ("--table-elevations 64", &["--table-elevations 64 changes nothing without an env"]),
+        ("--basis sh", &["--basis sh changes nothing without an environment"]),
+        ("--env env.hdr --sh-order 3", &["--sh-order 3 changes nothing without --basis sh"]),
+        (
+            "--env env.hdr --basis sh --table-elevations 64",
+            &["--table-elevations 64 changes nothing with --basis sh"],
+        ),
         ("--sun-azimuths 4", &["--sun-azimuths 4 changes nothing without a sun wider"]),
         ("--sun 90,30,0 --sun-azimuths 4 --sky 1", &["--sun-azimuths 4 changes nothing without"]),
         ("--sun 90,30 --azimuths 16", &["--azimuths 16 changes nothing without a sky"]),
@@ -79,6 +85,8 @@ fn flags_that_act_or_were_not_written_are_not() {
         "--env env.hdr --table-elevations 64 --azimuths 8",
         "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
         "--border periodic --lines 1/2",
+        "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver lobe --window hann",
+        "--env env.hdr --basis table --table-elevations 64",
     ] {
         assert_eq!(plan(&folder, "field.npy", flags).err, "", "{flags}");
     }

@@ -10,6 +10,7 @@ mod extremes;
 mod flight;
 mod forms;
 mod goldens;
+mod harmonics;
 mod pruned;
 mod pyramid;
 mod real;

@@ -16,7 +16,8 @@ pub use auto::AutoArgs;
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
 pub use quality::{
-    FuseName, HullName, LevelsName, LinesName, MethodName, PrecisionName, QualityArgs,
+    BasisName, FuseName, HullName, LevelsName, LinesName, MethodName, PrecisionName, QualityArgs,
+    ReceiverName, WedgesName, WindowName,
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};

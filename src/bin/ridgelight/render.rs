@@ -82,7 +82,10 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let times = gpu.draw(frame)?;
         let pixels: Vec<Pixels> =
             (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
-        let metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+        let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+        if let Some(share) = gpu.negative_share(frame)? {
+            metadata.push(("negative_share".to_owned(), share.to_string()));
+        }
         Ok((times, pixels, metadata))
     })?;
     metadata.extend(setup::asked(

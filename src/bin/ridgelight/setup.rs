@@ -4,15 +4,16 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{self, Headless, HeadlessOptions, Timing};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision, Quality,
-    Scene, Surface,
+    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision,
+    Quality, Receiver, Scene, Surface, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs, LinesName,
-    MethodName, PrecisionName, QualityArgs, SurfaceArgs, albedo_colour,
+    BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
+    LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SurfaceArgs, WedgesName,
+    WindowName, albedo_colour,
 };
 
 /// How a command ended that did not fail.
@@ -132,6 +133,26 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             LevelsName::Pyramid => Levels::Pyramid,
         },
         table_elevations: args.table_elevations,
+        basis: match args.basis {
+            BasisName::Auto => Basis::Auto,
+            BasisName::Table => Basis::Table,
+            BasisName::Sh => Basis::Sh,
+        },
+        sh_order: args.sh_order,
+        wedges: match args.wedges {
+            WedgesName::Slices => Wedges::Slices,
+            WedgesName::Nlp => Wedges::Nlp,
+        },
+        receiver: match args.receiver {
+            ReceiverName::Plane => Receiver::Plane,
+            ReceiverName::Lobe => Receiver::Lobe,
+        },
+        window: match args.window {
+            WindowName::None => Window::None,
+            WindowName::Lanczos => Window::Lanczos,
+            WindowName::Hann => Window::Hann,
+            WindowName::Nonnegative => Window::Nonnegative,
+        },
     };
     quality.check()?;
     Ok(quality)

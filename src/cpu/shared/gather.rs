@@ -49,10 +49,19 @@ impl Swept<'_> {
     ///
     /// # Panics
     /// Outside the field.
-    pub fn add_all(
+    pub fn add_all(&self, col: i32, row: i32, add_light: impl FnMut(usize, &Azimuth, f64, DVec3)) {
+        self.add_seen(col, row, true, add_light);
+    }
+
+    /// The same, the lowest slope with or without the sample's own plane.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn add_seen(
         &self,
         col: i32,
         row: i32,
+        own_plane_hides: bool,
         mut add_light: impl FnMut(usize, &Azimuth, f64, DVec3),
     ) {
         let gradient = field_slope(&self.heights, col, row);
@@ -61,7 +70,8 @@ impl Swept<'_> {
             let horizon = f64::from(self.found(azimuth, col, row).slope);
             // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
             let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
-            let mut lowest = horizon.max(gradient.dot(direction));
+            let own = if own_plane_hides { gradient.dot(direction) } else { horizon };
+            let mut lowest = horizon.max(own);
             if self.heights.border != Border::Open {
                 lowest = lowest.max(0.0);
             }

@@ -14,10 +14,10 @@ use crate::{Error, Result};
 impl Renderer {
     pub(super) fn make(&mut self, slots: usize) -> Result<()> {
         self.pipeline_of_pass = self.pipelines.of(&self.host, self.plan.every_pass())?;
-        let azimuths = self.plan.find("azimuths");
+        let tables = ["azimuths", "constants"].map(|name| self.plan.find(name));
         for (i, resource) in self.plan.resources.iter().enumerate() {
-            // The one that the host writes.
-            let location = if azimuths == Some(ResourceId(i)) {
+            // Those that the host writes.
+            let location = if tables.contains(&Some(ResourceId(i))) {
                 MemoryLocation::CpuToGpu
             } else {
                 MemoryLocation::GpuOnly
@@ -30,7 +30,7 @@ impl Renderer {
             };
             self.resources.push(backed);
         }
-        self.write_azimuths()?;
+        self.write_tables()?;
         // What a shader might write is its pass's alone: two passes that "write" one unused image
         // would need a barrier for nothing.
         for (index, pass) in self.plan.every_pass().enumerate() {
@@ -48,13 +48,16 @@ impl Renderer {
         self.make_slots(slots)
     }
 
-    pub(super) fn write_azimuths(&mut self) -> Result<()> {
-        if let Some(id) = self.plan.find("azimuths") {
+    /// What the host tells passes beside push constants.
+    pub(super) fn write_tables(&mut self) -> Result<()> {
+        let azimuths: &[u8] = bytemuck::cast_slice(&self.plan.azimuths);
+        let constants: &[u8] = bytemuck::cast_slice(&self.plan.constants);
+        for (name, bytes) in [("azimuths", azimuths), ("constants", constants)] {
+            let Some(id) = self.plan.find(name) else { continue };
             let backed = self.resources[id.0].as_mut();
             let mapped = backed.and_then(|b| b.allocation.as_mut()?.mapped_slice_mut());
-            let bytes: &[u8] = bytemuck::cast_slice(&self.plan.azimuths);
             let mapped = mapped.ok_or_else(|| Error::Device {
-                doing: "writing the azimuths".into(),
+                doing: format!("writing the {name}"),
                 reason: "the device has no memory that the host can write".into(),
             })?;
             mapped[..bytes.len()].copy_from_slice(bytes);

@@ -4,7 +4,9 @@ use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Measured, Probes, apart};
 use super::statistics::Statistics;
-use crate::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{
+    Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Scene, Wedges, Window,
+};
 use crate::{Error, Result};
 
 /// A frame that was drawn with some settings.
@@ -47,6 +49,11 @@ const COARSE: Quality = Quality {
     level_step: 4,
     level_offset: 2,
     levels: Levels::Stack,
+    basis: Basis::Auto,
+    sh_order: 4,
+    wedges: Wedges::Slices,
+    receiver: Receiver::Plane,
+    window: Window::None,
 };
 
 /// Where bounds alone stand in the way probes are doubled up to so many, or twice.

@@ -3,7 +3,7 @@
 //!
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
-use crate::scene::{Fuse, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{Basis, Fuse, Lines, Method, Precision, Quality, Scene};
 use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
@@ -29,6 +29,7 @@ pub struct Knob {
 const AZIMUTHS: [u32; 6] = [8, 16, 32, 64, 128, 256];
 const SUN_AZIMUTHS: [u32; 6] = [1, 2, 4, 8, 16, 32];
 const TABLE_ELEVATIONS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
+const SH_ORDERS: [u32; 5] = [2, 3, 4, 5, 6];
 const LINES: [(Lines, &str); 6] = [
     (Lines::FourCells, "4"),
     (Lines::TwoCells, "2"),
@@ -142,6 +143,19 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             default: 0,
             dearer: "more elevations a table: small bright places",
             set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
+            idle: |quality| quality.basis == Basis::Sh,
+        });
+        let orders = SH_ORDERS.map(|n| format!("--basis sh --sh-order {n}"));
+        all.push(Knob {
+            name: "basis",
+            steps: orders.into_iter().chain(["--basis table".to_owned()]).collect(),
+            range: None,
+            default: 0,
+            dearer: "higher orders of harmonics, then tables: the environment's detail",
+            set: |quality, step| match SH_ORDERS.get(step) {
+                Some(order) => (quality.basis, quality.sh_order) = (Basis::Sh, *order),
+                None => quality.basis = Basis::Table,
+            },
             idle: |_| false,
         });
     }
@@ -151,9 +165,9 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
     all
 }
 
-/// What the defaults walk from: sweeps, which is what they come to.
+/// What the defaults walk from: sweeps and tables, which is what they come to.
 pub fn start() -> Quality {
-    Quality { method: Method::Sweep, ..Quality::default() }
+    Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
 }
 
 fn default_step(knob: &Knob) -> usize {
@@ -286,6 +300,7 @@ mod tests {
             ("azimuths", "--azimuths 64"),
             ("sun azimuths", "--sun-azimuths 8"),
             ("table elevations", "--table-elevations 256"),
+            ("basis", "--basis table"),
         ];
         assert_eq!(found, expected);
         for knob in &all {

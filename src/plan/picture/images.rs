@@ -1,9 +1,10 @@
 //! What a picture's passes read and write besides the sweeps' own.
 
+use super::super::sh::Sh;
 use super::super::shining::{Shining, sun_name};
 use super::super::{Builder, Format, Owner, ResourceId};
 use super::Picture;
-use crate::scene::{Albedo, Border, Environment, Quality, Scene};
+use crate::scene::{Albedo, Border, Environment, Quality, Scene, Wedges};
 
 /// Images of the field's size, and the environment.
 pub(super) struct Images {
@@ -96,5 +97,36 @@ impl Tables {
         let format = Format::Rgba32Float;
         let tables = builder.image("env_tables", Owner::Internal, format, extent, true);
         Self { wedge_rows, tables }
+    }
+}
+
+/// The environment and what samples see of it, as spherical harmonics.
+pub(super) struct Harmonics {
+    pub sh: Sh,
+    pub wedges: Wedges,
+    pub constants: ResourceId,
+    pub env_turns: ResourceId,
+    pub light_matrix: ResourceId,
+    pub visibility: ResourceId,
+}
+
+impl Harmonics {
+    pub fn make(
+        builder: &mut Builder,
+        [cols, rows]: [u32; 2],
+        (environment, border): (&Environment, Border),
+        quality: &Quality,
+    ) -> Self {
+        let (sh, constants) = Sh::of(environment, border, quality);
+        let constants = builder.constants(constants);
+        let turns = sh.rows * (2 * sh.light_order - 1);
+        let env_turns = builder.buffer("env_turns", turns as u64 * 16, false);
+        let mut image = |name: &str, extent: [u32; 3], layered: bool| {
+            builder.image(name, Owner::Internal, Format::Rgba32Float, extent, layered)
+        };
+        let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
+        let light_matrix = image("light_matrix", extent, false);
+        let visibility = image("visibility", [cols, rows, sh.layers() as u32], true);
+        Self { sh, wedges: quality.wedges, constants, env_turns, light_matrix, visibility }
     }
 }

@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Phong,
-    Precision, Quality, Scene, SphereLight, Sun, Surface,
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method,
+    Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -245,10 +245,19 @@ pub(super) fn pictures() -> Vec<Case> {
         }),
         loses_lines: false,
     };
+    let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
+    let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
+    let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
+    let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
     vec![
-        picture("colours", colourful, quality, true, false),
-        picture("environment on a plane", on_a_plane, quality, false, false),
+        picture("colours", colourful.clone(), quality, true, false),
+        picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
+        picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
+        picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
+        picture("harmonics by Legendre", colourful, nlp, false, false),
+        picture("harmonics of order 3", on_a_plane.clone(), sh(3), false, true),
+        picture("harmonics of order 2", on_a_plane, lobe, false, false),
     ]
 }
 

@@ -17,7 +17,7 @@ use super::{Pair, Run, constant, fuse_of, pushed};
 
 type Rgb = glam::DVec3;
 
-fn rgb(texel: &[f32]) -> Rgb {
+pub(super) fn rgb(texel: &[f32]) -> Rgb {
     Rgb::new(texel[0].into(), texel[1].into(), texel[2].into())
 }
 
@@ -95,7 +95,7 @@ pub(super) fn env_tables(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// The azimuths of the light that a shading pass adds to, up to its own, and what their horizons err
 /// by: every batch is judged as the sum so far.
-fn so_far(
+pub(super) fn so_far(
     run: &mut Run,
     pass: &Pass,
     [first, count, clears]: [usize; 3],

@@ -6,6 +6,7 @@ mod edit;
 mod light;
 mod paths;
 mod pyramid;
+mod sh;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -15,6 +16,7 @@ use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
+use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
 use ridgelight::scene::{Border, Fuse, Quality, Scene};
 
@@ -69,6 +71,10 @@ const TWINS: &[(&str, Twin)] = &[
     ("sweep_fuse", sweep::sweep_fuse),
     ("env_wedges", light::env_wedges),
     ("env_tables", light::env_tables),
+    ("env_turns", sh::env_turns),
+    ("light_matrix", sh::light_matrix),
+    ("sh_visibility", sh::sh_visibility),
+    ("sh_shade", sh::sh_shade),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
     ("light_resolve", light::light_resolve),
@@ -182,6 +188,12 @@ impl<'a> Run<'a> {
         let all = || self.scene.field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
         [low.abs().max(high.abs()), high - low]
+    }
+
+    /// How far a normal may be turned, radians.
+    fn normal_error(&self) -> f64 {
+        let [x, y] = self.scene.field.cell_m();
+        ShadeError::new(0.0, self.relief()[1], x.min(y), 1).normal()
     }
 
     fn warm_up(&self, marches_rows: bool) -> i32 {
@@ -332,10 +344,16 @@ fn paths_are_their_twins_pass_by_pass() {
 #[test]
 fn a_value_beyond_its_tolerance_is_seen() {
     let mut device = Device::new();
-    let case = &cases::pictures()[1];
-    let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
-    let all = run.pairs();
-    run.gpu.end(run.frame);
+    let cases = cases::pictures();
+    let mut all = Vec::new();
+    for case in cases
+        .iter()
+        .filter(|c| ["environment on a plane", "harmonics of order 3"].contains(&c.name))
+    {
+        let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
+        all.extend(run.pairs());
+        run.gpu.end(run.frame);
+    }
     for (label, pairs) in all.iter().filter(|a| !a.1.is_empty()) {
         for picked in [0, pairs.len() / 2, pairs.len() - 1] {
             let mut spoiled = pairs.clone();

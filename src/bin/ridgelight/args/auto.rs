@@ -3,8 +3,20 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 7] =
-    ["method", "azimuths", "sun_azimuths", "lines", "fuse", "precision", "table_elevations"];
+const CHOSEN: [&str; 12] = [
+    "method",
+    "azimuths",
+    "sun_azimuths",
+    "lines",
+    "fuse",
+    "precision",
+    "table_elevations",
+    "basis",
+    "sh_order",
+    "wedges",
+    "receiver",
+    "window",
+];
 
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]

@@ -12,7 +12,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     subsample: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    basis: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
@@ -28,7 +27,6 @@ impl LaterArgs {
             ("--phong", self.phong.as_ref()),
             ("--bounces", self.bounces.as_ref()),
             ("--subsample", self.subsample.as_ref()),
-            ("--basis", self.basis.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--camera", self.camera.as_ref()),
         ];

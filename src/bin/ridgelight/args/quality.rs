@@ -40,6 +40,21 @@ pub struct QualityArgs {
     /// Elevations of an environment's table, 8..4096
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
     pub table_elevations: u32,
+    /// What an environment's light is looked up in
+    #[arg(long, default_value = "auto")]
+    pub basis: BasisName,
+    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    pub sh_order: u32,
+    /// How what is seen along an azimuth becomes harmonics; with --basis sh
+    #[arg(long, default_value = "slices")]
+    pub wedges: WedgesName,
+    /// How a surface turns what it sees into light; with --basis sh
+    #[arg(long, default_value = "plane")]
+    pub receiver: ReceiverName,
+    /// What tames the ringing of an environment's series; with --basis sh
+    #[arg(long, default_value = "none")]
+    pub window: WindowName,
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
@@ -120,4 +135,40 @@ pub enum HullName {
     Private,
     Shared,
     List,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BasisName {
+    /// The planner's choice
+    Auto,
+    /// Tables of each azimuth's light above each elevation
+    Table,
+    /// Spherical harmonics
+    Sh,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum WedgesName {
+    /// Exact integrals over elevation
+    Slices,
+    /// Normalised Legendre coefficients, as many as the order
+    Nlp,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ReceiverName {
+    /// Its own plane hides what lies below; the cosine is exact
+    Plane,
+    /// A clamped cosine of three bands, whatever lies below its plane
+    Lobe,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum WindowName {
+    /// Sharpest; may ring below 0
+    None,
+    Lanczos,
+    Hann,
+    /// The sharpest after which no light is negative
+    Nonnegative,
 }

@@ -1,0 +1,76 @@
+// Computes: what the environment makes of what is seen: the matrix that takes a series of visibility to
+// exit radiance. First the environment's own series, from the sums of its rows; then the matrix, which is
+// linear in it.
+// Reads: env_turns, constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
+// One group is all; one invocation is a coefficient of the series, then some entries.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 64) in;
+
+layout(binding = 0) readonly buffer EnvTurns { vec4 env_turns[]; };
+layout(binding = 1) uniform textureBuffer constants;
+layout(binding = 2, rgba32f) uniform writeonly image2D light_matrix;
+
+layout(push_constant) uniform LightMatrixPush {
+    int rows;         // of the environment
+    int light_order;
+    int order;        // of what is seen
+    int receivers;    // rows of the matrix
+    int row_first;    // in constants: weights of four rows a texel, (l, m) after (l, m), m from 0
+    int matrix_first; // in constants: entry after entry, four coefficients a texel
+};
+
+const int MAX_COUNT = 36;
+// Rows of a sum of its own, in texels of constants.
+const int BLOCK = 8;
+
+shared vec4 series[MAX_COUNT];
+
+// Of the environment, place l (l + 1) + m.
+vec3 coefficient(int place) {
+    int l = 0;
+    while ((l + 1) * (l + 1) <= place) {
+        l++;
+    }
+    int m = place - l * (l + 1);
+    int turns = 2 * light_order - 1;
+    int turn = m + light_order - 1;
+    int fours = (rows + 3) / 4;
+    int first = row_first + (l * (l + 1) / 2 + abs(m)) * fours;
+    vec3 sum = vec3(0.0);
+    for (int block = 0; block < fours; block += BLOCK) {
+        vec3 part = vec3(0.0);
+        for (int i = block; i < min(block + BLOCK, fours); i++) {
+            vec4 weight = texelFetch(constants, first + i);
+            // Weights beyond the last row are 0.
+            for (int k = 0; k < 4; k++) {
+                part += weight[k] * env_turns[min(4 * i + k, rows - 1) * turns + turn].rgb;
+            }
+        }
+        sum += part;
+    }
+    return sum;
+}
+
+void main() {
+    int self = int(gl_LocalInvocationIndex);
+    int count = light_order * light_order;
+    if (self < count) {
+        series[self] = vec4(coefficient(self), 0.0);
+    }
+    barrier();
+    int size = order * order;
+    int fours = (count + 3) / 4;
+    for (int entry = self; entry < receivers * size; entry += 64) {
+        vec3 sum = vec3(0.0);
+        for (int i = 0; i < fours; i++) {
+            vec4 weight = texelFetch(constants, matrix_first + entry * fours + i);
+            // Weights beyond the last coefficient are 0.
+            for (int k = 0; k < 4; k++) {
+                sum += weight[k] * series[min(4 * i + k, count - 1)].rgb;
+            }
+        }
+        imageStore(light_matrix, ivec2(entry % size, entry / size), vec4(sum, 0.0));
+    }
+}

@@ -1,0 +1,116 @@
+// Computes: what every sample sees through its horizons in the azimuths of a batch, as a series of
+// spherical harmonics, added to what earlier batches gave.
+// Reads: lane_heights, azimuths, lattice. Reads and writes: visibility, four coefficients a layer.
+// One invocation is four samples side by side along the lane axis, at one march position.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 16) in;
+
+layout(constant_id = 0) const uint FUSE = 5u;
+layout(constant_id = 1) const uint LATTICE = 0u;
+layout(constant_id = 2) const int LINE_SHIFT = 15;
+layout(constant_id = 3) const uint BORDER = 0u;
+const bool LATTICE_HAS_DISTANCES = false;
+layout(constant_id = 4) const int ORDER = 4;
+// Slices of n Legendre coefficients, else exact ones.
+layout(constant_id = 5) const bool BY_NLP = false;
+layout(constant_id = 6) const bool MARCHES_ROWS = false;
+const bool RELIGHTS = false;
+// Whether the sample's own plane hides what lies below it.
+layout(constant_id = 7) const bool OWN_PLANE_HIDES = true;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
+
+#include "shared/angle.glsl"
+
+layout(binding = 2) uniform textureBuffer azimuths;
+layout(binding = 3, rgba32f) uniform image2DArray visibility;
+
+// Of the four samples; and the azimuth's weights.
+vec4 series[36];
+float turn[11];
+
+#include "shared/seen.glsl"
+
+// Weights of an azimuth: its width times 1 / sqrt(2 pi), cos m phi / sqrt(pi) and sin m phi / sqrt(pi),
+// as powers of cos phi + i sin phi.
+void turn_to(Azimuth azimuth) {
+    float width = azimuth.wedge_rad * 0.5641895835477563;
+    vec2 one = vec2(azimuth.cos_phi, azimuth.sin_phi);
+    vec2 power = one * width;
+    turn[5] = azimuth.wedge_rad * 0.3989422804014327;
+    turn[6] = power.x;
+    turn[4] = power.y;
+    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
+    turn[7] = power.x;
+    turn[3] = power.y;
+    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
+    turn[8] = power.x;
+    turn[2] = power.y;
+    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
+    turn[9] = power.x;
+    turn[1] = power.y;
+    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
+    turn[10] = power.x;
+    turn[0] = power.y;
+}
+
+void add_light(uint index, Azimuth azimuth, vec4 lowest) {
+    turn_to(azimuth);
+    vec4 cos_ = inversesqrt(1.0 + lowest * lowest);
+    vec4 sin_ = lowest * cos_;
+    if (BY_NLP) {
+        add_nlps(sin_, cos_);
+    } else {
+        add_slices(HALF_PI - arc_tangent(lowest), sin_, cos_);
+    }
+}
+
+#include "shared/gather.glsl"
+
+// Adds what earlier batches left in a layer to four coefficients, and leaves them.
+void keep(int layer, int lane, int march, int lanes, vec4 a, vec4 b, vec4 c, vec4 d) {
+    if (4 * layer >= ORDER * ORDER) {
+        return;
+    }
+    for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        ivec3 at = ivec3(texel_at(lane + k, march), layer);
+        vec4 own = vec4(a[k], b[k], c[k], d[k]);
+        if (clears == 0u) {
+            own += imageLoad(visibility, at);
+        }
+        imageStore(visibility, at, own);
+    }
+}
+
+void main() {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    ivec2 place = place_of_four();
+    int lane = place.x;
+    int march = place.y;
+    if (lane >= lanes || march >= steps) {
+        return;
+    }
+    Quad q = quad_at(lane, march, lanes, steps);
+    vec4 east;
+    vec4 north;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
+    for (int i = 0; i < 36; i++) {
+        series[i] = vec4(0.0);
+    }
+    add_all(q, lanes, steps, east, north);
+    keep(0, lane, march, lanes, series[0], series[1], series[2], series[3]);
+    keep(1, lane, march, lanes, series[4], series[5], series[6], series[7]);
+    keep(2, lane, march, lanes, series[8], series[9], series[10], series[11]);
+    keep(3, lane, march, lanes, series[12], series[13], series[14], series[15]);
+    keep(4, lane, march, lanes, series[16], series[17], series[18], series[19]);
+    keep(5, lane, march, lanes, series[20], series[21], series[22], series[23]);
+    keep(6, lane, march, lanes, series[24], series[25], series[26], series[27]);
+    keep(7, lane, march, lanes, series[28], series[29], series[30], series[31]);
+    keep(8, lane, march, lanes, series[32], series[33], series[34], series[35]);
+}

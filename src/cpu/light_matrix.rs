@@ -1,0 +1,61 @@
+//! What the environment makes of what is seen: its series, and the matrix from that.
+
+use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::product::triples;
+use crate::basis::slice::{Slices, slice_index};
+use crate::basis::{bands, window};
+use crate::scene::{Quality, Receiver, Window};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The series of an environment of `height` rows, whose first rows' sums are `turns`
+/// ([`super::env_turns`]): its integrals with Y_lm, or where `is_fitted` the best fit above ground.
+///
+/// # Panics
+/// When the sums are of another order.
+pub fn series(turns: &[Vec<DVec3>], height: usize, order: usize, is_fitted: bool) -> Vec<DVec3> {
+    let slices = Slices::new(order);
+    let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
+    let edge = |row: usize| (FRAC_PI_2 - PI * row as f64 / height as f64).max(lowest_rad);
+    let rows: Vec<Vec<f64>> =
+        (0..turns.len()).map(|row| slices.between(edge(row + 1), edge(row))).collect();
+    let integrals: Vec<DVec3> = bands(order)
+        .map(|(l, m)| {
+            let part = slice_index(l, m.unsigned_abs());
+            let turn = (order - 1).wrapping_add_signed(m);
+            rows.iter().zip(turns).map(|(slice, sums)| slice[part] * sums[turn]).sum()
+        })
+        .collect();
+    if !is_fitted {
+        return integrals;
+    }
+    let fitted = |row: &Vec<f64>| row.iter().zip(&integrals).map(|(f, b)| *f * *b).sum();
+    fit_above_ground(order).iter().map(fitted).collect()
+}
+
+/// Exit radiance's matrix `[receiver][coefficient]` from the environment's series.
+///
+/// # Panics
+/// When the series is not of the receiver's order.
+pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
+    let order = quality.sh_order as usize;
+    let light_order = series.len().isqrt();
+    let triples = triples(order);
+    let factors = match quality.window {
+        Window::None => vec![1.0; light_order],
+        Window::Lanczos => window::lanczos(light_order, light_order as f64),
+        Window::Hann => window::hann(light_order, light_order as f64),
+        Window::Nonnegative => window::nonnegative(light_order),
+    };
+    let channel = |c: usize| {
+        let light: Vec<f64> = series.iter().map(|s| s[c]).collect();
+        let light = window::apply(&factors, &light);
+        match quality.receiver {
+            Receiver::Plane => plane(&triples, order, &light),
+            Receiver::Lobe => lobe(&triples, order, &light),
+        }
+    };
+    let [red, green, blue] = [channel(0), channel(1), channel(2)];
+    let rows = red.iter().zip(&green).zip(&blue);
+    rows.map(|((r, g), b)| (0..r.len()).map(|k| DVec3::new(r[k], g[k], b[k])).collect()).collect()
+}

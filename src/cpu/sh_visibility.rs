@@ -1,0 +1,53 @@
+//! What every sample sees through its horizons, as a series of spherical harmonics.
+
+use super::shared::gather::Swept;
+use crate::basis::azimuth::{around, assemble, assemble_nlp};
+use crate::basis::legendre::occlusion;
+use crate::basis::slice::Slices;
+use crate::scene::{Receiver, Wedges};
+use std::f64::consts::SQRT_2;
+
+/// How a series is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Series {
+    /// n² coefficients.
+    pub order: usize,
+    /// From slices along azimuths.
+    pub wedges: Wedges,
+    /// Whether the sample's own plane hides what lies below it: for [`Receiver::Plane`].
+    pub receiver: Receiver,
+}
+
+/// The series of one sample.
+///
+/// # Panics
+/// Outside the field.
+pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
+    let Series { order, wedges, receiver } = series;
+    let slices = Slices::new(order);
+    let (mut weights, mut along) = (Vec::new(), Vec::new());
+    swept.add_seen(col, row, receiver == Receiver::Plane, |_, azimuth, lowest, _| {
+        let phi = f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into());
+        let width = f64::from(azimuth.wedge_rad);
+        weights.push(around(order, phi).iter().map(|w| w * width).collect::<Vec<_>>());
+        along.push(match wedges {
+            Wedges::Slices => slices.above(lowest.atan()),
+            Wedges::Nlp => {
+                let cos = 1.0 / lowest.hypot(1.0);
+                let mut above: Vec<f64> =
+                    occlusion(order, lowest * cos, cos).iter().map(|below| -below).collect();
+                above[0] += SQRT_2;
+                above
+            }
+        });
+    });
+    match wedges {
+        Wedges::Slices => assemble(order, &weights, &along),
+        Wedges::Nlp => assemble_nlp(order, &weights, &along),
+    }
+}
+
+/// `visibility` of all azimuths: [`seen_at`] for every sample, row-major.
+pub fn sh_visibility(swept: &Swept, series: Series) -> Vec<Vec<f64>> {
+    swept.per_sample(|col, row| seen_at(swept, series, col, row))
+}

@@ -1,0 +1,52 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::sh::Sh;
+use crate::plan::{Builder, ResourceId};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LightMatrixPush {
+    rows: i32,
+    light_order: i32,
+    order: i32,
+    receivers: i32,
+    row_first: i32,
+    matrix_first: i32,
+}
+
+same_layout!(
+    LightMatrixPush,
+    light_matrix_push,
+    rows = ROWS,
+    light_order = LIGHT_ORDER,
+    order = ORDER,
+    receivers = RECEIVERS,
+    row_first = ROW_FIRST,
+    matrix_first = MATRIX_FIRST,
+);
+
+/// What the environment makes of a series of visibility.
+pub(crate) fn plan(builder: &mut Builder, sh: &Sh, [turns, constants, matrix]: [ResourceId; 3]) {
+    let Sh { order, light_order, receivers, rows, .. } = *sh;
+    let entries = (receivers * order * order) as u64;
+    builder.pass(
+        &shaders::LIGHT_MATRIX,
+        "",
+        format!(
+            "environment of order {light_order} times what is seen: {receivers} × {}",
+            order * order
+        ),
+        [1, 1, 1],
+        &[],
+        &LightMatrixPush {
+            rows: rows as i32,
+            light_order: light_order as i32,
+            order: order as i32,
+            receivers: receivers as i32,
+            row_first: sh.row_first as i32,
+            matrix_first: sh.matrix_first as i32,
+        },
+        &[("env_turns", turns), ("constants", constants), ("light_matrix", matrix)],
+        (rows * (2 * light_order - 1)) as u64 * 16 + entries * 16,
+        entries,
+    );
+}

@@ -1,0 +1,61 @@
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::sh::Sh;
+use crate::plan::{Axis, Builder, ResourceId};
+use crate::scene::{Border, Receiver};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ShShadePush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+}
+
+same_layout!(
+    ShShadePush,
+    sh_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+
+/// Light from what is seen and the light's matrix, by normals of full resolution.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (axis, border, cell_m): (Axis, Border, [f64; 2]),
+    sh: &Sh,
+    [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
+) {
+    let [cols, rows] = axis.size();
+    builder.pass(
+        &shaders::SH_SHADE,
+        "env",
+        match sh.receiver {
+            Receiver::Plane => "what is seen times the light's matrix; the cosine is exact",
+            Receiver::Lobe => "what is seen times the light's matrix; a cosine of three bands",
+        },
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &[
+            (0, border as u32),
+            (1, u32::from(axis.marches_rows)),
+            (2, sh.order as u32),
+            (3, u32::from(sh.receiver == Receiver::Plane)),
+        ],
+        &ShShadePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: cell_m[0] as f32,
+            cell_y_m: cell_m[1] as f32,
+        },
+        &[
+            ("lane_heights", lane_heights),
+            ("visibility", visibility),
+            ("light_matrix", light_matrix),
+            ("env_sum", env_sum),
+        ],
+        axis.samples() * (4 + sh.layers() as u64 * 16 + 16),
+        axis.samples(),
+    );
+}

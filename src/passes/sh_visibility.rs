@@ -1,0 +1,58 @@
+use super::push::ShadePush;
+use crate::gpu::shaders;
+use crate::plan::sh::Sh;
+use crate::plan::sweep::Sweep;
+use crate::plan::{Batch, Builder, ResourceId};
+use crate::scene::{Border, Receiver, Wedges};
+
+/// What a batch adds to what is seen.
+pub(crate) struct Images {
+    pub lane_heights: ResourceId,
+    pub lattice: Option<ResourceId>,
+    pub azimuths: ResourceId,
+    pub visibility: ResourceId,
+}
+
+/// What samples see through the horizons of a batch, as a series.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    (border, cell_m): (Border, [f64; 2]),
+    (sh, wedges): (&Sh, Wedges),
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    let axis = batch.axis;
+    let mut bound = vec![
+        ("lane_heights", images.lane_heights),
+        ("azimuths", images.azimuths),
+        ("visibility", images.visibility),
+    ];
+    bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
+    let kept = sh.layers() as u64 * 16 * if batch.is_first { 1 } else { 2 };
+    let pass = builder.pass(
+        &shaders::SH_VISIBILITY,
+        part,
+        match wedges {
+            Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
+            Wedges::Nlp => "what is seen, as harmonics by Legendre coefficients",
+        },
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &[
+            (0, sweep.fuse_mode()),
+            (1, sweep.lattice_content()),
+            (2, sweep.line_shift()),
+            (3, border as u32),
+            (4, sh.order as u32),
+            (5, u32::from(wedges == Wedges::Nlp)),
+            (6, u32::from(axis.marches_rows)),
+            (7, u32::from(sh.receiver == Receiver::Plane)),
+        ],
+        &ShadePush::of(batch, cell_m),
+        &bound,
+        axis.samples() * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.samples() * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,151 @@
+//! What the passes of spherical harmonics are told: a buffer of constants, computed in f64.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::product::triples;
+use crate::basis::slice::{Slices, parts, slice_index};
+use crate::basis::{bands, index, window};
+use crate::scene::{Border, Environment, Quality, Receiver, Window};
+
+/// Sizes, and where things lie in [`Plan::constants`](super::Plan::constants), in texels of four.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Sh {
+    /// Of what is seen.
+    pub order: usize,
+    /// Of the environment's series.
+    pub light_order: usize,
+    pub receiver: Receiver,
+    /// Rows of the light's matrix.
+    pub receivers: usize,
+    /// Of the environment, from the zenith down, that count.
+    pub rows: usize,
+    pub column_first: usize,
+    pub row_first: usize,
+    pub matrix_first: usize,
+}
+
+impl Sh {
+    /// Sizes and the constants for an environment.
+    ///
+    /// Where ground hides all below horizontal, a plane's light is fitted to what is above: nothing else
+    /// of its series is ever seen. A window needs a series of all directions.
+    pub fn of(environment: &Environment, border: Border, quality: &Quality) -> (Self, Vec<f32>) {
+        let order = quality.sh_order as usize;
+        let is_fitted = quality.receiver == Receiver::Plane
+            && quality.window == Window::None
+            && border != Border::Open;
+        let light_order = match quality.receiver {
+            Receiver::Plane => order - 1,
+            Receiver::Lobe => order,
+        };
+        let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
+        let rows = match is_fitted {
+            true => environment.height().div_ceil(2),
+            false => environment.height(),
+        };
+        let mut constants = columns(environment, light_order);
+        let row_first = constants.len() / 4;
+        let fit = is_fitted.then(|| fit_above_ground(light_order));
+        constants.extend(elevations((environment.height(), rows), light_order, lowest_rad, fit));
+        let matrix_first = constants.len() / 4;
+        let entries = matrix(quality, light_order);
+        let receivers = entries.len() / (order * order);
+        constants.extend(entries.iter().flat_map(|entry| by_fours(entry)));
+        let sh = Self {
+            order,
+            light_order,
+            receiver: quality.receiver,
+            receivers,
+            rows,
+            column_first: 0,
+            row_first,
+            matrix_first,
+        };
+        (sh, constants)
+    }
+
+    /// Layers of four coefficients.
+    pub fn layers(self) -> usize {
+        (self.order * self.order).div_ceil(4)
+    }
+}
+
+/// Numbers as texels of four f32, zeros at the end.
+fn by_fours(values: &[f64]) -> Vec<f32> {
+    let mut all: Vec<f32> = values.iter().map(|v| *v as f32).collect();
+    all.resize(values.len().next_multiple_of(4), 0.0);
+    all
+}
+
+/// ∫ over each column of 1/√2π, cos mφ/√π, sin mφ/√π: `[turn][column]`.
+fn columns(environment: &Environment, order: usize) -> Vec<f32> {
+    let width = environment.width();
+    let step = TAU / width as f64;
+    let weight = |turn: isize, col: usize| {
+        // Column 0 begins at azimuth π, turned; columns run clockwise.
+        let middle = PI + environment.rotation_rad() - step * (col as f64 + 0.5);
+        let m = turn.unsigned_abs() as f64;
+        let chord = if turn == 0 { step } else { 2.0 * (0.5 * m * step).sin() / m };
+        match turn {
+            0 => chord / TAU.sqrt(),
+            1.. => chord * (m * middle).cos() / PI.sqrt(),
+            _ => chord * (m * middle).sin() / PI.sqrt(),
+        }
+    };
+    let turns = 1 - order as isize..order as isize;
+    turns.flat_map(|t| by_fours(&(0..width).map(|c| weight(t, c)).collect::<Vec<_>>())).collect()
+}
+
+/// ∫ over each row above `lowest_rad` of Θ_lm dz, or what a fit makes of them, m ≥ 0: `[(l, m)][row]`.
+fn elevations(
+    (height, rows): (usize, usize),
+    order: usize,
+    lowest_rad: f64,
+    fit: Option<Vec<Vec<f64>>>,
+) -> Vec<f32> {
+    let slices = Slices::new(order);
+    let edge = |row: usize| (FRAC_PI_2 - PI * row as f64 / height as f64).max(lowest_rad);
+    let all: Vec<Vec<f64>> =
+        (0..rows).map(|row| slices.between(edge(row + 1), edge(row))).collect();
+    let weight = |(l, m): (usize, usize), slice: &[f64]| match &fit {
+        None => slice[slice_index(l, m)],
+        Some(fit) => {
+            let row = &fit[index(l, m as isize)];
+            (m..order).map(|k| row[index(k, m as isize)] * slice[slice_index(k, m)]).sum()
+        }
+    };
+    parts(order)
+        .flat_map(|part| by_fours(&all.iter().map(|s| weight(part, s)).collect::<Vec<_>>()))
+        .collect()
+}
+
+/// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
+/// The light of one coefficient at a time makes a column of it.
+fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
+    let order = quality.sh_order as usize;
+    let triples = triples(order);
+    let factors = factors(quality.window, light_order);
+    let columns: Vec<Vec<f64>> = bands(light_order)
+        .enumerate()
+        .map(|(i, (l, _))| {
+            let mut light = vec![0.0; light_order * light_order];
+            light[i] = factors[l];
+            match quality.receiver {
+                Receiver::Plane => plane(&triples, order, &light).concat(),
+                Receiver::Lobe => lobe(&triples, order, &light).concat(),
+            }
+        })
+        .collect();
+    (0..columns[0].len()).map(|entry| columns.iter().map(|c| c[entry]).collect()).collect()
+}
+
+/// Factors of the bands; as wide as the series, so that the last band keeps some.
+fn factors(window: Window, order: usize) -> Vec<f64> {
+    match window {
+        Window::None => vec![1.0; order],
+        Window::Lanczos => window::lanczos(order, order as f64),
+        Window::Hann => window::hann(order, order as f64),
+        Window::Nonnegative => window::nonnegative(order),
+    }
+}

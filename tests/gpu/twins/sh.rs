@@ -1,0 +1,156 @@
+//! The passes of spherical harmonics.
+
+use glam::DVec3;
+use ridgelight::cpu::light_matrix as matrix_twin;
+use ridgelight::cpu::sh_shade::light_at;
+use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
+use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_shade, twin_turn};
+use ridgelight::plan::Pass;
+use ridgelight::scene::{Border, Environment, Quality, Receiver, Wedges, Window};
+
+use super::light::{rgb, so_far};
+use super::{Pair, Run, constant, fuse_of, pushed};
+
+fn environment<'a>(run: &Run<'a>) -> &'a Environment {
+    run.scene.lights.environment.as_ref().expect("an environment")
+}
+
+fn texels(run: &mut Run, pass: &Pass, binding: &str) -> Vec<DVec3> {
+    run.floats(pass, binding).expect("bound").chunks_exact(4).map(rgb).collect()
+}
+
+fn three(got: DVec3, want: DVec3, tolerance: DVec3, at: [usize; 3]) -> [Pair; 3] {
+    [0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance: tolerance[c], at })
+}
+
+pub(super) fn env_turns(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::env_turns_push::{ROWS, TURNS};
+    let [rows, turns] = [ROWS, TURNS].map(|at| pushed(pass, at) as usize);
+    let got = texels(run, pass, "env_turns");
+    let environment = environment(run);
+    let want = turns_twin::env_turns(environment, rows, turns.div_ceil(2));
+    let width = environment.width();
+    let mut pairs = Vec::new();
+    for (i, got) in got.into_iter().enumerate() {
+        let (row, turn) = (i / turns, i % turns);
+        let of_row = environment.texels()[row * width..].iter().take(width);
+        let all: DVec3 = of_row.map(|l| DVec3::from_array(l.map(f64::from))).sum();
+        let tolerance = twin_turn(width) * all / width as f64;
+        pairs.extend(three(got, want[row][turn], tolerance, [0, row, turn]));
+    }
+    pairs
+}
+
+/// Whether the light is fitted above ground, by the quality and the border.
+fn is_fitted(quality: &Quality, border: Border) -> bool {
+    let plain = quality.receiver == Receiver::Plane && quality.window == Window::None;
+    plain && border != Border::Open
+}
+
+pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS};
+    let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
+    let turns: Vec<Vec<DVec3>> = texels(run, pass, "env_turns")
+        .chunks_exact(2 * light_order - 1)
+        .map(<[_]>::to_vec)
+        .collect();
+    assert_eq!(turns.len(), rows);
+    let (quality, fitted) = (run.quality, is_fitted(&run.quality, run.border()));
+    let height = environment(run).height();
+    let series = matrix_twin::series(&turns, height, light_order, fitted);
+    let want = matrix_twin::light_matrix(&quality, &series);
+    // Of a light of 1 in one coefficient, and in one row alone: what is summed, whatever its sign.
+    let share = |i: usize| {
+        let mut unit = vec![DVec3::ZERO; series.len()];
+        unit[i] = DVec3::ONE;
+        matrix_twin::light_matrix(&quality, &unit)
+    };
+    let shares: Vec<_> = (0..series.len()).map(share).collect();
+    let mut summed = vec![DVec3::ZERO; series.len()];
+    for row in 0..rows {
+        let mut alone = vec![vec![DVec3::ZERO; 2 * light_order - 1]; rows];
+        alone[row].clone_from(&turns[row]);
+        let of_row = matrix_twin::series(&alone, height, light_order, fitted);
+        summed.iter_mut().zip(of_row).for_each(|(s, r)| *s += r.abs());
+    }
+    let got = texels(run, pass, "light_matrix");
+    assert_eq!(got.len(), want.len() * order * order);
+    let mut pairs = Vec::new();
+    for (entry, got) in got.into_iter().enumerate() {
+        let (receiver, k) = (entry / (order * order), entry % (order * order));
+        let all = shares.iter().zip(&summed).map(|(t, s)| t[receiver][k].abs() * *s);
+        let tolerance = twin_light_matrix(height) * all.sum::<DVec3>();
+        pairs.extend(three(got, want[receiver][k], tolerance, [0, receiver, k]));
+    }
+    pairs
+}
+
+/// Coefficients of every sample, as the device left them.
+fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec<f64>> {
+    let floats = run.floats(pass, "visibility").expect("bound");
+    let [cols, rows] = run.size();
+    let at = |i: usize, k: usize| floats[((k / 4) * cols * rows + i) * 4 + k % 4];
+    let series = |i| (0..order * order).map(|k| f64::from(at(i, k))).collect();
+    (0..cols * rows).map(series).collect()
+}
+
+pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
+    let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
+    let order = constant(pass, 4) as usize;
+    let series = Series {
+        order,
+        wedges: if constant(pass, 5) == 1 { Wedges::Nlp } else { Wedges::Slices },
+        receiver: if constant(pass, 7) == 1 { Receiver::Plane } else { Receiver::Lobe },
+    };
+    let got = device_series(run, pass, order);
+    let twin = |swept: &Swept| visibility_twin(swept, series);
+    let want = run.swept(range.clone(), fuse_of(pass), twin);
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    for (i, (got, want)) in got.iter().zip(&want).enumerate() {
+        let at = [range.len(), i / cols, i % cols];
+        let bands = ridgelight::basis::bands(order);
+        pairs.extend(bands.zip(got.iter().zip(want)).map(|((l, _), (got, want))| Pair {
+            got: *got,
+            want: *want,
+            tolerance: error.series(l, series.wedges),
+            at,
+        }));
+    }
+    pairs
+}
+
+pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let order = constant(pass, 2) as usize;
+    let seen = device_series(run, pass, order);
+    let matrix = texels(run, pass, "light_matrix");
+    let matrix: Vec<Vec<DVec3>> = matrix.chunks_exact(order * order).map(<[_]>::to_vec).collect();
+    let got = run.floats(pass, "env_sum").expect("written");
+    let [cols, _] = run.size();
+    let heights = run.heights();
+    let gradient = run.normal_error();
+    let mut pairs = Vec::new();
+    for (i, (got, seen)) in got.chunks_exact(4).zip(&seen).enumerate() {
+        let at = [0, i / cols, i % cols];
+        let want = light_at(&heights, seen, &matrix, [(i % cols) as i32, (i / cols) as i32]);
+        // What is summed, whatever its sign, where every polynomial of the normal is 2 at most.
+        let summed: DVec3 = matrix
+            .iter()
+            .flat_map(|row| row.iter().zip(seen).map(|(m, v)| m.abs() * v.abs()))
+            .sum();
+        let tolerance = twin_sh_shade(order, gradient) * summed;
+        pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
+        let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);
+        let below = f64::from(u8::from(want.min_element() < 0.0));
+        pairs.extend(is_decided.then(|| Pair {
+            got: got[3].into(),
+            want: below,
+            tolerance: 0.0,
+            at,
+        }));
+    }
+    pairs
+}
