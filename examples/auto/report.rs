@@ -6,7 +6,7 @@ use std::time::Instant;
 use ridgelight::files;
 use ridgelight::gpu::Headless;
 use ridgelight::measure::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend};
+use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend, start};
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use serde_json::{Value, json};
@@ -34,16 +34,14 @@ struct Truth {
 impl Truth {
     fn of(gpu: &mut Headless, scene: &Scene) -> Result<Self> {
         let dense = Quality {
-            method: Method::Sweep,
             lines: Lines::QuarterCell,
             fuse: Fuse::Aimed,
             azimuths: 1024,
             sun_azimuths: 128,
             table_elevations: 4096,
-            ..Quality::default()
+            ..start()
         };
-        let plain = Quality { method: Method::Sweep, ..Quality::default() };
-        let plain = draw(gpu, scene, &plain, 0)?.planes;
+        let plain = draw(gpu, scene, &start(), 0)?.planes;
         let control = draw(gpu, scene, &dense, 0)?.planes;
         let unsure = apart(&plain, &control, scene.field.cols());
         let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED, &unsure)?;
@@ -78,7 +76,7 @@ fn walked(
     truth: &Truth,
     seconds: f64,
 ) -> Result<Vec<(Quality, Point)>> {
-    let start = Quality { method: Method::Sweep, ..Quality::default() };
+    let start = start();
     let knobs = knobs(scene);
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
     let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);

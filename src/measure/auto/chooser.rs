@@ -3,6 +3,7 @@
 use super::model::{Costs, Model, Part, spacing};
 use super::probes::Measured;
 use super::statistics::Statistics;
+use crate::measure::trade::start;
 use crate::scene::{Fuse, Lines, Method, Quality, Scene};
 
 const AZIMUTHS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
@@ -288,7 +289,7 @@ fn candidates(scene: &Scene) -> Vec<Quality> {
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
-    let plain = Quality { method: Method::Sweep, ..Quality::default() };
+    let plain = start();
     let mut all = vec![Quality { method: Method::Brute, ..plain }];
     if scene.lights.suns.is_empty() {
         all.push(Quality { lines: Lines::Exact, ..plain });

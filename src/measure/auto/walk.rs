@@ -4,6 +4,7 @@ use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Measured, Probes, apart};
 use super::statistics::Statistics;
+use crate::measure::trade::start;
 use crate::scene::{
     Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Scene, Wedges, Window,
 };
@@ -49,7 +50,7 @@ const COARSE: Quality = Quality {
     level_step: 4,
     level_offset: 2,
     levels: Levels::Stack,
-    basis: Basis::Auto,
+    basis: Basis::Table,
     sh_order: 4,
     wedges: Wedges::Slices,
     receiver: Receiver::Plane,
@@ -107,7 +108,7 @@ pub fn choose(
     }
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal);
     let mut pilots = Vec::new();
-    for quality in [Quality { method: Method::Sweep, ..Quality::default() }, COARSE] {
+    for quality in [start(), COARSE] {
         match draw(&quality) {
             Err(Error::Limit { .. }) => chooser.refuse(&quality),
             drawn => pilots.push((quality, drawn?)),
@@ -195,6 +196,10 @@ fn figures(x: f64) -> String {
 pub fn flags(quality: &Quality, scene: &Scene) -> String {
     let mut all = match (quality.method, quality.lines) {
         (Method::Brute, _) => "--method brute".to_owned(),
+        (Method::Pyramid, _) => {
+            let Quality { level_step, level_offset, .. } = quality;
+            format!("--method pyramid --level-step {level_step} --level-offset {level_offset}")
+        }
         (_, Lines::Exact) => "--lines exact".to_owned(),
         (_, lines) => format!("--lines {} --fuse {}", lines.name(), quality.fuse.name()),
     };
@@ -202,6 +207,9 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
         match part {
             Part::Geometry => {}
             Part::Azimuths => all += &format!(" --azimuths {}", quality.azimuths),
+            Part::Table if quality.basis == Basis::Sh => {
+                all += &format!(" --basis sh --sh-order {}", quality.sh_order);
+            }
             Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
             Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
         }
