@@ -45,7 +45,7 @@ impl Truth {
         let control = draw(gpu, scene, &dense, 0)?.planes;
         let unsure = apart(&plain, &control, scene.field.cols());
         let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED, &unsure)?;
-        let own = probes.error(&control, None);
+        let own = probes.error(&control, None, Probes::ONE_LOOK);
         let mut truth = Self { probes, control, own, needs_exact: own.error > GOOD };
         if truth.needs_exact {
             truth.probes = Probes::of(scene, MORE_PROBES, TRUE_SEED, &unsure)?;
@@ -55,8 +55,8 @@ impl Truth {
                 Quality { method: Method::Brute, azimuths: 128, sun_azimuths: 64, ..dense }
             };
             let control = draw(gpu, scene, &exact, 0)?.planes;
-            truth.own = truth.probes.error(&truth.control, None);
-            let own = truth.probes.error(&control, None);
+            truth.own = truth.probes.error(&truth.control, None, Probes::ONE_LOOK);
+            let own = truth.probes.error(&control, None, Probes::ONE_LOOK);
             if own.error < truth.own.error {
                 (truth.control, truth.own) = (control, own);
             }
@@ -65,7 +65,7 @@ impl Truth {
     }
 
     fn error(&self, planes: &[Vec<f32>]) -> Measured {
-        self.probes.error(planes, Some(&self.control))
+        self.probes.error(planes, Some(&self.control), Probes::ONE_LOOK)
     }
 }
 

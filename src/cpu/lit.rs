@@ -18,6 +18,8 @@ pub struct Lit<'a> {
     scene: &'a Scene,
     oracle: Oracle<'a>,
     columns: Option<Columns<'a>>,
+    azimuths: usize,
+    strips: usize,
 }
 
 impl<'a> Lit<'a> {
@@ -26,15 +28,24 @@ impl<'a> Lit<'a> {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
         let columns = scene.lights.environment.as_ref().map(|e| Columns::of(e, rows(e)));
-        Self { scene, oracle, columns }
+        Self { scene, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
+    }
+
+    /// The same by half of all rays: how far it is off tells what the rays between them may still change.
+    pub fn halved(mut self) -> Self {
+        (self.azimuths, self.strips) = (AZIMUTHS / 2, STRIPS / 2);
+        if let Some(columns) = &mut self.columns {
+            columns.parts.iter_mut().for_each(|p| *p = p.div_ceil(2));
+        }
+        self
     }
 
     /// Rays that one sample takes.
     pub fn rays(&self) -> usize {
         let lights = &self.scene.lights;
-        let sky = if lights.sky.is_some() { AZIMUTHS } else { 0 };
+        let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
-        sky + environment + lights.suns.len() * STRIPS
+        sky + environment + lights.suns.len() * self.strips
     }
 
     /// Exit radiance of a sample, its albedo counted, linear RGB.
@@ -44,11 +55,11 @@ impl<'a> Lit<'a> {
     pub fn at(&self, row: usize, col: usize) -> [f64; 3] {
         let (lights, oracle) = (&self.scene.lights, &self.oracle);
         let sky = lights.sky.map(|colour| {
-            let share = light::sky_of(oracle, row, col, AZIMUTHS);
+            let share = light::sky_of(oracle, row, col, self.azimuths);
             colour.map(|c| f64::from(c) * share)
         });
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
-        let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, STRIPS));
+        let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
         let albedo = match &self.scene.surface.albedo {
             Albedo::Constant(c) => *c,
             Albedo::Map(map) => map[row * self.scene.field.cols() + col],
