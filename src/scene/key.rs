@@ -24,16 +24,17 @@ impl KeyLight {
         let bad = |what: &str, found: String, expected: &str| {
             Err(Error::setting(format!("key {number}: {what}"), found, expected))
         };
+        // Less the rounding of turning degrees to radians and back.
+        let degrees = |rad: f64| format!("{}°", (rad.to_degrees() * 1e9).round() / 1e9);
         let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = *self;
         if !azimuth_rad.is_finite() {
             return bad("azimuth", azimuth_rad.to_string(), "a finite angle");
         }
         if !(width_rad > 0.0 && width_rad <= TAU) {
-            let found = format!("{}°", width_rad.to_degrees());
-            return bad("width", found, "an angle above 0°, up to 360°");
+            return bad("width", degrees(width_rad), "an angle above 0°, up to 360°");
         }
         if !(low >= -FRAC_PI_2 && low < high && high <= FRAC_PI_2) {
-            let found = format!("{}° to {}°", low.to_degrees(), high.to_degrees());
+            let found = format!("{} to {}", degrees(low), degrees(high));
             return bad("elevations", found, "a lower and a higher one, from -90° to 90°");
         }
         if !radiance.iter().all(|v| v.is_finite() && *v >= 0.0) {
