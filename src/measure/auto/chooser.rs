@@ -311,14 +311,15 @@ fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
 }
 
 /// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
-/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns do not have.
+/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns and key
+/// lights do not have.
 fn candidates(scene: &Scene) -> Vec<Quality> {
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
     let plain = start();
     let mut all = vec![Quality { method: Method::Brute, ..plain }];
-    if scene.lights.suns.is_empty() {
+    if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
         all.push(Quality { lines: Lines::Exact, ..plain });
     }
     for lines in LINES {

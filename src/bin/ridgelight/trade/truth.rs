@@ -14,7 +14,8 @@ use super::rig::Rig;
 /// Share of the budget that drawing the truth may take, and probing it.
 const DRAWING: f64 = 0.4;
 const PROBING: f64 = 0.1;
-/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, elevations.
+/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun or a key light,
+/// elevations.
 const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
@@ -107,7 +108,7 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Our own: the suns, then all else, each by brute force where that fits into its share of the
+    /// Our own: the suns and key lights, then all else, each by brute force where that fits into its share of the
     /// budget, else by the densest sweep. Light adds up.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
@@ -117,14 +118,20 @@ impl Truth {
                 (lights.sky, lights.environment) = (None, None);
             } else {
                 lights.suns.clear();
+                lights.keys.clear();
             }
             Scene { lights, ..scene.clone() }
         };
         let lights = &scene.lights;
         let has_sky = lights.sky.is_some() || lights.environment.is_some();
         let mut parts = Vec::new();
-        if !lights.suns.is_empty() {
-            parts.push(("suns", without(true)));
+        if !(lights.suns.is_empty() && lights.keys.is_empty()) {
+            let name = match (lights.suns.is_empty(), lights.keys.is_empty()) {
+                (_, true) => "suns",
+                (true, false) => "key lights",
+                (false, false) => "suns and key lights",
+            };
+            parts.push((name, without(true)));
         }
         if has_sky {
             parts.push(("sky", without(false)));
