@@ -2,6 +2,7 @@
 //! light covers.
 
 mod aimed;
+mod drawn;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -9,6 +10,7 @@ use crate::scene::Sun;
 use crate::{Error, Result};
 
 pub use aimed::{Shape, across_key};
+pub use drawn::towards_light;
 
 /// One lane cell in the units of [`Azimuth::shear`].
 pub const CELL: i32 = 1 << 15;

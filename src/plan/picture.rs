@@ -70,7 +70,13 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
-    let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes)?;
+    let lists = shining.lists(
+        images.need_circle(),
+        quality,
+        &sweep,
+        (surface.border, field.cell_m()),
+        &mut notes,
+    )?;
     let (mut tables, mut harmonics) = (None, None);
     match shining.environment.map(|e| (e, surface.border)) {
         Some(lit) if quality.basis == Basis::Sh => {

@@ -2,7 +2,7 @@ use super::Picture;
 use super::azimuths::{self, Azimuth, Shape};
 use super::sweep::Sweep;
 use super::sweeping::circle;
-use crate::scene::{Albedo, Border, Environment, KeyLight, Quality, Scene, Sun};
+use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Quality, Scene, Sun};
 use crate::{Error, Result};
 
 /// The lights that give any light.
@@ -13,6 +13,8 @@ pub(super) struct Shining<'a> {
     pub suns: Vec<(usize, &'a Sun)>,
     /// The same.
     pub keys: Vec<(usize, &'a KeyLight)>,
+    /// Whether what a uniform sky would give is wanted as an image.
+    has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
     pub is_grey: bool,
 }
@@ -50,7 +52,7 @@ impl<'a> Shining<'a> {
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
-        Ok(Self { sky, environment, suns, keys, is_grey })
+        Ok(Self { sky, environment, suns, keys, has_sky_view: wanted.sky_view, is_grey })
     }
 
     /// The key lights that any sample may see.
@@ -93,12 +95,20 @@ impl<'a> Shining<'a> {
         need_circle: bool,
         quality: &Quality,
         sweep: &Sweep,
-        cell_m: [f64; 2],
+        (border, cell_m): (Border, [f64; 2]),
         notes: &mut Vec<String>,
     ) -> Result<Vec<Vec<Azimuth>>> {
         let mut lists = Vec::new();
         if need_circle {
-            lists.push(circle(quality, sweep, cell_m)?);
+            let is_even = matches!(sweep, Sweep::Surface { .. }) || quality.basis == Basis::Sh;
+            lists.push(match self.environment.filter(|_| !is_even) {
+                Some(lit) => {
+                    notes.push("azimuths: closest where the environment is brightest".into());
+                    let (sky, count) = (self.sky_beside(lit), quality.azimuths);
+                    azimuths::towards_light(lit, sky, border, count, cell_m)
+                }
+                None => circle(quality, sweep, cell_m)?,
+            });
         } else {
             let whose = match (self.suns.is_empty(), self.keys.is_empty()) {
                 (_, true) => "suns'",
@@ -112,6 +122,20 @@ impl<'a> Shining<'a> {
         let across = |key| azimuths::across_key(key, quality.sun_azimuths, cell_m);
         lists.extend(self.keys.iter().map(|(_, key)| across(key)));
         Ok(lists)
+    }
+
+    /// Radiance of the sky, mean over channels; where the sky's view is wanted beside an environment, of a sky
+    /// as bright as that.
+    fn sky_beside(&self, environment: &Environment) -> f64 {
+        let mean = |c: &[f32; 3]| c.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0;
+        match self.sky {
+            Some(sky) => mean(&sky),
+            None if self.has_sky_view => {
+                let texels = environment.texels();
+                texels.iter().map(mean).sum::<f64>() / texels.len() as f64
+            }
+            None => 0.0,
+        }
     }
 }
 
