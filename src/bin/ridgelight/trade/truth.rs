@@ -33,8 +33,8 @@ pub struct Truth {
     /// What it is, and how its own error was found.
     pub about: String,
     pub quality_of: String,
-    /// Relative RMSE that it may have itself: what is below cannot be told apart.
-    pub own_error: f64,
+    /// Relative RMSE that it may have itself, where that is known.
+    pub own_error: Option<f64>,
     /// Mean variance of its noise over the square of its mean.
     noise: f64,
 }
@@ -52,6 +52,16 @@ pub struct Distance {
 }
 
 impl Truth {
+    /// What errors below it cannot be told apart by.
+    pub fn floor(&self) -> f64 {
+        self.own_error.unwrap_or(0.0)
+    }
+
+    /// Its own error in words.
+    pub fn own_text(&self) -> String {
+        self.own_error.map_or_else(|| "unknown".to_owned(), |e| format!("at most {}", percent(e)))
+    }
+
     /// A file's.
     pub fn read(path: &Path, field: &HeightField) -> Result<Self> {
         let Planes { rows, cols, names, mut planes } = files::read_planes(path)?;
@@ -84,7 +94,7 @@ impl Truth {
             rows,
             about: path.display().to_string(),
             quality_of: format!("it has no layer {NOISE_LAYER} and is taken as it is"),
-            own_error: 0.0,
+            own_error: None,
             noise: 0.0,
         };
         if let Some(errors) = errors {
@@ -97,11 +107,16 @@ impl Truth {
             truth.noise = known.iter().sum::<f64>() / count / relative;
             // The mean of squared normal noise wavers by √(2 Σσ⁴) / n: twice that is left of it.
             let fourth: f64 = known.iter().map(|v| v * v).sum();
-            truth.own_error = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
+            let left = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
+            let unmet = unmet(path)? / relative.sqrt();
+            truth.own_error = Some(left.hypot(unmet));
             truth.quality_of = format!(
                 "its noise, {} of the mean by its layer {NOISE_LAYER}, is taken off each RMSE (not \
-                 off percentiles); what is left of it is twice the wavering of its mean square",
-                percent(truth.noise.sqrt())
+                 off percentiles); what is left of it is twice the wavering of its mean square, {}, \
+                 and light that its paths may not have met, {}",
+                percent(truth.noise.sqrt()),
+                percent(left),
+                percent(unmet)
             );
         }
         Ok(truth)
@@ -148,12 +163,12 @@ impl Truth {
             rows: field.rows(),
             about: about.join("; "),
             quality_of: String::new(),
-            own_error: 0.0,
+            own_error: None,
             noise: 0.0,
         };
         let steps = truth.distance(&halved)?.rmse;
         let (probes, off) = truth.probe(scene, rig.budget.mul_f64(PROBING));
-        truth.own_error = steps.max(off);
+        truth.own_error = Some(steps.max(off));
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
              halves as counts double; {probes} samples are at most {} (RMSE, two standard errors \
@@ -226,6 +241,25 @@ impl Truth {
         let mean = sum / probed.len().max(1) as f64;
         (probed.len(), if most == 0.0 { 0.0 } else { most / mean })
     }
+}
+
+/// Standard error of light that no path of a `reference` may have met: the root of the mean square of its
+/// channels', 0 where a file tells of none.
+fn unmet(path: &Path) -> Result<f64> {
+    let all = files::read_metadata(path)?;
+    let Some((name, text)) = all.iter().find(|(name, _)| name == "unmet_standard_error") else {
+        return Ok(0.0);
+    };
+    let channels: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
+    let Some(channels) = channels.filter(|c| c.iter().all(|v| v.is_finite())) else {
+        return Err(Error::File {
+            path: path.to_owned(),
+            place: format!("header: {name}"),
+            found: text.clone(),
+            expected: "finite numbers with commas between them".to_owned(),
+        });
+    };
+    Ok((channels.iter().map(|v| v * v).sum::<f64>() / channels.len() as f64).sqrt())
 }
 
 /// The mean of a sample, and twice its standard error on top: where few texels carry most of the error, as
@@ -337,7 +371,7 @@ mod tests {
 
     fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
         let (about, quality_of) = (String::new(), String::new());
-        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: 0.0, noise }
+        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise }
     }
 
     /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of a
@@ -359,7 +393,8 @@ mod tests {
     }
 
     /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², which wavers by
-    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)).
+    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)). Unmet light of 0.02,
+    /// 0.02 and 0.04 is √(0.0008) in its mean square, √(0.0002) of the mean.
     #[test]
     fn a_references_noise_is_read() {
         let folder = tempfile::tempdir().unwrap();
@@ -375,10 +410,18 @@ mod tests {
         let truth = Truth::read(&path, &field).unwrap();
         assert!((truth.noise - 0.01).abs() < 1e-7, "{}", truth.noise);
         let own = (0.02 * (2.0_f64 / 64.0).sqrt()).sqrt();
-        assert!((truth.own_error - own).abs() < 1e-7, "{}", truth.own_error);
+        assert!((truth.floor() - own).abs() < 1e-7, "{:?}", truth.own_error);
+        let unmet = |text: &str| [("unmet_standard_error".to_owned(), text.to_owned())];
+        files::write_exr(&path, 8, 8, &all, &unmet("0.02,0.02,0.04")).unwrap();
+        let met = Truth::read(&path, &field).unwrap();
+        assert!((met.floor() - own.hypot(0.0002_f64.sqrt())).abs() < 1e-7, "{:?}", met.own_error);
+        files::write_exr(&path, 8, 8, &all, &unmet("0.02,none")).unwrap();
+        let error = Truth::read(&path, &field).err().unwrap().to_string();
+        assert!(error.contains("unmet_standard_error: found 0.02,none"), "{error}");
         files::write_exr(&path, 8, 8, &all[..1], &[]).unwrap();
         let bare = Truth::read(&path, &field).unwrap();
-        assert_eq!((bare.noise, bare.own_error), (0.0, 0.0));
+        assert_eq!((bare.noise, bare.own_error), (0.0, None));
+        assert_eq!(bare.own_text(), "unknown");
         let other = HeightField::new(4, 16, &[0.0; 64], [1.0; 2], None).unwrap();
         let error = Truth::read(&path, &other).err().unwrap().to_string();
         assert!(error.contains("found 8 × 8, expected 16 × 4"), "{error}");
