@@ -165,6 +165,9 @@ fn gpu_trade_of_a_small_field() {
     let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
     assert!(own > 0.0 && own < 0.02, "{own}");
     assert!(report["truth"]["what"].as_str().unwrap().contains("sky by method brute"));
+    let how = report["truth"]["how"].as_str().unwrap();
+    let is_sure = ["95 % confidence", "all that there are"].iter().any(|said| how.contains(said));
+    assert!(is_sure && how.contains("off the oracle"), "{how}");
     for point in points {
         let error = point["relative_rmse"].as_f64().unwrap();
         assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
@@ -215,9 +218,9 @@ fn gpu_trade_of_a_small_field() {
     for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured"] {
         assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
     }
-    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep.
+    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep or a pyramid.
     let hulls = report["hulls"].as_array().unwrap();
-    let has_hull = !["brute", "exact"].iter().any(|w| point["flags"].as_str().unwrap().contains(w));
+    let has_hull = point["settings"]["hull"].is_string();
     assert_eq!(hulls.len(), if has_hull { 3 } else { 0 }, "{hulls:?}");
     assert_eq!(hulls.iter().any(|h| h["time_ratio"].is_number()), has_hull, "{hulls:?}");
     assert_eq!(why.iter().any(|w| w.contains("Where the hull lives")), has_hull, "{why:?}");
