@@ -301,6 +301,21 @@ fn gpu_settings_really_used_are_written() {
     assert!(passes.iter().all(|p| p["ns"].as_f64().is_some_and(|ns| ns >= 0.0)), "{passes:?}");
     assert!(passes.iter().any(|p| p["pass"] == "sun_shade sun1"), "{passes:?}");
 
+    // A .png says the same, but for times.
+    done(
+        &folder,
+        "render a.asc -o out.png --sun 135,30 --sky 0.25 --albedo 0.5 --z-scale 2 --cell 10,20 --azimuths 16",
+    );
+    let file = std::io::BufReader::new(std::fs::File::open(folder.path("out.png")).unwrap());
+    let png = png::Decoder::new(file).read_info().unwrap();
+    let texts = &png.info().uncompressed_latin1_text;
+    let texts: std::collections::BTreeMap<_, _> =
+        texts.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect();
+    assert_eq!(texts.keys().collect::<Vec<_>>(), exr.keys().collect::<Vec<_>>());
+    for (name, value) in exr.iter().filter(|(name, _)| !name.starts_with("gpu_ms")) {
+        assert_eq!(texts.get(name), Some(value), "{name}");
+    }
+
     done(&folder, "horizon a.asc -o h.exr --azimuths 8 --fuse nearest --precision f16");
     let exr = attributes(&folder.path("h.exr"));
     for (name, value) in [("azimuths", "8"), ("fuse", "nearest"), ("precision", "f16")] {

@@ -106,7 +106,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     } else {
         let picture = rgb(&pixels[0]);
         let tone = Tone { exposure: args.exposure };
-        files::write_png(&args.output, rows, cols, &picture, scene.field.voids(), tone)?;
+        let voids = scene.field.voids();
+        files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
         let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
         if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
             crate::say!(
