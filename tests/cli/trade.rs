@@ -269,11 +269,15 @@ fn gpu_trade_against_a_reference() {
     let told: f64 = told.unwrap().parse().expect(why);
     assert!((told / 1e-6 - 1.0).abs() < 0.01, "{why}");
     // Another scene's truth is refused, and nothing is written.
-    let trace = "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
+    let trace =
+        "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
     assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
     let before = folder.contents();
     for (args, said) in [
-        ("truth.exr --sun 90,20", "truth.exr: header: sky: found 1,1,1, expected none, as in this scene"),
+        (
+            "truth.exr --sun 90,20",
+            "truth.exr: header: sky: found 1,1,1, expected none, as in this scene",
+        ),
         ("truth.exr --sky 0.5", "truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5"),
         ("truth.exr --cell 2", "truth.exr: header: cell_m: found 1,1, expected 2,2"),
         ("truth.exr --z-scale 2", "truth.exr: header: base_m: found 0.89"),

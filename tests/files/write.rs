@@ -79,19 +79,25 @@ fn png_texts_round_trip() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.png");
     let text = |name: &str, value: &str| (name.to_owned(), value.to_owned());
-    let metadata = [text("device", "Größe ꟻ"), text("tried", "--lines 1: 0.5 %"), text("empty", "")];
+    let metadata =
+        [text("device", "Größe ꟻ"), text("tried", "--lines 1: 0.5 %"), text("empty", "")];
     let write = |metadata: &[(String, String)]| {
         write_png(&path, 1, 2, &[[0.5; 3]; 2], None, Tone::default(), metadata)
     };
-    for name in ["", "a name of more than seventy-nine bytes, which is as long as PNG lets a keyword be at most"] {
+    for name in [
+        "",
+        "a name of more than seventy-nine bytes, which is as long as PNG lets a keyword be at most",
+    ] {
         assert!(write(&[text(name, "x")]).is_err(), "{name}");
         assert!(listing(folder.path()).is_empty());
     }
     write(&metadata).unwrap();
     let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
     let reader = png::Decoder::new(file).read_info().unwrap();
-    let latin = reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
-    let unicode = reader.info().utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap()));
+    let latin =
+        reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
+    let unicode =
+        reader.info().utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap()));
     let all: Vec<_> = unicode.chain(latin).collect();
     assert_eq!(all, metadata);
     assert_eq!(read_planes(&path).unwrap().names, ["R", "G", "B"]);

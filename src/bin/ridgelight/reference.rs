@@ -70,7 +70,6 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     })
 }
 
-
 fn check(args: &ReferenceArgs) -> Result<()> {
     setup::check_output("-o", &args.output, &["exr"])?;
     if let Some(json) = &args.global.json {

@@ -21,11 +21,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
     setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(Error::setting(
-            "--exposure",
-            args.exposure.to_string(),
-            "a number above 0",
-        ));
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
     }
     let is_exr = setup::extension(&args.output) == "exr";
     if !is_exr && !args.layers.is_empty() {

@@ -128,8 +128,9 @@ impl<'a> Pairs<'a> {
         }
         let (rows, cols) = (a.rows, a.cols);
         let (only_a, only_b) = (only(a, b), only(b, a));
-        let is_opaque =
-            |name: &str| name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0));
+        let is_opaque = |name: &str| {
+            name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0))
+        };
         let lost = only_b.iter().copied().filter(|name| !is_opaque(name)).collect();
         let pairs = Self { rows, cols, channels, only_a, only_b, lost };
         let of_pictures = [

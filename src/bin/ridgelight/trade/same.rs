@@ -80,7 +80,8 @@ fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
             a.len() == b.len()
                 && (0..a.len()).all(|i| {
                     let off = a[i] - b[i];
-                    let off = if turns && i == 0 { off - 360.0 * (off / 360.0).round() } else { off };
+                    let off =
+                        if turns && i == 0 { off - 360.0 * (off / 360.0).round() } else { off };
                     off.abs() <= NEAR * a[i].abs().max(b[i].abs())
                 })
         }
