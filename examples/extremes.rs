@@ -44,7 +44,8 @@ fn text(cases: &[Case], methods: &[Method], found: &[Found]) -> String {
             write!(out, "| {} |", method.name).unwrap();
             for device in found {
                 let row = device.rows.iter().find(|r| (r.case, r.method) == (c, m));
-                out += &cells(&row.expect("a row for every case under every method").outcome);
+                let outcome = &row.expect("a row for every case under every method").outcome;
+                out += &cells(outcome, (case.unjudged)(method));
             }
             out.push('\n');
         }
@@ -56,9 +57,12 @@ fn text(cases: &[Case], methods: &[Method], found: &[Found]) -> String {
     out
 }
 
-fn cells(outcome: &Outcome) -> String {
+fn cells(outcome: &Outcome, unjudged: bool) -> String {
     match outcome {
         Outcome::Refused(said) => format!(" refused: *{said}* | | |"),
+        Outcome::Measured { largest_error, .. } if unjudged => {
+            format!(" {largest_error:.2e} | {0} | {0} |", page::UNJUDGED)
+        }
         Outcome::Measured { worst, largest_error, .. } => {
             format!(" {largest_error:.2e} | {:.2e} | {:.3} |", worst.bound, worst.ratio())
         }

@@ -145,7 +145,7 @@ fn main() -> Result<()> {
     }
     let tone = Tone { exposure: exposure as f32 };
     let width = 3 * cols + 2 * GAP;
-    files::write_png(Path::new(flag(&args, "-o")?), rows, width, &joined, None, tone)?;
+    files::write_png(Path::new(flag(&args, "-o")?), rows, width, &joined, None, tone, &[])?;
     let report = gpu.report();
     let figures = serde_json::json!({
         "device": report.name, "driver": report.driver, "field": args[0], "rows": rows, "cols": cols,

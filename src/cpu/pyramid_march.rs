@@ -41,10 +41,14 @@ impl Blocked {
 }
 
 /// A march over a pyramid.
-struct PyramidMarch<'a> {
-    march: March<'a>,
-    pyramid: &'a Pyramid,
-    stored: Stored<'a>,
+#[derive(Clone, Copy, Debug)]
+pub struct PyramidMarch<'a> {
+    /// Over the field itself.
+    pub march: March<'a>,
+    /// Its levels.
+    pub pyramid: &'a Pyramid,
+    /// Their heights.
+    pub stored: Stored<'a>,
 }
 
 impl PyramidMarch<'_> {
@@ -93,8 +97,11 @@ impl PyramidMarch<'_> {
         self.height(number, line, step - whole) - self.height(number, (lane, 0.0), step)
     }
 
-    /// Slope of the horizon of a sample.
-    fn slope(&self, lane: i32, step: i32, warm_up: i32) -> f32 {
+    /// Slope of the horizon of a sample; [`NO_SLOPE`] where the march leaves the field at once.
+    ///
+    /// # Panics
+    /// Outside the field; when levels lack texels.
+    pub fn slope(&self, lane: i32, step: i32, warm_up: i32) -> f32 {
         let azimuth = &self.march.azimuth;
         let across = lane * CELL / azimuth.shear.max(1);
         let all = step + warm_up;

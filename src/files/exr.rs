@@ -50,6 +50,17 @@ impl<'a> ExrFile<'a> {
         self.channels.iter().position(|(_, _, n)| n == name)
     }
 
+    /// The first part's string attributes.
+    fn texts(&self) -> Vec<(String, String)> {
+        let attributes = self.reader.headers().iter().take(1).flat_map(|h| &h.own_attributes.other);
+        attributes
+            .filter_map(|(name, value)| match value {
+                AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+                _ => None,
+            })
+            .collect()
+    }
+
     /// The sample type of a channel.
     fn sample_type(&self, index: usize) -> SampleType {
         let (part, channel, _) = self.channels[index];
@@ -235,6 +246,14 @@ pub(super) fn colour(path: &Path, bytes: &[u8]) -> Result<(usize, usize, Vec<[f3
     let last = planes.len() - 1;
     let texel = |i: usize| [planes[0][i], planes[1.min(last)][i], planes[last][i]];
     Ok((rows, cols, (0..rows * cols).map(texel).collect()))
+}
+
+/// What [`write_exr`] was given as `metadata`: the file's string attributes, in no order.
+///
+/// # Errors
+/// A file that cannot be read or is no OpenEXR file.
+pub fn read_metadata(path: &Path) -> Result<Vec<(String, String)>> {
+    Ok(ExrFile::open(path, &open::read(path)?)?.texts())
 }
 
 /// One layer of a picture to write.

@@ -28,7 +28,7 @@ mod tif;
 
 pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
 pub use environment::{parse_environment, read_albedo, read_environment};
-pub use exr::{Channels, Layer, write_exr};
+pub use exr::{Channels, Layer, read_metadata, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use npy::{NpyWriter, write_npy_f32};
 pub use planes::{Planes, parse_planes, read_planes};

@@ -4,8 +4,9 @@ use super::atomic::Temporary;
 use super::heights::Raster;
 use super::open;
 use crate::{Error, Result};
-use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
-use image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, Limits};
+use ::png::{BitDepth, ColorType as Kind, Encoder, EncodingError};
+use image::codecs::png::PngDecoder;
+use image::{ColorType, ImageDecoder, ImageError, Limits};
 use std::{io::Cursor, path::Path};
 
 /// A decoded picture: samples of 8 or 16 bits; palettes and smaller depths are expanded, and the
@@ -152,7 +153,8 @@ impl Tone {
 /// Writes an 8-bit RGB picture of linear radiance, with alpha where `transparent` is given.
 ///
 /// `transparent` marks pixels, row-major like `rgb`, that become black with alpha 0; their
-/// radiance is not looked at.
+/// radiance is not looked at. `metadata` becomes texts of the file: tEXt where it is ASCII, else iTXt
+/// (UTF-8).
 ///
 /// # Errors
 /// As [`encode_png`]; a destination that cannot be written to.
@@ -163,9 +165,10 @@ pub fn write_png(
     rgb: &[[f32; 3]],
     transparent: Option<&[bool]>,
     tone: Tone,
+    metadata: &[(String, String)],
 ) -> Result<()> {
     // By way of memory: the encoder loses the error of writing its last chunk.
-    let png = encode_png(rows, cols, rgb, transparent, tone)?;
+    let png = encode_png(rows, cols, rgb, transparent, tone, metadata)?;
     let mut file = Temporary::create(path)?;
     file.write(&png)?;
     file.finish()
@@ -175,13 +178,14 @@ pub fn write_png(
 ///
 /// # Errors
 /// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (named by row and column);
-/// an exposure out of range.
+/// an exposure out of range; names of metadata that PNG does not take (empty, over 79 bytes).
 pub fn encode_png(
     rows: usize,
     cols: usize,
     rgb: &[[f32; 3]],
     transparent: Option<&[bool]>,
     tone: Tone,
+    metadata: &[(String, String)],
 ) -> Result<Vec<u8>> {
     let count = rows.checked_mul(cols).filter(|n| *n > 0);
     if count != Some(rgb.len()) || transparent.is_some_and(|t| t.len() != rgb.len()) {
@@ -209,13 +213,33 @@ pub fn encode_png(
             samples.push(if hidden { 0 } else { 255 });
         }
     }
-    let colour =
-        if transparent.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    let kind = if transparent.is_some() { Kind::Rgba } else { Kind::Rgb };
     let mut png = Vec::new();
-    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
-        .write_image(&samples, width, height, colour)
-        .map_err(|e| Error::setting("picture", open::reason(e), "one that PNG can hold"))?;
+    packed(&mut png, [width, height], kind, &samples, metadata)
+        .map_err(|e| Error::setting("picture", open::complaint(e), "one that PNG can hold"))?;
     Ok(png)
+}
+
+fn packed(
+    png: &mut Vec<u8>,
+    [width, height]: [u32; 2],
+    kind: Kind,
+    samples: &[u8],
+    metadata: &[(String, String)],
+) -> std::result::Result<(), EncodingError> {
+    let mut encoder = Encoder::new(png, width, height);
+    encoder.set_color(kind);
+    encoder.set_depth(BitDepth::Eight);
+    for (name, text) in metadata {
+        if text.is_ascii() {
+            encoder.add_text_chunk(name.clone(), text.clone())?;
+        } else {
+            encoder.add_itxt_chunk(name.clone(), text.clone())?;
+        }
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(samples)?;
+    writer.finish()
 }
 
 #[cfg(test)]

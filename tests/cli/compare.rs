@@ -180,7 +180,8 @@ fn pictures_have_their_known_flip() {
     assert!((at(" --pixels-per-degree 67.02064") - default).abs() < 1e-6);
 }
 
-/// A layer that only one has is named and not compared; the bound finds the worst of the others.
+/// A layer that only one has is named and not compared; what the result lacks is beyond any bound, what it has
+/// besides is not; the bound finds the worst of the others.
 #[test]
 fn layers_are_compared_by_name() {
     let folder = Folder::new();
@@ -201,8 +202,12 @@ fn layers_are_compared_by_name() {
     let names: Vec<_> = json["rows"].as_array().unwrap().iter().map(|r| &r["channel"]).collect();
     assert_eq!(names, ["B", "G", "R", "direct.sun1.B", "direct.sun1.G", "direct.sun1.R"]);
     let excesses = json["excesses"].as_array().unwrap();
-    assert_eq!(excesses.len(), 3, "{excesses:?}");
-    for excess in excesses {
+    assert_eq!(excesses.len(), 6, "{excesses:?}");
+    for (excess, name) in excesses.iter().zip(["E.B", "E.G", "E.R"]) {
+        assert_eq!((&excess["bound"], &excess["found"]), (&Value::Null, &Value::Null));
+        assert_eq!(excess["of"], name);
+    }
+    for excess in &excesses[3..] {
         assert_eq!((&excess["bound"], &excess["limit"]), (&"--max-rmse".into(), &0.25.into()));
         assert!(excess["of"].as_str().unwrap().starts_with("direct.sun1."));
         near(&excess["found"], 0.5);
@@ -217,6 +222,29 @@ fn layers_are_compared_by_name() {
         out.contains("\nFLIP: mean 0.000000") && out.contains("\nFLIP of direct.sun1: "),
         "{out}"
     );
+    let lost = "beyond any bound: E.B is not in A\nbeyond any bound: E.G is not in A\n";
+    assert!(out.contains(lost), "{out}");
+    // Without a bound, and where all that both have is alike; the other way round nothing is lost.
+    write(&folder, "less.exr", &rgb(&MAIN, one).collect::<Vec<_>>());
+    write(&folder, "more.exr", &[rgb(&MAIN, one).collect(), vec![("sky_view", one)]].concat());
+    let less = run(&folder, "compare less.exr more.exr --max-rmse 1 --quiet");
+    assert_eq!((less.status, less.out.as_str()), (Some(1), ""));
+    assert_eq!(run(&folder, "compare more.exr less.exr --max-rmse 0").status, Some(0));
+}
+
+/// Alpha of 1 everywhere says no more than none does; any other is lost where the result has none.
+#[test]
+fn an_opaque_alpha_is_none() {
+    let folder = Folder::new();
+    let (one, mut half) = ([1.0; 12], [1.0; 12]);
+    half[7] = 0.5;
+    write(&folder, "none.exr", &[("Y", one)]);
+    write(&folder, "opaque.exr", &[("Y", one), ("A", one)]);
+    write(&folder, "half.exr", &[("Y", one), ("A", half)]);
+    assert_eq!(run(&folder, "compare none.exr opaque.exr").status, Some(0));
+    let lost = run(&folder, "compare none.exr half.exr");
+    assert_eq!(lost.status, Some(1));
+    assert!(lost.out.ends_with("beyond any bound: A is not in A\n"), "{}", lost.out);
 }
 
 /// Masked in both is left out; in one only is counted and beyond, without a bound and with any.

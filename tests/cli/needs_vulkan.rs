@@ -86,6 +86,28 @@ fn gpu_voids_are_nan_and_transparent() {
     assert_eq!(marked.planes[0].iter().position(|v| v.is_nan()), Some(9));
 }
 
+/// 3e38 of a sky and 3e38/π of a sun overhead are beyond f32, 3.4e38, together: nothing is written. Each alone
+/// is a picture.
+#[test]
+fn gpu_light_that_is_no_number_is_refused() {
+    let folder = Folder::new();
+    write_field(&folder, 5, |_, _| 7.0);
+    done(&folder, "render field.npy -o sun.exr --sun 0,90,0.53,3e38 --quiet");
+    let before = folder.contents();
+    for args in [
+        "render field.npy -o out.exr",
+        "render field.npy -o out.png --json out.json",
+        "trade field.npy -o out --budget 1",
+    ] {
+        let args = format!("{args} --sky 3e38 --sun 0,90,0.53,3e38");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.lines().count()), (Some(2), 1), "{args}: {}", run.err);
+        let said = "--sky, --env, --sun: found light of inf at row 0, column 0 of radiance";
+        assert!(run.err.contains(said), "{args}: {}", run.err);
+        assert!(folder.contents() == before, "{args}");
+    }
+}
+
 #[test]
 fn gpu_default_sky_is_one() {
     let folder = Folder::new();
@@ -302,6 +324,21 @@ fn gpu_settings_really_used_are_written() {
     let passes = json["passes"].as_array().unwrap();
     assert!(passes.iter().all(|p| p["ns"].as_f64().is_some_and(|ns| ns >= 0.0)), "{passes:?}");
     assert!(passes.iter().any(|p| p["pass"] == "sun_shade sun1"), "{passes:?}");
+
+    // A .png says the same, but for times.
+    done(
+        &folder,
+        "render a.asc -o out.png --sun 135,30 --sky 0.25 --albedo 0.5 --z-scale 2 --cell 10,20 --azimuths 16",
+    );
+    let file = std::io::BufReader::new(std::fs::File::open(folder.path("out.png")).unwrap());
+    let png = png::Decoder::new(file).read_info().unwrap();
+    let texts = &png.info().uncompressed_latin1_text;
+    let texts: std::collections::BTreeMap<_, _> =
+        texts.iter().map(|t| (t.keyword.clone(), t.text.clone())).collect();
+    assert_eq!(texts.keys().collect::<Vec<_>>(), exr.keys().collect::<Vec<_>>());
+    for (name, value) in exr.iter().filter(|(name, _)| !name.starts_with("gpu_ms")) {
+        assert_eq!(texts.get(name), Some(value), "{name}");
+    }
 
     done(&folder, "horizon a.asc -o h.exr --azimuths 8 --fuse nearest --precision f16");
     let exr = attributes(&folder.path("h.exr"));

@@ -88,6 +88,30 @@ fn gpu_reference_stops_at_an_error() {
     assert!((512.0..1e5).contains(&spp) && error < 0.01, "{spp} {error}");
 }
 
+/// Level ground under a sky of 1 scatters 1 by every path: no spread at all, and after 128 paths light not yet
+/// met of up to √3/128, 1.353 %: more than the 0.5 % asked for, which 512 paths are within.
+#[test]
+fn gpu_unmet_light_counts_as_error() {
+    let folder = Folder::new();
+    write_field(&folder, 5, |_, _| 7.0);
+    let args = "reference field.npy -o out.exr --until-error 0.005 --spp";
+    let of = |spp: &str| folder.run(&format!("{args} {spp}").split(' ').collect::<Vec<_>>());
+    let error = || -> f64 {
+        attributes(&folder.path("out.exr"))["relative_standard_error"].parse().unwrap()
+    };
+    let run = of("128");
+    assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
+    assert!(run.out.contains("128 paths a sample, 1.353 % off"), "{}", run.out);
+    assert!(run.out.ends_with("stopped at --spp 128, wanted --until-error 0.005\n"), "{}", run.out);
+    assert!((error() - 3_f64.sqrt() / 128.0).abs() < 1e-5, "{}", error());
+    let run = of("4096");
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("512 paths a sample, 0.338 % off"), "{}", run.out);
+    assert_eq!(run.out.lines().count(), 1, "{}", run.out);
+    let quiet = of("128 --quiet");
+    assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
+}
+
 #[test]
 fn gpu_voids_have_no_light() {
     let folder = Folder::new();
@@ -110,8 +134,15 @@ fn gpu_trade_takes_the_reference() {
     let run = folder.run(&args);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let report = json(&folder.path("out/trade.json"));
-    let stated = attributes(&folder.path("truth.exr"))["relative_standard_error"].clone();
-    let stated: f64 = stated.parse().unwrap();
+    let truth = read(&folder.path("truth.exr"));
+    let colours = |layer: &str| ["R", "G", "B"].map(|c| plane(&truth, &format!("{layer}{c}")));
+    let all = |layer: &str| -> Vec<f64> {
+        colours(layer).concat().iter().map(|v| f64::from(*v)).collect()
+    };
+    let (light, noise) = (all(""), all("standard_error."));
+    let count = light.len() as f64;
+    let stated = (noise.iter().map(|v| v * v).sum::<f64>() / count).sqrt()
+        / (light.iter().sum::<f64>() / count);
     let how = report["truth"]["how"].as_str().unwrap();
     let said =
         format!("its noise, {:.3} % of the mean by its layer standard_error", 100.0 * stated);

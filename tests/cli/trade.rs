@@ -165,6 +165,9 @@ fn gpu_trade_of_a_small_field() {
     let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
     assert!(own > 0.0 && own < 0.02, "{own}");
     assert!(report["truth"]["what"].as_str().unwrap().contains("sky by method brute"));
+    let how = report["truth"]["how"].as_str().unwrap();
+    let is_sure = ["95 % confidence", "all that there are"].iter().any(|said| how.contains(said));
+    assert!(is_sure && how.contains("off the oracle"), "{how}");
     for point in points {
         let error = point["relative_rmse"].as_f64().unwrap();
         assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
@@ -215,9 +218,9 @@ fn gpu_trade_of_a_small_field() {
     for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured"] {
         assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
     }
-    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep.
+    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep or a pyramid.
     let hulls = report["hulls"].as_array().unwrap();
-    let has_hull = !["brute", "exact"].iter().any(|w| point["flags"].as_str().unwrap().contains(w));
+    let has_hull = point["settings"]["hull"].is_string();
     assert_eq!(hulls.len(), if has_hull { 3 } else { 0 }, "{hulls:?}");
     assert_eq!(hulls.iter().any(|h| h["time_ratio"].is_number()), has_hull, "{hulls:?}");
     assert_eq!(why.iter().any(|w| w.contains("Where the hull lives")), has_hull, "{why:?}");
@@ -249,6 +252,9 @@ fn gpu_trade_against_a_reference() {
     assert_eq!(run.status, Some(0));
     monotone(&report);
     assert!(report["truth"]["what"].as_str().unwrap().contains("truth.exr"));
+    // A picture says nothing of its own error.
+    assert!(report["truth"]["own_relative_rmse"].is_null(), "{}", report["truth"]);
+    assert!(run.out.contains("Its own error (relative RMSE): unknown: it has no"), "{}", run.out);
     // The cheapest of all is within a half.
     assert_eq!(report["recommendation"]["point"], report["frontier"][0]);
     let (run, report) = trade("--max-error 1e-9 --quiet");
@@ -262,8 +268,30 @@ fn gpu_trade_against_a_reference() {
     let told = why.split(" ms of --time-budget").next().and_then(|w| w.rsplit(' ').next());
     let told: f64 = told.unwrap().parse().expect(why);
     assert!((told / 1e-6 - 1.0).abs() < 0.01, "{why}");
-    // Another field's truth is refused, and nothing is written.
+    // Another scene's truth is refused, and nothing is written.
+    let trace =
+        "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
+    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
     let before = folder.contents();
+    for (args, said) in [
+        (
+            "truth.exr --sun 90,20",
+            "truth.exr: header: sky: found 1,1,1, expected none, as in this scene",
+        ),
+        ("truth.exr --sky 0.5", "truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5"),
+        ("truth.exr --cell 2", "truth.exr: header: cell_m: found 1,1, expected 2,2"),
+        ("truth.exr --z-scale 2", "truth.exr: header: base_m: found 0.89"),
+        ("truth.exr --border open", "truth.exr: header: border: found plane, expected open"),
+        ("truth.exr --albedo 0.5", "truth.exr: header: albedo: found 1, expected 0.5"),
+        ("traced.exr --sky 0.5 --sun 90,20", "traced.exr: header: bounces: found 2, expected none"),
+        ("traced.exr --sky 0.5 --sun 180,20", "traced.exr: header: "),
+    ] {
+        let args = format!("trade field.npy -o other --budget 1 --reference {args}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.lines().count()), (Some(1), 1), "{args}: {}", run.err);
+        assert!(run.err.contains(said), "{args}: {}", run.err);
+    }
+    assert!(folder.contents() == before);
     let args = "trade a.asc -o other --reference truth.exr";
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert!(

@@ -73,13 +73,43 @@ fn exr_layers_round_trip() {
     assert_eq!(listing(folder.path()), ["out.exr"]);
 }
 
+/// Texts in either chunk are read back by another reader's means; a name that PNG does not take leaves nothing.
+#[test]
+fn png_texts_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.png");
+    let text = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let metadata =
+        [text("device", "Größe ꟻ"), text("tried", "--lines 1: 0.5 %"), text("empty", "")];
+    let write = |metadata: &[(String, String)]| {
+        write_png(&path, 1, 2, &[[0.5; 3]; 2], None, Tone::default(), metadata)
+    };
+    for name in [
+        "",
+        "a name of more than seventy-nine bytes, which is as long as PNG lets a keyword be at most",
+    ] {
+        assert!(write(&[text(name, "x")]).is_err(), "{name}");
+        assert!(listing(folder.path()).is_empty());
+    }
+    write(&metadata).unwrap();
+    let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    let latin =
+        reader.info().uncompressed_latin1_text.iter().map(|t| (t.keyword.clone(), t.text.clone()));
+    let unicode =
+        reader.info().utf8_text.iter().map(|t| (t.keyword.clone(), t.get_text().unwrap()));
+    let all: Vec<_> = unicode.chain(latin).collect();
+    assert_eq!(all, metadata);
+    assert_eq!(read_planes(&path).unwrap().names, ["R", "G", "B"]);
+}
+
 #[test]
 fn png_round_trips_to_the_step_of_eight_bits() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.png");
     let (rows, cols) = (5, 51);
     let mut rgb: Vec<[f32; 3]> = (0..255).map(|i| [i as f32 / 255.0, 2.0, -1.0]).collect();
-    write_png(&path, rows, cols, &rgb, None, Tone { exposure: 0.5 }).unwrap();
+    write_png(&path, rows, cols, &rgb, None, Tone { exposure: 0.5 }, &[]).unwrap();
     let planes = read_planes(&path).unwrap();
     assert_eq!((planes.names.join(""), planes.rows, planes.cols), ("RGB".into(), rows, cols));
     for (i, texel) in rgb.iter().enumerate() {
@@ -90,16 +120,16 @@ fn png_round_trips_to_the_step_of_eight_bits() {
         assert_eq!((planes.planes[1][i], planes.planes[2][i]), (1.0, 0.0));
     }
     rgb[7] = [f32::NAN; 3];
-    let error = write_png(&path, rows, cols, &rgb, None, Tone::default()).unwrap_err();
+    let error = write_png(&path, rows, cols, &rgb, None, Tone::default(), &[]).unwrap_err();
     assert!(error.to_string().contains("row 0, column 7"), "{error}");
     let transparent: Vec<bool> = (0..255).map(|i| i == 7).collect();
-    write_png(&path, rows, cols, &rgb, Some(&transparent), Tone::default()).unwrap();
+    write_png(&path, rows, cols, &rgb, Some(&transparent), Tone::default(), &[]).unwrap();
     assert_eq!(image::open(&path).unwrap().color(), image::ColorType::Rgba8);
     let planes = read_planes(&path).unwrap();
     assert_eq!(planes.names.join(""), "RGBA");
     assert!((0..255).all(|i| planes.planes[3][i] == if i == 7 { 0.0 } else { 1.0 }));
-    assert!(write_png(&path, 5, 5, &rgb, None, Tone::default()).is_err());
-    assert!(write_png(&path, rows, cols, &rgb, None, Tone { exposure: f32::NAN }).is_err());
+    assert!(write_png(&path, 5, 5, &rgb, None, Tone::default(), &[]).is_err());
+    assert!(write_png(&path, rows, cols, &rgb, None, Tone { exposure: f32::NAN }, &[]).is_err());
     assert_eq!(listing(folder.path()), ["out.png"]);
 }
 

@@ -91,7 +91,7 @@ pub struct NotYet {
 pub struct RenderArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Where to write: .exr (linear, named layers, settings in the header) or .png (sRGB)
+    /// Where to write: .exr (linear, named layers) or .png (sRGB), either with the settings used
     #[arg(short, long, value_name = "OUT.{exr,png}")]
     pub output: PathBuf,
     #[command(flatten)]

@@ -39,7 +39,8 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     };
     bar.finish_and_clear();
     let rows = || channels.iter().chain(&pictures);
-    let beyond = rows::beyond(&args.bounds.all(), rows());
+    let mut beyond: Vec<Excess> = pairs.lost.iter().map(|name| Excess::lost(name)).collect();
+    beyond.extend(rows::beyond(&args.bounds.all(), rows()));
     if !args.quiet {
         for (path, names) in [(&args.result, &pairs.only_a), (&args.reference, &pairs.only_b)] {
             if !names.is_empty() {

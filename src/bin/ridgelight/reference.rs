@@ -44,20 +44,30 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     IS_TRACING.store(false, Ordering::SeqCst);
     gpu.end(frame);
     let traced = traced?;
+    let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
+    // What is no number is within nothing.
+    let is_within = |wanted: &f64| traced.error < *wanted;
+    let missed = args.until_error.filter(|wanted| !interrupted && !is_within(wanted));
     if !args.global.quiet {
+        let paths = traced.batches * REFERENCE_BATCH;
         crate::say!(
-            "{}: {} × {}, {} paths a sample, {:.3} % off, {:.1} ms on {}",
+            "{}: {} × {}, {paths} paths a sample, {:.3} % off, {:.1} ms on {}",
             args.output.display(),
             scene.field.cols(),
             scene.field.rows(),
-            traced.batches * REFERENCE_BATCH,
             100.0 * traced.error,
             traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
             gpu.report().name
         );
+        if let Some(wanted) = missed {
+            crate::say!("stopped at --spp {paths}, wanted --until-error {wanted}");
+        }
     }
-    let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
-    Ok(if interrupted { Outcome::Interrupted } else { Outcome::Done })
+    Ok(match (interrupted, missed) {
+        (true, _) => Outcome::Interrupted,
+        (false, Some(_)) => Outcome::Beyond,
+        (false, None) => Outcome::Done,
+    })
 }
 
 fn check(args: &ReferenceArgs) -> Result<()> {
@@ -104,7 +114,7 @@ struct Traced {
     radiance: Vec<[f32; 3]>,
     /// From the spread between batches.
     standard_error: Vec<[f32; 3]>,
-    /// Root of the mean squared standard error over the mean radiance.
+    /// Root of the mean squared standard error, that of unmet light too, over the mean radiance.
     error: f64,
     /// Of light that no path has met, by channel: [`plan::unmet_error`].
     unmet: [f64; 3],
@@ -132,20 +142,19 @@ fn trace(
             let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
             let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
             let unmet = plan::unmet_error(scene, args.bounces, batches * REFERENCE_BATCH);
-            let both = relative(error.hypot(root_mean_square(unmet)), mean);
+            let error = relative(error.hypot(root_mean_square(unmet)), mean);
             progress.set_message(format!(
                 "{} of {} paths a sample, {:.3} % off",
                 batches * REFERENCE_BATCH,
                 wanted * REFERENCE_BATCH,
-                100.0 * both
+                100.0 * error
             ));
-            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| both < e);
+            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
             if batches >= wanted || interrupted || enough {
                 progress.finish_and_clear();
                 if let Some(lost) = frame.plan().find("lost_rays") {
                     none_lost(gpu.read(frame, lost)?[0])?;
                 }
-                let error = relative(error, mean);
                 return Ok(Traced { batches, radiance, standard_error, error, unmet, times });
             }
         }
@@ -226,6 +235,9 @@ fn write(
     let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());
+    if let Some(wanted) = args.until_error {
+        add("until_error", wanted.to_string());
+    }
     add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
     for (i, ball) in scene.lights.spheres.iter().enumerate() {
         let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);

@@ -1,8 +1,8 @@
-use ridgelight::Result;
 use ridgelight::files::{self, Channels, Layer as FileLayer, Tone};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits};
 use ridgelight::scene::{HeightField, Quality, Scene};
+use ridgelight::{Error, Result};
 
 use crate::args::{Layer, RenderArgs};
 use crate::auto;
@@ -21,22 +21,18 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
     setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(ridgelight::Error::setting(
-            "--exposure",
-            args.exposure.to_string(),
-            "a number above 0",
-        ));
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
     }
     let is_exr = setup::extension(&args.output) == "exr";
     if !is_exr && !args.layers.is_empty() {
-        return Err(ridgelight::Error::setting(
+        return Err(Error::setting(
             "--layers",
             "a .png output",
             "an .exr output: a .png has no layers",
         ));
     }
     if is_exr && args.exposure != 1.0 {
-        return Err(ridgelight::Error::setting(
+        return Err(Error::setting(
             "--exposure",
             "an .exr output",
             "a .png output: an .exr keeps linear radiance",
@@ -82,6 +78,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let times = gpu.draw(frame)?;
         let pixels: Vec<Pixels> =
             (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
+        pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
         let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
         if let Some(share) = gpu.negative_share(frame)? {
             metadata.push(("negative_share".to_owned(), share.to_string()));
@@ -105,7 +102,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     } else {
         let picture = rgb(&pixels[0]);
         let tone = Tone { exposure: args.exposure };
-        files::write_png(&args.output, rows, cols, &picture, scene.field.voids(), tone)?;
+        let voids = scene.field.voids();
+        files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
         let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
         if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
             crate::say!(
@@ -140,6 +138,20 @@ pub fn progress(quiet: bool, what: &str) -> indicatif::ProgressBar {
     bar.set_message(what.to_owned());
     bar.enable_steady_tick(std::time::Duration::from_millis(200));
     bar
+}
+
+/// Lights that are numbers each may be none together.
+pub fn check_finite(pixels: &Pixels, field: &HeightField) -> Result<()> {
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    let texels = pixels.values.chunks_exact(pixels.channels).enumerate();
+    for (i, texel) in texels.filter(|(i, _)| !is_void(*i)) {
+        if let Some(value) = texel.iter().take(3).find(|v| !v.is_finite()) {
+            let (row, col) = (i / field.cols(), i % field.cols());
+            let found = format!("light of {value} at row {row}, column {col} of {}", pixels.name);
+            return Err(Error::setting("lights", found, "radiances whose sum is below 3e38"));
+        }
+    }
+    Ok(())
 }
 
 fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {

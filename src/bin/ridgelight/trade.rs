@@ -8,6 +8,7 @@ mod plot;
 mod point;
 mod report;
 mod rig;
+mod same;
 mod truth;
 mod walk;
 mod why;
@@ -56,7 +57,16 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         let found = path.display().to_string();
         return Err(Error::setting("--reference", found, "an .exr: others clip what is bright"));
     }
-    let given = args.reference.as_deref().map(|p| Truth::read(p, &scene.field)).transpose()?;
+    let asked = setup::asked(
+        &args.input.path,
+        &args.surface.field,
+        Some((&args.lights, &args.surface, &scene)),
+    );
+    let read = |path: &Path| {
+        let truth = Truth::read(path, &scene.field)?;
+        same::check(path, &scene, &asked).map(|()| truth)
+    };
+    let given = args.reference.as_deref().map(read).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
 
     let bar = crate::render::progress(args.global.quiet, "drawing the truth");
@@ -84,11 +94,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         ("cols".to_owned(), scene.field.cols().to_string()),
         ("cell_m".to_owned(), format!("{},{}", scene.field.cell_m()[0], scene.field.cell_m()[1])),
     ];
-    about.extend(setup::asked(
-        &args.input.path,
-        &args.surface.field,
-        Some((&args.lights, &args.surface, &scene)),
-    ));
+    about.extend(asked);
     let report = Report {
         about,
         truth: &truth,

@@ -21,7 +21,8 @@ pub struct ReferenceArgs {
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
     pub bounces: u32,
     /// Ends before --spp once the standard error, that of light not yet met too, is below this share of the mean, after
-    /// 512 paths at the earliest (0.01 is 1 %)
+    /// 512 paths at the earliest (0.01 is 1 %). Where --spp comes first the file is written, that is said,
+    /// and the exit status is 1
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub until_error: Option<f64>,
     /// Another number, other paths: 0..4294967295

@@ -23,6 +23,9 @@ pub struct Pairs<'a> {
     /// Names of channels that the other file lacks.
     pub only_a: Vec<&'a str>,
     pub only_b: Vec<&'a str>,
+    /// Those of `only_b` that the result should have: all but an alpha that is 1 everywhere, as of a picture
+    /// without.
+    pub lost: Vec<&'a str>,
 }
 
 /// Every plane of a file; a transparent pixel is NaN in all of them.
@@ -124,7 +127,12 @@ impl<'a> Pairs<'a> {
             return Err(unlike(args, "channels", a.names.join(" "), expected));
         }
         let (rows, cols) = (a.rows, a.cols);
-        let pairs = Self { rows, cols, channels, only_a: only(a, b), only_b: only(b, a) };
+        let (only_a, only_b) = (only(a, b), only(b, a));
+        let is_opaque = |name: &str| {
+            name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0))
+        };
+        let lost = only_b.iter().copied().filter(|name| !is_opaque(name)).collect();
+        let pairs = Self { rows, cols, channels, only_a, only_b, lost };
         let of_pictures = [
             ("--max-flip", args.bounds.max_flip.is_some()),
             ("--pixels-per-degree", args.pixels_per_degree.is_some()),

@@ -22,14 +22,20 @@ pub struct Row {
 
 /// How a row lies beyond a bound.
 pub struct Excess {
-    /// None for voids in one file only.
+    /// None for what is beyond any: voids in one file only, a channel that the result lacks.
     bound: Option<(&'static str, f64)>,
     row: String,
-    found: f64,
+    /// None of a channel that the result lacks.
+    found: Option<f64>,
     unit: String,
 }
 
 impl Excess {
+    /// Of a channel of the reference that the result lacks.
+    pub fn lost(channel: &str) -> Self {
+        Self { bound: None, row: channel.to_owned(), found: None, unit: String::new() }
+    }
+
     pub fn json(&self) -> Value {
         json!({
             "bound": self.bound.map(|b| b.0), "limit": self.bound.map(|b| b.1), "of": self.row, "found": self.found,
@@ -43,7 +49,10 @@ impl fmt::Display for Excess {
             Some((flag, limit)) => write!(f, "{flag} {limit}")?,
             None => write!(f, "any bound")?,
         }
-        write!(f, ": {} has {}{}", self.row, self.found, self.unit)
+        match self.found {
+            Some(found) => write!(f, ": {} has {found}{}", self.row, self.unit),
+            None => write!(f, ": {} is not in A", self.row),
+        }
     }
 }
 
@@ -54,7 +63,8 @@ pub fn beyond<'a>(
     let mut all = Vec::new();
     for row in rows {
         let mut excess = |bound, found, unit: &str| {
-            all.push(Excess { bound, row: row.name.clone(), found, unit: unit.to_owned() });
+            let (row, found) = (row.name.clone(), Some(found));
+            all.push(Excess { bound, row, found, unit: unit.to_owned() });
         };
         if row.mismatched > 0 {
             excess(None, row.mismatched as f64, " masked in one only");

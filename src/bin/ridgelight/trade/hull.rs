@@ -2,7 +2,8 @@
 //! alone.
 
 use ridgelight::measure::statistics::Summary;
-use ridgelight::scene::{Hull, Lines, Method, Quality};
+use ridgelight::plan::Plan;
+use ridgelight::scene::{Hull, Quality};
 use ridgelight::{Error, Result};
 
 use super::rig::Rig;
@@ -29,17 +30,15 @@ pub struct Place {
 /// # Errors
 /// A place that changes the picture.
 pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place>> {
-    if quality.method == Method::Brute || quality.lines == Lines::Exact {
-        return Ok(Vec::new());
-    }
+    let planned = rig.plan(rig.scene, quality)?;
+    let Some(home) = home(&planned) else { return Ok(Vec::new()) };
     let mut own = rig.frame(quality)?;
     let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
     let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
         let right = drawn?;
         let all = [("private", Hull::Private), ("shared", Hull::Shared), ("list", Hull::List)];
         let one = |(name, hull)| {
-            let used = own.plan().settings.iter().find(|(n, _)| n == "hull");
-            let is_own = used.is_some_and(|(_, place)| place == name);
+            let is_own = home == name;
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
             if 3.0 * draw_s > rig.left().max(KEPT * rig.budget.as_secs_f64() / 3.0) {
                 return none("too dear for what was left of the budget".to_owned());
@@ -57,6 +56,11 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
     let all = measured(rig);
     rig.gpu.end(own);
     all
+}
+
+/// Where a plan keeps its hull: brute force, exact sweeps and pyramids have none.
+fn home(plan: &Plan) -> Option<&str> {
+    plan.settings.iter().find(|(name, _)| name == "hull").map(|(_, place)| place.as_str())
 }
 
 fn ratio(
@@ -115,6 +119,27 @@ pub fn text(places: &[Place]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::plan::{self, Limits, Picture};
+    use ridgelight::scene::{HeightField, Lights, Lines, Method, Scene, Surface};
+
+    #[test]
+    fn sweeps_along_lines_alone_have_a_hull() {
+        let field = HeightField::new(9, 9, &[0.0; 81], [1.0; 2], None).unwrap();
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let base = Quality { method: Method::Sweep, ..Quality::default() };
+        for (quality, has_hull) in [
+            (base, true),
+            (Quality { hull: Hull::List, ..base }, true),
+            (Quality { lines: Lines::Exact, ..base }, false),
+            (Quality { method: Method::Brute, ..base }, false),
+            (Quality { method: Method::Pyramid, ..base }, false),
+        ] {
+            let limits = Limits::boundless(true, 1 << 30);
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
+            assert_eq!(home(&plan).is_some(), has_hull, "{quality:?}");
+        }
+    }
 
     /// 0.97 of the time is not worth a flag, 0.8 is, but not where the same place took 1.3 × or the
     /// 1.3th of its own.

@@ -55,7 +55,7 @@ fn number(value: f64) -> String {
 
 pub fn svg(report: &Report) -> String {
     let points = &report.walk.points;
-    let own = report.truth.own_error;
+    let own = report.truth.floor();
     let [left, top, right, bottom] = MARGIN;
     let x = Axis::of(points.iter().map(|p| report.time_ns(p) * 1e-6), left, WIDTH - right);
     let errors = points.iter().map(|p| 100.0 * report.error(p)).chain([100.0 * own]);

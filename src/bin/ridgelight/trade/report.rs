@@ -57,7 +57,7 @@ impl Report<'_> {
 
     /// Whether the truth cannot tell a point's error from none.
     pub fn is_at_most(&self, point: &Point) -> bool {
-        point.distance.rmse <= self.truth.own_error
+        point.distance.rmse <= self.truth.floor()
     }
 
     /// Nanoseconds of a frame, had the machine been throughout as it was in the middle of the run.
@@ -71,11 +71,11 @@ impl Report<'_> {
 
     /// A point's error, the truth's own at least.
     pub fn error(&self, point: &Point) -> f64 {
-        point.distance.rmse.max(self.truth.own_error)
+        point.distance.rmse.max(self.truth.floor())
     }
 
     pub fn error_text(&self, point: &Point) -> String {
-        let sign = if self.is_at_most(point) && self.truth.own_error > 0.0 { "≤ " } else { "" };
+        let sign = if self.is_at_most(point) && self.truth.floor() > 0.0 { "≤ " } else { "" };
         format!("{sign}{}", percent(self.error(point)))
     }
 
@@ -187,9 +187,9 @@ impl Report<'_> {
 
     pub fn truth_text(&self) -> String {
         format!(
-            "Truth: {}. Its own error: at most {} of its mean (relative RMSE): {}.",
+            "Truth: {}. Its own error (relative RMSE): {}: {}.",
             self.truth.about,
-            percent(self.truth.own_error),
+            self.truth.own_text(),
             self.truth.quality_of
         )
     }

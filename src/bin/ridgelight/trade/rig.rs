@@ -48,8 +48,12 @@ impl<'a> Rig<'a> {
     }
 
     /// The radiance that a frame holds, as one plane where all is grey, else three; voids are NaN.
+    ///
+    /// # Errors
+    /// Light that is no number.
     pub fn radiance(&mut self, frame: &Frame) -> Result<Vec<Vec<f32>>> {
         let pixels = self.gpu.pixels(frame, 0)?;
+        crate::render::check_finite(&pixels, &self.scene.field)?;
         let stride = pixels.channels;
         let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
             .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())

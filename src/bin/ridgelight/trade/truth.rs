@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ridgelight::cpu::lit::Lit;
 use ridgelight::files::{self, Planes};
+use ridgelight::measure::auto::{Probes, apart};
 use ridgelight::measure::error::ImageError;
 use ridgelight::scene::{Fuse, HeightField, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
@@ -20,9 +20,10 @@ const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
-/// Probes at most, and at least.
-const PROBES: usize = 400;
-const FEWEST_PROBES: usize = 16;
+/// Probes at least, for which the bound's normal approximation is good.
+const FEWEST_PROBES: usize = 64;
+/// The same probes for the same scene and number.
+const SEED: u64 = 0;
 /// The layer of a reference that holds one standard deviation of its noise.
 const NOISE_LAYER: &str = "standard_error";
 
@@ -34,8 +35,8 @@ pub struct Truth {
     /// What it is, and how its own error was found.
     pub about: String,
     pub quality_of: String,
-    /// Relative RMSE that it may have itself: what is below cannot be told apart.
-    pub own_error: f64,
+    /// Relative RMSE that it may have itself, where that is known.
+    pub own_error: Option<f64>,
     /// Mean variance of its noise over the square of its mean.
     noise: f64,
 }
@@ -53,6 +54,16 @@ pub struct Distance {
 }
 
 impl Truth {
+    /// What errors below it cannot be told apart by.
+    pub fn floor(&self) -> f64 {
+        self.own_error.unwrap_or(0.0)
+    }
+
+    /// Its own error in words.
+    pub fn own_text(&self) -> String {
+        self.own_error.map_or_else(|| "unknown".to_owned(), |e| format!("at most {}", percent(e)))
+    }
+
     /// A file's.
     pub fn read(path: &Path, field: &HeightField) -> Result<Self> {
         let Planes { rows, cols, names, mut planes } = files::read_planes(path)?;
@@ -85,7 +96,7 @@ impl Truth {
             rows,
             about: path.display().to_string(),
             quality_of: format!("it has no layer {NOISE_LAYER} and is taken as it is"),
-            own_error: 0.0,
+            own_error: None,
             noise: 0.0,
         };
         if let Some(errors) = errors {
@@ -98,11 +109,16 @@ impl Truth {
             truth.noise = known.iter().sum::<f64>() / count / relative;
             // The mean of squared normal noise wavers by √(2 Σσ⁴) / n: twice that is left of it.
             let fourth: f64 = known.iter().map(|v| v * v).sum();
-            truth.own_error = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
+            let left = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
+            let unmet = unmet(path)? / relative.sqrt();
+            truth.own_error = Some(left.hypot(unmet));
             truth.quality_of = format!(
                 "its noise, {} of the mean by its layer {NOISE_LAYER}, is taken off each RMSE (not \
-                 off percentiles); what is left of it is twice the wavering of its mean square",
-                percent(truth.noise.sqrt())
+                 off percentiles); what is left of it is twice the wavering of its mean square, {}, \
+                 and light that its paths may not have met, {}",
+                percent(truth.noise.sqrt()),
+                percent(left),
+                percent(unmet)
             );
         }
         Ok(truth)
@@ -155,18 +171,27 @@ impl Truth {
             rows: field.rows(),
             about: about.join("; "),
             quality_of: String::new(),
-            own_error: 0.0,
+            own_error: None,
             noise: 0.0,
         };
         let steps = truth.distance(&halved)?.rmse;
-        let (probes, off) = truth.probe(scene, rig.budget.mul_f64(PROBING));
-        truth.own_error = steps.max(off);
+        let unsure = apart(&truth.planes, &halved, truth.cols);
+        let probes = probes(scene, &unsure, rig.budget.mul_f64(PROBING))?;
+        let off = probes.error(&truth.planes, None, Probes::ONE_LOOK);
+        truth.own_error = Some(steps.max(off.at_most));
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
-             halves as counts double; {probes} samples are at most {} (RMSE, two standard errors \
-             of its square added) off the oracle in f64; the larger of the two is taken",
+             halves as counts double; by {} samples, most of them where the two differ, it is {} off \
+             the oracle in f64, {}; the larger of the two is taken",
             percent(steps),
-            percent(off)
+            probes.len(),
+            percent(off.error),
+            if probes.is_whole() {
+                "all that there are".to_owned()
+            } else {
+                let confidence = 100.0 * Probes::CONFIDENCE;
+                format!("with {confidence:.0} % confidence at most {}", percent(off.at_most))
+            }
         );
         Ok(truth)
     }
@@ -192,56 +217,36 @@ impl Truth {
             worst_col: e.worst_col,
         })
     }
-
-    /// Samples all over the field against the oracle: how many, and the relative RMSE that they allow.
-    fn probe(&self, scene: &Scene, most: Duration) -> (usize, f64) {
-        let (count, lit) = (self.rows * self.cols, Lit::of(scene));
-        let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
-        // Multiples of the golden ratio's share of the field: no two near each other.
-        let place = |k: usize| ((k as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize;
-        let places: Vec<usize> =
-            (1..=PROBES.min(count)).map(place).filter(|i| !is_void(*i)).collect();
-        let begun = Instant::now();
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let probe = |first: usize| {
-            let mine = places.iter().skip(first).step_by(threads).enumerate();
-            mine.take_while(|(i, _)| i * threads < FEWEST_PROBES || begun.elapsed() < most)
-                .map(|(_, &i)| {
-                    let (row, col) = (i / self.cols, i % self.cols);
-                    (i, lit.at(row, col))
-                })
-                .collect::<Vec<_>>()
-        };
-        let probed: Vec<(usize, [f64; 3])> = std::thread::scope(|scope| {
-            let all: Vec<_> = (0..threads).map(|first| scope.spawn(move || probe(first))).collect();
-            let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
-            joined
-                .flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect()
-        });
-        let last = self.planes.len() - 1;
-        let mut sum = 0.0;
-        let squares: Vec<f64> = probed
-            .iter()
-            .map(|(i, expected)| {
-                sum += expected.iter().sum::<f64>() / 3.0;
-                let off = |c: usize| f64::from(self.planes[c.min(last)][*i]) - expected[c];
-                [0, 1, 2].map(|c| off(c).powi(2)).iter().sum::<f64>() / 3.0
-            })
-            .collect();
-        let most = most_mean(&squares).sqrt();
-        let mean = sum / probed.len().max(1) as f64;
-        (probed.len(), if most == 0.0 { 0.0 } else { most / mean })
-    }
 }
 
-/// The mean of a sample, and twice its standard error on top: where few texels carry most of the error, as
-/// along a sun's shadows, a sample may have met fewer of them than there are.
-fn most_mean(sample: &[f64]) -> f64 {
-    let count = sample.len().max(2) as f64;
-    let mean = sample.iter().sum::<f64>() / count;
-    let variance = sample.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean + 2.0 * (variance / count).sqrt()
+/// As many samples with their exact light as fit into a time, the fewest at least; half of them by how far
+/// two pictures lie apart at each.
+fn probes(scene: &Scene, unsure: &[f64], most: Duration) -> Result<Probes> {
+    let begun = Instant::now();
+    let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
+    let each = begun.elapsed().as_secs_f64() / few.len() as f64;
+    let left = most.saturating_sub(begun.elapsed()).as_secs_f64();
+    let fit = ((left / each) as usize).min(Probes::affordable(scene));
+    if few.is_whole() || fit <= few.len() { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
+}
+
+/// Standard error of light that no path of a `reference` may have met: the root of the mean square of its
+/// channels', 0 where a file tells of none.
+fn unmet(path: &Path) -> Result<f64> {
+    let all = files::read_metadata(path)?;
+    let Some((name, text)) = all.iter().find(|(name, _)| name == "unmet_standard_error") else {
+        return Ok(0.0);
+    };
+    let channels: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
+    let Some(channels) = channels.filter(|c| c.iter().all(|v| v.is_finite())) else {
+        return Err(Error::File {
+            path: path.to_owned(),
+            place: format!("header: {name}"),
+            found: text.clone(),
+            expected: "finite numbers with commas between them".to_owned(),
+        });
+    };
+    Ok((channels.iter().map(|v| v * v).sum::<f64>() / channels.len() as f64).sqrt())
 }
 
 /// All counts of the truth, halved so many times.
@@ -318,6 +323,7 @@ pub fn digits(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ridgelight::scene::{Lights, Surface};
 
     #[test]
     fn three_digits_are_shown() {
@@ -325,12 +331,17 @@ mod tests {
         assert_eq!(shown, ["0", "0.00123", "0.500", "12.3", "999", "123456", "1.00e-12"]);
     }
 
-    /// 0, 0, 0, 4: mean 1, variance 4, standard error 1.
+    /// No time is 64 probes, much is all there are.
     #[test]
-    fn a_sample_allows_two_standard_errors() {
-        assert!((most_mean(&[0.0, 0.0, 0.0, 4.0]) - 3.0).abs() < 1e-12);
-        assert_eq!(most_mean(&[0.5; 9]), 0.5);
-        assert_eq!([most_mean(&[]), most_mean(&[0.0])], [0.0; 2]);
+    fn probes_fit_their_time() {
+        let of = |side: usize, most: Duration| {
+            let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None);
+            let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+            let scene = Scene { field: field.unwrap(), surface: Surface::default(), lights };
+            probes(&scene, &vec![0.0; side * side], most).unwrap()
+        };
+        assert_eq!(of(16, Duration::ZERO).len(), FEWEST_PROBES);
+        assert!(of(12, Duration::from_secs(900)).is_whole() && of(5, Duration::ZERO).is_whole());
     }
 
     #[test]
@@ -344,7 +355,7 @@ mod tests {
 
     fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
         let (about, quality_of) = (String::new(), String::new());
-        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: 0.0, noise }
+        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise }
     }
 
     /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of a
@@ -366,7 +377,8 @@ mod tests {
     }
 
     /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², which wavers by
-    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)).
+    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)). Unmet light of 0.02,
+    /// 0.02 and 0.04 is √(0.0008) in its mean square, √(0.0002) of the mean.
     #[test]
     fn a_references_noise_is_read() {
         let folder = tempfile::tempdir().unwrap();
@@ -382,10 +394,18 @@ mod tests {
         let truth = Truth::read(&path, &field).unwrap();
         assert!((truth.noise - 0.01).abs() < 1e-7, "{}", truth.noise);
         let own = (0.02 * (2.0_f64 / 64.0).sqrt()).sqrt();
-        assert!((truth.own_error - own).abs() < 1e-7, "{}", truth.own_error);
+        assert!((truth.floor() - own).abs() < 1e-7, "{:?}", truth.own_error);
+        let unmet = |text: &str| [("unmet_standard_error".to_owned(), text.to_owned())];
+        files::write_exr(&path, 8, 8, &all, &unmet("0.02,0.02,0.04")).unwrap();
+        let met = Truth::read(&path, &field).unwrap();
+        assert!((met.floor() - own.hypot(0.0002_f64.sqrt())).abs() < 1e-7, "{:?}", met.own_error);
+        files::write_exr(&path, 8, 8, &all, &unmet("0.02,none")).unwrap();
+        let error = Truth::read(&path, &field).err().unwrap().to_string();
+        assert!(error.contains("unmet_standard_error: found 0.02,none"), "{error}");
         files::write_exr(&path, 8, 8, &all[..1], &[]).unwrap();
         let bare = Truth::read(&path, &field).unwrap();
-        assert_eq!((bare.noise, bare.own_error), (0.0, 0.0));
+        assert_eq!((bare.noise, bare.own_error), (0.0, None));
+        assert_eq!(bare.own_text(), "unknown");
         let other = HeightField::new(4, 16, &[0.0; 64], [1.0; 2], None).unwrap();
         let error = Truth::read(&path, &other).err().unwrap().to_string();
         assert!(error.contains("found 8 × 8, expected 16 × 4"), "{error}");

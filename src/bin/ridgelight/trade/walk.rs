@@ -75,7 +75,7 @@ pub fn walk(
         places.iter().position(|p| p.quality == *start).expect("the defaults are on the ladders");
     let steps = places.iter().map(|p| p.steps.clone()).collect();
     let mut walk = Walk {
-        search: Search::new(steps, baseline, truth.own_error),
+        search: Search::new(steps, baseline, truth.floor()),
         points: Vec::new(),
         given_up: Vec::new(),
         baseline,
@@ -144,7 +144,7 @@ fn confirm(
         let point = &mut walk.points[at];
         point.add(again);
         if point.pictures.is_none() {
-            let p99 = point.distance.p99.max(truth.own_error);
+            let p99 = point.distance.p99.max(truth.floor());
             point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
         }
         walk.search.measured_again(place, point.value());
@@ -208,7 +208,7 @@ fn visit(
     walk.search.measured(place, point.value());
     let front = walk.search.frontier();
     if front.contains(&place) {
-        let p99 = point.distance.p99.max(truth.own_error);
+        let p99 = point.distance.p99.max(truth.floor());
         point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
     }
     walk.points.push(point);

@@ -62,18 +62,21 @@ impl Report<'_> {
             ));
         }
         all.push(self.risk(point));
-        all.push(if self.is_at_most(point) {
+        let own = self.truth.floor();
+        all.push(if self.truth.own_error.is_none() {
+            "How far the truth itself is off is unknown, and so how far the errors here are.".to_owned()
+        } else if self.is_at_most(point) {
             format!(
                 "The truth itself may be {} off, which hides its error: how much less than that it is \
                  cannot be told, nor whether anything dearer does better. A truth from `ridgelight \
                  reference` (--reference), or a larger --budget, may tell.",
-                percent(self.truth.own_error)
+                percent(own)
             )
         } else {
             format!(
                 "The truth itself may be {} off, {} of that error.",
-                percent(self.truth.own_error),
-                percent(self.truth.own_error / self.error(point))
+                percent(own),
+                percent(own / self.error(point))
             )
         });
         all.push(self.left_out());

@@ -3,9 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI, TAU};
 
 use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON};
-use ridgelight::scene::{Albedo, Environment, HeightField, Lights, Sun};
+use ridgelight::plan::azimuths::across_sun;
+use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Sun};
 
-use super::{Asks, Case, Found, Method, Probe, field, never, white};
+use super::{Asks, Case, Found, Method, Probe, field, never, none, white};
 
 const SIDE: usize = 65;
 /// A corner, an edge, the middle.
@@ -14,30 +15,50 @@ const PLACES: [[usize; 2]; 3] = [[0, 0], [30, 64], [32, 32]];
 const COLUMNS: usize = 64;
 const ROWS: usize = 32;
 
+/// Every kind of light on every border, all its values on one of them. Slopes that repeat are no slopes, but
+/// trenches.
 pub fn cases() -> Vec<Case> {
     let mut all = vec![albedo(0.0), albedo(1.0)];
-    all.extend([0.0, 1.0, 65_504.0, 1e6, 1e30].map(uniform_environment));
-    all.push(peak());
-    all.extend([1e-6, 1e6].map(slope_under_the_sky));
-    all.push(suns_on_level_ground());
-    all.push(suns_along_the_grid());
+    all.extend([0.0, 1.0, 65_504.0, 1e6].map(|of| uniform_environment(of, Border::Plane)));
+    all.push(slope_under_the_sky(1e-6, [SIDE; 2], Border::Plane));
+    all.push(level_of([1, 1], Border::Plane));
+    for border in [Border::Plane, Border::Open, Border::Periodic] {
+        all.push(uniform_environment(1e30, border));
+        if border == Border::Periodic {
+            all.extend([[1, 31], [31, 1]].map(|of| level_of(of, border)));
+        } else {
+            all.push(peak(border));
+            all.push(slope_under_the_sky(1e6, [SIDE; 2], border));
+            all.extend([[1, 31], [31, 1]].map(|of| slope_under_the_sky(0.5, of, border)));
+        }
+        all.push(voids(border));
+        all.push(trench(border));
+        all.push(suns_on_level_ground(border));
+        all.push(suns_along_the_grid(border));
+    }
     all
 }
 
 fn light(
     name: impl Into<String>,
     (expected, bound): (&str, &str),
-    (field, lights): (HeightField, Lights),
+    (field, border, lights): (HeightField, Border, Lights),
     probes: impl Fn(&Found) -> Vec<Probe> + 'static,
 ) -> Case {
+    let border_name = match border {
+        Border::Plane => "",
+        Border::Open => ", nothing beyond",
+        Border::Periodic => ", repeated",
+    };
     Case {
-        name: name.into(),
+        name: format!("{}{border_name}", name.into()),
         expected: expected.into(),
         bound: bound.into(),
-        scene: white(field, lights),
+        scene: white(field, border, lights),
         asks: Asks::Light,
         probes: Box::new(probes),
         refuses: never,
+        unjudged: none,
         is_long: |_| false,
     }
 }
@@ -63,10 +84,28 @@ fn sky_error(found: &Found) -> f64 {
 /// An environment of 64 × 32 texels of `found.count()` wedges, relative to what it gives to level
 /// ground. A wedge's ends err by 64 ε columns, of its 64/m: 2 m ε, then 64/m + 2 sums; rows by 6 ε of
 /// a moment of 1/2 that is their sum, at either end, 16 of them above ground: 2·2·16 ε; as many
-/// sums, m wedges, and 10 ε of products.
+/// sums, m wedges, and 10 ε of products. Under an open border there are 16 more below.
 fn environment_error(found: &Found) -> f64 {
     let m = found.count();
-    (2.0 * m + 64.0 / m + 2.0 + 64.0 + 16.0 + m + 10.0) * EPSILON
+    let rows = if is_open(found) { 160.0 } else { 80.0 };
+    (2.0 * m + 64.0 / m + 2.0 + rows + m + 10.0) * EPSILON
+}
+
+fn is_open(found: &Found) -> bool {
+    found.scene.surface.border == Border::Open
+}
+
+/// A table that is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments,
+/// over 2π / π: 3 Δ² / 2. Nodes stand from the horizon, or under an open border from straight below, up to
+/// the zenith.
+fn between_nodes(found: &Found) -> f64 {
+    let range = if is_open(found) { PI } else { FRAC_PI_2 };
+    1.5 * (range / f64::from(found.method.quality.table_elevations - 1)).powi(2)
+}
+
+/// The same where level ground is the lowest that is seen: a node, but under an open border.
+fn at_level(found: &Found) -> f64 {
+    if is_open(found) { between_nodes(found) } else { 0.0 }
 }
 
 fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
@@ -80,7 +119,7 @@ fn albedo(albedo: f32) -> Case {
     let mut case = light(
         format!("albedo {albedo}"),
         (expected, bound),
-        (level(), around(uniform(1.0))),
+        (level(), Border::Plane, around(uniform(1.0))),
         move |found| {
             let albedo = f64::from(albedo);
             let bound = albedo * (sky_error(found) + environment_error(found) + 4.0 * EPSILON);
@@ -96,11 +135,11 @@ fn albedo(albedo: f32) -> Case {
 
 /// A constant environment is a uniform sky: level ground of albedo 1 gives its radiance. The sky
 /// beside it stays what it is.
-fn uniform_environment(value: f32) -> Case {
+fn uniform_environment(value: f32, border: Border) -> Case {
     let name = format!("an environment of {value:e} everywhere");
     let expected = "level: its radiance, and 1 of the sky beside it";
-    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance";
-    light(name, (expected, bound), (level(), around(uniform(value))), move |found| {
+    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more";
+    light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
         let at = |[r, c]: [usize; 2]| {
             [
@@ -108,7 +147,7 @@ fn uniform_environment(value: f32) -> Case {
                 probe(
                     found.light("direct.env", r, c),
                     value,
-                    value * environment_error(found),
+                    value * (environment_error(found) + at_level(found)),
                     [1, r, c],
                 ),
             ]
@@ -122,7 +161,7 @@ fn uniform_environment(value: f32) -> Case {
 /// It is 1/64 of a turn wide, in two wedges perhaps, whose ends each err by 64 ε columns: 4·64 ε. Its row
 /// is the difference of two moments of at most 1/2 that err by 6 ε each, in a bend that errs by as much:
 /// 12 ε / (sin² b - sin² a).
-fn peak() -> Case {
+fn peak(border: Border) -> Case {
     let mut texels = vec![[0.0; 3]; COLUMNS * ROWS];
     texels[8 * COLUMNS + 10] = [1e6; 3];
     let peak = Environment::new(COLUMNS, ROWS, texels, 0.0).expect("good texels");
@@ -132,7 +171,7 @@ fn peak() -> Case {
     light(
         "an environment of one texel of 1e6",
         (expected, bound),
-        (level(), around(peak)),
+        (level(), border, around(peak)),
         move |found| {
             let right = 1e6 * (TAU / COLUMNS as f64) * (b - a) / TAU;
             let relative = (256.0 + 12.0 / (b - a)) * EPSILON + environment_error(found);
@@ -144,32 +183,143 @@ fn peak() -> Case {
     )
 }
 
-/// A plane on level ground sees (1 + cos tilt) / 2 of the sky, at any steepness.
+/// A plane on level ground sees (1 + cos tilt) / 2 of the sky, at any steepness; with nothing around it, from
+/// which light comes from below, too, all of its own half of it.
 ///
 /// Azimuths: the sum stops at wedge middles where the own plane begins to hide; half a wedge is missed
 /// or added at each of two ends, where the light is that of its angle, (π/m)² sin(tilt) in all. Elevations
 /// that err by an angle move the slices' ends, where the integrand is at most 1, over 2π / π. The table
-/// is read between nodes Δ apart: Δ²/8 of a second derivative of at most 2, three moments, over 2π / π.
-fn slope_under_the_sky(slope: f64) -> Case {
-    let tilted = field([SIDE; 2], [1.0, 1.0], |_, c| slope * c as f64);
-    let expected = "(1 + cos tilt) / 2 of the sky of 1 and of the environment of 1";
+/// is read between nodes.
+fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> Case {
+    // Uphill east, or north in a single column.
+    let tilted = field([rows, cols], [1.0, 1.0], |r, c| {
+        slope * if cols > 1 { c as f64 } else { (rows - 1 - r) as f64 }
+    });
+    let expected = match border {
+        Border::Open => "all of the sky of 1 and of the environment of 1 above its own plane: 1",
+        _ => "(1 + cos tilt) / 2 of the sky of 1 and of the environment of 1",
+    };
     let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at one cell";
-    let name = format!("light on a slope of {slope:e}");
-    light(name, (expected, bound), (tilted, around(uniform(1.0))), move |found| {
+    let name = match [rows, cols] {
+        [SIDE, SIDE] => format!("light on a slope of {slope:e}"),
+        _ => format!("light on a slope of {slope:e} of {rows} × {cols}"),
+    };
+    let (row, col) = (rows / 2, cols / 2);
+    light(name, (expected, bound), (tilted, border, around(uniform(1.0))), move |found| {
         let cos_tilt = 1.0 / 1.0_f64.hypot(slope);
-        let right = 0.5 * (1.0 + cos_tilt);
-        let largest = slope * 32.0;
-        let ties = found.method.ties(slope, 1.0);
+        let right = if is_open(found) { 1.0 } else { 0.5 * (1.0 + cos_tilt) };
+        let largest = slope * (rows.max(cols) / 2) as f64;
+        // A single line of samples has no other beside it.
+        let ties = if rows.min(cols) == 1 { 0.0 } else { found.method.ties(slope, 1.0) };
         let angle = found.method.angle_error(slope, (largest, 1.0), ties, &found.azimuths[0]);
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
-        let node = FRAC_PI_2 / f64::from(found.method.quality.table_elevations - 1);
         let sky = wedge + 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky + 1.5 * node * node + environment_error(found);
-        let (row, col) = (32, 32);
+        let environment = sky + between_nodes(found) + environment_error(found);
         vec![
             probe(found.light("direct.sky", row, col), right, sky, [0, row, col]),
             probe(found.light("direct.env", row, col), right, environment, [1, row, col]),
         ]
+    })
+}
+
+/// Level ground of any size gives back what shines all around.
+fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
+    let environment = environment_error(found) + at_level(found);
+    let at = |&[r, c]: &[usize; 2]| {
+        [
+            probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
+            probe(found.light("direct.env", r, c), 1.0, environment, [1, r, c]),
+        ]
+    };
+    places.iter().flat_map(at).collect()
+}
+
+const LEVEL: (&str, &str) = (
+    "under a sky of 1 and an environment of 1, level: 1 of each",
+    "the sky's and the environment's of level ground",
+);
+
+fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
+    let places = [[0, 0], [rows / 2, cols / 2], [rows - 1, cols - 1]];
+    let ground = field([rows, cols], [1.0, 1.0], |_, _| 3.0);
+    let name = format!("light on level ground of {rows} × {cols}");
+    light(name, LEVEL, (ground, border, around(uniform(1.0))), move |found| {
+        level_probes(found, &places)
+    })
+}
+
+/// Voids are filled from their rim, which is level here; what they hold is never looked at.
+fn voids(border: Border) -> Case {
+    let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
+    let marks: Vec<bool> = (0..SIDE * SIDE).map(|i| is_void(i / SIDE, i % SIDE)).collect();
+    let height = |i: usize| if marks[i] { [f64::NAN, f64::INFINITY][i % 2] } else { 3.0 };
+    let heights: Vec<f64> = (0..SIDE * SIDE).map(height).collect();
+    let ground =
+        HeightField::new(SIDE, SIDE, &heights, [1.0, 1.0], Some(marks)).expect("a good field");
+    let name = "light beside voids of NaN and infinities";
+    light(name, LEVEL, (ground, border, around(uniform(1.0))), |found| {
+        level_probes(found, &[[5, 0], [32, 3], [32, 20], [27, 12], [64, 64]])
+    })
+}
+
+/// A plateau of height 10 west of level ground, whose edge stands 28 cells west of the sample and, where the
+/// field repeats, another as far east. In an azimuth φ that meets it inside the field it stands at
+/// tan ω = 10 |cos φ| / 28, and cos² ω of the sky is seen: a wedge's share of the circle times that, summed.
+///
+/// A sweep looks at samples of lines: it meets the top up to a step, one cell, beyond its edge, from a line
+/// up to half their distance aside: the interval. What is nearer or farther by so much is.
+fn trench(border: Border) -> Case {
+    const SIDE: usize = 64;
+    const HEIGHT: f64 = 10.0;
+    const AWAY: f64 = 28.0;
+    const PLACE: [usize; 2] = [32, 36];
+    let ground = field([SIDE; 2], [1.0, 1.0], |_, c| if c <= 8 { HEIGHT } else { 0.0 });
+    let expected = match border {
+        Border::Periodic => {
+            "level between two edges of height H, each D away: the sum over azimuths of their share times 1 / (1 + (H cos φ / D)²), D within a step and half the lines' distance for sweeps"
+        }
+        _ => {
+            "level beside an edge of height H, D away: as between two, but for azimuths that leave the field before it, which see all"
+        }
+    };
+    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at D; pyramid: as its twin's elevations see";
+    let name = "light in a trench";
+    light(name, (expected, bound), (ground, border, around(uniform(1.0))), move |found| {
+        let [row, col] = PLACE;
+        let periodic = found.scene.surface.border == Border::Periodic;
+        let aside = found.method.aside();
+        let mut angle = found.method.angle_error(
+            HEIGHT / AWAY,
+            (HEIGHT, AWAY - aside),
+            0.0,
+            &found.azimuths[0],
+        );
+        let mut right = [0.0; 2];
+        for azimuth in &found.azimuths {
+            let share = f64::from(azimuth.wedge_rad) / TAU;
+            if let Some((elevation, error)) = found.twin_elevation(azimuth, row, col) {
+                angle = angle.max(error);
+                right.iter_mut().for_each(|sum| *sum += share * elevation.cos().powi(2));
+                continue;
+            }
+            let (sin, cos) = azimuth.swept_rad([1.0, 1.0]).sin_cos();
+            // 32 rows north, 31 south.
+            let is_inside = cos < -1e-9 && AWAY * (sin / cos).abs() < 31.0;
+            let meets = if periodic { cos.abs() > 1e-9 } else { is_inside };
+            for (sum, away) in right.iter_mut().zip([AWAY - aside, AWAY + aside]) {
+                let slope = if meets { HEIGHT * cos.abs() / away } else { 0.0 };
+                *sum += share / (1.0 + slope * slope);
+            }
+        }
+        let sky = 2.0 * (angle + ARC_TANGENT) + sky_error(found);
+        let environment = sky + between_nodes(found) + environment_error(found);
+        let of = |layer: &str, bound, at| Probe {
+            found: found.light(layer, row, col),
+            expected: right,
+            bound,
+            at,
+        };
+        vec![of("direct.sky", sky, [0, row, col]), of("direct.env", environment, [1, row, col])]
     })
 }
 
@@ -183,7 +333,7 @@ fn sun(azimuth_rad: f64, elevation_rad: f64, diameter_rad: f64) -> Sun {
 /// surface facing it: 1. A point at 0°: 0. A disc at 0°, of which half stands above the ground, of radiance
 /// 1 / (π sin² a): ∫ sin ω over it is ∫ sin² θ dθ ∫ cos ψ dψ = a - sin a cos a, with θ from its middle
 /// and ψ around it. Sums over n chords of a disc err by n^-3/2, the disc's own and that of its scale.
-fn suns_on_level_ground() -> Case {
+fn suns_on_level_ground(border: Border) -> Case {
     const RADIUS: f64 = 0.0046;
     let suns = vec![
         sun(0.4, FRAC_PI_2, 0.0),
@@ -196,7 +346,7 @@ fn suns_on_level_ground() -> Case {
         "points: 1/π and 0; discs of angular radius a: 1/π and (a - sin a cos a) / (π² sin² a)";
     let bound = "16 ε of it for points; 2 n^-3/2 of it for discs of n chords, and ε of their slopes' moments";
     let case =
-        light("suns at 90° and at 0°", (expected, bound), (level(), lights), |found| {
+        light("suns at 90° and at 0°", (expected, bound), (level(), border, lights), |found| {
             let half = (RADIUS - RADIUS.sin() * RADIUS.cos()) / (PI * RADIUS.sin().powi(2));
             let chords = 2.0 * f64::from(found.method.quality.sun_azimuths).powf(-1.5);
             // A chord's moments are differences of numbers of 1/2, weighed by 2 / (π a) over its height.
@@ -223,41 +373,56 @@ fn suns_on_level_ground() -> Case {
 const EDGE: usize = 48;
 
 /// Point suns at 30° in the azimuths 0°, 45° and 90° and hairs beside them: the shadow of the edge reaches
-/// H cos φ / tan 30° west. Left out: four cells around its end. A sample looks where a line beside it
-/// has met the edge: with lines 2 cells apart 1 cell before it, at 3/4 of its height, which still
-/// hides the sun up to 10.2 cells away at 45°; with lines 4 apart one of two stands on the top, up to 4
+/// H cos φ / tan 30° west. At 180°, where the field repeats, that of the plateau before it reaches as far east
+/// of its end, a cell before the first column. Left out: four cells around either end. A sample looks where a
+/// line beside it has met the edge: with lines 2 cells apart 1 cell before it, at 3/4 of its height, which
+/// still hides the sun up to 10.2 cells away at 45°; with lines 4 apart one of two stands on the top, up to 4
 /// cells behind it, which hides it up to 8.2. The shadow there ends at 12.2.
-fn suns_along_the_grid() -> Case {
+fn suns_along_the_grid(border: Border) -> Case {
     const HEIGHT: f64 = 10.0;
-    let hairs = [0.0, 1e-12, -1e-12, 1e-6, -1e-6, 1e-3, -1e-3];
-    let azimuths: Vec<f64> =
-        [0.0, FRAC_PI_4, FRAC_PI_2].iter().flat_map(|a| hairs.map(|h| a + h)).collect();
-    let suns = azimuths.iter().map(|&azimuth| sun(azimuth, FRAC_PI_6, 0.0)).collect();
+    let mut hairs = vec![0.0];
+    if border == Border::Plane {
+        hairs.extend([1e-12, -1e-12, 1e-6, -1e-6, 1e-3, -1e-3]);
+    }
+    let mut azimuths: Vec<f64> =
+        [0.0, FRAC_PI_4, FRAC_PI_2].iter().flat_map(|a| hairs.iter().map(move |h| a + h)).collect();
+    azimuths.push(PI);
+    let suns: Vec<Sun> = azimuths.iter().map(|&azimuth| sun(azimuth, FRAC_PI_6, 0.0)).collect();
     let edge = field([SIDE; 2], [1.0, 1.0], |_, c| {
         (2.5 * (c as f64 + 4.0 - EDGE as f64)).clamp(0.0, HEIGHT)
     });
-    let expected = "west of an edge of height H, in its shadow 0, out of it sin 30° / π, but for four cells around the end at H cos φ / tan 30°";
-    let bound = "in the shadow 0, out of it 16 ε of the light; pyramid: all of the light besides";
-    let lights = Lights { suns, ..Lights::default() };
-    let name = "point suns at 0°, 45°, 90° and a hair beside";
-    let case = light(name, (expected, bound), (edge, lights), move |found| {
+    let expected = "west of an edge of height H, in its shadow 0, out of it sin 30° / π, but for four cells around the end at H cos φ / tan 30°; where the field repeats, likewise east of it for a sun in the west";
+    let bound = "in the shadow 0, out of it 16 ε of the light; pyramid: where its twin's elevation is as far from the sun as it may err, for suns without a hair";
+    let lights = Lights { suns: suns.clone(), ..Lights::default() };
+    let beside = if border == Border::Plane { ", a hair beside," } else { "" };
+    let name = format!("point suns at 0°, 45°, 90°{beside} and 180°");
+    let case = light(name, (expected, bound), (edge, border, lights), move |found| {
+        let repeats = found.scene.surface.border == Border::Periodic;
         let mut probes = Vec::new();
         for (s, azimuth) in azimuths.iter().enumerate() {
             let layer = format!("direct.sun{}", s + 1);
-            let reach = HEIGHT * azimuth.cos().max(0.0) / FRAC_PI_6.tan();
+            let swept = across_sun(&suns[s], 1, [1.0, 1.0])[0];
+            let reach = HEIGHT * azimuth.cos().abs() / FRAC_PI_6.tan();
             // Level ground, in rows from which a line at 45° meets the edge inside the field.
-            for (row, away) in (40..60).flat_map(|row| (6..36).map(move |away| (row, away))) {
-                let from_end = away as f64 - reach;
-                if from_end.abs() < 4.0 {
-                    continue;
-                }
-                let light = if from_end < 0.0 { 0.0 } else { FRAC_PI_6.sin() / PI };
-                let at = [s, row, EDGE - away];
-                let value = found.light(&layer, row, EDGE - away);
-                // Through levels that are means of heights, an edge's shadow may end anywhere.
-                let all = FRAC_PI_6.sin() / PI;
-                let smoothed = if found.method.is_pyramid() { all } else { 0.0 };
-                probes.push(probe(value, light, 16.0 * EPSILON * light + smoothed, at));
+            for (row, col) in (40..60).flat_map(|row| (4..=EDGE - 6).map(move |col| (row, col))) {
+                let is_lit = if found.twin.is_some() {
+                    if s % hairs.len() != 0 {
+                        continue;
+                    }
+                    found.twin_elevation(&swept, row, col).and_then(|(elevation, error)| {
+                        let below = FRAC_PI_6 - elevation;
+                        (below.abs() > error + ARC_TANGENT).then_some(below > 0.0)
+                    })
+                } else {
+                    let away = if *azimuth < PI { EDGE - col } else { col + 1 };
+                    let from_end = away as f64 - reach;
+                    let is_shaded = *azimuth < PI || repeats;
+                    (from_end.abs() >= 4.0 || !is_shaded).then_some(!is_shaded || from_end > 0.0)
+                };
+                let Some(is_lit) = is_lit else { continue };
+                let light = if is_lit { FRAC_PI_6.sin() / PI } else { 0.0 };
+                let value = found.light(&layer, row, col);
+                probes.push(probe(value, light, 16.0 * EPSILON * light, [s, row, col]));
             }
         }
         probes

@@ -72,6 +72,13 @@ impl Method {
             || self.quality.lines.shift().is_none_or(|s| (lane << 15).is_multiple_of(1 << s))
     }
 
+    /// Cells by which what a sweep meets may stand aside of or beyond what its samples would meet: half the
+    /// lines' distance and a step.
+    pub fn aside(&self) -> f64 {
+        let spaced = self.quality.lines.shift().filter(|_| self.has_lines());
+        spaced.map_or(0.0, |shift| 1.0 + 0.5 * f64::from(shift).exp2() / 32_768.0)
+    }
+
     /// The azimuths that it sweeps when asked for `count`, in the order of the circle.
     pub fn azimuths(&self, count: u32, cell_m: [f64; 2]) -> Vec<Azimuth> {
         if self.is_exact() {

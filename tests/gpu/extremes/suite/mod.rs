@@ -6,12 +6,14 @@ pub mod inputs;
 mod lights;
 pub mod methods;
 pub mod page;
+mod twin;
 
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Azimuth, Picture};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Quality, Scene, Surface};
 
 use methods::Method;
+use twin::Twin;
 
 /// What is drawn for a case.
 pub enum Asks {
@@ -34,6 +36,8 @@ pub struct Case {
     pub probes: Probes,
     /// The sentence with which a method refuses the case.
     pub refuses: fn(&Method) -> Option<&'static str>,
+    /// Whether what a method rounds may be as large as all that it may find: no bound says anything then.
+    pub unjudged: fn(&Method) -> bool,
     /// Whether a method takes so long that `tools/extremes` alone draws it, and the tests do not.
     pub is_long: fn(&Method) -> bool,
 }
@@ -74,8 +78,8 @@ pub struct Found<'a> {
     pub azimuths: Vec<Azimuth>,
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
-    /// Relief of heights that are no plane's, else 0.
-    uneven_m: f64,
+    /// What a pyramid has to find where heights are no plane's.
+    twin: Option<Twin<'a>>,
     /// Which azimuth each layer of the first output is.
     layers: Vec<u32>,
     outputs: Vec<Pixels>,
@@ -99,7 +103,8 @@ impl Found<'_> {
         self.between(at, [slope; 2], (largest_m, near_m), 0.0)
     }
 
-    /// A horizon whose slope has to be in an interval, where ties may be broken by rounding.
+    /// A horizon whose slope has to be in an interval, where ties may be broken by rounding. Of a pyramid on
+    /// uneven ground its twin's, whatever the slope.
     pub fn between(
         &self,
         at: [usize; 3],
@@ -110,20 +115,18 @@ impl Found<'_> {
         let [k, row, col] = at;
         let found = self.horizon(k, row, col)?;
         let azimuth = &self.azimuths[k];
+        if let Some((twin, bound)) = self.twin_elevation(azimuth, row, col) {
+            return Some(Probe { found, expected: [twin; 2], bound, at });
+        }
         let bounds = slopes.map(|s| self.method.angle_error(s, rounded, ties, azimuth));
         let expected = slopes.map(f64::atan);
-        let smoothed = self.smoothed(azimuth);
-        Some(Probe { found, expected, bound: bounds[0].max(bounds[1]) + smoothed, at })
+        Some(Probe { found, expected, bound: bounds[0].max(bounds[1]), at })
     }
 
-    /// Angle by which a horizon may be wrong because heights were smoothed.
-    ///
-    /// A pyramid's levels are means of heights with positive weights that sum to 1, and so is its spline
-    /// over angles: what is found and what is there both lie between 0 and atan(relief / step). Planes
-    /// stay planes at every level.
-    fn smoothed(&self, azimuth: &Azimuth) -> f64 {
-        let relief = if self.method.is_pyramid() { self.uneven_m } else { 0.0 };
-        (relief / f64::from(azimuth.step_m)).atan()
+    /// The elevation that a pyramid has to find on uneven ground, and how far from it one may be found; `None`
+    /// where the truth itself is asked for.
+    pub fn twin_elevation(&self, azimuth: &Azimuth, row: usize, col: usize) -> Option<(f64, f64)> {
+        self.twin.as_ref().map(|twin| twin.elevation(azimuth, row, col))
     }
 
     /// First channel of a layer at a sample.
@@ -141,8 +144,8 @@ impl Found<'_> {
 
 /// What came of a case under a method.
 pub enum Outcome {
-    /// The worst of so many values, and the largest error of all.
-    Measured { worst: Probe, largest_error: f64, values: usize },
+    /// The worst of so many values, the largest error of all, and the tightest bound of all.
+    Measured { worst: Probe, largest_error: f64, tightest: f64, values: usize },
     /// The sentence that was said.
     Refused(String),
 }
@@ -198,12 +201,14 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
     let outputs = (0..outputs).map(|o| gpu.pixels(&frame, o).map_err(|e| e.to_string()));
     let outputs = outputs.collect::<Result<Vec<Pixels>, String>>();
     gpu.end(frame);
+    let is_smoothed = method.is_pyramid() && !is_plane(&case.scene);
+    let twin = is_smoothed.then(|| Twin::new(&case.scene, &quality));
     let found = Found {
         scene: &case.scene,
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
-        uneven_m: uneven(field),
+        twin,
         layers,
         outputs: outputs?,
     };
@@ -220,14 +225,29 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
     Outcome::Measured {
         worst: worst.expect("a case looks at something under every method"),
         largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
+        tightest: probes
+            .iter()
+            .fold(f64::INFINITY, |m, p| (p.bound / p.expected[1].max(1.0)).min(m)),
         values: probes.len(),
     }
 }
 
-/// What is wrong with a row, if anything.
+/// A bound that says nothing: a tenth of a radian, or of the light of a sky of 1 or more.
+const LOOSE: f64 = 0.1;
+
+/// What is wrong with a row, if anything: a value beyond its bound, or no bound that could be missed.
 pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String> {
     let (case, method) = (&cases[row.case], &methods[row.method]);
     let said = match (&row.outcome, (case.refuses)(method)) {
+        (Outcome::Measured { largest_error, .. }, None) if (case.unjudged)(method) => {
+            if largest_error.is_finite() {
+                return None;
+            }
+            "no number".to_owned()
+        }
+        (Outcome::Measured { tightest, .. }, None) if *tightest >= LOOSE => {
+            format!("every bound is as wide as {tightest}, which nothing exceeds")
+        }
         (Outcome::Measured { worst, .. }, None) if worst.ratio() <= 1.0 => return None,
         (Outcome::Measured { worst, .. }, None) => {
             let Probe { found, expected: [low, high], bound, at } = worst;
@@ -258,6 +278,11 @@ fn never(_: &Method) -> Option<&'static str> {
     None
 }
 
+/// Every method can be judged.
+fn none(_: &Method) -> bool {
+    false
+}
+
 /// Heights that are good, none of them marked as no-data.
 fn field(
     [rows, cols]: [usize; 2],
@@ -268,29 +293,34 @@ fn field(
     HeightField::new(rows, cols, &heights, cell_m, None).expect("a good field")
 }
 
-/// A white field on a plane.
-fn white(field: HeightField, lights: Lights) -> Scene {
-    let surface =
-        Surface { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane, phong: None };
+/// A white field.
+fn white(field: HeightField, border: Border, lights: Lights) -> Scene {
+    let surface = Surface { albedo: Albedo::Constant([1.0; 3]), border, phong: None };
     Scene { field, surface, lights }
 }
 
-/// Relief of the heights; 0 where they are a plane's, each rounded to f32.
-fn uneven(field: &HeightField) -> f64 {
+/// Whether the ground is a plane, heights rounded to f32: so is every level of it then.
+fn is_plane(scene: &Scene) -> bool {
+    let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
     let at = |r: usize, c: usize| f64::from(field.heights_m()[r * cols + c]);
     let by_row = (at(rows - 1, 0) - at(0, 0)) / (rows - 1).max(1) as f64;
     let by_col = (at(0, cols - 1) - at(0, 0)) / (cols - 1).max(1) as f64;
     // Three roundings: of a height and of the two ends that it is held against.
     let rounding = 3.0 * ridgelight::measure::tolerance::EPSILON * largest(field);
-    let is_plane = (0..rows * cols).all(|i| {
-        let (r, c) = (i / cols, i % cols);
-        let plane = at(0, 0) + by_row * r as f64 + by_col * c as f64;
-        (at(r, c) - plane).abs() <= rounding
-    });
+    let repeats = scene.surface.border == Border::Periodic;
+    (!repeats || relief(field) <= rounding)
+        && (0..rows * cols).all(|i| {
+            let (r, c) = (i / cols, i % cols);
+            let plane = at(0, 0) + by_row * r as f64 + by_col * c as f64;
+            (at(r, c) - plane).abs() <= rounding
+        })
+}
+
+/// Highest less lowest.
+fn relief(field: &HeightField) -> f64 {
     let all = || field.heights_m().iter().copied().map(f64::from);
-    let relief = all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min);
-    if is_plane { 0.0 } else { relief }
+    all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
 }
 
 /// The largest |height above the base|.

@@ -21,13 +21,19 @@ horizon, at the distance d of what makes it, with heights up to H:
 | brute | (2 + 76 + 208) ε H / d: heights in, march, device |
 | exact | (2 + 540 + 40 (1 + march / lane)) ε H / d along the grid vector (march, lane) |
 | all others | (2 + 38 + 256) ε H / d and 6 ε of the slope: heights in, sweep, fuse |
-| pyramid, on planes | (2 + 144) ε H / d: heights in, levels; elsewhere the angle atan(relief / step) besides: levels are means of heights |
+| pyramid | on planes (2 + 144) ε H / d: heights in, levels; elsewhere what is expected is not the truth but what its twin on the processor finds in f32 from the same heights, within (232 H + 12 relief) ε / step and 6e-6, an angle |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
 
-each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
+*Not judged*: a pyramid's levels are nearly level somewhere whatever they are made from, and the rounding of 1e6
+cells alone turns an angle there by anything. Elsewhere each row has a bound below 0.1.
+
+Bounds on a slope are each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
 Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
+
+/// In place of a bound, and of the share of it.
+pub const UNJUDGED: &str = "not judged";
 
 /// What a case's table begins with.
 pub fn heading(case: &Case) -> String {
@@ -59,9 +65,9 @@ pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
             let refusal = (case.refuses)(method);
             let holds = row.is_some_and(|r| match refusal {
                 Some(sentence) => r.contains(sentence),
-                None => {
-                    r.split(" | ").all(|cell| cell.trim_end_matches(" |").parse::<f64>().is_ok())
-                }
+                None => r.split(" | ").map(|cell| cell.trim_end_matches(" |")).all(|cell| {
+                    cell.parse::<f64>().is_ok() || (cell == UNJUDGED && (case.unjudged)(method))
+                }),
             });
             if !holds {
                 missing.push(format!("{}, {}", case.name, method.name));
