@@ -16,7 +16,14 @@ pub fn light_at(
     matrix: &[Vec<DVec3>],
     [col, row]: [i32; 2],
 ) -> DVec3 {
-    let normal = normal_of(field_slope(heights, col, row));
+    light_on(normal_of(field_slope(heights, col, row)), seen, matrix)
+}
+
+/// The same on a surface of this normal.
+///
+/// # Panics
+/// A matrix of neither receiver.
+pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let all = receiver(normal.to_array());
     let rows = if matrix.len() == 3 { &all[1..4] } else { &all[..matrix.len()] };
     let share = |row: &[DVec3]| row.iter().zip(seen).map(|(m, v)| *v * *m).sum::<DVec3>();

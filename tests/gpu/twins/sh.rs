@@ -6,9 +6,10 @@ use ridgelight::cpu::sh_shade::light_at;
 use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
 use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::harmonics::matrix_magnitudes;
 use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_shade, twin_turn};
 use ridgelight::plan::Pass;
-use ridgelight::scene::{Border, Environment, Quality, Receiver, Wedges, Window};
+use ridgelight::scene::{Environment, Receiver, Wedges};
 
 use super::light::{rgb, so_far};
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -43,12 +44,6 @@ pub(super) fn env_turns(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Whether the light is fitted above ground, by the quality and the border.
-fn is_fitted(quality: &Quality, border: Border) -> bool {
-    let plain = quality.receiver == Receiver::Plane && quality.window == Window::None;
-    plain && border != Border::Open
-}
-
 pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS};
     let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
@@ -57,31 +52,17 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .map(<[_]>::to_vec)
         .collect();
     assert_eq!(turns.len(), rows);
-    let (quality, fitted) = (run.quality, is_fitted(&run.quality, run.border()));
+    let (quality, fitted) = (run.quality, matrix_twin::is_fitted(&run.quality, run.border()));
     let height = environment(run).height();
     let series = matrix_twin::series(&turns, height, light_order, fitted);
     let want = matrix_twin::light_matrix(&quality, &series);
-    // Of a light of 1 in one coefficient, and in one row alone: what is summed, whatever its sign.
-    let share = |i: usize| {
-        let mut unit = vec![DVec3::ZERO; series.len()];
-        unit[i] = DVec3::ONE;
-        matrix_twin::light_matrix(&quality, &unit)
-    };
-    let shares: Vec<_> = (0..series.len()).map(share).collect();
-    let mut summed = vec![DVec3::ZERO; series.len()];
-    for row in 0..rows {
-        let mut alone = vec![vec![DVec3::ZERO; 2 * light_order - 1]; rows];
-        alone[row].clone_from(&turns[row]);
-        let of_row = matrix_twin::series(&alone, height, light_order, fitted);
-        summed.iter_mut().zip(of_row).for_each(|(s, r)| *s += r.abs());
-    }
+    let summed = matrix_magnitudes(&quality, run.border(), height, &turns);
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
     let mut pairs = Vec::new();
     for (entry, got) in got.into_iter().enumerate() {
         let (receiver, k) = (entry / (order * order), entry % (order * order));
-        let all = shares.iter().zip(&summed).map(|(t, s)| t[receiver][k].abs() * *s);
-        let tolerance = twin_light_matrix(height) * all.sum::<DVec3>();
+        let tolerance = twin_light_matrix(height) * summed[receiver][k];
         pairs.extend(three(got, want[receiver][k], tolerance, [0, receiver, k]));
     }
     pairs
