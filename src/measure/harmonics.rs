@@ -23,6 +23,25 @@ pub struct Seen {
     pub errors: Vec<f64>,
 }
 
+impl Seen {
+    /// What a sample sees from what nodes see, each with what it counts for.
+    pub fn between<'a>(
+        nodes: impl Iterator<Item = (&'a Seen, f64)> + Clone,
+        error: &ShadeError,
+    ) -> Self {
+        let counted = error.node_weight();
+        let sum = |of: &dyn Fn(&Seen, usize) -> f64, k: usize| {
+            nodes.clone().map(|(node, weight)| weight * of(node, k)).sum()
+        };
+        let count = nodes.clone().next().map_or(0, |(node, _)| node.values.len());
+        let off = |node: &Seen, k: usize| node.errors[k] + counted * node.values[k].abs();
+        Self {
+            values: (0..count).map(|k| sum(&|node, k| node.values[k], k)).collect(),
+            errors: (0..count).map(|k| sum(&off, k)).collect(),
+        }
+    }
+}
+
 /// An environment by spherical harmonics, in f64.
 #[derive(Clone, Debug)]
 pub struct Harmonics {

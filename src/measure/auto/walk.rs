@@ -54,6 +54,7 @@ const COARSE: Quality = Quality {
     wedges: Wedges::Slices,
     receiver: Receiver::Plane,
     window: Window::None,
+    subsample: 1,
 };
 
 /// Where bounds alone stand in the way probes are doubled up to so many, or twice.

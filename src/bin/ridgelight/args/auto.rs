@@ -3,7 +3,7 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 12] = [
+const CHOSEN: [&str; 13] = [
     "method",
     "azimuths",
     "sun_azimuths",
@@ -16,6 +16,7 @@ const CHOSEN: [&str; 12] = [
     "wedges",
     "receiver",
     "window",
+    "subsample",
 ];
 
 #[derive(Args)]

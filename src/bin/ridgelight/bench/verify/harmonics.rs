@@ -1,22 +1,24 @@
 //! Light by harmonics: the device's horizons are held against the oracle, and what it makes of them against
 //! the same series in f64, within what f32 may do. What harmonics miss is told, not judged.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 use ridgelight::Result;
+use ridgelight::cpu::sh_shade::nodes_around;
 use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::cpu::sky_shade::wedge_of_sky;
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::measure::harmonics::Harmonics;
+use ridgelight::measure::harmonics::{Harmonics, Seen};
 use ridgelight::measure::tolerance::{
     ARC_TANGENT, ShadeError, twin_fused_slope, twin_resolved, two_devices,
 };
-use ridgelight::plan::{self, Azimuth, Limits, Picture};
+use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
 use ridgelight::scene::{Albedo, Border, Quality, Receiver, Scene};
 
-use super::{Truth, Verifier, bounds, percent, rms, within};
+use super::{Verifier, bounds, percent, rms, within};
 
 /// What is known of a sample before it is lit.
 struct Place {
@@ -62,8 +64,11 @@ pub(super) fn check(
     limits: &Limits,
 ) -> Result<String> {
     let Verifier { scene, truth } = verifier;
-    let places = places(verifier, gpu, quality, limits)?;
+    let heights = Heights::of(&scene.field, scene.surface.border);
     let border = scene.surface.border;
+    let all = truth.places.iter().copied().chain(nodes_of(&heights, quality, &truth.places));
+    let all = places(scene, all.collect(), gpu, quality, limits)?;
+    let (places, nodes) = all.split_at(truth.places.len());
     let sky = rms(places.iter().zip(&truth.open).map(|(place, open)| place.sky(border) - open));
     let open = rms(truth.open.iter().copied());
     let [of_sky, _, of_suns] = bounds(scene, truth.dark(), quality);
@@ -71,7 +76,7 @@ pub(super) fn check(
     let (sky, sky_bound) = within(what, "the oracle's", sky / open, of_sky, quality)?;
 
     let [whole, own] = draw(scene, gpu, quality, limits)?;
-    let wanted = Wanted::of(scene, quality, &places);
+    let wanted = Wanted::of(scene, quality, places, nodes);
     let (series, series_bound) = wanted.judge(&texels(&own, &truth.places), quality)?;
 
     let [whole_means, own_means] = [&whole, &own].map(|p| truth.means(p));
@@ -92,14 +97,34 @@ pub(super) fn check(
     ))
 }
 
-/// The places of the truth with the device's horizons.
+/// A sample's nodes as samples, and what each counts.
+fn around(heights: &Heights, quality: &Quality, index: usize) -> [(usize, f64); 4] {
+    let nodes = Nodes { stride: quality.subsample };
+    let at = [(index % heights.cols) as i32, (index / heights.cols) as i32];
+    nodes_around(heights, nodes, at).map(|(node, weight)| {
+        let col = nodes.place(node[0], heights.cols as u32) as usize;
+        let row = nodes.place(node[1], heights.rows as u32) as usize;
+        (row * heights.cols + col, weight)
+    })
+}
+
+/// The nodes of some samples, in order.
+fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize> {
+    if quality.subsample == 1 {
+        return places.to_vec();
+    }
+    let all = places.iter().flat_map(|p| around(heights, quality, *p).map(|(node, _)| node));
+    all.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Samples with the device's horizons.
 fn places(
-    verifier: &Verifier,
+    scene: &Scene,
+    places: Vec<usize>,
     gpu: &mut Headless,
     quality: &Quality,
     limits: &Limits,
 ) -> Result<Vec<Place>> {
-    let Verifier { scene, truth: Truth { places, .. } } = verifier;
     let (field, border) = (&scene.field, scene.surface.border);
     let mut all: Vec<Place> = places.iter().map(|p| Place::of(scene, *p)).collect();
     let mut take = |k: u32, angles: &[f32], _: &[f32]| {
@@ -146,8 +171,9 @@ fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
 struct Wanted(Vec<[DVec3; 2]>);
 
 impl Wanted {
-    /// Of places whose horizons a device has found: it finds them again, from the same lattice.
-    fn of(scene: &Scene, quality: &Quality, places: &[Place]) -> Self {
+    /// Of places, by what their nodes see, whose horizons a device has found: it finds them again, from the
+    /// same lattice.
+    fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
         let environment = scene.lights.environment.as_ref().expect("an environment");
         let harmonics = Harmonics::new(environment, border, quality);
@@ -157,15 +183,25 @@ impl Wanted {
         // A march step is a cell or longer.
         let slope = two_devices(twin_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
         let error = ShadeError::new(slope, high - low, cell, quality.azimuths as usize);
+        let own_plane_hides = quality.receiver == Receiver::Plane;
+        let seen: BTreeMap<usize, Seen> = nodes
+            .iter()
+            .map(|n| (n.index, harmonics.seen(&n.lowest(border, own_plane_hides), &error)))
+            .collect();
+        let shader_heights = Heights::of(field, border);
         let of = |place: &Place| {
             let albedo = match &scene.surface.albedo {
                 Albedo::Constant(c) => *c,
                 Albedo::Map(map) => map[place.index],
             };
             let albedo = DVec3::from_array(albedo.map(f64::from));
-            let lowest = place.lowest(border, quality.receiver == Receiver::Plane);
-            let [light, off] =
-                harmonics.light(place.normal, &harmonics.seen(&lowest, &error), &error);
+            let seen = if quality.subsample == 1 {
+                seen[&place.index].clone()
+            } else {
+                let around = around(&shader_heights, quality, place.index);
+                Seen::between(around.iter().map(|(node, weight)| (&seen[node], *weight)), &error)
+            };
+            let [light, off] = harmonics.light(place.normal, &seen, &error);
             let light = albedo * light;
             [light, albedo * off + light.map(|v| twin_resolved(v, 1))]
         };
@@ -247,9 +283,9 @@ mod tests {
                 (Wedges::Nlp, Receiver::Lobe, Window::Nonnegative),
             ] {
                 let quality = Quality { sh_order, wedges, receiver, window, ..base };
-                let wanted = Wanted::of(&scene, &quality, &known);
+                let wanted = Wanted::of(&scene, &quality, &known, &known);
                 let light = |quality: &Quality, places: &[Place]| -> Vec<DVec3> {
-                    Wanted::of(&scene, quality, places).0.iter().map(|w| w[0]).collect()
+                    Wanted::of(&scene, quality, places, places).0.iter().map(|w| w[0]).collect()
                 };
                 let right = light(&quality, &known);
                 let (error, bound) = wanted.judge(&right, &quality).unwrap();
