@@ -55,7 +55,7 @@ pub fn horizons(
         sweep,
         heights,
         vec![list],
-        (limits, false, Nodes { stride: 1 }),
+        (limits, None, Nodes { stride: 1 }),
     )?;
     let batches = &lists.batches[0];
     for batch in batches {

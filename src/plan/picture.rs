@@ -19,7 +19,8 @@ pub struct Picture {
     /// receiver, [0..1].
     pub sky_view: bool,
     /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
-    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
+    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once, of suns'
+    /// alone where an environment is by spherical harmonics: these keep what is seen instead.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
     /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics.
@@ -77,7 +78,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let is_editable = sweep.editable(surface.border).is_some() && harmonics.is_none();
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
-    let held = (limits, keeps, marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted));
+    // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
+    let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
+    let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
+    let held = (limits, kept_from, nodes);
     let (sweeping, lists) =
         prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);

@@ -157,7 +157,8 @@ impl LatticeShape {
     }
 }
 
-/// Makes the sweep's own images, within what the budget leaves, and cuts the lists into batches.
+/// Makes the sweep's own images, within what the budget leaves, and cuts the lists into batches. Those of
+/// the lists from `kept_from` on keep a lattice of their own, if there are such; others use some in turn.
 pub(super) fn prepare(
     builder: &mut Builder,
     field: &HeightField,
@@ -165,7 +166,7 @@ pub(super) fn prepare(
     sweep: Sweep,
     heights: ResourceId,
     mut lists: Vec<Vec<Azimuth>>,
-    (limits, keeps, nodes): (&Limits, bool, Nodes),
+    (limits, kept_from, nodes): (&Limits, Option<usize>, Nodes),
 ) -> Result<(Sweeping, Lists)> {
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
@@ -199,25 +200,31 @@ pub(super) fn prepare(
             can_lose.then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
     };
-    let all: Vec<Batch> = batches.iter().flatten().copied().collect();
-    let lattices = if keeps {
-        all.iter().map(|b| make(b.axis, b.layers, &format!("_{}", b.number))).collect()
-    } else {
-        let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
-        let mut lattice_of = |batch: &Batch| {
-            let shape = shape_of(batch.axis);
-            if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
-                return *known;
-            }
-            let alike = all.iter().filter(|b| shape_of(b.axis) == shape);
+    let is_kept = |list: usize| kept_from.is_some_and(|first| list >= first);
+    let in_turn: Vec<Batch> = batches
+        .iter()
+        .enumerate()
+        .filter(|(list, _)| !is_kept(*list))
+        .flat_map(|(_, batches)| batches.iter().copied())
+        .collect();
+    let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
+    let mut lattices = Vec::new();
+    for (list, batch) in batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, b)))
+    {
+        let shape = shape_of(batch.axis);
+        if is_kept(list) {
+            lattices.push(make(batch.axis, batch.layers, &format!("_{}", batch.number)));
+        } else if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
+            lattices.push(*known);
+        } else {
+            let alike = in_turn.iter().filter(|b| shape_of(b.axis) == shape);
             let layers = alike.map(|b| b.layers).max().unwrap_or(1);
             let suffix = if shared.is_empty() { "" } else { "_across" };
             let made = make(batch.axis, layers, suffix);
             shared.push((shape, made));
-            made
-        };
-        all.iter().map(&mut lattice_of).collect()
-    };
+            lattices.push(made);
+        }
+    }
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
             passes::height_transpose::plan(builder, *axis, border, heights, lanes);
