@@ -24,6 +24,7 @@ horizon, at the distance d of what makes it, with heights up to H:
 | pyramid, on planes | (2 + 144) ε H / d: heights in, levels; elsewhere the angle atan(relief / step) besides: levels are means of heights |
 | f16 besides | 2^-10 of the slope and 2^-24; slopes beyond 65 504 are that |
 | packed besides | 2^-9 H / d and 100 ε H / d |
+| harmonics | as all others: they change an environment's light alone, by what f32 may do to their *series* (`src/measure/harmonics.rs`) |
 
 each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
 Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
