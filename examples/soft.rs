@@ -7,6 +7,9 @@
 //! `… -- sizes [--largest N] [--samples K]` memory and time of each stage, by size, engine, sub-sampling and
 //! wedges (its table 1).
 //!
+//! `… -- wedges FIELD [--cell X,Y] [--side N]` the series of what is seen by slices, by Legendre coefficients
+//! and by a table of wedges, from the oracle's horizons.
+//!
 //! `… -- rivals FOLDER [--side N] [--samples K] [-o FILE.svg]` three real scenes of FOLDER's `height/` and
 //! `env/`: the cheapest of each engine and basis within an error, and whether `auto` is it.
 //!
@@ -20,6 +23,8 @@ mod plot;
 mod rivals;
 #[path = "soft/sizes.rs"]
 mod sizes;
+#[path = "soft/wedges.rs"]
+mod wedges;
 
 use std::path::{Path, PathBuf};
 
@@ -140,10 +145,17 @@ fn run() -> Result<()> {
     let asked = asked()?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     println!("{}", gpu.report().name);
+    let field = || {
+        let options = files::HeightOptions { cell_m: asked.cell_m, ..Default::default() };
+        files::read_heights(&asked.path, &options)
+    };
     match asked.what.as_str() {
+        "wedges" => {
+            wedges::run(&middle(&field()?, if asked.side > 0 { asked.side } else { 128 })?);
+            Ok(())
+        }
         "converge" => {
-            let options = files::HeightOptions { cell_m: asked.cell_m, ..Default::default() };
-            let field = files::read_heights(&asked.path, &options)?;
+            let field = field()?;
             let side = if asked.side > 0 { asked.side } else { 128 };
             let environment = files::read_environment(&asked.env, 0.0)?;
             let scene = under(middle(&field, side)?, environment);
@@ -155,7 +167,7 @@ fn run() -> Result<()> {
             let svg = rivals::run(&mut gpu, &asked.path, side, asked.samples)?;
             write(asked.output.as_deref(), &svg)
         }
-        other => Err(Error::setting("what", other, "converge, sizes or rivals")),
+        other => Err(Error::setting("what", other, "converge, sizes, wedges or rivals")),
     }
 }
 
