@@ -2,7 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI, TAU};
 
-use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON};
+use glam::DVec3;
+use ridgelight::measure::harmonics::{Harmonics, Seen};
+use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
+use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::across_sun;
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Sun};
 
@@ -108,6 +111,29 @@ fn at_level(found: &Found) -> f64 {
     if is_open(found) { between_nodes(found) } else { 0.0 }
 }
 
+/// Light of the environment by the same series in f64, and how far a device may be from it: on a plane that
+/// rises by `slope` towards east, whose horizons err by `slope_error`. Heights that are whole multiples of a
+/// number have gradients without error.
+fn series(found: &Found, slope: f64, slope_error: f64) -> [f64; 2] {
+    let quality = &found.method.quality;
+    let environment = found.scene.lights.environment.as_ref().expect("an environment");
+    let harmonics = Harmonics::new(environment, found.scene.surface.border, quality);
+    let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
+    let rise = |a: &Azimuth| (*a, (slope * f64::from(a.cos_phi)).max(0.0));
+    let lowest: Vec<_> = found.azimuths.iter().map(rise).collect();
+    let mut seen = harmonics.seen(&lowest, &error);
+    if quality.subsample > 1 {
+        seen = Seen::between([(&seen, 1.0)].into_iter(), &error);
+    }
+    let [light, off] = harmonics.light(DVec3::new(-slope, 0.0, 1.0).normalize(), &seen, &error);
+    [light.x, off.x]
+}
+
+/// [`environment_error`], or of a series that is a constant everywhere.
+fn constant_error(found: &Found) -> f64 {
+    if found.method.is_soft() { series(found, 0.0, 0.0)[1] } else { environment_error(found) }
+}
+
 fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
     Probe { found, expected: [expected; 2], bound, at }
 }
@@ -115,14 +141,15 @@ fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
 /// Level ground gives back its albedo's share of what shines all around: L = ρ (1 + 1).
 fn albedo(albedo: f32) -> Case {
     let expected = "under a sky of 1 and an environment of 1, level: 2 ρ";
-    let bound = "ρ times the sky's and the environment's below, and 2 ε a light";
+    let bound =
+        "ρ times the sky's and the environment's below, and 2 ε a light; harmonics: the series'";
     let mut case = light(
         format!("albedo {albedo}"),
         (expected, bound),
         (level(), Border::Plane, around(uniform(1.0))),
         move |found| {
             let albedo = f64::from(albedo);
-            let bound = albedo * (sky_error(found) + environment_error(found) + 4.0 * EPSILON);
+            let bound = albedo * (sky_error(found) + constant_error(found) + 4.0 * EPSILON);
             let at = |[r, c]: [usize; 2]| {
                 probe(found.light("radiance", r, c), 2.0 * albedo, bound, [0, r, c])
             };
@@ -138,18 +165,18 @@ fn albedo(albedo: f32) -> Case {
 fn uniform_environment(value: f32, border: Border) -> Case {
     let name = format!("an environment of {value:e} everywhere");
     let expected = "level: its radiance, and 1 of the sky beside it";
-    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more";
+    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more; harmonics: the series'";
     light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
+        // A series' is of the light itself.
+        let bound = match found.method.is_soft() {
+            true => constant_error(found),
+            false => value * (constant_error(found) + at_level(found)),
+        };
         let at = |[r, c]: [usize; 2]| {
             [
                 probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
-                probe(
-                    found.light("direct.env", r, c),
-                    value,
-                    value * (environment_error(found) + at_level(found)),
-                    [1, r, c],
-                ),
+                probe(found.light("direct.env", r, c), value, bound, [1, r, c]),
             ]
         };
         PLACES.map(at).as_flattened().to_vec()
@@ -166,8 +193,8 @@ fn peak(border: Border) -> Case {
     texels[8 * COLUMNS + 10] = [1e6; 3];
     let peak = Environment::new(COLUMNS, ROWS, texels, 0.0).expect("good texels");
     let [a, b] = [8.0, 9.0].map(|row: f64| (PI * row / ROWS as f64).sin().powi(2));
-    let expected = "level: L Δφ (sin² b - sin² a) / 2π, no more and no less";
-    let bound = "(256 + 12 / (sin² b - sin² a)) ε of it, and the environment's of a constant one";
+    let expected = "level: L Δφ (sin² b - sin² a) / 2π, no more and no less; harmonics: what the series keeps of it, in f64";
+    let bound = "(256 + 12 / (sin² b - sin² a)) ε of it, and the environment's of a constant one; harmonics: the series'";
     light(
         "an environment of one texel of 1e6",
         (expected, bound),
@@ -175,8 +202,12 @@ fn peak(border: Border) -> Case {
         move |found| {
             let right = 1e6 * (TAU / COLUMNS as f64) * (b - a) / TAU;
             let relative = (256.0 + 12.0 / (b - a)) * EPSILON + environment_error(found);
+            let [right, bound] = match found.method.is_soft() {
+                true => series(found, 0.0, 0.0),
+                false => [right, right * relative],
+            };
             let at = |[r, c]: [usize; 2]| {
-                probe(found.light("direct.env", r, c), right, right * relative, [1, r, c])
+                probe(found.light("direct.env", r, c), right, bound, [1, r, c])
             };
             PLACES.map(at).into()
         },
@@ -189,7 +220,7 @@ fn peak(border: Border) -> Case {
 /// Azimuths: the sum stops at wedge middles where the own plane begins to hide; half a wedge is missed
 /// or added at each of two ends, where the light is that of its angle, (π/m)² sin(tilt) in all. Elevations
 /// that err by an angle move the slices' ends, where the integrand is at most 1, over 2π / π. The table
-/// is read between nodes.
+/// is read between nodes. In harmonics azimuths stand for their wedges: (2π/m)²/24 of what is horizontal.
 fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> Case {
     // Uphill east, or north in a single column.
     let tilted = field([rows, cols], [1.0, 1.0], |r, c| {
@@ -199,7 +230,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         Border::Open => "all of the sky of 1 and of the environment of 1 above its own plane: 1",
         _ => "(1 + cos tilt) / 2 of the sky of 1 and of the environment of 1",
     };
-    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at one cell";
+    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: + (2π/m)² / 24 and the series'; δ: the method's, at one cell";
     let name = match [rows, cols] {
         [SIDE, SIDE] => format!("light on a slope of {slope:e}"),
         _ => format!("light on a slope of {slope:e} of {rows} × {cols}"),
@@ -214,7 +245,10 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         let angle = found.method.angle_error(slope, (largest, 1.0), ties, &found.azimuths[0]);
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
         let sky = wedge + 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky + between_nodes(found) + environment_error(found);
+        let environment = match found.method.is_soft() {
+            true => sky + (TAU / found.count()).powi(2) / 24.0 + series(found, slope, angle)[1],
+            false => sky + between_nodes(found) + environment_error(found),
+        };
         vec![
             probe(found.light("direct.sky", row, col), right, sky, [0, row, col]),
             probe(found.light("direct.env", row, col), right, environment, [1, row, col]),
