@@ -1,5 +1,6 @@
 #include "shared/lattice.glsl"
 #include "shared/quad.glsl"
+#include "shared/surface.glsl"
 
 // Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
 // declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
@@ -13,7 +14,9 @@ const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the sample's own line whe
                                      // occluder stands; and the first crossings of its own line
 const uint FUSE_AIMED = 5u;          // the same with both lines' proposals, the higher one
 
-const uint FUSE_CROSSINGS = 6u;      // no lattice: the first crossings alone
+const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing within two steps of either proposal
+
+const uint FUSE_CROSSINGS = 7u;      // no lattice: the first crossings alone
 
 const uint LATTICE_OCCLUDERS = 0u;
 const uint LATTICE_SLOPES_F32 = 1u;
@@ -149,6 +152,50 @@ Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     return Met(mix(vec4(NO_SLOPE), slope, stands), distance);
 }
 
+// The highest of all crossings of a sample's own line with grid lines and diagonals within two steps of
+// where a proposal stands, `back` steps ahead: what unit steps miss of a ridge stands beside it. In
+// flipped lanes and steps, as `horizon_march` goes; `reach` steps lie ahead.
+vec2 around(Azimuth azimuth, int lane, int step, float own, int back, int lanes, int steps, int reach) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    float advance = float(azimuth.shear) * (1.0 / float(CELL));
+    vec2 best = vec2(NO_SLOPE, 0.0);
+    for (int b = max(back - 1, 1); b <= min(back + 2, reach); b++) {
+        int y = lane * CELL - b * azimuth.shear;
+        bool on = wraps || azimuth.shear == 0 || y + azimuth.shear > 0;
+        int cell = y >> CELL_SHIFT;
+        float f0 = float(y & (CELL - 1)) * (1.0 / float(CELL));
+        int far_march = march_position(azimuth, neighbour(step - b, steps), steps);
+        int near_march = march_position(azimuth, neighbour(step - b + 1, steps), steps);
+        vec3 at_far;
+        vec3 at_near;
+        for (int i = 0; i < 3; i++) {
+            int beside = lane_position(azimuth, neighbour(cell + i, lanes), lanes);
+            at_far[i] = height_at(beside, far_march);
+            at_near[i] = height_at(beside, near_march);
+        }
+        float rise = (at_far.x - own) + f0 * (at_far.y - at_far.x);
+        float found = rise / (float(b) * azimuth.step_m);
+        bool better = on && (wraps || y >= 0) && found > best.x;
+        best = better ? vec2(found, float(b)) : best;
+        vec3 places = segment_crossings(f0, advance, split_along);
+        for (int c = 0; c < 3; c++) {
+            float u = places[c];
+            float f = f0 + u * advance;
+            bool next = f > 1.0;
+            f = next ? f - 1.0 : f;
+            vec2 far = next ? at_far.yz : at_far.xy;
+            vec2 near = next ? at_near.yz : at_near.xy;
+            rise = surface_rise(far.x, near.x, far.y, near.y, own, u, f, split_along);
+            float distance_steps = float(b) - u;
+            found = rise / (distance_steps * azimuth.step_m);
+            better = on && u < 1.0 && (wraps || float(y) + u * float(azimuth.shear) >= -0.5) && found > best.x;
+            best = better ? vec2(found, distance_steps) : best;
+        }
+    }
+    return best;
+}
+
 // Slopes of the horizons of four samples and how many march steps away they stand.
 Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     bool wraps = BORDER == BORDER_PERIODIC;
@@ -221,6 +268,24 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
         met = first_crossings(azimuth, q, lanes, steps);
         met = higher(met, seen(azimuth, q, y, before_back, lanes, steps));
         return higher(met, seen(azimuth, q, y, after_back, lanes, steps));
+    }
+    if (FUSE == FUSE_AIMED_AROUND) {
+        met = first_crossings(azimuth, q, lanes, steps);
+        for (int k = 0; k < 4; k++) {
+            for (int side = 0; side < 2; side++) {
+                int back = int(side == 0 ? before_back[k] : after_back[k]);
+                // Both lines often propose the same.
+                bool looks = back > 0 && (side == 0 || back != int(before_back[k]));
+                if (looks) {
+                    int reach = step;
+                    vec2 found = around(azimuth, lane[k], step - warm_up, q.here.four[k], back, lanes, steps, reach);
+                    bool better = found.x > met.slope[k];
+                    met.slope[k] = better ? found.x : met.slope[k];
+                    met.steps[k] = better ? found.y : met.steps[k];
+                }
+            }
+        }
+        return met;
     }
     Met b;
     Met a;

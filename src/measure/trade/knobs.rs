@@ -38,7 +38,8 @@ const LINES: [(Lines, &str); 6] = [
     (Lines::QuarterCell, "1/4"),
     (Lines::Exact, "exact"),
 ];
-const FUSES: [Fuse; 5] = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed];
+const FUSES: [Fuse; 6] =
+    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];

@@ -105,6 +105,7 @@ fn kinds_of(q: &Quality) -> [(usize, usize); 6] {
         Fuse::Own => 2,
         Fuse::AimedNearest => 3,
         Fuse::Aimed => 4,
+        Fuse::AimedAround => 5,
     };
     let precision = match q.precision {
         Precision::F32 => 0,
