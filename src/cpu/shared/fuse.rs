@@ -181,8 +181,9 @@ pub fn fused(
             return higher(found, aimed(after_texel));
         }
         Fuse::AimedAround => {
-            let found = higher(first_crossings(march, o), around(before_texel));
-            return higher(found, around(after_texel));
+            let found = higher(first_crossings(march, o), aimed(before_texel));
+            let found = higher(found, aimed(after_texel));
+            return higher(higher(found, around(before_texel)), around(after_texel));
         }
         Fuse::Own => (
             seen(march, after, back(after_texel), step, o.own),
