@@ -226,14 +226,11 @@ void look_around_both(Azimuth azimuth, int lane, int step, float own, ivec2 back
     int second = back.y > 0 ? back.y : back.x;
     int near = min(first, second);
     int far = max(first, second);
-    if (near > 0) {
-        ivec2 ahead = ivec2(max(near - 1, 1), min(near + 2, reach));
+    ivec2 ahead = ivec2(max(near - 1, 1), min(near + 2, reach));
+    // Then what is left of the other's: one call, as SwiftShader's compiler takes its time for each.
+    for (int side = 0; side < 2 && near > 0 && ahead.x <= ahead.y; side++) {
         look_around(azimuth, lane, step, own, ahead, lanes, steps, best);
-        // What is left of the other's.
         ahead = ivec2(max(far - 1, near + 3), min(far + 2, reach));
-        if (ahead.x <= ahead.y) {
-            look_around(azimuth, lane, step, own, ahead, lanes, steps, best);
-        }
     }
 }
 

@@ -82,7 +82,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
             range: None,
             default: 0,
-            dearer: "more of the lines' results, then the surface itself: horizons of each sample",
+            dearer: "more of the lines' results, then the surface itself, then all around there: horizons of each \
+                     sample",
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
         },
@@ -259,14 +260,14 @@ mod tests {
         assert_eq!(names(sun(0.0)), with(&[]));
     }
 
-    /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone
+    /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
     /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
     #[test]
     fn places_are_all_that_differ() {
         let knobs = knobs(&scene(sky()));
         let start = start();
         let all = places(&knobs, &start);
-        assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2 + 5 * 5) * 6);
+        assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
         for (i, place) in all.iter().enumerate() {
             place.quality.check().unwrap();
             assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");

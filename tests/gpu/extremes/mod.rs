@@ -118,7 +118,7 @@ fn kinds_of(q: &Quality) -> [(usize, usize); 6] {
         Hull::Shared => 2,
         Hull::List => 3,
     };
-    [(method, 4), (lines, 6), (fuse, 5), (precision, 3), (hull, 4), (levels, 2)]
+    [(method, 4), (lines, 6), (fuse, 6), (precision, 3), (hull, 4), (levels, 2)]
 }
 
 #[test]
