@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ridgelight::files::{self, Channels, Layer};
 use ridgelight::gpu::{Frame, Headless, Timing};
 use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
-use ridgelight::scene::{Lights, Scene, Surface};
+use ridgelight::scene::{Scene, Surface};
 use ridgelight::{Error, Result};
 
 use crate::args::ReferenceArgs;
@@ -86,15 +86,7 @@ fn check(args: &ReferenceArgs) -> Result<()> {
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
-    let alone =
-        args.lights.sky.is_none() && args.lights.env.is_none() && args.lights.sun.is_empty();
-    // A local light takes the default sky's place, as any light does.
-    let sky = if alone && !args.light.is_empty() { None } else { lights.sky };
-    Ok(Scene {
-        field,
-        surface: Surface { phong: args.phong, ..surface },
-        lights: Lights { sky, spheres: args.light.clone(), ..lights },
-    })
+    Ok(Scene { field, surface: Surface { phong: args.phong, ..surface }, lights })
 }
 
 /// What the paths have come to.
@@ -227,10 +219,6 @@ fn write(
     add("spp", (traced.batches * REFERENCE_BATCH).to_string());
     add("relative_standard_error", traced.error.to_string());
     add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
-    for (i, ball) in scene.lights.spheres.iter().enumerate() {
-        let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
-        add(&format!("light{}", i + 1), format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m));
-    }
     if let Some(phong) = scene.surface.phong {
         add("phong", format!("{},{}", phong.exponent, phong.scale));
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{cell, colour, sun};
+use super::values::{ball, cell, colour, sun};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
@@ -28,6 +28,18 @@ pub struct LightArgs {
     /// it (one number or R,G,B; default 1). Diameter 0 casts hard shadows. May be repeated
     #[arg(long, value_name = "AZ,EL[,ANGLE[,IRRADIANCE]]", value_parser = sun, allow_hyphen_values = true)]
     pub sun: Vec<ridgelight::scene::Sun>,
+    /// A ball of light: its middle east of the westernmost column, north of the southernmost row and
+    /// above 0, its radius (all metres), its radiance (one number or R,G,B). May be repeated
+    #[arg(long, value_name = "X,Y,Z,RADIUS,RADIANCE", value_parser = ball, allow_hyphen_values = true)]
+    pub light: Vec<ridgelight::scene::SphereLight>,
+}
+
+impl LightArgs {
+    /// Whether no light is asked for.
+    pub fn is_empty(&self) -> bool {
+        let Self { sky, env, env_rotate: _, sun, light } = self;
+        sky.is_none() && env.is_none() && sun.is_empty() && light.is_empty()
+    }
 }
 
 #[derive(Args)]
