@@ -3,10 +3,11 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 15] = [
+const CHOSEN: [&str; 16] = [
     "method",
     "azimuths",
     "sun_azimuths",
+    "light_cutoff",
     "lines",
     "fuse",
     "precision",
