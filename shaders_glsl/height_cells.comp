@@ -1,6 +1,6 @@
 // Computes: what rays over the surface look at: the corners of each cell in one texel, and height and
 // slope of each sample in another.
-// Begins the sums of path_trace, too.
+// May begin the sums of path_trace, too.
 // Reads: heights. Writes: cells (north-west, north-east, south-west, south-east, above the base),
 // ground (height, slope towards east, slope towards north), batch_mean (none yet), lost_rays (0).
 // One invocation is one sample and the cell to its south-east.
@@ -10,6 +10,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
+// Of a path tracer.
+layout(constant_id = 1) const bool BEGINS_PATHS = false;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, rgba32f) uniform writeonly image2D cells;
@@ -66,8 +68,10 @@ void main() {
     float slope_east = both_x > 0.0 ? rise_x / (both_x * cell_x_m) : 0.0;
     float slope_north = both_y > 0.0 ? rise_y / (both_y * cell_y_m) : 0.0;
     imageStore(ground, ivec2(c, r), vec4(own, slope_east, slope_north, 0.0));
-    imageStore(batch_mean, ivec2(c, r), vec4(0.0));
-    if (c == 0 && r == 0) {
-        lost_rays[0] = 0u;
+    if (BEGINS_PATHS) {
+        imageStore(batch_mean, ivec2(c, r), vec4(0.0));
+        if (c == 0 && r == 0) {
+            lost_rays[0] = 0u;
+        }
     }
 }

@@ -33,6 +33,7 @@ pub mod sh_visibility;
 pub mod shared;
 pub mod sky_shade;
 pub mod sphere;
+pub mod sphere_shade;
 pub mod sun_shade;
 pub mod surface_sweep;
 pub mod sweep_fuse;

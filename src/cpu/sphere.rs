@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Exit radiance of receivers at a sample under a ball of radiance 1.
 ///
 /// `strips` azimuths over the ball: over its width, spaced so that the disc's square root is smooth, or
-/// over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
+/// twice as many over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -33,6 +33,7 @@ pub fn sphere_on(
     let up = z - field.base_m() - oracle.vertex(row as f64, col as f64);
     let (away, middle) = (east.hypot(north), north.atan2(east));
     let widest = (sphere.radius_m / away).asin();
+    let strips = if sphere.radius_m < away { strips } else { 2 * strips };
     let mut sums = vec![0.0; receivers.len()];
     let mut seen = Vec::new();
     for i in 0..strips {

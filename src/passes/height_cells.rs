@@ -20,34 +20,33 @@ same_layout!(
     cell_y_m = CELL_Y_M,
 );
 
-/// Heights as rays look at them; the sums of paths begin anew.
+/// Heights as rays look at them; the sums of `paths`, where there are any, begin anew.
 pub(crate) fn plan(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
-    [heights, cells, ground, batch_mean, lost_rays]: [ResourceId; 5],
+    [heights, cells, ground]: [ResourceId; 3],
+    paths: Option<[ResourceId; 2]>,
 ) {
+    let mut bound = vec![("heights", heights), ("cells", cells), ("ground", ground)];
+    if let Some([batch_mean, lost_rays]) = paths {
+        bound.extend([("batch_mean", batch_mean), ("lost_rays", lost_rays)]);
+    }
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let samples = u64::from(cols) * u64::from(rows);
     builder.pass(
         &shaders::HEIGHT_CELLS,
         "",
-        "a ray reads a cell at once; paths begin with the samples' normals",
+        "a ray reads a cell at once; light begins with the samples' normals",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[(0, u32::from(border == Border::Periodic))],
+        &[(0, u32::from(border == Border::Periodic)), (1, u32::from(paths.is_some()))],
         &HeightCellsPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: field.cell_m()[0] as f32,
             cell_y_m: field.cell_m()[1] as f32,
         },
-        &[
-            ("heights", heights),
-            ("cells", cells),
-            ("ground", ground),
-            ("batch_mean", batch_mean),
-            ("lost_rays", lost_rays),
-        ],
-        samples * (4 + 3 * 16),
+        &bound,
+        samples * (4 + if paths.is_some() { 3 } else { 2 } * 16),
         samples,
     );
 }

@@ -1,8 +1,8 @@
 use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Builder, ResourceId};
-use crate::scene::{Albedo, Border, Scene};
+use crate::plan::{Blocks, Builder, ResourceId};
+use crate::scene::{Albedo, Scene};
 
 /// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
 /// more evenly, but fewer batches tell the standard error.
@@ -61,23 +61,6 @@ same_layout!(
     keys = KEYS,
 );
 
-/// What rays skip by: cells, rows of the image that the levels' places follow from, levels.
-pub(crate) struct Blocks {
-    pub cells: [u32; 2],
-    pub padded_rows: u32,
-    pub top_level: u32,
-}
-
-/// Steps that no ray of a field can ask for: over its longest side, or as far as a ray over repetitions is
-/// followed, two cells a cell along it, and half as many changes of level; and those of the last block.
-fn most_steps([cells_x, cells_y]: [u32; 2], border: Border) -> u32 {
-    let reach = if border == Border::Periodic { REACH_CELLS } else { cells_x.max(cells_y) };
-    3 * reach + 64
-}
-
-/// As in `trace.glsl`.
-const REACH_CELLS: u32 = 16384;
-
 /// One batch of paths from every sample of some rows, counted in eights.
 pub(crate) fn plan(
     builder: &mut Builder,
@@ -95,8 +78,8 @@ pub(crate) fn plan(
         _ => format!("rows {}..{}", band.start, band.end),
     };
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let is_line = |n| surface.border != Border::Periodic && n == 1;
     let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
+    let [thin_rows, thin_cols] = blocks.thin(field);
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let (albedo, is_map) = match surface.albedo {
         Albedo::Constant(colour) => (colour, false),
@@ -112,8 +95,8 @@ pub(crate) fn plan(
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
         &[
             (0, surface.border as u32),
-            (1, u32::from(is_line(rows))),
-            (6, u32::from(is_line(cols))),
+            (1, u32::from(thin_rows)),
+            (6, u32::from(thin_cols)),
             (2, SET_BITS),
             (3, u32::from(is_map)),
             (4, u32::from(lights.environment.is_some())),
@@ -122,7 +105,7 @@ pub(crate) fn plan(
             (11, u32::from(!lights.keys.is_empty())),
             (8, u32::from(!lights.spheres.is_empty())),
             (9, u32::from(bounces > 0)),
-            (10, most_steps(blocks.cells, surface.border)),
+            (10, blocks.most_steps()),
         ],
         &PathTracePush {
             cols: cols as i32,

@@ -73,6 +73,6 @@ pub fn horizons(
             distances,
         );
     }
-    let used = settings(quality, &sweeping.sweep, border);
+    let used = settings(quality, Some(&sweeping.sweep), border);
     Plan::finish(builder, size, lists.lists.concat(), layer_azimuths, notes, used, limits)
 }

@@ -3,6 +3,7 @@
 
 pub mod azimuths;
 mod batch;
+mod blocks;
 mod builder;
 mod change;
 mod choice;
@@ -18,11 +19,13 @@ mod reference;
 mod resource;
 pub(crate) mod sh;
 mod shining;
+mod spheres;
 pub mod sweep;
 mod sweeping;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
+pub(crate) use blocks::Blocks;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
 pub use horizons::horizons;

@@ -1,13 +1,15 @@
 mod images;
 
 use super::azimuths::Shape;
+use super::blocks::Blocks;
 use super::edit::Edits;
 use super::shining::{Aimed, Shining};
+use super::spheres::light_name;
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Basis, Border, Lights, Quality, Scene, Surface};
+use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface};
 use crate::{Error, Result};
 use images::{Harmonics, Images, Tables};
 
@@ -24,8 +26,8 @@ pub struct Picture {
     /// alone where an environment is by spherical harmonics: these keep what is seen instead.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
-    /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics.
-    /// Memory: a quarter of a byte a sample.
+    /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics or
+    /// with balls of light. Memory: a quarter of a byte a sample.
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
@@ -44,10 +46,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     quality.check()?;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
-    refuse_later(surface, lights)?;
+    refuse_later(surface)?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
-    let shining = Shining::of(scene, wanted, &mut notes)?;
+    let shining = Shining::of(scene, quality, wanted, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
     if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
@@ -88,16 +90,25 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         None => {}
     }
     let keeps = wanted.keeps_horizons;
-    let is_editable = sweep.editable(surface.border).is_some() && harmonics.is_none();
+    let is_editable = sweep.editable(surface.border).is_some()
+        && harmonics.is_none()
+        && images.sphere_sum.is_none();
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let (sweeping, lists) =
-        prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
-    let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
+    let blocks = images.sphere_sum.map(|_| Blocks::make(&mut builder, size, surface.border));
+    let (sweeping, lists) = if lists.is_empty() {
+        (None, Lists::default())
+    } else {
+        let (sweeping, lists) =
+            prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
+        (Some(sweeping), lists)
+    };
+    let sweep = sweeping.as_ref().map(|s| &s.sweep);
+    let used = used(quality, sweep, surface.border, &shining, &images);
     let mut drawing = Drawing {
         builder,
         scene,
@@ -106,14 +117,15 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         tables,
         harmonics,
         sweeping,
+        blocks,
         edited: None,
         is_begun: false,
     };
     drawing.fill_tables(quality);
-    drawing.light(&lists)?;
+    drawing.light(&lists, quality)?;
     if let Some(edits) = edits {
         drawing.edit(size, &lists, edits);
-        drawing.light(&lists)?;
+        drawing.light(&lists, quality)?;
     }
     Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
 }
@@ -142,17 +154,14 @@ fn marched_nodes(
     wanted: Picture,
 ) -> Nodes {
     let is_marched = matches!(sweep, Sweep::March { .. } | Sweep::Pyramid(_));
-    let is_alone = shining.sky.is_none() && shining.suns.is_empty() && !wanted.sky_view;
+    let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
     let nodes = harmonics.map(|h| h.sh.nodes).filter(|_| is_marched && is_alone);
     nodes.unwrap_or(Nodes { stride: 1 })
 }
 
 /// What only the reference can light so far.
-fn refuse_later(surface: &Surface, lights: &Lights) -> Result<()> {
+fn refuse_later(surface: &Surface) -> Result<()> {
     let expected = "none: it is not yet there for pictures, only for the reference";
-    if !lights.spheres.is_empty() {
-        return Err(Error::setting("light 1", "a local light", expected));
-    }
     if surface.phong.is_some() {
         return Err(Error::setting("phong", "a lobe", expected));
     }
@@ -167,7 +176,10 @@ struct Drawing<'a> {
     images: Images,
     tables: Option<Tables>,
     harmonics: Option<Harmonics>,
-    sweeping: Sweeping,
+    /// None where balls of light are alone: each looks itself for what hides it.
+    sweeping: Option<Sweeping>,
+    /// What rays towards balls of light look at.
+    blocks: Option<Blocks>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
@@ -183,11 +195,12 @@ impl Drawing<'_> {
         let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
             return;
         };
+        let Some(azimuths) = self.sweeping.as_ref().map(|s| s.azimuths) else { return };
         let (border, count) = (self.border(), quality.azimuths);
         let builder = &mut self.builder;
         if let Some(Tables { wedge_rows, tables }) = self.tables {
             let seen = (e, border);
-            let wedges = [image, self.sweeping.azimuths, wedge_rows];
+            let wedges = [image, azimuths, wedge_rows];
             passes::env_wedges::plan(builder, seen, count, wedges);
             let nodes = quality.table_elevations;
             passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
@@ -199,10 +212,11 @@ impl Drawing<'_> {
     }
 
     /// Passes from the field to the lit picture; of an edit, from its lattices.
-    fn light(&mut self, lists: &Lists) -> Result<()> {
+    fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
         self.sky_and_environment(lists);
         self.aimed(lists);
+        self.spheres(quality);
         self.sky_view();
         self.dark()
     }
@@ -215,20 +229,22 @@ impl Drawing<'_> {
         self.edited = Some(ids);
         passes::dirty_mark::plan(&mut self.builder, size, ids);
         let batches = lists.batches.iter().flatten();
-        self.sweeping.record_edit(&mut self.builder, border, batches, ids);
+        if let Some(sweeping) = &self.sweeping {
+            sweeping.record_edit(&mut self.builder, border, batches, ids);
+        }
         passes::dirty_list::plan(&mut self.builder, size, ids);
     }
 
     fn sky_and_environment(&mut self, lists: &Lists) {
-        if !self.images.need_circle() {
+        let Some(sweeping) = self.sweeping.as_ref().filter(|_| self.images.need_circle()) else {
             return;
-        }
+        };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Images { sky_sum, env_sum, sky_layer, env_layer, .. } = self.images;
         let batches = &lists.batches[0];
         for batch in batches {
             let part = part("sky", batch, batches);
-            let (builder, sweeping) = (&mut self.builder, &self.sweeping);
+            let builder = &mut self.builder;
             if self.edited.is_none() {
                 sweeping.record(builder, batch, &part);
             }
@@ -259,7 +275,7 @@ impl Drawing<'_> {
             }
         }
         if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
-            let lane_heights = self.sweeping.lane_heights(batch);
+            let lane_heights = sweeping.lane_heights(batch);
             let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
             passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
@@ -282,7 +298,8 @@ impl Drawing<'_> {
         {
             for batch in batches {
                 let part = part(&name, batch, batches);
-                let (builder, sweeping) = (&mut self.builder, &self.sweeping);
+                let Some(sweeping) = &self.sweeping else { return };
+                let builder = &mut self.builder;
                 if self.edited.is_none() {
                     sweeping.record(builder, batch, &part);
                 }
@@ -304,6 +321,27 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
+        }
+    }
+
+    /// Balls add up in one sum; where layers are wanted each begins its own.
+    fn spheres(&mut self, quality: &Quality) {
+        let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
+        blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
+        let names: Vec<String> =
+            self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
+        for (index, name) in names.iter().enumerate() {
+            let layer = self.images.sphere_layers[index];
+            let Some(blocks) = &self.blocks else { return };
+            let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
+            let begins = index == 0 || layer.is_some();
+            self.shining.spheres.record(&mut self.builder, lit, of, begins, sum);
+            if layer.is_some() {
+                self.resolve(name, sum, None, layer);
+            }
+        }
+        if self.images.sphere_layers.iter().all(Option::is_none) {
+            self.resolve("lights", sum, None, None);
         }
     }
 
@@ -374,7 +412,7 @@ impl Drawing<'_> {
 /// The settings really used.
 fn used(
     quality: &Quality,
-    sweep: &Sweep,
+    sweep: Option<&Sweep>,
     border: Border,
     shining: &Shining<'_>,
     images: &Images,
@@ -399,8 +437,12 @@ fn used(
         }
         (None, _) => {}
     }
-    if shining.aimed().any(|light| light.shape != Shape::Point) {
+    let has_balls = !shining.spheres.shining.is_empty();
+    if has_balls || shining.aimed().any(|light| light.shape != Shape::Point) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
+    }
+    if has_balls {
+        used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
     }
     used
 }

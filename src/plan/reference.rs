@@ -1,9 +1,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::blocks::Blocks;
 use super::choice::{choice_density, environment_cdf, most_light};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
-use crate::passes::path_trace::{self, BATCH_PATHS, Blocks};
-use crate::passes::{height_bounds, height_cells};
+use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::scene::{Albedo, Border, KeyLight, Lights, Scene};
 use crate::{Error, Result};
 
@@ -69,28 +69,19 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     for output in ["radiance", "standard_error"] {
         bound.push((output, image(output, Owner::Output, rgba, size)));
     }
-    let blocks = blocks(size, surface.border);
-    let cells = image("cells", Owner::Internal, rgba, size);
-    let ground = image("ground", Owner::Internal, rgba, size);
     let batch_mean = image("batch_mean", Owner::Internal, rgba, size);
     let batch_spread = image("batch_spread", Owner::Internal, rgba, size);
-    let levels = [blocks.cells[0].div_ceil(4), blocks.padded_rows / 2];
-    let maxima = image("maxima", Owner::Internal, Format::R32Float, levels);
     let lost_rays = builder.buffer("lost_rays", 16, false);
+    let blocks = Blocks::make(&mut builder, size, surface.border);
     bound.extend([
-        ("cells", cells),
-        ("ground", ground),
-        ("maxima", maxima),
+        ("cells", blocks.images.cells),
+        ("ground", blocks.images.ground),
+        ("maxima", blocks.images.maxima),
         ("batch_mean", batch_mean),
         ("batch_spread", batch_spread),
         ("lost_rays", lost_rays),
     ]);
-    let ids = [heights, cells, ground, batch_mean, lost_rays];
-    height_cells::plan(&mut builder, (field, surface.border), ids);
-    for level in 1..=blocks.top_level {
-        let ids = [cells, maxima];
-        height_bounds::plan(&mut builder, blocks.cells, blocks.padded_rows, level, ids);
-    }
+    blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = size[1];
     let band_rows = band_rows(size[0], bounces);
     for first in (0..rows).step_by(band_rows as usize) {
@@ -124,18 +115,6 @@ fn band_rows(cols: u32, bounces: u32) -> u32 {
 /// Its light, with the most W that one path can bring, then has the variance 3W²/N² at most.
 pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
     most_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
-}
-
-/// Levels of 4 by 4 up to one block that holds all cells. A field without cells has one that is not
-/// looked at.
-fn blocks([cols, rows]: [u32; 2], border: Border) -> Blocks {
-    let cells = [cols, rows].map(|n| match border {
-        Border::Periodic => n,
-        Border::Plane | Border::Open => (n - 1).max(1),
-    });
-    let longest = cells[0].max(cells[1]);
-    let top_level = (1..).find(|l| 4_u32.pow(*l) >= longest).expect("up to 4^15");
-    Blocks { cells, padded_rows: cells[1].next_multiple_of(4_u32.pow(top_level)), top_level }
 }
 
 /// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" (fourth

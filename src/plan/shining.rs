@@ -1,5 +1,6 @@
 use super::Picture;
 use super::azimuths::{self, Azimuth, Shape};
+use super::spheres::Spheres;
 use super::sweep::Sweep;
 use super::sweeping::circle;
 use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Quality, Scene, Sun};
@@ -13,6 +14,7 @@ pub(super) struct Shining<'a> {
     pub suns: Vec<(usize, &'a Sun)>,
     /// The same.
     pub keys: Vec<(usize, &'a KeyLight)>,
+    pub spheres: Spheres<'a>,
     /// Whether what a uniform sky would give is wanted as an image.
     has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
@@ -20,8 +22,13 @@ pub(super) struct Shining<'a> {
 }
 
 impl<'a> Shining<'a> {
-    pub fn of(scene: &'a Scene, wanted: Picture, notes: &mut Vec<String>) -> Result<Self> {
-        let Scene { surface, lights, .. } = scene;
+    pub fn of(
+        scene: &'a Scene,
+        quality: &Quality,
+        wanted: Picture,
+        notes: &mut Vec<String>,
+    ) -> Result<Self> {
+        let Scene { field, surface, lights } = scene;
         let lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
         let sky = lights.sky.filter(lit);
         let environment = lights.environment.as_ref();
@@ -31,9 +38,10 @@ impl<'a> Shining<'a> {
             && environment.is_none()
             && lights.suns.is_empty()
             && lights.keys.is_empty()
+            && lights.spheres.is_empty()
             && !wanted.sky_view
         {
-            let expected = "at least one of sky, environment, sun and key light";
+            let expected = "at least one of sky, environment, sun, key light and local light";
             return Err(Error::setting("lights", "none", expected));
         }
         if lights.sky.is_some() && sky.is_none() {
@@ -46,13 +54,21 @@ impl<'a> Shining<'a> {
         for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
             notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
         }
+        let (balls, dark): (Vec<_>, Vec<_>) =
+            lights.spheres.iter().enumerate().partition(|(_, s)| lit(&s.radiance));
+        for (i, _) in dark {
+            notes.push(format!("light {} dropped: its radiance is 0", i + 1));
+        }
+        let spheres = Spheres::of(field, balls, quality.light_cutoff, notes);
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
+            && spheres.shining.iter().all(|(_, s)| grey(&s.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
-        Ok(Self { sky, environment, suns, keys, has_sky_view: wanted.sky_view, is_grey })
+        let has_sky_view = wanted.sky_view;
+        Ok(Self { sky, environment, suns, keys, spheres, has_sky_view, is_grey })
     }
 
     /// The key lights that any sample may see.
@@ -109,7 +125,7 @@ impl<'a> Shining<'a> {
                 }
                 None => circle(quality, sweep, cell_m)?,
             });
-        } else {
+        } else if self.aimed().next().is_some() {
             let whose = match (self.suns.is_empty(), self.keys.is_empty()) {
                 (_, true) => "suns'",
                 (true, false) => "key lights'",

@@ -116,6 +116,7 @@ impl Sweeping {
 }
 
 /// Azimuth lists, one a light, in the order of the buffer; and how they are cut.
+#[derive(Default)]
 pub(super) struct Lists {
     pub lists: Vec<Vec<Azimuth>>,
     pub batches: Vec<Vec<Batch>>,
@@ -359,9 +360,14 @@ pub fn circle_rad(quality: &Quality, cell_m: [f64; 2]) -> Result<Vec<f64>> {
 }
 
 /// The settings really used, for metadata and messages.
-pub(super) fn settings(quality: &Quality, sweep: &Sweep, border: Border) -> Vec<(String, String)> {
+pub(super) fn settings(
+    quality: &Quality,
+    sweep: Option<&Sweep>,
+    border: Border,
+) -> Vec<(String, String)> {
     let mut all = vec![("border".to_owned(), format!("{border:?}").to_lowercase())];
     let mut add = |name: &str, value: String| all.push((name.to_owned(), value));
+    let Some(sweep) = sweep else { return all };
     match sweep {
         Sweep::Lines(lines) => {
             add("method", "sweep".into());

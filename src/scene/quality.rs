@@ -11,9 +11,14 @@ pub struct Quality {
     /// brightest when the plan is made (even with exact lines and with harmonics): one that is changed
     /// later is lit by the same.
     pub azimuths: u32,
-    /// Slices across a sun's disc or a key light, [1..256], default 8. Fewer: faster, steps in soft
-    /// shadows; the wider the light, the more it needs.
+    /// Slices across a sun's disc, a key light or a ball of light (twice as many where a sample stands
+    /// under the ball), [1..256], default 8. Fewer: faster, steps in soft shadows; the wider the light,
+    /// the more it needs.
     pub sun_azimuths: u32,
+    /// What a sample may lose, all balls of light together, of the brightest that one of them gives to the
+    /// sample nearest to its foot, [0..1], default 1/65536: one step of a picture of 16 bits. More: faster, as each
+    /// ball is looked for at fewer samples. 0: at all.
+    pub light_cutoff: f64,
     /// Distance between the lines of a sweep. Wider: faster, small occluders missed between lines.
     pub lines: Lines,
     /// How the lines' results come back to the samples between them.
@@ -58,6 +63,7 @@ impl Default for Quality {
             method: Method::Auto,
             azimuths: 64,
             sun_azimuths: 8,
+            light_cutoff: 1.0 / 65536.0,
             lines: Lines::Cell,
             fuse: Fuse::AimedNearest,
             precision: Precision::F32,
@@ -108,6 +114,10 @@ impl Quality {
         };
         within("--azimuths", self.azimuths, Self::AZIMUTHS)?;
         within("--sun-azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
+        if !(0.0..=1.0).contains(&self.light_cutoff) {
+            let found = self.light_cutoff.to_string();
+            return Err(Error::setting("--light-cutoff", found, "a share from 0 to 1"));
+        }
         within("--level-step", self.level_step, Self::LEVEL_STEP)?;
         within("--level-offset", self.level_offset, Self::LEVEL_OFFSET)?;
         within("--table-elevations", self.table_elevations, Self::TABLE_ELEVATIONS)?;

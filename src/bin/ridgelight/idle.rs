@@ -6,6 +6,7 @@ use std::io::Write as _;
 const SETTINGS: [&str; 16] = [
     "azimuths",
     "sun_azimuths",
+    "light_cutoff",
     "lines",
     "fuse",
     "precision",
@@ -51,7 +52,15 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
     let of = |name: &str| used.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
     match (setting, of("method"), of("lines")) {
         ("azimuths", ..) => "without a sky or an environment".into(),
-        ("sun_azimuths", ..) => "without a sun wider than 0.01° or a key light".into(),
+        ("sun_azimuths", ..) => {
+            "without a sun wider than 0.01°, a key light or a ball of light".into()
+        }
+        ("light_cutoff", ..) => "without a ball of light".into(),
+        (
+            "lines" | "fuse" | "precision" | "hull" | "level_step" | "level_offset" | "levels",
+            None,
+            _,
+        ) => "without a sky, an environment, a sun or a key light".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ridgelight::files::{self, Channels, Layer};
 use ridgelight::gpu::{Frame, Headless, Timing};
 use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
-use ridgelight::scene::{Lights, Scene, Surface};
+use ridgelight::scene::{Scene, Surface};
 use ridgelight::{Error, Result};
 
-use crate::args::{LightArgs, ReferenceArgs};
+use crate::args::ReferenceArgs;
 use crate::setup::{self, Outcome};
 
 /// Batches before the error of the error is small: 1/√(2·7) of it.
@@ -96,15 +96,7 @@ fn check(args: &ReferenceArgs) -> Result<()> {
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
-    let LightArgs { sky, env, .. } = &args.lights;
-    let alone = sky.is_none() && env.is_none() && args.lights.are_none_aimed();
-    // A local light takes the default sky's place, as any light does.
-    let sky = if alone && !args.light.is_empty() { None } else { lights.sky };
-    Ok(Scene {
-        field,
-        surface: Surface { phong: args.phong, ..surface },
-        lights: Lights { sky, spheres: args.light.clone(), ..lights },
-    })
+    Ok(Scene { field, surface: Surface { phong: args.phong, ..surface }, lights })
 }
 
 /// What the paths have come to.
@@ -239,10 +231,6 @@ fn write(
         add("until_error", wanted.to_string());
     }
     add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
-    for (i, ball) in scene.lights.spheres.iter().enumerate() {
-        let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
-        add(&format!("light{}", i + 1), format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m));
-    }
     if let Some(phong) = scene.surface.phong {
         add("phong", format!("{},{}", phong.exponent, phong.scale));
     }
@@ -265,7 +253,7 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::HeightField;
+    use ridgelight::scene::{HeightField, Lights};
 
     #[test]
     fn lost_rays_are_an_error() {

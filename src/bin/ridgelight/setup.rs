@@ -69,15 +69,14 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         Some(path) => Some(files::read_environment(path, -lights.env_rotate.to_radians())?),
         None => None,
     };
-    let none = lights.sky.is_none() && environment.is_none() && lights.are_none_aimed();
     Ok(Scene {
         surface: Surface { albedo, border: border(&surface.field), phong: None },
         lights: Lights {
-            sky: if none { Some([1.0; 3]) } else { lights.sky },
+            sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
             suns: lights.sun.clone(),
             keys: lights.key.clone(),
-            spheres: Vec::new(),
+            spheres: lights.light.clone(),
         },
         field,
     })
@@ -101,6 +100,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         },
         azimuths: args.azimuths,
         sun_azimuths: args.sun_azimuths,
+        light_cutoff: args.light_cutoff,
         lines: match args.lines {
             LinesName::Exact => Lines::Exact,
             LinesName::QuarterCell => Lines::QuarterCell,
@@ -252,6 +252,11 @@ pub fn asked(
         let text = format!("{azimuth},{elevation},{width},{height},{}", numbers(&key.radiance));
         all.push((format!("key{}", i + 1), text));
     }
+    for (i, ball) in scene.lights.spheres.iter().enumerate() {
+        let [x, y, z] = ball.position_m;
+        let text = format!("{x},{y},{z},{},{}", ball.radius_m, numbers(&ball.radiance));
+        all.push((format!("light{}", i + 1), text));
+    }
     all
 }
 
@@ -374,7 +379,7 @@ pub fn in_flags(error: Error) -> Error {
         ("z_scale", "--z-scale"),
         ("environment rotation", "--env-rotate"),
         ("distances to the horizon", "--distances"),
-        ("lights", "--sky, --env, --sun, --key"),
+        ("lights", "--sky, --env, --sun, --key, --light"),
         ("cell size", "--cell"),
         ("pixels per degree", "--pixels-per-degree"),
     ];

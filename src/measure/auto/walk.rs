@@ -41,6 +41,7 @@ const COARSE: Quality = Quality {
     method: Method::Sweep,
     azimuths: 8,
     sun_azimuths: 2,
+    light_cutoff: 1.0 / 65536.0,
     lines: Lines::FourCells,
     fuse: Fuse::AimedNearest,
     precision: Precision::F32,

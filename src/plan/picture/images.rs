@@ -2,6 +2,7 @@
 
 use super::super::sh::Sh;
 use super::super::shining::Shining;
+use super::super::spheres::light_name;
 use super::super::{Builder, Format, Owner, ResourceId};
 use super::Picture;
 use crate::scene::{Albedo, Border, Environment, Quality, Scene, Wedges};
@@ -16,10 +17,13 @@ pub(super) struct Images {
     pub env_layer: Option<ResourceId>,
     /// In the order of [`Shining::aimed`].
     pub aimed_layers: Vec<Option<ResourceId>>,
+    /// In the order of the balls of light that shine.
+    pub sphere_layers: Vec<Option<ResourceId>>,
     pub sky_view: Option<ResourceId>,
     pub sky_sum: Option<ResourceId>,
     pub env_sum: Option<ResourceId>,
     pub sun_sum: Option<ResourceId>,
+    pub sphere_sum: Option<ResourceId>,
 }
 
 impl Images {
@@ -49,6 +53,8 @@ impl Images {
         let sky_layer = layer(shining.sky.is_some(), "sky");
         let env_layer = layer(environment.is_some(), "env");
         let aimed_layers = shining.aimed().map(|light| layer(true, &light.name)).collect();
+        let spheres = &shining.spheres.shining;
+        let sphere_layers = spheres.iter().map(|(i, _)| layer(true, &light_name(*i))).collect();
         let view = wanted.sky_view;
         let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
         let mut sum = |needed: bool, name: &str, format: Format| {
@@ -57,6 +63,7 @@ impl Images {
         let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
         let sun_sum = sum(shining.aimed().next().is_some(), "sun_sum", Format::R32Float);
+        let sphere_sum = sum(!spheres.is_empty(), "sphere_sum", Format::Rgba32Float);
         Self {
             heights,
             environment,
@@ -65,10 +72,12 @@ impl Images {
             sky_layer,
             env_layer,
             aimed_layers,
+            sphere_layers,
             sky_view,
             sky_sum,
             env_sum,
             sun_sum,
+            sphere_sum,
         }
     }
 

@@ -7,6 +7,7 @@ const CHOSEN: [&str; 16] = [
     "method",
     "azimuths",
     "sun_azimuths",
+    "light_cutoff",
     "lines",
     "fuse",
     "precision",

@@ -4,8 +4,6 @@ use clap::Args;
 #[derive(Args)]
 pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    light: Vec<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     phong: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     bounces: Option<String>,
@@ -19,9 +17,7 @@ pub struct LaterArgs {
 impl LaterArgs {
     /// Refuses them.
     pub fn check(&self) -> ridgelight::Result<()> {
-        let light = self.light.first();
         let given = [
-            ("--light", light),
             ("--phong", self.phong.as_ref()),
             ("--bounces", self.bounces.as_ref()),
             ("--scene", self.scene.as_ref()),

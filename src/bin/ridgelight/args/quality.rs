@@ -12,10 +12,14 @@ pub struct QualityArgs {
     /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
     #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub azimuths: u32,
-    /// Slices across a sun's disc or a key light, 1..256: more, smoother soft shadows; a wide light
-    /// needs more
+    /// Slices across a sun's disc, a key light or a ball of light, 1..256: more, smoother soft shadows; a
+    /// wide light needs more
     #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
     pub sun_azimuths: u32,
+    /// What a sample may lose of the brightest light of a ball, 0..1, so that each ball is looked for at fewer
+    /// samples: more, faster
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
+    pub light_cutoff: f64,
     /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
     #[arg(long, default_value = "1")]
     pub lines: LinesName,

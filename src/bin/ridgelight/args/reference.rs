@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ridgelight::scene::{Phong, SphereLight};
+use ridgelight::scene::Phong;
 
 use super::values::{numbers, whole};
 use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
@@ -30,16 +30,6 @@ pub struct ReferenceArgs {
     pub seed: u32,
     #[command(flatten)]
     pub lights: LightArgs,
-    /// A ball of light: its middle east of the westernmost column, north of the southernmost row and
-    /// above 0, its radius (all metres), its radiance (one number or R,G,B). May be repeated
-    #[arg(
-        long,
-        value_name = "X,Y,Z,RADIUS,RADIANCE",
-        value_parser = ball,
-        allow_hyphen_values = true,
-        help_heading = "Lights"
-    )]
-    pub light: Vec<SphereLight>,
     #[command(flatten)]
     pub surface: SurfaceArgs,
     /// A lobe about the mirror direction of the view from above: exponent 0..10000, and its share 0..1
@@ -53,16 +43,6 @@ pub struct ReferenceArgs {
     pub phong: Option<Phong>,
     #[command(flatten)]
     pub global: GlobalArgs,
-}
-
-fn ball(text: &str) -> Result<SphereLight, String> {
-    let parts = numbers(text)?;
-    let radiance = match parts.get(4..).unwrap_or_default() {
-        [grey] => [*grey as f32; 3],
-        [r, g, b] => [*r as f32, *g as f32, *b as f32],
-        _ => return Err("expected X,Y,Z,RADIUS and RADIANCE, one number or R,G,B".into()),
-    };
-    Ok(SphereLight { position_m: [parts[0], parts[1], parts[2]], radius_m: parts[3], radiance })
 }
 
 fn phong(text: &str) -> Result<Phong, String> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{cell, colour, key, sun};
+use super::values::{ball, cell, colour, key, sun};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
@@ -38,12 +38,18 @@ pub struct LightArgs {
         allow_hyphen_values = true
     )]
     pub key: Vec<ridgelight::scene::KeyLight>,
+    /// A ball of light: its middle east of the westernmost column, north of the southernmost row and
+    /// above 0, its radius (all metres), its radiance (one number or R,G,B). May be repeated
+    #[arg(long, value_name = "X,Y,Z,RADIUS,RADIANCE", value_parser = ball, allow_hyphen_values = true)]
+    pub light: Vec<ridgelight::scene::SphereLight>,
 }
 
 impl LightArgs {
-    /// Whether there is no sun and no key light.
-    pub fn are_none_aimed(&self) -> bool {
-        self.sun.is_empty() && self.key.is_empty()
+    /// Whether no light is asked for.
+    pub fn is_empty(&self) -> bool {
+        let Self { sky, env, env_rotate: _, sun, key, light } = self;
+        let are_none_aimed = sun.is_empty() && key.is_empty() && light.is_empty();
+        sky.is_none() && env.is_none() && are_none_aimed
     }
 }
 

@@ -68,6 +68,17 @@ pub fn key(text: &str) -> Result<ridgelight::scene::KeyLight, String> {
     })
 }
 
+pub fn ball(text: &str) -> Result<ridgelight::scene::SphereLight, String> {
+    let parts = numbers(text)?;
+    let radiance = match parts.get(4..).unwrap_or_default() {
+        [grey] => [*grey as f32; 3],
+        [r, g, b] => [*r as f32, *g as f32, *b as f32],
+        _ => return Err("expected X,Y,Z,RADIUS and RADIANCE, one number or R,G,B".into()),
+    };
+    let position_m = [parts[0], parts[1], parts[2]];
+    Ok(ridgelight::scene::SphereLight { position_m, radius_m: parts[3], radiance })
+}
+
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);

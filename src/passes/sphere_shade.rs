@@ -1,0 +1,152 @@
+use std::ops::Range;
+
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Blocks, Builder, Rectangle, ResourceId};
+use crate::scene::{Scene, SphereLight};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SphereShadePush {
+    cols: i32,
+    rows: i32,
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    top_level: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    first: [i32; 2],
+    base: [i32; 2],
+    offset: [f32; 2],
+    up_m: f32,
+    radius_m: f32,
+    reach_m: f32,
+    slices: i32,
+    first_slice: i32,
+    last_slice: i32,
+    radiance: [f32; 4],
+}
+
+same_layout!(
+    SphereShadePush,
+    sphere_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    first = FIRST,
+    base = BASE,
+    offset = OFFSET,
+    up_m = UP_M,
+    radius_m = RADIUS_M,
+    reach_m = REACH_M,
+    slices = SLICES,
+    first_slice = FIRST_SLICE,
+    last_slice = LAST_SLICE,
+    radiance = RADIANCE,
+);
+
+/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+const MOST_TURNS: u32 = 60_000;
+
+/// How a ball is looked at.
+pub(crate) struct Look {
+    /// Slices of it; twice as many where a sample stands under it.
+    pub slices: u32,
+    /// Samples that it is looked for at, and how far away they may be.
+    pub rectangle: Rectangle,
+    pub reach_m: f32,
+    /// Whether the sum begins with it.
+    pub begins: bool,
+}
+
+/// Light of one ball, in as many dispatches as its slices need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    name: &str,
+    ball: &SphereLight,
+    look: &Look,
+    sum: ResourceId,
+) {
+    let most_steps = blocks.most_steps();
+    let slices = 2 * look.slices;
+    let at_once = (MOST_TURNS / (most_steps + 1)).max(1);
+    for first in (0..slices).step_by(at_once as usize) {
+        let range = first..slices.min(first + at_once);
+        let part = match range.len() as u32 {
+            all if all == slices => name.to_owned(),
+            _ => format!("{name} slices {}..{}", range.start, range.end),
+        };
+        dispatch(builder, scene, blocks, &part, ball, look, range, sum);
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
+fn dispatch(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    part: &str,
+    ball: &SphereLight,
+    look: &Look,
+    slices: Range<u32>,
+    sum: ResourceId,
+) {
+    let field = &scene.field;
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, z] = ball.position_m;
+    let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
+    // Beyond this a whole cell is less than a rounding of the distance.
+    let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
+    let Rectangle { col, row, cols, rows } = look.rectangle;
+    let samples = u64::from(cols) * u64::from(rows);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let [r, g, b] = ball.radiance;
+    let begins = look.begins && slices.start == 0;
+    builder.pass(
+        &shaders::SPHERE_SHADE,
+        part,
+        "slices of the ball over what the surface hides of them",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[
+            (0, scene.surface.border as u32),
+            (1, u32::from(thin_rows)),
+            (2, u32::from(thin_cols)),
+            (3, blocks.most_steps()),
+        ],
+        &SphereShadePush {
+            cols: field.cols() as i32,
+            rows: field.rows() as i32,
+            cells_x: blocks.cells[0] as i32,
+            cells_y: blocks.cells[1] as i32,
+            padded_rows: blocks.padded_rows as i32,
+            top_level: blocks.top_level as i32,
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+            first: [col as i32, row as i32],
+            base: base.map(|b| b as i32),
+            offset: [0, 1].map(|i| (place[i] - base[i]) as f32),
+            up_m: (z - field.base_m()) as f32,
+            radius_m: ball.radius_m as f32,
+            reach_m: look.reach_m,
+            slices: look.slices as i32,
+            first_slice: slices.start as i32,
+            last_slice: slices.end as i32,
+            radiance: [r, g, b, f32::from(u8::from(begins))],
+        },
+        &[
+            ("cells", blocks.images.cells),
+            ("maxima", blocks.images.maxima),
+            ("ground", blocks.images.ground),
+            ("sphere_sum", sum),
+        ],
+        samples * (3 * 16),
+        samples * slices.len() as u64,
+    );
+}

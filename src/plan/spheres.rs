@@ -1,0 +1,168 @@
+//! Balls of light: which samples each is looked for at, and the passes that do it.
+
+use super::blocks::Blocks;
+use super::{Builder, Rectangle, ResourceId};
+use crate::passes::sphere_shade::{self, Look};
+use crate::scene::{HeightField, Scene, SphereLight};
+
+/// Parts of the field, along either side, whose loss is bounded together.
+const PARTS: usize = 16;
+/// Halvings of the threshold's logarithm: 2⁻³² of 60 octaves.
+const HALVINGS: u32 = 32;
+/// The threshold lies at most this far below what may be lost: more lights are in no plan.
+const MOST_LIGHTS: f64 = 1e18;
+
+/// Balls that any sample is to get light from.
+pub(super) struct Spheres<'a> {
+    /// With their positions in the scene.
+    pub shining: Vec<(usize, &'a SphereLight)>,
+    looks: Vec<(Rectangle, f32)>,
+}
+
+impl<'a> Spheres<'a> {
+    /// Of `lit` balls those that reach the field, each as far as it gives more than a threshold, whatever
+    /// the heights.
+    ///
+    /// A ball of radiance L and radius r gives a sample at distance d at most L (r/d)². The threshold T
+    /// is the largest at which no sample of the field can lose more than `cutoff` times the brightest
+    /// light that one ball may give to the sample nearest to its foot: the sum over balls of
+    /// min(T, what it gives at most), anywhere.
+    pub fn of(
+        field: &HeightField,
+        lit: Vec<(usize, &'a SphereLight)>,
+        cutoff: f64,
+        notes: &mut Vec<String>,
+    ) -> Self {
+        let brightest = lit.iter().map(|(_, ball)| on_nearest(field, ball)).fold(0.0, f64::max);
+        let most = cutoff * brightest;
+        let threshold = threshold(field, &lit, most);
+        let mut spheres = Self { shining: Vec::new(), looks: Vec::new() };
+        let mut is_cut = false;
+        for (i, ball) in lit {
+            let reach = if threshold > 0.0 {
+                ball.radius_m * (strongest(ball) / threshold).sqrt()
+            } else {
+                f64::INFINITY
+            };
+            match rectangle(field, ball, reach) {
+                Some(seen) => {
+                    is_cut |= seen != whole(field);
+                    spheres.shining.push((i, ball));
+                    // A hair more, so that no rounding drops what counts.
+                    spheres
+                        .looks
+                        .push((seen, (reach * (1.0 + 1e-6)).min(f64::from(f32::MAX)) as f32));
+                }
+                None => notes
+                    .push(format!("light {} dropped: it gives less than {threshold:.3e}", i + 1)),
+            }
+        }
+        if is_cut {
+            notes.push(format!(
+                "balls of light end where they give less than {threshold:.3e}: no sample loses more than \
+                 {most:.3e}, {cutoff} of the brightest"
+            ));
+        }
+        spheres
+    }
+
+    /// The passes of the ball at `index` of those that shine; `begins` the sum with it.
+    pub fn record(
+        &self,
+        builder: &mut Builder,
+        (scene, blocks): (&Scene, &Blocks),
+        (index, slices): (usize, u32),
+        begins: bool,
+        sum: ResourceId,
+    ) {
+        let (position, ball) = self.shining[index];
+        let (rectangle, reach_m) = self.looks[index];
+        // What begins the sum writes all of it.
+        let rectangle = if begins { whole(&scene.field) } else { rectangle };
+        let look = Look { slices, rectangle, reach_m, begins };
+        sphere_shade::plan(builder, scene, blocks, &light_name(position), ball, &look, sum);
+    }
+}
+
+/// As in labels and layers: "light1" is the scene's first.
+pub(super) fn light_name(position: usize) -> String {
+    format!("light{}", position + 1)
+}
+
+fn whole(field: &HeightField) -> Rectangle {
+    Rectangle::whole([field.cols() as u32, field.rows() as u32])
+}
+
+fn strongest(ball: &SphereLight) -> f64 {
+    f64::from(ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v)))
+}
+
+/// What a ball gives at most so far away.
+fn at(ball: &SphereLight, distance: f64) -> f64 {
+    strongest(ball) * (ball.radius_m / distance.max(ball.radius_m)).powi(2)
+}
+
+/// The same to the sample nearest to the ball's foot.
+fn on_nearest(field: &HeightField, ball: &SphereLight) -> f64 {
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, z] = ball.position_m;
+    let (rows, cols) = (field.rows(), field.cols());
+    let col = (x / cell_x).round().clamp(0.0, (cols - 1) as f64);
+    let up = (y / cell_y).round().clamp(0.0, (rows - 1) as f64);
+    let row = rows - 1 - up as usize;
+    let height = field.base_m() + f64::from(field.heights_m()[row * cols + col as usize]);
+    let [east, north] = [x - col * cell_x, y - up * cell_y];
+    at(ball, (east * east + north * north + (z - height).powi(2)).sqrt())
+}
+
+/// The largest threshold with which no sample loses more than `most`.
+fn threshold(field: &HeightField, lit: &[(usize, &SphereLight)], most: f64) -> f64 {
+    if most <= 0.0 {
+        return 0.0;
+    }
+    let given: Vec<Vec<f64>> = (0..PARTS * PARTS)
+        .map(|part| {
+            lit.iter().map(|(_, ball)| in_part(field, ball, [part / PARTS, part % PARTS])).collect()
+        })
+        .collect();
+    let lost = |threshold: f64| {
+        let of = |part: &Vec<f64>| part.iter().map(|v| v.min(threshold)).sum::<f64>();
+        given.iter().map(of).fold(0.0, f64::max)
+    };
+    // Between its nth part and the whole.
+    let (mut low, mut high) = ((most / MOST_LIGHTS).ln(), most.ln());
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if lost(middle.exp()) <= most { low = middle } else { high = middle }
+    }
+    low.exp()
+}
+
+/// What a ball may give at most anywhere in a part of the field, at whatever height.
+fn in_part(field: &HeightField, ball: &SphereLight, part: [usize; 2]) -> f64 {
+    let [x, y, _] = ball.position_m;
+    let beside = |place: f64, cell: f64, count: usize, part: usize| {
+        let side = (count - 1) as f64 * cell / PARTS as f64;
+        let [low, high] = [part as f64 * side, (part + 1) as f64 * side];
+        (low - place).max(place - high).max(0.0)
+    };
+    let [cell_x, cell_y] = field.cell_m();
+    let east = beside(x, cell_x, field.cols(), part[1]);
+    let north = beside(y, cell_y, field.rows(), part[0]);
+    at(ball, east.hypot(north))
+}
+
+/// The samples within so much of a ball's middle in the plane; none where the field has none.
+fn rectangle(field: &HeightField, ball: &SphereLight, reach: f64) -> Option<Rectangle> {
+    let within = |place: f64, reach: f64, count: usize| {
+        let last = count as f64 - 1.0;
+        let [low, high] = [(place - reach).ceil().max(0.0), (place + reach).floor().min(last)];
+        (low <= high).then_some((low as u32, (high - low) as u32 + 1))
+    };
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = ball.position_m;
+    let (col, cols) = within(x / cell_x, reach / cell_x, field.cols())?;
+    let from_north = (field.rows() - 1) as f64 - y / cell_y;
+    let (row, rows) = within(from_north, reach / cell_y, field.rows())?;
+    Some(Rectangle { col, row, cols, rows })
+}
