@@ -1,18 +1,19 @@
-//! All light from infinity at single samples of a scene, in f64: what pictures are held against.
+//! All direct light at single samples of a scene, in f64: what pictures are held against.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::light::{self, ENVIRONMENT_STRIPS, Receiver};
 use super::oracle::Oracle;
+use super::sphere_shade::sphere_at;
 use crate::scene::{Albedo, Environment, Scene};
 
-/// Azimuths of a sky, strips across a sun.
+/// Azimuths of a sky, strips across a sun or a ball of light.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
 /// Azimuths that an environment's columns share out among them by their light, beside those that each has.
 const SHARED: f64 = 1024.0;
 
-/// A scene's samples under its sky, environment and suns together.
+/// A scene's samples under all of its lights together.
 #[derive(Clone, Debug)]
 pub struct Lit<'a> {
     scene: &'a Scene,
@@ -34,7 +35,7 @@ impl<'a> Lit<'a> {
         let lights = &self.scene.lights;
         let sky = if lights.sky.is_some() { AZIMUTHS } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
-        sky + environment + lights.suns.len() * STRIPS
+        sky + environment + (lights.suns.len() + lights.spheres.len()) * STRIPS
     }
 
     /// Exit radiance of a sample, its albedo counted, linear RGB.
@@ -49,12 +50,16 @@ impl<'a> Lit<'a> {
         });
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, STRIPS));
+        let balls = lights.spheres.iter().map(|ball| {
+            let share = sphere_at(oracle, ball, STRIPS as u32, row, col);
+            ball.radiance.map(|c| f64::from(c) * share)
+        });
         let albedo = match &self.scene.surface.albedo {
             Albedo::Constant(c) => *c,
             Albedo::Map(map) => map[row * self.scene.field.cols() + col],
         };
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns) {
+        for light in sky.into_iter().chain(environment).chain(suns).chain(balls) {
             (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
         }
         all

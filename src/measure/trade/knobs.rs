@@ -113,6 +113,10 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: has_no_levels,
         },
     ];
+    // Balls of light look themselves for what hides them.
+    if lights.sky.is_none() && lights.environment.is_none() && lights.suns.is_empty() {
+        all.clear();
+    }
     if lights.sky.is_some() || lights.environment.is_some() {
         all.push(Knob {
             name: "azimuths",
@@ -124,13 +128,13 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: |_| false,
         });
     }
-    if lights.suns.iter().any(|s| !s.is_point()) {
+    if !lights.spheres.is_empty() || lights.suns.iter().any(|s| !s.is_point()) {
         all.push(Knob {
             name: "sun azimuths",
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
             default: 0,
-            dearer: "more slices of a sun's disc: soft shadows",
+            dearer: "more slices of a sun's disc or of a ball of light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
             idle: |_| false,
         });
@@ -232,7 +236,7 @@ pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{HeightField, Lights, Sun, Surface};
+    use crate::scene::{HeightField, Lights, SphereLight, Sun, Surface};
 
     fn scene(lights: Lights) -> Scene {
         let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -256,6 +260,13 @@ mod tests {
         assert_eq!(names(sky()), with(&["azimuths"]));
         assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
         assert_eq!(names(sun(0.0)), with(&[]));
+        let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+        let spheres = vec![ball];
+        assert_eq!(
+            names(Lights { spheres: spheres.clone(), ..Lights::default() }),
+            ["sun azimuths"]
+        );
+        assert_eq!(names(Lights { spheres, ..sun(0.0) }), with(&["sun azimuths"]));
     }
 
     /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone

@@ -2,10 +2,12 @@
 
 use ridgelight::cpu::light;
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::sphere_shade::sphere_at;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Lights, Method, Precision, Quality, Scene, Surface,
+    Albedo, Basis, Border, Fuse, HeightField, Lights, Method, Precision, Quality, Scene,
+    SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -18,13 +20,15 @@ const PLACES: usize = 100;
 const TRUE_AZIMUTHS: usize = 360;
 /// Slices of the oracle's suns.
 const TRUE_STRIPS: usize = 32;
+/// Slices of the oracle's balls of light.
+const TRUE_SLICES: u32 = 64;
 
 /// What the light of a scene should be, at some of its samples.
 pub struct Truth {
     places: Vec<usize>,
     expected: Vec<f64>,
-    /// Root mean squares of sky, environment and suns, each alone.
-    scales: [f64; 3],
+    /// Root mean squares of sky, environment, suns and balls of light, each alone.
+    scales: [f64; 4],
     /// Share of a sky's light that the field keeps out.
     dark: f64,
 }
@@ -38,7 +42,7 @@ impl Truth {
         let mut places: Vec<usize> = (0..count).step_by(step).collect();
         places.extend([cols - 1, count - cols, count - 1]);
         let oracle = Oracle::new(field, scene.surface.border);
-        let (mut expected, mut squares, mut open) = (Vec::new(), [0.0; 3], 0.0);
+        let (mut expected, mut squares, mut open) = (Vec::new(), [0.0; 4], 0.0);
         for place in &places {
             let (lights, share) = light_at(scene, &oracle, *place);
             open += share / places.len() as f64;
@@ -71,22 +75,26 @@ impl Truth {
     }
 }
 
-/// What sky, environment and suns give to a sample, mean of the colours; and the share of a sky's
+/// What sky, environment, suns and balls of light give to a sample, mean of the colours; and the share of a sky's
 /// light that reaches it.
-fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 3], f64) {
+fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
     let albedo = match &scene.surface.albedo {
         Albedo::Constant(c) => *c,
         Albedo::Map(map) => map[place],
     };
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns, .. } = &scene.lights;
+    let Lights { sky, environment, suns, spheres } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS))).sum();
-    ([sky, environment, suns], share)
+    let ball = |s: &SphereLight| {
+        let share = sphere_at(oracle, s, TRUE_SLICES, row, col);
+        tint(s.radiance.map(|c| f64::from(c) * share))
+    };
+    ([sky, environment, suns, spheres.iter().map(ball).sum()], share)
 }
 
 /// A scene, or of a large one a piece from its middle, and its light.
@@ -112,7 +120,9 @@ impl Verifier {
         quality: &Quality,
         limits: &Limits,
     ) -> Result<(f64, f64)> {
-        let plan = plan::picture(&self.scene, quality, limits, Picture::default())?;
+        // What is dropped of balls of light the plan itself bounds.
+        let all = Quality { light_cutoff: 0.0, ..*quality };
+        let plan = plan::picture(&self.scene, &all, limits, Picture::default())?;
         let contents = plan::picture_inputs(&self.scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &contents)?;
@@ -142,7 +152,7 @@ impl Verifier {
     }
 }
 
-/// Largest relative RMSE of sky, environment and suns that settings may have.
+/// Largest relative RMSE of sky, environment, suns and balls of light that settings may have.
 ///
 /// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
 /// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:
@@ -153,8 +163,9 @@ impl Verifier {
 /// farther is missed, at most relief / (2·side). An environment's bright places and a sun are seen or
 /// hidden whole: mean errors stay small but squares do not, hence the wide bounds there. By spherical
 /// harmonics 26 % of a sunlit sky are missed at order 2, 27 % under a window at order 4: twice that, which
-/// only light lost or counted twice passes.
-fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
+/// only light lost or counted twice passes. A ball's horizons are exact; an upright edge before it is half a
+/// slice off, of which the widest has 2/n of the light.
+fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
     let transfer = match (quality.method, quality.lines.shift()) {
         (Method::Brute, _) | (_, None) => 0.001,
         (Method::Pyramid, _) => {
@@ -192,7 +203,8 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
     let dark = dark.clamp(0.01, 0.5) / 0.5;
     let sky = dark * (transfer + azimuths) + packed + periods;
     let series = if quality.basis == Basis::Sh { 0.54 } else { 0.0 };
-    [sky, 2.0 * sky + 0.05 + series, sky + 0.4]
+    let ball = 0.001 + 1.0 / f64::from(quality.sun_azimuths);
+    [sky, 2.0 * sky + 0.05 + series, sky + 0.4, ball]
 }
 
 /// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
@@ -213,6 +225,14 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
         Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
         constant => constant.clone(),
     };
+    // The piece's western column and southern row are where its lights are counted from.
+    let west = range(cols).start as f64 * field.cell_m()[0];
+    let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
+    let mut lights = scene.lights.clone();
+    for ball in &mut lights.spheres {
+        ball.position_m[0] -= west;
+        ball.position_m[1] -= south;
+    }
     Ok(Scene {
         field: HeightField::new(
             range(rows).len(),
@@ -222,7 +242,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
             None,
         )?,
         surface: Surface { albedo, ..scene.surface },
-        lights: scene.lights.clone(),
+        lights,
     })
 }
 
