@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::light::{self, ENVIRONMENT_STRIPS, Receiver};
 use super::oracle::Oracle;
-use super::sphere_shade::sphere_at;
+use super::sphere::sphere_of;
 use crate::scene::{Albedo, Environment, Scene};
 
 /// Azimuths of a sky, strips across a sun or a ball of light.
@@ -51,7 +51,7 @@ impl<'a> Lit<'a> {
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, STRIPS));
         let balls = lights.spheres.iter().map(|ball| {
-            let share = sphere_at(oracle, ball, STRIPS as u32, row, col);
+            let share = sphere_of(oracle, row, col, ball, STRIPS);
             ball.radiance.map(|c| f64::from(c) * share)
         });
         let albedo = match &self.scene.surface.albedo {

@@ -9,8 +9,8 @@ pub struct Quality {
     /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp
     /// silhouettes. Time and memory grow in proportion.
     pub azimuths: u32,
-    /// Slices across a sun's disc or a ball of light (twice as many where a sample stands under the
-    /// ball), [1..256], default 8. Fewer: faster, steps in soft shadows.
+    /// Slices across a sun's disc or a ball of light, [1..256], default 8; of a ball that seems wide up to
+    /// eight times as many, of one that is narrower than cells fewer. Fewer: faster, steps in soft shadows.
     pub sun_azimuths: u32,
     /// What a sample may lose, all balls of light together, of the brightest that one of them gives to the
     /// sample nearest to its foot, [0..1], default 1/65536: one step of a picture of 16 bits. More: faster, as each

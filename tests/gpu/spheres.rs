@@ -5,6 +5,7 @@ use std::path::Path;
 
 use ridgelight::cpu::lit::Lit;
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::sphere::sphere_of;
 use ridgelight::cpu::sphere_shade::sphere_at;
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
@@ -273,7 +274,7 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
         for i in (0..256).step_by(3) {
             let seen = ball_seen(&land, &light, i);
             let same = sphere_at(&oracle, &light, slices, i / 16, i % 16);
-            let truth = sphere_at(&oracle, &light, 96, i / 16, i % 16);
+            let truth = sphere_of(&oracle, i / 16, i % 16, &light, 64);
             let bound = seen.twin() + 1e-6 * same;
             assert!((found[i] - same).abs() <= bound, "step {step}, {i}: {} {same}", found[i]);
             squares += (found[i] - truth).powi(2);
@@ -300,7 +301,7 @@ fn no_sample_loses_more_than_the_cutoff() {
     let lights = vec![over(12.0, 15.0), over(40.0, 50.0), over(70.0, 20.0), over(12.3, 40.0)];
     let scene = under(&land, Border::Plane, lights);
     let whole = values(&gpu.picture(&scene, &all(8)));
-    let cutoff = 0.02;
+    let cutoff = 0.2;
     let cut = Quality { light_cutoff: cutoff, ..all(8) };
     let plan = plan::picture(&scene, &cut, &Limits::lavapipe(), Picture::default()).unwrap();
     let note = plan.notes.iter().find(|n| n.contains("balls of light end")).expect("a note");
@@ -314,5 +315,5 @@ fn no_sample_loses_more_than_the_cutoff() {
     assert!(most > 0.0 && least > -1e-6 * brightest, "{least} {most}");
     let said: f64 =
         note.split("more than ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
-    assert!(most <= said && said <= 0.02 * 1.0, "{most} {said} {note}");
+    assert!(most <= said && said <= cutoff * brightest * 1.1, "{most} {said} {note}");
 }

@@ -179,12 +179,12 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// Slices of one ball, all of them once the last are there.
 pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES};
-    let slices = pushed(pass, SLICES);
+    use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
+    let slices = run.quality.sun_azimuths;
     if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
         run.balls = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
     }
-    if pushed(pass, LAST_SLICE) < 2 * slices {
+    if pushed(pass, LAST_SLICE) < pushed(pass, SLICES_AROUND) {
         return Vec::new();
     }
     let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));

@@ -2,7 +2,7 @@
 
 use ridgelight::cpu::light;
 use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sphere_shade::sphere_at;
+use ridgelight::cpu::sphere::sphere_of;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
@@ -21,7 +21,7 @@ const TRUE_AZIMUTHS: usize = 360;
 /// Slices of the oracle's suns.
 const TRUE_STRIPS: usize = 32;
 /// Slices of the oracle's balls of light.
-const TRUE_SLICES: u32 = 64;
+const TRUE_SLICES: usize = 64;
 
 /// What the light of a scene should be, at some of its samples.
 pub struct Truth {
@@ -91,7 +91,7 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS))).sum();
     let ball = |s: &SphereLight| {
-        let share = sphere_at(oracle, s, TRUE_SLICES, row, col);
+        let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
         tint(s.radiance.map(|c| f64::from(c) * share))
     };
     ([sky, environment, suns, spheres.iter().map(ball).sum()], share)
