@@ -251,7 +251,8 @@ void main() {
     bool around = away <= radius_m;
     float sine_widest = min(radius_m / max(away, 1e-30), 1.0);
     float widest = arc_tangent(vec4(sine_widest / sqrt(max((1.0 - sine_widest) * (1.0 + sine_widest), 1e-20)))).x;
-    int wide = max(int(ceil(float(slices_around) * widest / PI)), slices);
+    // A hair less, so that rounding decides nothing at widths that divide the circle.
+    int wide = max(int(ceil(float(slices_around) * widest / PI - 0.001)), slices);
     int count = around ? slices_around : wide;
     float light = 0.0;
     for (int i = first_slice; i < last_slice; i++) {

@@ -23,7 +23,7 @@ pub fn sphere_at(
     let away = away_m(oracle, row, col, sphere);
     let count = if sphere.radius_m < away {
         let wide = f64::from(around) * (sphere.radius_m / away).asin() / PI;
-        narrow.max(wide.ceil() as u32)
+        narrow.max((wide - 0.001).ceil() as u32)
     } else {
         around
     };

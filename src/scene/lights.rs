@@ -47,11 +47,11 @@ impl SphereLight {
     /// How many vertical slices a ball is cut into where it is narrow as seen from a sample, and where it
     /// is all around, for a setting.
     ///
-    /// Narrow: the setting, but no more than four a cell that the ball is wide, as the surface is flat within
-    /// a cell; at least 2. Around: eight times the setting, at the default as many as a sky has azimuths.
+    /// Narrow: the setting, but no more than eight a cell that the ball is wide, as the surface is flat within
+    /// a cell; at least 4. Around: eight times the setting, at the default as many as a sky has azimuths.
     pub(crate) fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
         let cells_wide = 2.0 * self.radius_m / cell_m[0].min(cell_m[1]);
-        let most = (4.0 * cells_wide).ceil().clamp(2.0, 1e4) as u32;
+        let most = (8.0 * cells_wide).ceil().clamp(4.0, 1e4) as u32;
         [setting.min(most), 8 * setting]
     }
 }
