@@ -40,7 +40,8 @@ layout(push_constant) uniform SphereShadePush {
     float up_m;        // of the ball's middle over the base height
     float radius_m;
     float reach_m;     // farther samples get nothing
-    int slices;        // of a ball that the sample does not stand under; of others twice as many
+    int slices;        // of a ball that is narrow as seen from the sample
+    int slices_around; // of one that is all around; of wide ones as many a radian
     int first_slice;
     int last_slice;    // not itself
     vec4 radiance;     // w: 1 where the sum begins
@@ -162,10 +163,8 @@ void march(Ray ray, bool going) {
         bool is_split = t_split > walk.t && t_split < block.ahead;
         float t_middle = is_split ? t_split : walk.t;
         vec2 at_middle = clamp(from + t_middle * ray.advance, 0.0, 1.0);
-        float on_split = (corners.x - ray.own) + at_middle.x * (corners.w - corners.x);
-        float on_entry = cell_rise(corners, ray.own, at_middle);
-        vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, clamp(from + walk.t * ray.advance, 0.0, 1.0)));
-        vec2 middle = vec2(t_middle * step_m, is_split ? on_split : on_entry);
+        // Not split, the middle is the entry, whose slope was taken in before.
+        vec2 middle = vec2(t_middle * step_m, (corners.x - ray.own) + at_middle.x * (corners.w - corners.x));
         vec2 exit = vec2(block.ahead * step_m, cell_rise(corners, ray.own, clamp(from + block.ahead * ray.advance, 0.0, 1.0)));
         bool in_cell = going && is_cell;
         bool has_piece = in_cell && block.ahead > walk.t;
@@ -176,6 +175,8 @@ void march(Ray ray, bool going) {
         if (subgroupAny(looks)) {
             float kept = seen_light;
             float reached_before = reached;
+            vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, clamp(from + walk.t * ray.advance, 0.0, 1.0)));
+            middle.y = is_split ? middle.y : entry.y;
             see(entry, middle);
             reached = is_split ? max(reached, middle_slope) : reached;
             see(middle, exit);
@@ -227,7 +228,8 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     vec2 seen_from = from_axis(reached);
     vec2 lowest = reached > low_slope ? seen_from : low;
     float rest = light_between(lowest, high);
-    return alive ? seen_light + (reached < high_slope ? max(rest, 0.0) : 0.0) : 0.0;
+    float light = max(seen_light + (reached < high_slope ? rest : 0.0), 0.0);
+    return alive ? light : 0.0;
 }
 
 void main() {
@@ -247,9 +249,11 @@ void main() {
     bool faces = plane_m + radius_m * sqrt(1.0 + own.y * own.y + own.z * own.z) > 0.0;
     bool alive = exists && faces && distance_m <= reach_m;
     bool around = away <= radius_m;
-    int count = around ? 2 * slices : slices;
     float sine_widest = min(radius_m / max(away, 1e-30), 1.0);
     float widest = arc_tangent(vec4(sine_widest / sqrt(max((1.0 - sine_widest) * (1.0 + sine_widest), 1e-20)))).x;
+    // A hair less, so that rounding decides nothing at widths that divide the circle.
+    int wide = max(int(ceil(float(slices_around) * widest / PI - 0.001)), slices);
+    int count = around ? slices_around : wide;
     float light = 0.0;
     for (int i = first_slice; i < last_slice; i++) {
         bool has_slice = alive && i < count;

@@ -1,19 +1,20 @@
-//! All light from infinity at single samples of a scene, in f64: what pictures are held against.
+//! All direct light at single samples of a scene, in f64: what pictures are held against.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::key;
 use super::light::{self, ENVIRONMENT_STRIPS, Receiver};
 use super::oracle::Oracle;
+use super::sphere::sphere_of;
 use crate::scene::{Albedo, Environment, KeyLight, Scene};
 
-/// Azimuths of a sky, strips across a sun; across a key light as many, or as a sky has.
+/// Azimuths of a sky, strips across a sun or a ball of light; across a key light as many, or as a sky has.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
 /// Azimuths that an environment's columns share out among them by their light, beside those that each has.
 const SHARED: f64 = 1024.0;
 
-/// A scene's samples under its sky, environment, suns and key lights together.
+/// A scene's samples under all of its lights together.
 #[derive(Clone, Debug)]
 pub struct Lit<'a> {
     scene: &'a Scene,
@@ -47,7 +48,7 @@ impl<'a> Lit<'a> {
         let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
         let keys: usize = lights.keys.iter().map(|k| self.key_strips(k)).sum();
-        sky + environment + lights.suns.len() * self.strips + keys
+        sky + environment + (lights.suns.len() + lights.spheres.len()) * self.strips + keys
     }
 
     /// Exit radiance of a sample, its albedo counted, linear RGB.
@@ -63,12 +64,16 @@ impl<'a> Lit<'a> {
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
         let keys = lights.keys.iter().map(|k| key::key_of(oracle, row, col, k, self.key_strips(k)));
+        let balls = lights.spheres.iter().map(|ball| {
+            let share = sphere_of(oracle, row, col, ball, self.strips);
+            ball.radiance.map(|c| f64::from(c) * share)
+        });
         let albedo = match &self.scene.surface.albedo {
             Albedo::Constant(c) => *c,
             Albedo::Map(map) => map[row * self.scene.field.cols() + col],
         };
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns).chain(keys) {
+        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(balls) {
             (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
         }
         all

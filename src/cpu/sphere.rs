@@ -4,7 +4,7 @@
 //! which the ball is entered (or, from inside, left) nearer than the surface is met. Both change sides
 //! only where the disc's circle crosses the profile, so between those elevations one test decides.
 
-use super::light::Receiver;
+use super::light::{Receiver, normal};
 use super::oracle::Oracle;
 use super::profile::Stretch;
 use crate::scene::SphereLight;
@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Exit radiance of receivers at a sample under a ball of radiance 1.
 ///
 /// `strips` azimuths over the ball: over its width, spaced so that the disc's square root is smooth, or
-/// twice as many over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
+/// over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -33,7 +33,6 @@ pub fn sphere_on(
     let up = z - field.base_m() - oracle.vertex(row as f64, col as f64);
     let (away, middle) = (east.hypot(north), north.atan2(east));
     let widest = (sphere.radius_m / away).asin();
-    let strips = if sphere.radius_m < away { strips } else { 2 * strips };
     let mut sums = vec![0.0; receivers.len()];
     let mut seen = Vec::new();
     for i in 0..strips {
@@ -60,6 +59,32 @@ pub fn sphere_on(
         }
     }
     sums.iter().map(|s| s / PI).collect()
+}
+
+/// Exit radiance of a diffuse sample of albedo 1 under a ball of radiance 1, by `strips` azimuths over the
+/// ball, or four times as many over the circle.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sphere_of(
+    oracle: &Oracle,
+    row: usize,
+    col: usize,
+    sphere: &SphereLight,
+    strips: usize,
+) -> f64 {
+    let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
+    let is_narrow = away_m(oracle, row, col, sphere) > 2.0 * sphere.radius_m;
+    let strips = if is_narrow { strips } else { 4 * strips };
+    sphere_on(oracle, row, col, &receivers, sphere, strips)[0]
+}
+
+/// From a sample to a ball's middle in the plane.
+pub(super) fn away_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> f64 {
+    let field = oracle.field();
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = sphere.position_m;
+    (x - col as f64 * cell_x).hypot(y - (field.rows() - 1 - row) as f64 * cell_y)
 }
 
 /// The ball's cut with a vertical plane through the sample, the sample at the origin.

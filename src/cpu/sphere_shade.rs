@@ -3,11 +3,11 @@
 
 use super::light::{Receiver, normal};
 use super::oracle::Oracle;
-use super::sphere::sphere_on;
+use super::sphere::{away_m, sphere_on};
 use crate::scene::SphereLight;
+use std::f64::consts::PI;
 
-/// Exit radiance of a sample for a ball of radiance 1 and albedo 1, in `slices` slices or twice as many where
-/// it stands under the ball.
+/// Exit radiance of a sample for a ball of radiance 1 and albedo 1; `slices` is the setting.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -19,7 +19,15 @@ pub fn sphere_at(
     col: usize,
 ) -> f64 {
     let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
-    sphere_on(oracle, row, col, &receivers, sphere, slices as usize)[0]
+    let [narrow, around] = sphere.slices(slices, oracle.field().cell_m());
+    let away = away_m(oracle, row, col, sphere);
+    let count = if sphere.radius_m < away {
+        let wide = f64::from(around) * (sphere.radius_m / away).asin() / PI;
+        narrow.max((wide - 0.001).ceil() as u32)
+    } else {
+        around
+    };
+    sphere_on(oracle, row, col, &receivers, sphere, count as usize)[0]
 }
 
 /// [`sphere_at`] of every sample, row-major.

@@ -1,7 +1,8 @@
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Blocks, Builder, Rectangle, ResourceId};
+use crate::plan::{Blocks, Builder, Rectangle, ResourceId, samples_within};
 use crate::scene::{Scene, SphereLight};
 
 #[repr(C)]
@@ -22,8 +23,10 @@ struct SphereShadePush {
     radius_m: f32,
     reach_m: f32,
     slices: i32,
+    slices_around: i32,
     first_slice: i32,
     last_slice: i32,
+    pads: [i32; 3],
     radiance: [f32; 4],
 }
 
@@ -45,6 +48,7 @@ same_layout!(
     radius_m = RADIUS_M,
     reach_m = REACH_M,
     slices = SLICES,
+    slices_around = SLICES_AROUND,
     first_slice = FIRST_SLICE,
     last_slice = LAST_SLICE,
     radiance = RADIANCE,
@@ -55,7 +59,7 @@ const MOST_TURNS: u32 = 60_000;
 
 /// How a ball is looked at.
 pub(crate) struct Look {
-    /// Slices of it; twice as many where a sample stands under it.
+    /// The setting of how many slices.
     pub slices: u32,
     /// Samples that it is looked for at, and how far away they may be.
     pub rectangle: Rectangle,
@@ -74,16 +78,39 @@ pub(crate) fn plan(
     look: &Look,
     sum: ResourceId,
 ) {
-    let most_steps = blocks.most_steps();
-    let slices = 2 * look.slices;
-    let at_once = (MOST_TURNS / (most_steps + 1)).max(1);
-    for first in (0..slices).step_by(at_once as usize) {
-        let range = first..slices.min(first + at_once);
+    let [narrow, around] = ball.slices(look.slices, scene.field.cell_m());
+    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    for first in (0..around).step_by(at_once as usize) {
+        let range = first..around.min(first + at_once);
         let part = match range.len() as u32 {
-            all if all == slices => name.to_owned(),
+            all if all == around => name.to_owned(),
             _ => format!("{name} slices {}..{}", range.start, range.end),
         };
-        dispatch(builder, scene, blocks, &part, ball, look, range, sum);
+        // Where the ball is narrower it has no further slices.
+        let half_width = PI * f64::from(first) / f64::from(around);
+        let rectangle = if first < narrow {
+            look.rectangle
+        } else {
+            let within = 1.001 * ball.radius_m / half_width.min(FRAC_PI_2).sin();
+            common(samples_within(&scene.field, ball, within), look.rectangle)
+        };
+        dispatch(builder, scene, blocks, &part, ball, &Look { rectangle, ..*look }, range, sum);
+    }
+}
+
+/// What is in both; where nothing is, one sample, so that plans of a moving ball have the same passes.
+fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
+    let none = Rectangle { cols: 1, rows: 1, ..all };
+    let Some(near) = near else { return none };
+    let along = |[a, n]: [u32; 2], [b, m]: [u32; 2]| {
+        let [first, end] = [a.max(b), (a + n).min(b + m)];
+        (first < end).then(|| [first, end - first])
+    };
+    let cols = along([near.col, near.cols], [all.col, all.cols]);
+    let rows = along([near.row, near.rows], [all.row, all.rows]);
+    match (cols, rows) {
+        (Some([col, cols]), Some([row, rows])) => Rectangle { col, row, cols, rows },
+        _ => none,
     }
 }
 
@@ -100,6 +127,7 @@ fn dispatch(
 ) {
     let field = &scene.field;
     let [cell_x, cell_y] = field.cell_m();
+    let [narrow, around] = ball.slices(look.slices, field.cell_m());
     let [x, y, z] = ball.position_m;
     let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
     // Beyond this a whole cell is less than a rounding of the distance.
@@ -135,9 +163,11 @@ fn dispatch(
             up_m: (z - field.base_m()) as f32,
             radius_m: ball.radius_m as f32,
             reach_m: look.reach_m,
-            slices: look.slices as i32,
+            slices: narrow as i32,
+            slices_around: around as i32,
             first_slice: slices.start as i32,
             last_slice: slices.end as i32,
+            pads: [0; 3],
             radiance: [r, g, b, f32::from(u8::from(begins))],
         },
         &[

@@ -35,6 +35,7 @@ pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
+pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
 
 /// The passes that light one scene, in order, and everything that they touch.

@@ -44,7 +44,7 @@ impl<'a> Spheres<'a> {
             } else {
                 f64::INFINITY
             };
-            match rectangle(field, ball, reach) {
+            match samples_within(field, ball, reach) {
                 Some(seen) => {
                     is_cut |= seen != whole(field);
                     spheres.shining.push((i, ball));
@@ -153,7 +153,11 @@ fn in_part(field: &HeightField, ball: &SphereLight, part: [usize; 2]) -> f64 {
 }
 
 /// The samples within so much of a ball's middle in the plane; none where the field has none.
-fn rectangle(field: &HeightField, ball: &SphereLight, reach: f64) -> Option<Rectangle> {
+pub(crate) fn samples_within(
+    field: &HeightField,
+    ball: &SphereLight,
+    reach: f64,
+) -> Option<Rectangle> {
     let within = |place: f64, reach: f64, count: usize| {
         let last = count as f64 - 1.0;
         let [low, high] = [(place - reach).ceil().max(0.0), (place + reach).floor().min(last)];

@@ -45,6 +45,19 @@ pub struct SphereLight {
     pub radiance: [f32; 3],
 }
 
+impl SphereLight {
+    /// How many vertical slices a ball is cut into where it is narrow as seen from a sample, and where it
+    /// is all around, for a setting.
+    ///
+    /// Narrow: the setting, but no more than eight a cell that the ball is wide, as the surface is flat within
+    /// a cell; at least 4. Around: eight times the setting, at the default as many as a sky has azimuths.
+    pub(crate) fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
+        let cells_wide = 2.0 * self.radius_m / cell_m[0].min(cell_m[1]);
+        let most = (8.0 * cells_wide).ceil().clamp(4.0, 1e4) as u32;
+        [setting.min(most), 8 * setting]
+    }
+}
+
 /// The farthest that a local light may stand and the largest that it may be, as for heights.
 const PLACE_LIMIT: f64 = 1e15;
 
@@ -60,9 +73,10 @@ impl Sun {
 }
 
 impl Lights {
-    /// Whether some are lit in slices: suns that are no points, key lights.
+    /// Whether some are lit in slices: suns that are no points, key lights, balls of light.
     pub fn have_slices(&self) -> bool {
-        self.suns.iter().any(|s| !s.is_point()) || !self.keys.is_empty()
+        let have_others = !self.keys.is_empty() || !self.spheres.is_empty();
+        have_others || self.suns.iter().any(|s| !s.is_point())
     }
 
     /// Checks every range.

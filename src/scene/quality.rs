@@ -11,9 +11,9 @@ pub struct Quality {
     /// brightest when the plan is made (even with exact lines and with harmonics): one that is changed
     /// later is lit by the same.
     pub azimuths: u32,
-    /// Slices across a sun's disc, a key light or a ball of light (twice as many where a sample stands
-    /// under the ball), [1..256], default 8. Fewer: faster, steps in soft shadows; the wider the light,
-    /// the more it needs.
+    /// Slices across a sun's disc, a key light or a ball of light, [1..256], default 8; of a ball that seems
+    /// wide up to eight times as many, of one that is narrower than cells fewer. Fewer: faster, steps in
+    /// soft shadows; the wider the light, the more it needs.
     pub sun_azimuths: u32,
     /// What a sample may lose, all balls of light together, of the brightest that one of them gives to the
     /// sample nearest to its foot, [0..1], default 1/65536: one step of a picture of 16 bits. More: faster, as each

@@ -140,6 +140,12 @@ fn lights() {
             ("--key 90,45,9,9,1 --key 90,45,-9,9,1", 2, &["--key 2: width: found -9°"]),
             ("--key 90,45,9,9,0", 2, &["found all of radiance 0"]),
             ("--key 90,45,9,9,1 --lines exact", 2, &["--lines exact with --key", "--method brute"]),
+            ("--light 1,2,3,0,5", 2, &["--light 1: radius: found 0"]),
+            ("--light 1,2,3,1,5 --light 1,2,3,1,-1", 2, &["--light 2: radiance"]),
+            ("--light -1,2,3,4,5 --light 0", 2, &["--light", "X,Y,Z,RADIUS and RADIANCE"]),
+            ("--light 1,2,x,4,5", 2, &["--light", "no number"]),
+            ("--light 1,2,3,4,5 --light-cutoff 2", 2, &["--light-cutoff: found 2", "0 to 1"]),
+            ("--light 1,2,3,4,5 --light-cutoff nan", 2, &["--light-cutoff: found NaN"]),
             ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found NaN"]),
             ("--env env.hdr --env-rotate x", 2, &["--env-rotate"]),
             ("--env-rotate 90", 2, &["--env"]),
@@ -175,8 +181,6 @@ fn not_yet() {
         &[PLAN, RENDER, HORIZON],
         &folder,
         &[
-            ("--light 1,2,3,4,5", 2, &["--light: found 1,2,3,4,5", "not yet"]),
-            ("--light -1,2,3,4,5 --light 0", 2, &["--light: found -1,2,3,4,5", "not yet"]),
             ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--bounces 2", 2, &["--bounces", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
@@ -292,6 +296,7 @@ fn help_says_units_and_defaults() {
         ("--levels", &["[default: stack]"]),
         ("--azimuths", &["4..1024", "[default: 64]"]),
         ("--sun-azimuths", &["1..256", "[default: 8]"]),
+        ("--light-cutoff", &["0..1", "faster", "[default: 0.0000152587890625]"]),
         ("--lines", &["Cells", "[default: 1]"]),
         ("--fuse", &["[default: aimed-nearest]"]),
         ("--precision", &["[default: f32]"]),
@@ -307,6 +312,7 @@ fn help_says_units_and_defaults() {
         ("--memory-budget", &["512MiB", "default half"]),
     ];
     let lit: &[(&str, &[&str])] = &[
+        ("--light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
         ("--sky", &["Default 1"]),
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
@@ -347,7 +353,6 @@ fn help_says_units_and_defaults() {
         ("--bounces", &["0..64", "[default: 0]"]),
         ("--until-error", &["0.01 is 1 %", "512 paths"]),
         ("--seed", &["[default: 0]"]),
-        ("--light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
         ("--phong", &["0..10000", "0..1"]),
         ("--device", &["Default the first GPU"]),
     ];

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 /// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 16] = [
+const SETTINGS: [&str; 17] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",

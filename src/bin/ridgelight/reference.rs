@@ -253,7 +253,7 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::{HeightField, Lights};
+    use ridgelight::scene::HeightField;
 
     #[test]
     fn lost_rays_are_an_error() {
@@ -267,7 +267,11 @@ mod tests {
     #[test]
     fn errors_are_shares_of_the_mean() {
         let field = HeightField::new(1, 2, &[0.0; 2], [1.0; 2], None).unwrap();
-        let scene = Scene { field, surface: Surface::default(), lights: Lights::default() };
+        let scene = Scene {
+            field,
+            surface: Surface::default(),
+            lights: ridgelight::scene::Lights::default(),
+        };
         let both = [[1.0; 3], [3.0; 3]];
         let (mean, error) = mean_and_error(&scene, &both, &[[3.0; 3], [4.0; 3]]).unwrap();
         assert!((mean - 2.0).abs() < 1e-12 && (error - 12.5_f64.sqrt()).abs() < 1e-12);

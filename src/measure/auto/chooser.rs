@@ -318,12 +318,17 @@ fn candidates(scene: &Scene) -> Vec<Quality> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
     let plain = start();
-    let mut all = vec![Quality { method: Method::Brute, ..plain }];
-    if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
-        all.push(Quality { lines: Lines::Exact, ..plain });
-    }
-    for lines in LINES {
-        all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
+    let mut all = Vec::new();
+    if !Part::Geometry.is_in(scene) {
+        all.push(plain);
+    } else {
+        all.push(Quality { method: Method::Brute, ..plain });
+        if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
+            all.push(Quality { lines: Lines::Exact, ..plain });
+        }
+        for lines in LINES {
+            all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
+        }
     }
     let times = |all: Vec<Quality>, values: Vec<u32>, set: fn(&mut Quality, u32)| {
         let with = |quality: Quality| {

@@ -17,7 +17,7 @@ pub enum Part {
     Azimuths,
     /// Elevations of an environment's table.
     Table,
-    /// Slices of a sun's disc or of a key light.
+    /// Slices of a sun's disc, of a key light or of a ball of light.
     Strips,
 }
 
@@ -53,7 +53,9 @@ impl Part {
     pub fn is_in(self, scene: &Scene) -> bool {
         let lights = &scene.lights;
         match self {
-            Part::Geometry => true,
+            Part::Geometry => {
+                Part::Azimuths.is_in(scene) || !lights.suns.is_empty() || lights.spheres.is_empty()
+            }
             Part::Azimuths => {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
             }
@@ -206,8 +208,8 @@ pub struct Costs {
     seen: [Vec<[f64; 2]>; KINDS],
 }
 
-/// Sweeps along lines, exact horizons, shading, tables, all else.
-const KINDS: usize = 5;
+/// Sweeps along lines, exact horizons, shading, tables, balls of light, all else.
+const KINDS: usize = 6;
 
 const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
 /// Lines through all samples: the more azimuths to a side, the longer the grid vectors near them and the
@@ -220,6 +222,8 @@ const SHADE: [[f64; 6]; 3] = [
     [3.2, 3.35, 3.39, 3.97, 5.35, 2.12],
     [40.0, 37.0, 35.0, 33.0, 35.0, 2.12],
 ];
+/// A slice of a ball of light, on a fractal field of 512².
+const SLICE: f64 = 200.0;
 
 impl Costs {
     /// lavapipe's, before anything is measured, for so many samples.
@@ -227,7 +231,7 @@ impl Costs {
         let samples = samples as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
         Self {
-            units_ns: [samples, samples, samples, 67.0, 0.0],
+            units_ns: [samples, samples, samples, 67.0, samples, 0.0],
             overheads_ns: [0.0; KINDS],
             seen: Default::default(),
         }
@@ -251,7 +255,8 @@ impl Costs {
             None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
-        [all * sweep, all * exact, all * shade, table, 1.0]
+        let balls = f64::from(quality.sun_azimuths) * scene.lights.spheres.len() as f64;
+        [all * sweep, all * exact, all * shade, table, balls * SLICE, 1.0]
     }
 
     /// Nanoseconds that a frame will take.
@@ -270,7 +275,8 @@ impl Costs {
                 "surface_sweep" | "horizon_march" => 1,
                 "sky_shade" | "sun_shade" => 2,
                 "env_tables" => 3,
-                _ => 4,
+                "sphere_shade" => 4,
+                _ => 5,
             };
             sums[kind] += ns;
         }

@@ -258,6 +258,7 @@ fn figures(x: f64) -> String {
 /// Settings that are chosen, as the command line spells them: those that a scene has.
 pub fn flags(quality: &Quality, scene: &Scene) -> String {
     let mut all = match (quality.method, quality.lines) {
+        _ if !Part::Geometry.is_in(scene) => String::new(),
         (Method::Brute, _) => "--method brute".to_owned(),
         (Method::Pyramid, _) => {
             let Quality { level_step, level_offset, .. } = quality;
@@ -277,5 +278,5 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
             Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
         }
     }
-    all
+    all.trim_start().to_owned()
 }

@@ -116,6 +116,10 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: has_no_levels,
         },
     ];
+    // Balls of light look themselves for what hides them.
+    if lights.sky.is_none() && lights.environment.is_none() && lights.suns.is_empty() {
+        all.clear();
+    }
     if lights.sky.is_some() || lights.environment.is_some() {
         all.push(Knob {
             name: "azimuths",
@@ -133,7 +137,7 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
             default: 0,
-            dearer: "more slices of a sun's disc or a key light: soft shadows",
+            dearer: "more slices of a sun's disc, a key light or a ball of light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
             idle: |_| false,
         });
@@ -244,7 +248,7 @@ pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{HeightField, Lights, Sun, Surface};
+    use crate::scene::{HeightField, Lights, SphereLight, Sun, Surface};
 
     fn scene(lights: Lights) -> Scene {
         let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -268,6 +272,13 @@ mod tests {
         assert_eq!(names(sky()), with(&["azimuths"]));
         assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
         assert_eq!(names(sun(0.0)), with(&[]));
+        let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+        let spheres = vec![ball];
+        assert_eq!(
+            names(Lights { spheres: spheres.clone(), ..Lights::default() }),
+            ["sun azimuths"]
+        );
+        assert_eq!(names(Lights { spheres, ..sun(0.0) }), with(&["sun azimuths"]));
     }
 
     /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone

@@ -254,6 +254,25 @@ pub(super) fn pictures() -> Vec<Case> {
         let lights = Lights { sky: Some([1.0; 3]), suns, keys, ..Lights::default() };
         Scene { field: rough(12, 17, 14), surface, lights }
     };
+    let ball =
+        |x, y, z, radius_m, radiance| SphereLight { position_m: [x, y, z], radius_m, radiance };
+    // Over the ground; cut by it, with samples under and inside; beyond the edge.
+    let balls = {
+        let spheres = vec![
+            ball(20.0, 14.0, 920.0, 4.0, [3.0, 2.0, 1.0]),
+            ball(9.5, 6.1, 903.0, 5.0, [0.5, 1.0, 2.0]),
+            ball(-30.0, 50.0, 890.0, 12.0, [4.0, 0.0, 1.0]),
+        ];
+        let lights = Lights { sky: Some([0.3, 0.5, 0.9]), spheres, ..Lights::default() };
+        Scene { lights, ..colourful.clone() }
+    };
+    let balls_alone = {
+        let spheres =
+            vec![ball(7.0, 4.0, 911.0, 2.0, [5.0; 3]), ball(31.0, 9.0, 908.0, 1.0, [2.0; 3])];
+        let surface = Surface { border: Border::Periodic, ..Surface::default() };
+        let lights = Lights { spheres, ..Lights::default() };
+        Scene { field: rough(9, 8, 17), surface, lights }
+    };
     let picture = |name, scene, quality, light_layers, sky_view| Case {
         name,
         scene,
@@ -283,6 +302,9 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
+        picture("balls of light", balls.clone(), quality, true, false),
+        picture("balls in one sum", balls, Quality { sun_azimuths: 5, ..quality }, false, false),
+        picture("balls alone, periodic", balls_alone, quality, false, false),
         picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
         picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
         picture("harmonics by Legendre", colourful.clone(), nlp, false, false),

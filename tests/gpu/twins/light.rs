@@ -3,16 +3,18 @@
 use ridgelight::cpu::env_tables::{self as tables_twin, EnvTables, bottom_rad};
 use ridgelight::cpu::env_wedges as wedges_twin;
 use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
+use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::sky_shade as sky_twin;
+use ridgelight::cpu::sphere_shade as sphere_twin;
 use ridgelight::cpu::sun_shade as sun_twin;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{
-    ShadeError, twin_fused_slope, twin_resolved, twin_table, twin_wedge_row,
+    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_table, twin_wedge_row,
 };
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Environment};
+use ridgelight::scene::{Albedo, Environment, HeightField, SphereLight};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 
@@ -179,6 +181,66 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         assert!(pairs.len() * 50 >= got.len() * 49, "{} of {} decided", pairs.len(), got.len());
         pairs
     })
+}
+
+/// Slices of one ball, all of them once the last are there.
+pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
+    let slices = run.quality.sun_azimuths;
+    if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
+        run.balls = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
+    }
+    if pushed(pass, LAST_SLICE) < pushed(pass, SLICES_AROUND) {
+        return Vec::new();
+    }
+    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
+    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
+    let ball = run.scene.lights.spheres[number - 1];
+    let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
+    let oracle = Oracle::new(&run.scene.field, run.border());
+    let [cols, _] = run.size();
+    let mut balls = std::mem::take(&mut run.balls);
+    for (i, (sum, tolerance)) in balls.iter_mut().enumerate() {
+        let seen = ball_seen(&run.scene.field, &ball, i);
+        if seen.distance_m > reach {
+            continue;
+        }
+        let light = sphere_twin::sphere_at(&oracle, &ball, slices, i / cols, i % cols);
+        let brightest = ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+        sum.iter_mut().zip(ball.radiance).for_each(|(s, r)| *s += light * f64::from(r));
+        *tolerance += f64::from(brightest) * (seen.twin() + 4.0 * EPSILON);
+    }
+    let got = run.floats(pass, "sphere_sum").expect("written");
+    let texels = got.chunks_exact(4).zip(&balls).enumerate();
+    let pairs = texels
+        .flat_map(|(i, (got, (want, tolerance)))| {
+            channels(got, Rgb::from(*want), *tolerance, [0, i / cols, i % cols])
+        })
+        .collect();
+    run.balls = balls;
+    pairs
+}
+
+/// Where a ball stands to a sample.
+pub(crate) fn ball_seen(field: &HeightField, ball: &SphereLight, sample: usize) -> BallSeen {
+    let (cols, heights) = (field.cols(), field.heights_m());
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, z] = ball.position_m;
+    let east = x - (sample % cols) as f64 * cell_x;
+    let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
+    let up = z - field.base_m() - f64::from(heights[sample]);
+    let all = heights.iter().map(|h| f64::from(*h));
+    let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    let over = z - field.base_m();
+    BallSeen {
+        distance_m: east.hypot(north).hypot(up),
+        away_m: east.hypot(north),
+        radius_m: ball.radius_m,
+        largest_m: low.abs().max(high.abs()).max(over.abs()),
+        relief_m: high - low,
+        cell_m: cell_x.min(cell_y),
+        is_cut: over - ball.radius_m < high,
+    }
 }
 
 pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {

@@ -3,7 +3,7 @@
 
 mod cases;
 mod edit;
-mod light;
+pub(crate) mod light;
 mod paths;
 mod pyramid;
 mod sh;
@@ -77,6 +77,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("sh_shade", sh::sh_shade),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
+    ("sphere_shade", light::sphere_shade),
     ("light_resolve", light::light_resolve),
 ];
 
@@ -99,6 +100,8 @@ struct Run<'a> {
     /// The sum of the lights so far, by the twin, and how many they are.
     radiance: Vec<[f64; 3]>,
     lights: usize,
+    /// The sum of the balls of light so far, by the twin, and how far each sample may be off it.
+    balls: Vec<([f64; 3], f64)>,
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
     edit: Option<edit::Edit>,
@@ -120,6 +123,7 @@ impl<'a> Run<'a> {
             light_begins: 0,
             radiance: Vec::new(),
             lights: 0,
+            balls: Vec::new(),
             lost: 0,
             edit: None,
             plan,

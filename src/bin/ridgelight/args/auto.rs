@@ -3,7 +3,7 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 16] = [
+const CHOSEN: [&str; 17] = [
     "method",
     "azimuths",
     "sun_azimuths",

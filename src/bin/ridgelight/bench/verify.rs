@@ -3,11 +3,13 @@
 mod harmonics;
 
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::sphere::sphere_of;
 use ridgelight::cpu::{key, light};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Lights, Method, Precision, Quality, Scene, Surface,
+    Albedo, Basis, Border, Fuse, HeightField, Lights, Method, Precision, Quality, Scene,
+    SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -20,12 +22,14 @@ const PLACES: usize = 100;
 const TRUE_AZIMUTHS: usize = 360;
 /// Slices of the oracle's suns and key lights.
 const TRUE_STRIPS: usize = 32;
+/// Slices of the oracle's balls of light.
+const TRUE_SLICES: usize = 64;
 
 /// What the light of a scene should be, at some of its samples.
 pub struct Truth {
     places: Vec<usize>,
-    /// Of sky, environment, and suns and key lights, each alone.
-    expected: Vec<[f64; 3]>,
+    /// Of sky, environment, suns and key lights, and balls of light, each alone.
+    expected: Vec<[f64; 4]>,
     /// The share of a sky's light that arrives.
     open: Vec<f64>,
 }
@@ -64,9 +68,9 @@ impl Truth {
         rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
     }
 
-    /// Root mean squares of sky, environment and suns, each alone.
-    fn scales(&self) -> [f64; 3] {
-        [0, 1, 2].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
+    /// Root mean squares of each light alone.
+    fn scales(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
     }
 
     fn scale(&self) -> f64 {
@@ -85,23 +89,28 @@ fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count).sqrt()
 }
 
-/// What sky, environment, and suns and key lights give to a sample, mean of the colours; and the share of a sky's
+/// What sky, environment, suns and key lights, and balls of light give to a sample, mean of the colours; and
+/// the share of a sky's
 /// light that reaches it.
-fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 3], f64) {
+fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
     let albedo = match &scene.surface.albedo {
         Albedo::Constant(c) => *c,
         Albedo::Map(map) => map[place],
     };
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns, keys, .. } = &scene.lights;
+    let Lights { sky, environment, suns, keys, spheres } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
     let keys = keys.iter().map(|k| tint(key::key_of(oracle, row, col, k, TRUE_STRIPS)));
-    ([sky, environment, suns.chain(keys).sum()], share)
+    let ball = |s: &SphereLight| {
+        let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
+        tint(s.radiance.map(|c| f64::from(c) * share))
+    };
+    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(ball).sum()], share)
 }
 
 /// A scene, or of a large one a piece from its middle, and its light.
@@ -127,7 +136,9 @@ impl Verifier {
         if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {
             return harmonics::check(self, gpu, quality, limits);
         }
-        let plan = plan::picture(&self.scene, quality, limits, Picture::default())?;
+        // What is dropped of balls of light the plan itself bounds.
+        let all = Quality { light_cutoff: 0.0, ..*quality };
+        let plan = plan::picture(&self.scene, &all, limits, Picture::default())?;
         let contents = plan::picture_inputs(&self.scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
@@ -172,7 +183,7 @@ fn within(
     })
 }
 
-/// Largest relative RMSE of sky, environment, and suns and key lights that settings may have.
+/// Largest relative RMSE of sky, environment, suns and key lights, and balls of light that settings may have.
 ///
 /// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
 /// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:
@@ -181,8 +192,9 @@ fn within(
 /// heights are within 2^-11 of the highest, a change of slope of at most twice that over the cell, and
 /// light changes by no more than the slope. A periodic field is marched for two periods: what lies
 /// farther is missed, at most relief / (2·side). An environment's bright places and a sun are seen or
-/// hidden whole: mean errors stay small but squares do not, hence the wide bounds there.
-fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
+/// hidden whole: mean errors stay small but squares do not, hence the wide bounds there. A ball's horizons
+/// are exact; an upright edge before it is half a slice off, of which the widest has 2/n of the light.
+fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
     let transfer = match (quality.method, quality.lines.shift()) {
         (Method::Brute, _) | (_, None) => 0.001,
         (Method::Pyramid, _) => {
@@ -220,7 +232,8 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
     // No field hides so little that f32 sums and normals would not show.
     let dark = dark.clamp(0.01, 0.5) / 0.5;
     let sky = dark * (transfer + azimuths) + packed + periods;
-    [sky, 2.0 * sky + 0.05, sky + 0.4]
+    let ball = 0.001 + 1.0 / f64::from(quality.sun_azimuths);
+    [sky, 2.0 * sky + 0.05, sky + 0.4, ball]
 }
 
 /// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
@@ -241,6 +254,14 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
         Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
         constant => constant.clone(),
     };
+    // The piece's western column and southern row are where its lights are counted from.
+    let west = range(cols).start as f64 * field.cell_m()[0];
+    let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
+    let mut lights = scene.lights.clone();
+    for ball in &mut lights.spheres {
+        ball.position_m[0] -= west;
+        ball.position_m[1] -= south;
+    }
     Ok(Scene {
         field: HeightField::new(
             range(rows).len(),
@@ -250,7 +271,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
             None,
         )?,
         surface: Surface { albedo, ..scene.surface },
-        lights: scene.lights.clone(),
+        lights,
     })
 }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use ridgelight::files::{self, Planes};
 use ridgelight::measure::auto::{Probes, apart};
 use ridgelight::measure::error::ImageError;
-use ridgelight::scene::{Fuse, HeightField, Lines, Method, Quality, Scene};
+use ridgelight::scene::{Fuse, HeightField, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::rig::Rig;
@@ -14,8 +14,8 @@ use super::rig::Rig;
 /// Share of the budget that drawing the truth may take, and probing it.
 const DRAWING: f64 = 0.4;
 const PROBING: f64 = 0.1;
-/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun or a key light,
-/// elevations.
+/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, a key light or a
+/// ball, elevations.
 const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
@@ -124,41 +124,42 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Our own: the suns and key lights, then all else, each by brute force where that fits into its share of the
-    /// budget, else by the densest sweep. Light adds up.
+    /// Our own: the suns and key lights, the balls of light, then all else; all but balls by brute force where
+    /// that fits into their share of the budget, else by the densest sweep, balls in as many slices as fit.
+    /// Light adds up.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
-        let without = |sky: bool| {
-            let mut lights = scene.lights.clone();
-            if sky {
-                (lights.sky, lights.environment) = (None, None);
-            } else {
-                lights.suns.clear();
-                lights.keys.clear();
-            }
-            Scene { lights, ..scene.clone() }
-        };
-        let lights = &scene.lights;
-        let has_sky = lights.sky.is_some() || lights.environment.is_some();
+        let all = &scene.lights;
+        let has_sky = all.sky.is_some() || all.environment.is_some();
+        let under = |lights: Lights| Scene { lights, ..scene.clone() };
         let mut parts = Vec::new();
-        if !(lights.suns.is_empty() && lights.keys.is_empty()) {
-            let name = match (lights.suns.is_empty(), lights.keys.is_empty()) {
+        if !(all.suns.is_empty() && all.keys.is_empty()) {
+            let name = match (all.suns.is_empty(), all.keys.is_empty()) {
                 (_, true) => "suns",
                 (true, false) => "key lights",
                 (false, false) => "suns and key lights",
             };
-            parts.push((name, without(true)));
+            let (suns, keys) = (all.suns.clone(), all.keys.clone());
+            parts.push((name, under(Lights { suns, keys, ..Lights::default() })));
+        }
+        if !all.spheres.is_empty() {
+            let spheres = all.spheres.clone();
+            parts.push(("balls", under(Lights { spheres, ..Lights::default() })));
         }
         if has_sky {
-            parts.push(("sky", without(false)));
+            let (sky, environment) = (all.sky, all.environment.clone());
+            parts.push(("sky", under(Lights { sky, environment, ..Lights::default() })));
         }
         let mut share = DRAWING * rig.budget.as_secs_f64();
         let (mut whole, mut halved, mut about) = (Vec::new(), Vec::new(), Vec::new());
         let last = parts.len() - 1;
         for (i, (name, part)) in parts.iter().enumerate() {
             let begun = Instant::now();
-            let [quality, half] =
-                affordable(rig, part, if i < last { 0.5 * share } else { share })?;
+            let seconds = if i < last { 0.5 * share } else { share };
+            let [quality, half] = match part.lights.spheres.is_empty() {
+                true => affordable(rig, part, seconds)?,
+                false => affordable_slices(rig, part, seconds)?,
+            };
             add(&mut whole, rig.draw_once(part, &quality)?);
             add(&mut halved, rig.draw_once(part, &half)?);
             about.push(format!("{name} by {}", used(rig, part, &quality)?));
@@ -280,6 +281,21 @@ fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]
         }
     }
     Ok([HALVINGS, HALVINGS + 1].map(|h| counts(&dense, h)))
+}
+
+/// The same for balls of light alone, none of which is dropped anywhere.
+fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
+    let all = Quality { light_cutoff: 0.0, ..Quality::default() };
+    let two = |halvings: u32| [halvings, halvings + 1].map(|h| counts(&all, h));
+    let few = counts(&all, HALVINGS + 1);
+    rig.draw_once(scene, &few)?;
+    let begun = Instant::now();
+    rig.draw_once(scene, &few)?;
+    let each = begun.elapsed().as_secs_f64() / f64::from(few.sun_azimuths);
+    let fits = |two: &[Quality; 2]| {
+        each * two.iter().map(|q| f64::from(q.sun_azimuths)).sum::<f64>() <= seconds
+    };
+    Ok((0..HALVINGS).map(two).find(fits).unwrap_or_else(|| two(HALVINGS)))
 }
 
 /// Adds planes to a sum that may have none, one or three.

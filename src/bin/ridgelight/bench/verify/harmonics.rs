@@ -71,7 +71,7 @@ pub(super) fn check(
     let (places, nodes) = all.split_at(truth.places.len());
     let sky = rms(places.iter().zip(&truth.open).map(|(place, open)| place.sky(border) - open));
     let open = rms(truth.open.iter().copied());
-    let [of_sky, _, of_suns] = bounds(scene, truth.dark(), quality);
+    let [of_sky, _, of_suns, of_balls] = bounds(scene, truth.dark(), quality);
     let what = "a uniform sky through the horizons is";
     let (sky, sky_bound) = within(what, "the oracle's", sky / open, of_sky, quality)?;
 
@@ -81,9 +81,11 @@ pub(super) fn check(
 
     let [whole_means, own_means] = [&whole, &own].map(|p| truth.means(p));
     let rest = whole_means.iter().zip(&own_means).zip(&truth.expected);
-    let rest = rms(rest.map(|((whole, own), [sky, _, suns])| whole - own - sky - suns));
+    let rest =
+        rms(rest.map(|((whole, own), [sky, _, suns, balls])| whole - own - sky - suns - balls));
     let scales = truth.scales();
-    let bound = (scales[0] * of_sky + scales[2] * of_suns) / truth.scale();
+    let aimed = scales[2] * of_suns + scales[3] * of_balls;
+    let bound = (scales[0] * of_sky + aimed) / truth.scale();
     within("all other light is", "the oracle's", rest / truth.scale(), bound, quality)?;
     Ok(format!(
         "the sky through its horizons {} off the oracle's (RMSE; bound {}), harmonics of them {} off f64 \
