@@ -170,3 +170,66 @@ pub(crate) fn samples_within(
     let (row, rows) = within(from_north, reach / cell_y, field.rows())?;
     Some(Rectangle { col, row, cols, rows })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::fractal::fractal;
+    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::{Lights, Quality, Surface};
+
+    fn ball(x: f64, y: f64, radius_m: f64) -> SphereLight {
+        SphereLight { position_m: [x, y, 30.0], radius_m, radiance: [1.0; 3] }
+    }
+
+    fn plan(spheres: Vec<SphereLight>, light_cutoff: f64, wanted: Picture) -> Plan {
+        let lights = Lights { spheres, ..Lights::default() };
+        let scene = Scene { field: fractal(64, 1).unwrap(), surface: Surface::default(), lights };
+        let quality = Quality { light_cutoff, ..Quality::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).unwrap()
+    }
+
+    /// Of one ball alone all may be lost that it gives beyond a share of its brightest; many together lose
+    /// no more; what nobody may lose is no threshold.
+    #[test]
+    fn the_threshold_is_what_may_be_lost() {
+        let field = fractal(64, 1).unwrap();
+        let balls = [ball(10.0, 20.0, 1.0), ball(40.0, 40.0, 1.0), ball(11.0, 21.0, 1.0)];
+        let lit = |n: usize| balls[..n].iter().enumerate().collect::<Vec<_>>();
+        let one = threshold(&field, &lit(1), 1e-3);
+        assert!((one / 1e-3 - 1.0).abs() < 1e-6, "{one}");
+        let three = threshold(&field, &lit(3), 1e-3);
+        assert!((three / one - 1.0 / 3.0).abs() < 1e-6, "{three}");
+        assert_eq!(threshold(&field, &lit(3), 0.0), 0.0);
+    }
+
+    #[test]
+    fn balls_alone_need_no_sweep_and_take_no_edits() {
+        let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
+        let plan = plan(vec![ball(10.0, 20.0, 1.0), ball(40.0, 40.0, 1.0)], 0.0, wanted);
+        let mut names: Vec<&str> = plan.passes.iter().map(|p| p.name()).collect();
+        names.dedup();
+        let each = ["sphere_shade", "light_resolve"];
+        assert_eq!(names, [&["height_cells", "height_bounds"][..], &each, &each].concat());
+        assert!(plan.edit_passes.is_empty() && plan.find("direct.light2").is_some());
+        assert!(plan.notes.iter().all(|n| !n.contains("light")), "{:?}", plan.notes);
+    }
+
+    /// Wherever a ball goes, the passes are the same, and a still field needs no other than the balls'.
+    #[test]
+    fn a_ball_that_moves_is_lit_alone() {
+        let at = |x: f64| plan(vec![ball(x, 20.0, 1.0)], 0.0, Picture::default());
+        let (before, after) = (at(10.0), at(-500.0));
+        assert!(after.has_passes_of(&before));
+        let run = after.passes_after(&before, &[]);
+        let names: Vec<&str> = run.iter().map(|i| after.passes[*i].name()).collect();
+        assert_eq!(names, ["sphere_shade", "light_resolve"]);
+    }
+
+    #[test]
+    fn a_ball_that_reaches_nothing_is_dropped() {
+        let far = plan(vec![ball(10.0, 20.0, 1.0), ball(1e6, 0.0, 1.0)], 1e-3, Picture::default());
+        assert!(far.notes.iter().any(|n| n.starts_with("light 2 dropped")), "{:?}", far.notes);
+        assert!(far.passes.iter().all(|p| !p.part.starts_with("light2")));
+    }
+}
