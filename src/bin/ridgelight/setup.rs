@@ -142,6 +142,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         wedges: match args.wedges {
             WedgesName::Slices => Wedges::Slices,
             WedgesName::Nlp => Wedges::Nlp,
+            WedgesName::Table => Wedges::Table,
         },
         receiver: match args.receiver {
             ReceiverName::Plane => Receiver::Plane,
@@ -158,6 +159,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             SubsampleName::Two => 2,
             SubsampleName::Four => 4,
         },
+        wedge_side: args.wedge_side,
     };
     quality.check()?;
     Ok(quality)

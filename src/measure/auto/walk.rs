@@ -55,6 +55,7 @@ const COARSE: Quality = Quality {
     receiver: Receiver::Plane,
     window: Window::None,
     subsample: 1,
+    wedge_side: 64,
 };
 
 /// Where bounds alone stand in the way probes are doubled up to so many, or twice.

@@ -3,7 +3,7 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 13] = [
+const CHOSEN: [&str; 14] = [
     "method",
     "azimuths",
     "sun_azimuths",
@@ -17,6 +17,7 @@ const CHOSEN: [&str; 13] = [
     "receiver",
     "window",
     "subsample",
+    "wedge_side",
 ];
 
 #[derive(Args)]
