@@ -49,7 +49,8 @@ vec4 hat(vec4 x, int before, int here, int after) {
 
 // Light bleeds over ridges from nodes that lie off a sample's plane, or it off theirs. Where the two are off
 // by a quarter of their distance in all, a node counts half. Fitted: of 0.05, 0.1, 0.25, 0.5 and 1 on two
-// elevation models the best or within 2 % of it (`examples/soft`); bilinear weights alone err by 15 to 31 % more.
+// elevation models the best or within 2 % of it; bilinear weights alone err by 15 to 31 % more. To find it
+// again: change it here and in the twin, and run `examples/soft converge`.
 const float OFF_PLANE = 0.25;
 
 // What a node counts for samples (`h`, `east`, `north`) that see it so far towards east and north.

@@ -34,6 +34,7 @@ fn rows() -> Vec<(String, Quality)> {
         (name, Quality { subsample, lines, ..base })
     }));
     all.push(("sweep, 1×, NLP".into(), Quality { wedges: Wedges::Nlp, ..base }));
+    all.push(("sweep, 1×, table of wedges".into(), Quality { wedges: Wedges::Table, ..base }));
     all
 }
 
@@ -44,7 +45,7 @@ fn stages(plan: &Plan, whole: &[Vec<Timing>], relit: &[Vec<Timing>]) -> [f64; 6]
         ["height_transpose", "height_reduce", "height_expand", "horizon_sweep", "pyramid_march"];
     let of: [&[&str]; 4] = [
         &horizons,
-        &["sh_visibility"],
+        &["sh_visibility", "sweep_fuse", "sh_wedges"],
         &["env_turns", "light_matrix"],
         &["sh_shade", "light_resolve"],
     ];

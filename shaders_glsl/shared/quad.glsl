@@ -57,7 +57,8 @@ Strip strip_at(int lane, int march, int lanes) {
 
 Quad quad_at(int lane, int march, int lanes, int steps) {
     Quad q;
-    ivec4 nodes = min(lane + LANE_STRIDE * ivec4(0, 1, 2, 3), lanes - 1);
+    ivec4 apart = ivec4(lane, lane + LANE_STRIDE, lane + 2 * LANE_STRIDE, lane + 3 * LANE_STRIDE);
+    ivec4 nodes = min(apart, lanes - 1);
     ivec4 side_by_side = lane + ivec4(0, 1, 2, 3);
     q.lane = LANE_STRIDE > 1 ? nodes : side_by_side;
     q.march = march;

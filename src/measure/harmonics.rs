@@ -2,17 +2,21 @@
 //! f32 does between the two, whatever the order, the environment and the field. What harmonics themselves
 //! miss is in neither.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 use super::tolerance::{ShadeError, twin_light_matrix, twin_sh_shade, twin_turn};
 use crate::basis::bands;
 use crate::basis::light::receiver;
+use crate::basis::wedge::WedgeTable;
 use crate::cpu::env_turns::env_turns;
 use crate::cpu::light_matrix::{is_fitted, light_matrix, row_weights, series};
 use crate::cpu::sh_shade::light_on;
-use crate::cpu::sh_visibility::{Series, seen_above};
+use crate::cpu::sh_visibility::{Series, seen_above, seen_by_wedges};
 use crate::plan::Azimuth;
-use crate::scene::{Border, Environment, Quality, Receiver};
+use crate::plan::sh::lowest_rad;
+use crate::scene::{Border, Environment, Quality, Receiver, Wedges};
 
 /// What a sample sees: coefficients, and how far a device's may be from each.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +50,7 @@ impl Seen {
 #[derive(Clone, Debug)]
 pub struct Harmonics {
     series: Series,
+    table: Option<WedgeTable>,
     /// `[row of the receiver][coefficient]`, and how far a device's may be from each.
     matrix: Vec<Vec<DVec3>>,
     errors: Vec<Vec<DVec3>>,
@@ -76,7 +81,10 @@ impl Harmonics {
         let entry = |(s, t): (&DVec3, &DVec3)| rounded * *s + *t;
         let row = |(s, t): (&Vec<DVec3>, &Vec<DVec3>)| s.iter().zip(t).map(entry).collect();
         let series = Series { order, wedges: quality.wedges, receiver: quality.receiver };
-        Self { series, matrix, errors: summed.iter().zip(&turned).map(row).collect() }
+        let [side, azimuths] = [quality.wedge_side, quality.azimuths].map(|n| n as usize);
+        let table = (quality.wedges == Wedges::Table)
+            .then(|| WedgeTable::new(order, side, lowest_rad(border), TAU / azimuths as f64));
+        Self { table, series, matrix, errors: summed.iter().zip(&turned).map(row).collect() }
     }
 
     /// What is seen above slopes that err as `error` says, each that of the lowest direction that is free:
@@ -85,7 +93,11 @@ impl Harmonics {
         let Series { order, wedges, .. } = self.series;
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
         let errors = bands(order).map(|(l, _)| of_band[l]).collect();
-        Seen { values: seen_above(self.series, lowest), errors }
+        let values = match &self.table {
+            Some(table) => seen_by_wedges(table, lowest),
+            None => seen_above(self.series, lowest),
+        };
+        Seen { values, errors }
     }
 
     /// Exit radiance of albedo 1, 0 where harmonics ring below it, and how far a device's may be from it.

@@ -327,6 +327,9 @@ impl ShadeError {
                 let sum = parts.iter().map(|p| magnitude(&p.polynomial)).fold(0.0, f64::max);
                 [sharpest(l), sum + PI * angle, angle]
             }
+            // Horizons of a wedge move it as they move slices; texels of at most √2 · √2 Φ, weights between
+            // them and turns by powers of cosine and sine err by 60 ε.
+            Wedges::Table => [sharpest(l), 2.0 * sharpest(l).max(1.0), sharpest(l)],
             Wedges::Nlp => {
                 // Whatever the order is, up to the highest.
                 let occlusion = occlusion_polynomials(MAX_ORDER);

@@ -21,6 +21,7 @@ mod push;
 pub(crate) mod pyramid_march;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
+pub(crate) mod sh_wedges;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_shade;
 pub(crate) mod sun_shade;

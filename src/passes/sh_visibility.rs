@@ -41,6 +41,7 @@ pub(crate) fn plan(
         match wedges {
             Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
             Wedges::Nlp => "what is seen, as harmonics by Legendre coefficients",
+            Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
         },
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
         &[

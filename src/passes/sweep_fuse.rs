@@ -30,17 +30,14 @@ pub(crate) fn plan(
     border: Border,
     batch: &Batch,
     part: &str,
-    [lane_heights, lattice, azimuths, angles]: [ResourceId; 4],
-    distances: Option<ResourceId>,
+    [lane_heights, azimuths, angles]: [ResourceId; 3],
+    (lattice, distances): (Option<ResourceId>, Option<ResourceId>),
 ) {
     let axis = batch.axis;
     let [cols, rows] = axis.size();
-    let mut bound = vec![
-        ("lane_heights", lane_heights),
-        (sweep.lattice_binding(), lattice),
-        ("azimuths", azimuths),
-        ("horizon_angles", angles),
-    ];
+    let mut bound =
+        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("horizon_angles", angles)];
+    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     let pass = builder.pass(
         &shaders::SWEEP_FUSE,

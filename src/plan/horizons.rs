@@ -62,7 +62,7 @@ pub fn horizons(
         let part = part("", batch, batches);
         sweeping.record(&mut builder, batch, &part);
         let written = sweeping.written(batch);
-        let ids = [sweeping.lane_heights(batch), written, sweeping.azimuths, angles];
+        let ids = [sweeping.lane_heights(batch), sweeping.azimuths, angles];
         passes::sweep_fuse::plan(
             &mut builder,
             &sweeping.sweep,
@@ -70,7 +70,7 @@ pub fn horizons(
             batch,
             &part,
             ids,
-            distances,
+            (Some(written), distances),
         );
     }
     let used = settings(quality, Some(&sweeping.sweep), border);

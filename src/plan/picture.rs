@@ -9,7 +9,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface};
+use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface, Wedges};
 use crate::{Error, Result};
 use images::{Harmonics, Images, Tables};
 
@@ -83,7 +83,14 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let (mut tables, mut harmonics) = (None, None);
     match shining.environment.map(|e| (e, surface.border)) {
         Some(lit) if quality.basis == Basis::Sh => {
-            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality));
+            if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
+                return Err(Error::setting(
+                    "--wedges table with --lines exact",
+                    "wedges of uneven widths",
+                    "--method brute, which is exact in every azimuth",
+                ));
+            }
+            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality, &lists[0]));
         }
         Some(lit) => tables = Some(Tables::make(&mut builder, lit, quality)),
         None if shining.sky.is_some() => notes.push("no environment: no table".into()),
@@ -155,7 +162,9 @@ fn marched_nodes(
 ) -> Nodes {
     let is_marched = matches!(sweep, Sweep::March { .. } | Sweep::Pyramid(_));
     let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
-    let nodes = harmonics.map(|h| h.sh.nodes).filter(|_| is_marched && is_alone);
+    // A table is looked up by horizons of all samples.
+    let nodes = harmonics.filter(|h| h.wedge_table.is_none() && is_marched && is_alone);
+    let nodes = nodes.map(|h| h.sh.nodes);
     nodes.unwrap_or(Nodes { stride: 1 })
 }
 
@@ -261,7 +270,15 @@ impl Drawing<'_> {
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
             }
-            if let Some(Harmonics { sh, wedges, visibility, nodes, .. }) = &self.harmonics {
+            if let Some(Harmonics { sh, wedges, visibility, nodes, wedge_table, .. }) =
+                &self.harmonics
+            {
+                if let Some((angles, _)) = wedge_table {
+                    let ids = [lane_heights, azimuths, *angles];
+                    let read = (lattice, None);
+                    passes::sweep_fuse::plan(builder, sweep, border, batch, &part, ids, read);
+                    continue;
+                }
                 let (visibility, nodes) = (*visibility, *nodes);
                 let images = passes::sh_visibility::Images {
                     lane_heights,
@@ -276,6 +293,18 @@ impl Drawing<'_> {
         }
         if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
             let lane_heights = sweeping.lane_heights(batch);
+            if let Some((angles, table)) = h.wedge_table {
+                let (constants, visibility, nodes) = (h.constants, h.visibility, h.nodes);
+                let images = passes::sh_wedges::Images {
+                    lane_heights,
+                    angles,
+                    constants,
+                    visibility,
+                    nodes,
+                };
+                let field = (batch.axis, border, cell_m);
+                passes::sh_wedges::plan(&mut self.builder, field, &h.sh, &table, &images);
+            }
             let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
             passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
@@ -430,6 +459,9 @@ fn used(
             add("receiver", quality.receiver.name());
             add("window", quality.window.name());
             add("subsample", &quality.subsample.to_string());
+            if quality.wedges == Wedges::Table {
+                add("wedge_side", &quality.wedge_side.to_string());
+            }
         }
         (Some(_), _) => {
             add("basis", "table");

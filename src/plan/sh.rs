@@ -2,10 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Nodes;
+use super::{Azimuth, Nodes, batch};
 use crate::basis::light::{fit_above_ground, lobe, plane};
 use crate::basis::product::triples;
 use crate::basis::slice::{Slices, parts, slice_index};
+use crate::basis::wedge::WedgeTable;
 use crate::basis::{bands, index, window};
 use crate::scene::{Border, Environment, Quality, Receiver, Window};
 
@@ -73,6 +74,45 @@ impl Sh {
     pub fn layers(self) -> usize {
         (self.order * self.order).div_ceil(4)
     }
+}
+
+/// A table of wedges among the constants, and the circle that it is looked up for, in texels of four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WedgeTexels {
+    pub side: usize,
+    pub lowest_rad: f64,
+    pub azimuths: usize,
+    pub azimuth_first: usize,
+    pub table_first: usize,
+}
+
+impl WedgeTexels {
+    /// Adds them to the constants, for even azimuths in the order of the circle whose horizons lie in layers
+    /// in the order of [`batch::sort`].
+    pub fn of(
+        border: Border,
+        quality: &Quality,
+        circle: &[Azimuth],
+        constants: &mut Vec<f32>,
+    ) -> Self {
+        let layers = batch::sort(&mut circle.to_vec());
+        let azimuth_first = constants.len() / 4;
+        for (k, azimuth) in circle.iter().enumerate() {
+            let layer = layers.iter().position(|at| *at as usize == k).expect("sorted");
+            constants.extend([layer as f32, azimuth.cos_phi, azimuth.sin_phi, 0.0]);
+        }
+        let table_first = constants.len() / 4;
+        let order = quality.sh_order as usize;
+        let (side, lowest_rad) = (quality.wedge_side as usize, lowest_rad(border));
+        let table = WedgeTable::new(order, side, lowest_rad, TAU / circle.len() as f64);
+        constants.extend(table.texels.iter().flat_map(|texel| by_fours(texel)));
+        Self { side, lowest_rad, azimuths: circle.len(), azimuth_first, table_first }
+    }
+}
+
+/// The lowest horizon of a table of wedges: where light comes from below, of the whole sphere.
+pub(crate) fn lowest_rad(border: Border) -> f64 {
+    if border == Border::Open { -FRAC_PI_2 } else { 0.0 }
 }
 
 /// Numbers as texels of four f32, zeros at the end.

@@ -41,6 +41,7 @@ fn quality() {
             ("--levels mips", 2, &["mips", "stack"]),
             ("--sh-order 1", 2, &["--sh-order: found 1", "2 to 6"]),
             ("--sh-order 7", 2, &["--sh-order: found 7"]),
+            ("--wedge-side 3", 2, &["--wedge-side: found 3", "4 to 256"]),
             ("--subsample 3", 2, &["'3'", "--subsample", "1, 2, 4"]),
             ("--method magic", 2, &["--method", "magic", "sweep"]),
             ("--lines 3", 2, &["--lines", "'3'", "exact"]),
@@ -308,6 +309,7 @@ fn help_says_units_and_defaults() {
         ("--receiver", &["[default: plane]"]),
         ("--window", &["[default: none]"]),
         ("--subsample", &["samples", "[default: 1]"]),
+        ("--wedge-side", &["4..256", "[default: 64]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];

@@ -44,6 +44,10 @@ fn flags_that_change_nothing_are_said() {
             &["--subsample 2 changes nothing without --basis sh: tables light each sample"],
         ),
         (
+            "--env env.hdr --basis sh --wedge-side 16",
+            &["--wedge-side 16 changes nothing without --wedges table"],
+        ),
+        (
             "--subsample 4 --basis sh --sky 1",
             &["--subsample 4 changes nothing without an env", "--basis sh changes"],
         ),
@@ -96,6 +100,7 @@ fn flags_that_act_or_were_not_written_are_not() {
         "--border periodic --lines 1/2",
         "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver lobe --window hann",
         "--env env.hdr --basis sh --subsample 4 --method brute",
+        "--env env.hdr --basis sh --wedges table --wedge-side 8",
         "--env env.hdr --basis table --table-elevations 64",
     ] {
         assert_eq!(plan(&folder, "field.npy", flags).err, "", "{flags}");

@@ -3,7 +3,7 @@
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
-use ridgelight::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{Basis, Environment, Lights, Quality, Scene, Sun, Surface};
 
 use crate::{Device, random};
 
@@ -38,12 +38,10 @@ fn contents(scene: &Scene) -> [Vec<f32>; 2] {
     [scene.field.heights_m().to_vec(), texels]
 }
 
-/// Tables, and harmonics at every sample and at some.
-fn qualities() -> [Quality; 4] {
+/// Tables, and harmonics at some samples.
+fn qualities() -> [Quality; 2] {
     let tables = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
-    let sh = Quality { basis: Basis::Sh, ..tables };
-    let smoothed = Quality { method: Method::Pyramid, sh_order: 3, subsample: 4, ..sh };
-    [tables, sh, Quality { subsample: 2, ..sh }, smoothed]
+    [tables, Quality { basis: Basis::Sh, subsample: 2, ..tables }]
 }
 
 fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Plan {

@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 /// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 17] = [
+const SETTINGS: [&str; 18] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
@@ -21,6 +21,7 @@ const SETTINGS: [&str; 17] = [
     "receiver",
     "window",
     "subsample",
+    "wedge_side",
 ];
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
@@ -64,10 +65,11 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"
-            | "subsample",
+            | "subsample" | "wedge_side",
             ..,
         ) => match (setting, of("basis")) {
             (_, None) => "without an environment".into(),
+            ("wedge_side", Some("sh")) => "without --wedges table".into(),
             ("subsample", _) => {
                 "without --basis sh: tables light each sample through its own horizons".into()
             }

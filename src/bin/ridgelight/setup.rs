@@ -144,6 +144,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         wedges: match args.wedges {
             WedgesName::Slices => Wedges::Slices,
             WedgesName::Nlp => Wedges::Nlp,
+            WedgesName::Table => Wedges::Table,
         },
         receiver: match args.receiver {
             ReceiverName::Plane => Receiver::Plane,
@@ -160,6 +161,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             SubsampleName::Two => 2,
             SubsampleName::Four => 4,
         },
+        wedge_side: args.wedge_side,
     };
     quality.check()?;
     Ok(quality)

@@ -57,6 +57,7 @@ const COARSE: Quality = Quality {
     receiver: Receiver::Plane,
     window: Window::None,
     subsample: 1,
+    wedge_side: 64,
 };
 
 /// Where bounds alone stand in the way probes are added up to so many times the first.

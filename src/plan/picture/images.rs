@@ -1,6 +1,7 @@
 //! What a picture's passes read and write besides the sweeps' own.
 
-use super::super::sh::Sh;
+use super::super::azimuths::Azimuth;
+use super::super::sh::{Sh, WedgeTexels};
 use super::super::shining::Shining;
 use super::super::spheres::light_name;
 use super::super::{Builder, Format, Owner, ResourceId};
@@ -119,6 +120,8 @@ pub(super) struct Harmonics {
     pub visibility: ResourceId,
     /// The surface at the nodes, where not every sample is one.
     pub nodes: Option<ResourceId>,
+    /// Horizons of all azimuths, and the table that they are looked up in.
+    pub wedge_table: Option<(ResourceId, WedgeTexels)>,
 }
 
 impl Harmonics {
@@ -127,8 +130,11 @@ impl Harmonics {
         size: [u32; 2],
         (environment, border): (&Environment, Border),
         quality: &Quality,
+        circle: &[Azimuth],
     ) -> Self {
-        let (sh, constants) = Sh::of(environment, border, quality);
+        let (sh, mut constants) = Sh::of(environment, border, quality);
+        let by_table = quality.wedges == Wedges::Table;
+        let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
         let constants = builder.constants(constants);
         let turns = sh.rows * (2 * sh.light_order - 1);
         let env_turns = builder.buffer("env_turns", turns as u64 * 16, false);
@@ -137,9 +143,18 @@ impl Harmonics {
         };
         let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
         let light_matrix = image("light_matrix", extent, false);
+        let wedge_table = table.map(|table| {
+            let extent = [size[0], size[1], table.azimuths as u32];
+            let format = Format::R32Float;
+            (builder.image("horizon_angles", Owner::Internal, format, extent, true), table)
+        });
+        let mut image = |name: &str, extent: [u32; 3], layered: bool| {
+            builder.image(name, Owner::Internal, Format::Rgba32Float, extent, layered)
+        };
         let [cols, rows] = sh.nodes.size(size);
         let visibility = image("visibility", [cols, rows, sh.layers() as u32], true);
         let nodes = (sh.nodes.stride > 1).then(|| image("nodes", [cols, rows, 1], false));
-        Self { sh, wedges: quality.wedges, constants, env_turns, light_matrix, visibility, nodes }
+        let wedges = quality.wedges;
+        Self { sh, wedges, constants, env_turns, light_matrix, visibility, nodes, wedge_table }
     }
 }

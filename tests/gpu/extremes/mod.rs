@@ -118,6 +118,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         // How an environment is held: no method here is of another basis than tables.
         subsample: _,
         light_cutoff: _,
+        wedge_side: _,
         basis: _,
         sh_order: _,
         wedges: _,

@@ -290,6 +290,8 @@ pub(super) fn pictures() -> Vec<Case> {
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
     let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
+    let by_table = Quality { wedges: Wedges::Table, method: Method::Brute, ..subsampled(2, 6) };
+    let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
     let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
@@ -316,7 +318,15 @@ pub(super) fn pictures() -> Vec<Case> {
             false,
             false,
         ),
-        picture("harmonics at every fourth sample", colourful, subsampled(4, 4), false, false),
+        picture(
+            "harmonics at every fourth sample",
+            colourful.clone(),
+            subsampled(4, 4),
+            false,
+            false,
+        ),
+        picture("harmonics by a table of wedges", on_a_plane.clone(), by_table, false, false),
+        picture("harmonics by wedges of a sphere", colourful, open_wedges, false, false),
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, lobe, false, false),

@@ -75,6 +75,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("light_matrix", sh::light_matrix),
     ("sh_visibility", sh::sh_visibility),
     ("sh_shade", sh::sh_shade),
+    ("sh_wedges", sh::sh_wedges),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
     ("sphere_shade", light::sphere_shade),

@@ -1,16 +1,19 @@
 //! The passes of spherical harmonics.
 
-use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use glam::{DVec2, DVec3};
+use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::cpu::light_matrix as matrix_twin;
 use ridgelight::cpu::sh_shade::{light_at, nodes_around};
-use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
+use ridgelight::cpu::sh_visibility::{Series, seen_by_wedges, sh_visibility as visibility_twin};
 use ridgelight::cpu::shared::field::field_slope;
 use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::harmonics::{Seen, matrix_magnitudes};
 use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_shade, twin_turn};
-use ridgelight::plan::{Nodes, Pass};
-use ridgelight::scene::{Environment, Receiver, Wedges};
+use ridgelight::plan::{Azimuth, Nodes, Pass};
+use ridgelight::scene::{Border, Environment, Receiver, Wedges};
 
 use super::light::{rgb, so_far};
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -104,6 +107,51 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             got: *got,
             want: *want,
             tolerance: error.series(l, series.wedges),
+            at,
+        }));
+    }
+    pairs.extend(node_surfaces(run, pass, nodes));
+    pairs
+}
+
+/// From the device's own horizons.
+pub(super) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let order = constant(pass, 2) as usize;
+    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, 4) });
+    let [cols, rows] = nodes.size(size);
+    let plane = (size[0] * size[1]) as usize;
+    let angles = run.floats(pass, "horizon_angles").expect("bound");
+    let count = angles.len() / plane;
+    let azimuths = run.plan.azimuths[..count].to_vec();
+    let is_open = run.border() == Border::Open;
+    let lowest_rad = if is_open { -FRAC_PI_2 } else { 0.0 };
+    let side = run.quality.wedge_side as usize;
+    let table = WedgeTable::new(order, side, lowest_rad, TAU / count as f64);
+    let got = device_series(run, pass, order);
+    assert_eq!(got.len(), (cols * rows) as usize);
+    let (heights, error) = (run.heights(), run.sample_error());
+    let mut pairs = Vec::new();
+    for (i, got) in got.iter().enumerate() {
+        let node = [i as u32 % cols, i as u32 / cols];
+        let [col, row] = [0, 1].map(|axis| nodes.place(node[axis], size[axis]) as usize);
+        let slope = field_slope(&heights, col as i32, row as i32);
+        let lowest = |(k, azimuth): (usize, &Azimuth)| {
+            // π/2 as f32 is more than π/2.
+            let angle = f64::from(angles[k * plane + row * size[0] as usize + col]);
+            let horizon = angle.clamp(-FRAC_PI_2, FRAC_PI_2).tan();
+            let towards = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
+            let hides = constant(pass, 3) == 1;
+            let own = if hides { slope.dot(towards) } else { f64::NEG_INFINITY };
+            (*azimuth, horizon.max(own))
+        };
+        let lowest: Vec<_> = azimuths.iter().enumerate().map(lowest).collect();
+        let want = seen_by_wedges(&table, &lowest);
+        let at = [count, row, col];
+        let bands = ridgelight::basis::bands(order);
+        pairs.extend(bands.zip(got.iter().zip(&want)).map(|((l, _), (got, want))| Pair {
+            got: *got,
+            want: *want,
+            tolerance: error.series(l, Wedges::Table),
             at,
         }));
     }

@@ -3,7 +3,7 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 17] = [
+const CHOSEN: [&str; 18] = [
     "method",
     "azimuths",
     "sun_azimuths",
@@ -21,6 +21,7 @@ const CHOSEN: [&str; 17] = [
     "receiver",
     "window",
     "subsample",
+    "wedge_side",
 ];
 
 #[derive(Args)]

@@ -63,6 +63,9 @@ pub struct QualityArgs {
     /// What is seen is found at every so many samples, light at all of them; with --basis sh
     #[arg(long, default_value = "1")]
     pub subsample: SubsampleName,
+    /// Horizons of either side of a table of wedges, 4..256; with --wedges table
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
+    pub wedge_side: u32,
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
@@ -163,6 +166,8 @@ pub enum WedgesName {
     Slices,
     /// Normalised Legendre coefficients, as many as the order
     Nlp,
+    /// A table of wedges between the horizons of two azimuths
+    Table,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -283,6 +283,7 @@ mod tests {
                 (Wedges::Nlp, Receiver::Plane, Window::Lanczos),
                 (Wedges::Slices, Receiver::Lobe, Window::Hann),
                 (Wedges::Nlp, Receiver::Lobe, Window::Nonnegative),
+                (Wedges::Table, Receiver::Plane, Window::None),
             ] {
                 let quality = Quality { sh_order, wedges, receiver, window, ..base };
                 let wanted = Wanted::of(&scene, &quality, &known, &known);
