@@ -6,6 +6,7 @@ pub mod inputs;
 mod lights;
 pub mod methods;
 pub mod page;
+mod suns;
 mod twin;
 
 use ridgelight::gpu::{Headless, Pixels};
