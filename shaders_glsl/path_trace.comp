@@ -22,7 +22,8 @@ layout(constant_id = 2) const uint SET_BITS = 4u;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 5) const bool HAS_LOBE = false;
-layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns or balls
+layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or balls
+layout(constant_id = 11) const bool HAS_KEYS = false;
 layout(constant_id = 8) const bool HAS_BALLS = false;
 layout(constant_id = 9) const bool HAS_BOUNCES = false;
 // More than a ray of this field can ask for; 60,000 at most, as llvmpipe ends any loop after 65,535 turns.
@@ -31,8 +32,9 @@ layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
 layout(binding = 2) uniform texture2D ground;
-// One a row. A sun: its direction and 1 - cos of its radius; irradiance facing it, spread over its cone.
-// A ball: its place above the base and its radius; radiance.
+// One a row: suns, key lights, balls. A sun: its direction and 1 - cos of its radius; irradiance facing it, spread over its cone.
+// A key light: where it begins and how wide it is, in turns; sin² of half the zenith angle of its highest
+// and lowest elevation; radiance times solid angle. A ball: its place above the base and its radius; radiance.
 layout(binding = 3) uniform texture2D lights;
 // Radiance; w: how densely a texel's directions are chosen, 1/sr.
 layout(binding = 4) uniform texture2D environment;
@@ -65,6 +67,7 @@ layout(push_constant) uniform PathTracePush {
     vec4 albedo;           // where it is constant
     vec4 sky;
     int first_row;
+    int keys;              // after the suns
 };
 
 #include "shared/trace.glsl"
@@ -122,6 +125,14 @@ vec3 towards_light(vec2 u, vec2 v, ivec2 size, out ivec2 texel) {
     float bottom = sin(float(texel.y + 1) * half_row);
     float below = 2.0 * mix(top * top, bottom * bottom, v.y);
     float turn = 0.5 - (float(texel.x) + v.x) / float(size.x) + rotation_turns;
+    vec2 round = on_circle(turn - floor(turn)) * sqrt(max(below * (2.0 - below), 0.0));
+    return vec3(round, 1.0 - below);
+}
+
+// A direction of a key light, evenly over its solid angle.
+vec3 towards_key(vec4 key, vec2 u) {
+    float turn = key.x + key.y * u.y;
+    float below = 2.0 * mix(key.z, key.w, u.x);
     vec2 round = on_circle(turn - floor(turn)) * sqrt(max(below * (2.0 - below), 0.0));
     return vec3(round, 1.0 - below);
 }
@@ -209,29 +220,33 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         if (HAS_LIGHTS) {
             for (int r = 0; r < light_count; r++) {
                 points_of(index, key, first_ray + uint(r), is_first, u, v);
-                bool is_sun = r < suns;
+                bool is_far = r < suns + keys;
                 vec4 source = texelFetch(lights, ivec2(0, r), 0);
                 vec3 colour = texelFetch(lights, ivec2(1, r), 0).rgb;
-                vec3 to = is_sun ? source.xyz : source.xyz - centre;
+                vec3 to = is_far ? source.xyz : source.xyz - centre;
                 float away = length(to);
                 float sine2 = source.w / away;
                 sine2 *= sine2;
-                float cone = is_sun ? source.w : sine2 / (1.0 + sqrt(max(1.0 - sine2, 0.0)));
+                float cone = is_far ? source.w : sine2 / (1.0 + sqrt(max(1.0 - sine2, 0.0)));
                 // Inside a ball the scattered ray finds it.
-                bool shines = is_sun || sine2 < 1.0;
+                bool shines = is_far || sine2 < 1.0;
                 float off = u.x * cone;
                 vec3 e = direction_about(away > 0.0 ? to / away : vec3(0.0, 0.0, 1.0), off, u.y);
+                if (HAS_KEYS) {
+                    vec3 of_key = towards_key(source, u);
+                    e = is_far && r >= suns ? of_key : e;
+                }
                 float beside2 = off * (2.0 - off) * away * away;
                 float entry = (1.0 - off) * away - sqrt(max(source.w * source.w - beside2, 0.0));
-                float end_m = is_sun ? 1e30 : max(entry, 0.0);
+                float end_m = is_far ? 1e30 : max(entry, 0.0);
                 Reflected of = reflected_from(place, e);
-                vec3 brought = of.light * colour * (is_sun ? 1.0 : 2.0 * PI * cone);
+                vec3 brought = of.light * colour * (is_far ? 1.0 : 2.0 * PI * cone);
                 bool going = alive && shines && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
                 Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
                 float t_end = end_m * min(ray.scale, 1e6);
                 Met met = trace(ray, t_end, going);
                 rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
-                bool in_view = met.what == RAY_FREE || (!is_sun && (met.what != RAY_HIT || met.t >= t_end));
+                bool in_view = met.what == RAY_FREE || (!is_far && (met.what != RAY_HIT || met.t >= t_end));
                 light += going && in_view ? carried * brought : vec3(0.0);
             }
         }
@@ -270,7 +285,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         }
         seen = met.what == RAY_FREE ? seen : vec3(0.0);
         if (HAS_BALLS) {
-            for (int i = suns; i < light_count; i++) {
+            for (int i = suns + keys; i < light_count; i++) {
                 vec4 ball = texelFetch(lights, ivec2(0, i), 0);
                 vec3 to = ball.xyz - centre;
                 float ahead = dot(to, e);

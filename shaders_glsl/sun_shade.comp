@@ -1,7 +1,7 @@
-// Computes: what a sun gives to every sample through its horizons in the azimuths that its disc
+// Computes: what a sun or a key light gives to every sample through its horizons in the azimuths that it
 // covers, added to what earlier batches gave.
 // Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list. Reads and writes: sun_sum (exit radiance for
-// irradiance 1 and albedo 1).
+// irradiance 1 of a sun, radiance 1 of a key light, and albedo 1).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -16,8 +16,10 @@ layout(constant_id = 2) const int LINE_SHIFT = 15;
 layout(constant_id = 3) const uint BORDER = 0u;
 const bool LATTICE_HAS_DISTANCES = false;
 const bool OWN_PLANE_HIDES = true;
-// A point: lit or not. Else the part of each chord of the disc that the horizon leaves free.
-layout(constant_id = 4) const bool POINT = false;
+const uint SHAPE_DISC = 0u;   // the part of each chord that the horizon leaves free
+const uint SHAPE_POINT = 1u;  // lit or not
+const uint SHAPE_PATCH = 2u;  // the part of its elevations that the horizon leaves free, over each wedge
+layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
 // Only the samples marked in dirty_samples, by the list of their words.
 layout(constant_id = 6) const bool RELIGHTS = false;
@@ -42,15 +44,20 @@ vec4 normal_up;
 // the sample's own plane leave free.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     vec4 flat_part = normal_east * azimuth.cos_phi + normal_north * azimuth.sin_phi;
+    vec4 vertical = normal_up;
+    if (SHAPE == SHAPE_PATCH) {
+        flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
+        vertical = normal_up * azimuth.wedge_rad;
+    }
     bvec4 lit = lessThan(lowest, vec4(azimuth.high_slope));
     vec4 light;
-    if (POINT) {
+    if (SHAPE == SHAPE_POINT) {
         float cos_elevation = inversesqrt(1.0 + azimuth.high_slope * azimuth.high_slope);
-        light = max((flat_part + normal_up * azimuth.high_slope) * cos_elevation, 0.0);
+        light = max((flat_part + vertical * azimuth.high_slope) * cos_elevation, 0.0);
     } else {
         Moments above = elevation_moments(max(lowest, azimuth.low_slope));
         Moments top = elevation_moments(vec4(azimuth.high_slope));
-        light = flat_part * (above.flat_part - top.flat_part) + normal_up * (above.vertical - top.vertical);
+        light = flat_part * (above.flat_part - top.flat_part) + vertical * (above.vertical - top.vertical);
     }
     sun += mix(vec4(0.0), light * azimuth.weight * (1.0 / PI), lit);
 }

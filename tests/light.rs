@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use ridgelight::cpu::light::{ENVIRONMENT_STRIPS, environment, normal, sky, slice, sun};
-use ridgelight::scene::{Border, Environment, HeightField, Sun};
+use ridgelight::cpu::{key::key_of, oracle::Oracle};
+use ridgelight::scene::{Border, Environment, HeightField, KeyLight, Sun};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
@@ -343,6 +344,77 @@ fn a_wall_casts_hard_and_soft_shadows() {
     assert!((half - 0.5).abs() < 0.01, "{half}");
     assert_eq!(at(top - 0.011, 0.02), 0.0);
     assert!((at(top + 0.011, 0.02) / f64::sin(top + 0.011) - free / top.sin()).abs() < 1e-8);
+}
+
+fn key(azimuth: f64, width: f64, [low, high]: [f64; 2]) -> KeyLight {
+    KeyLight {
+        azimuth_rad: azimuth.to_radians(),
+        width_rad: width.to_radians(),
+        elevations_rad: [low.to_radians(), high.to_radians()],
+        radiance: [2.0, 0.0, 1.0],
+    }
+}
+
+/// ∫∫ sin ω cos ω dω dφ = width (sin²high - sin²low) / 2 on level ground, over π, however many strips.
+#[test]
+fn a_key_over_level_ground_has_its_closed_form() {
+    let flat = field(5, 5, [1.0, 3.0], |_, _| 40.0);
+    for border in BORDERS {
+        let oracle = Oracle::new(&flat, border);
+        for (azimuth, width, [low, high]) in
+            [(0.0, 360.0, [0.0, 90.0]), (77.0, 20.0, [10.0, 30.0]), (-200.0, 1e-3, [89.0, 90.0])]
+        {
+            let key = key(azimuth, width, [low, high]);
+            let sin2 = |degrees: f64| degrees.to_radians().sin().powi(2);
+            let expected = 2.0 * width.to_radians() * (sin2(high) - sin2(low)) / 2.0 / PI;
+            assert!((2.0 * key.level_irradiance() / PI - expected).abs() < 1e-15);
+            for strips in [1, 3, 100] {
+                let [r, g, b] = key_of(&oracle, 2, 2, &key, strips);
+                assert!(
+                    (r - expected).abs() < 1e-14,
+                    "{border:?} {key:?} {strips}: {r} {expected}"
+                );
+                assert_eq!((g, b), (0.0, r / 2.0));
+            }
+        }
+        // What lies below horizontal gives level ground nothing.
+        let below = |low, high| key_of(&oracle, 2, 2, &key(50.0, 90.0, [low, high]), 8)[0];
+        assert!((below(-50.0, 40.0) - below(0.0, 40.0)).abs() < 1e-15);
+        assert_eq!(below(-50.0, -1.0), 0.0);
+    }
+}
+
+/// The whole upper hemisphere is a uniform sky, in its azimuths and on any ground that a border bounds from
+/// below; from the nadir up it is an open border's.
+#[test]
+fn a_key_of_the_whole_sky_is_the_sky() {
+    let rough = field(6, 7, [2.0, 3.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
+    for (border, low) in [(Border::Plane, 0.0), (Border::Periodic, 0.0), (Border::Open, -90.0)] {
+        let oracle = Oracle::new(&rough, border);
+        // Strips' middles are multiples of 10°.
+        let all = key(5.0 + 180.0, 360.0, [low, 90.0]);
+        for place in 0..42 {
+            let (row, col) = (place / 7, place % 7);
+            let expected = 2.0 * sky(&rough, border, row, col, 36);
+            let [r, ..] = key_of(&oracle, row, col, &all, 36);
+            assert!((r - expected).abs() < 1e-12, "{border:?} {place}: {r} {expected}");
+        }
+    }
+}
+
+/// A wall's top cuts what lies below it: 5 m high and 5 m away, along the light's middle at 45°. Above it
+/// nothing is lost, below all, and between what the closed form of the rest gives.
+#[test]
+fn a_wall_cuts_a_key_from_below() {
+    let wall = field(401, 8, [1.0, 1.0], |_, c| if c == 7 { 5.0 } else { 0.0 });
+    let oracle = Oracle::new(&wall, Border::Plane);
+    let at = |low, high| key_of(&oracle, 200, 2, &key(0.0, 0.01, [low, high]), 4)[0];
+    let free = |low, high| 2.0 * key(0.0, 0.01, [low, high]).level_irradiance() / PI;
+    // Over the light's width the wall's top sinks by less than 1e-8 rad.
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-7 * free(0.0, 90.0);
+    assert!(near(at(46.0, 80.0), free(46.0, 80.0)));
+    assert!(near(at(20.0, 80.0), free(45.0, 80.0)));
+    assert_eq!(at(20.0, 44.9), 0.0);
 }
 
 /// Extremes stay numbers: light under a sky of radiance 1 lies within [0, 1] whatever the heights and

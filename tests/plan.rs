@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method,
-    Precision, Quality, Receiver, Scene, Sun, Surface,
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
+    Method, Precision, Quality, Receiver, Scene, Sun, Surface,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -401,6 +401,54 @@ fn harmonics() {
     }
     let tables = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
     assert!(tables.expect("a plan").constants.is_empty());
+}
+
+fn key(high: f64, radiance: [f32; 3]) -> KeyLight {
+    KeyLight { azimuth_rad: 0.3, width_rad: 0.5, elevations_rad: [-0.4, high], radiance }
+}
+
+/// Key lights add what suns do: sweeps of their own azimuths, a shading pass, a layer. Where there are
+/// none, where they are black, or below horizontal where there is ground, there is nothing of them.
+#[test]
+fn key_lights() {
+    let picture = |keys: &[KeyLight], border| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.surface.border = border;
+        scene.lights.keys = keys.to_vec();
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let quality = Quality { azimuths: 8, ..Quality::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+    };
+    let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
+    let none = picture(&[], Border::Plane);
+    assert!(!short(&none).contains("sun") && !short(&none).contains("key"), "{}", short(&none));
+    assert!(none.settings.iter().all(|(name, _)| name != "sun_azimuths"));
+    let dropped = [key(0.5, [0.0; 3]), key(-0.1, [1.0; 3])];
+    let dark = picture(&dropped, Border::Plane);
+    assert_eq!(short(&dark), short(&none));
+    for note in ["key 1 dropped: its radiance is 0", "key 2 dropped: all of it is below horizontal"]
+    {
+        assert!(dark.notes.iter().any(|n| n == note), "{:?}", dark.notes);
+    }
+    let lit = picture(&dropped, Border::Open);
+    assert_eq!(lit.azimuths.len(), 8 + 8);
+    let seen: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
+    assert_eq!(seen, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);
+    let outputs: Vec<&str> = lit.outputs().map(|(_, r)| r.name.as_str()).collect();
+    assert_eq!(outputs, ["radiance", "direct.sky", "direct.key2"]);
+    assert!(lit.settings.contains(&("sun_azimuths".into(), "8".into())));
+    assert_eq!(missing_barriers(&lit.passes), []);
+    // Another colour is resolved anew, in its share of the picture, and nothing is swept.
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let kept = |radiance| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.lights.keys = vec![key(0.5, radiance)];
+        let limits = Limits::lavapipe();
+        plan::picture(&scene, &Quality::default(), &limits, wanted).expect("a plan")
+    };
+    let after = kept([2.0; 3]);
+    let again = after.passes_after(&kept([1.0; 3]), &[]);
+    assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
 }
 
 /// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.

@@ -4,6 +4,7 @@ use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::measure::auto::{FEATURES, PARTS, Part, Statistics};
 use ridgelight::measure::error::ImageError;
+use ridgelight::measure::trade::start;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 
 use super::device::draw;
@@ -25,7 +26,7 @@ struct Seen {
 
 /// Settings that differ in the part alone, and those that they are held against.
 fn settings(part: Part) -> (Vec<Quality>, Quality) {
-    let plain = Quality { method: Method::Sweep, ..Quality::default() };
+    let plain = start();
     let of = |values: &[u32], set: fn(&mut Quality, u32)| -> Vec<Quality> {
         let one = |v: &u32| {
             let mut quality = plain;

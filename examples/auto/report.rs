@@ -6,7 +6,7 @@ use std::time::Instant;
 use ridgelight::files;
 use ridgelight::gpu::Headless;
 use ridgelight::measure::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend};
+use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend, start};
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use serde_json::{Value, json};
@@ -34,20 +34,18 @@ struct Truth {
 impl Truth {
     fn of(gpu: &mut Headless, scene: &Scene) -> Result<Self> {
         let dense = Quality {
-            method: Method::Sweep,
             lines: Lines::QuarterCell,
             fuse: Fuse::Aimed,
             azimuths: 1024,
             sun_azimuths: 128,
             table_elevations: 4096,
-            ..Quality::default()
+            ..start()
         };
-        let plain = Quality { method: Method::Sweep, ..Quality::default() };
-        let plain = draw(gpu, scene, &plain, 0)?.planes;
+        let plain = draw(gpu, scene, &start(), 0)?.planes;
         let control = draw(gpu, scene, &dense, 0)?.planes;
         let unsure = apart(&plain, &control, scene.field.cols());
         let probes = Probes::of(scene, TRUE_PROBES, TRUE_SEED, &unsure)?;
-        let own = probes.error(&control, None);
+        let own = probes.error(&control, None, Probes::ONE_LOOK);
         let mut truth = Self { probes, control, own, needs_exact: own.error > GOOD };
         if truth.needs_exact {
             truth.probes = Probes::of(scene, MORE_PROBES, TRUE_SEED, &unsure)?;
@@ -57,8 +55,8 @@ impl Truth {
                 Quality { method: Method::Brute, azimuths: 128, sun_azimuths: 64, ..dense }
             };
             let control = draw(gpu, scene, &exact, 0)?.planes;
-            truth.own = truth.probes.error(&truth.control, None);
-            let own = truth.probes.error(&control, None);
+            truth.own = truth.probes.error(&truth.control, None, Probes::ONE_LOOK);
+            let own = truth.probes.error(&control, None, Probes::ONE_LOOK);
             if own.error < truth.own.error {
                 (truth.control, truth.own) = (control, own);
             }
@@ -67,7 +65,7 @@ impl Truth {
     }
 
     fn error(&self, planes: &[Vec<f32>]) -> Measured {
-        self.probes.error(planes, Some(&self.control))
+        self.probes.error(planes, Some(&self.control), Probes::ONE_LOOK)
     }
 }
 
@@ -78,7 +76,7 @@ fn walked(
     truth: &Truth,
     seconds: f64,
 ) -> Result<Vec<(Quality, Point)>> {
-    let start = Quality { method: Method::Sweep, ..Quality::default() };
+    let start = start();
     let knobs = knobs(scene);
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
     let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);

@@ -45,9 +45,9 @@ struct Azimuth {
     uint layer;       // first layer of its result in the lattice
     uint flags;       // AZIMUTH_*
     float centre_rad; // azimuth of the wedge's centre, -pi .. pi
-    float low_slope;  // sun only: the disc's chord in this azimuth
+    float low_slope;  // sun: the disc's chord in this azimuth; key light: its elevations
     float high_slope;
-    float weight;     // sun only: radiance that makes the chords add up to irradiance 1
+    float weight;     // sun: radiance that makes the chords add up to irradiance 1; key light: 1
     int vector_march; // exact azimuths only: the grid vector (march, lane), both 0 or more, coprime
     int vector_lane;
 };

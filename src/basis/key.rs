@@ -1,5 +1,5 @@
-//! Key lights: a part of the sky of uniform radiance, between two azimuths and two elevations (NS09 §6,
-//! supplement §1).
+//! Key lights as spherical harmonics: what is seen of one, between two azimuths and two elevations (NS09
+//! §6, supplement §1). Pictures do without: they sum the light itself.
 //!
 //! Horizons are taken at a few azimuths across it. Of each, what counts is where [horizon, π/2] and the
 //! light's elevations meet. The light being uniform, light times visibility is that restricted visibility
@@ -8,17 +8,7 @@
 use super::azimuth::{Blend, assemble, assemble_nlp, swath};
 use super::legendre::occlusion;
 use super::slice::Slices;
-
-/// A part of the sky.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KeyLight {
-    /// Its first azimuth, counter-clockwise from east.
-    pub azimuth_rad: f64,
-    /// Its width in azimuth, (0..2π].
-    pub width_rad: f64,
-    /// Its elevations, lowest and highest, in [-π/2..π/2].
-    pub elevations_rad: [f64; 2],
-}
+use crate::scene::KeyLight;
 
 impl KeyLight {
     /// Where horizons are taken: `count` azimuths from end to end (NS09: 3).
@@ -28,7 +18,7 @@ impl KeyLight {
     pub fn azimuths(&self, count: usize) -> Vec<f64> {
         assert!(count >= 2, "{count} azimuths across a light");
         let step = self.width_rad / (count - 1) as f64;
-        (0..count).map(|k| self.azimuth_rad + step * k as f64).collect()
+        (0..count).map(|k| self.first_rad() + step * k as f64).collect()
     }
 
     /// The elevations that are seen above a horizon; equal where there are none.
@@ -67,7 +57,11 @@ impl KeyLight {
         assemble_nlp(order, &self.weights(order, blend, horizons_rad.len()), &seen)
     }
 
+    fn first_rad(&self) -> f64 {
+        self.azimuth_rad - self.width_rad / 2.0
+    }
+
     fn weights(&self, order: usize, blend: Blend, count: usize) -> Vec<Vec<f64>> {
-        swath(order, blend, self.azimuth_rad, self.width_rad, count)
+        swath(order, blend, self.first_rad(), self.width_rad, count)
     }
 }

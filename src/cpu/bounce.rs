@@ -19,6 +19,7 @@
 //! second order in the triangles' size where light is smooth, first along shadows' edges; second
 //! order in the step between azimuths. [`truth`] measures both by halving both.
 
+use super::key::key_on;
 use super::light::{Receiver, Slice, environment_on, normal, sun_on};
 use super::oracle::Oracle;
 use super::profile::Stretch;
@@ -36,7 +37,7 @@ pub struct Fineness {
     pub azimuths: usize,
     /// Parts that each side of a cell is cut into; the surface stays the same.
     pub divisions: usize,
-    /// Azimuths across a sun, a ball, or one texel of an environment.
+    /// Azimuths across a sun, a key light, a ball, or one texel of an environment.
     pub strips: usize,
 }
 
@@ -306,6 +307,10 @@ fn arriving(
     }
     for sun in &lights.suns {
         add(sun_on(oracle, row, col, receivers, sun, strips));
+    }
+    for key in &lights.keys {
+        let shares = key_on(oracle, row, col, receivers, key, strips);
+        add(shares.iter().map(|share| key.radiance.map(|l| share * f64::from(l))).collect());
     }
     for sphere in &lights.spheres {
         let shares = sphere_on(oracle, row, col, receivers, sphere, strips);

@@ -124,7 +124,7 @@ pub(super) struct Slice {
 
 impl Slice {
     /// The same, with light only from above an elevation.
-    fn above(self, horizon_rad: f64) -> Self {
+    pub(super) fn above(self, horizon_rad: f64) -> Self {
         Self { low: self.low.max(horizon_rad), ..self }
     }
 

@@ -2,22 +2,25 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use super::key;
 use super::light::{self, ENVIRONMENT_STRIPS, Receiver};
 use super::oracle::Oracle;
-use crate::scene::{Albedo, Environment, Scene};
+use crate::scene::{Albedo, Environment, KeyLight, Scene};
 
-/// Azimuths of a sky, strips across a sun.
+/// Azimuths of a sky, strips across a sun; across a key light as many, or as a sky has.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
 /// Azimuths that an environment's columns share out among them by their light, beside those that each has.
 const SHARED: f64 = 1024.0;
 
-/// A scene's samples under its sky, environment and suns together.
+/// A scene's samples under its sky, environment, suns and key lights together.
 #[derive(Clone, Debug)]
 pub struct Lit<'a> {
     scene: &'a Scene,
     oracle: Oracle<'a>,
     columns: Option<Columns<'a>>,
+    azimuths: usize,
+    strips: usize,
 }
 
 impl<'a> Lit<'a> {
@@ -26,15 +29,25 @@ impl<'a> Lit<'a> {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
         let columns = scene.lights.environment.as_ref().map(|e| Columns::of(e, rows(e)));
-        Self { scene, oracle, columns }
+        Self { scene, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
+    }
+
+    /// The same by half of all rays: how far it is off tells what the rays between them may still change.
+    pub fn halved(mut self) -> Self {
+        (self.azimuths, self.strips) = (AZIMUTHS / 2, STRIPS / 2);
+        if let Some(columns) = &mut self.columns {
+            columns.parts.iter_mut().for_each(|p| *p = p.div_ceil(2));
+        }
+        self
     }
 
     /// Rays that one sample takes.
     pub fn rays(&self) -> usize {
         let lights = &self.scene.lights;
-        let sky = if lights.sky.is_some() { AZIMUTHS } else { 0 };
+        let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
-        sky + environment + lights.suns.len() * STRIPS
+        let keys: usize = lights.keys.iter().map(|k| self.key_strips(k)).sum();
+        sky + environment + lights.suns.len() * self.strips + keys
     }
 
     /// Exit radiance of a sample, its albedo counted, linear RGB.
@@ -44,20 +57,26 @@ impl<'a> Lit<'a> {
     pub fn at(&self, row: usize, col: usize) -> [f64; 3] {
         let (lights, oracle) = (&self.scene.lights, &self.oracle);
         let sky = lights.sky.map(|colour| {
-            let share = light::sky_of(oracle, row, col, AZIMUTHS);
+            let share = light::sky_of(oracle, row, col, self.azimuths);
             colour.map(|c| f64::from(c) * share)
         });
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
-        let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, STRIPS));
+        let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
+        let keys = lights.keys.iter().map(|k| key::key_of(oracle, row, col, k, self.key_strips(k)));
         let albedo = match &self.scene.surface.albedo {
             Albedo::Constant(c) => *c,
             Albedo::Map(map) => map[row * self.scene.field.cols() + col],
         };
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns) {
+        for light in sky.into_iter().chain(environment).chain(suns).chain(keys) {
             (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
         }
         all
+    }
+
+    /// Azimuths across a key light.
+    fn key_strips(&self, key: &KeyLight) -> usize {
+        ((self.azimuths as f64 * key.width_rad / TAU).ceil() as usize).max(self.strips)
     }
 }
 

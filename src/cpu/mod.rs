@@ -19,6 +19,7 @@ pub mod height_transpose;
 pub mod horizon_march;
 pub mod horizon_resweep;
 pub mod horizon_sweep;
+pub mod key;
 pub mod lattice;
 pub mod light;
 pub mod light_matrix;

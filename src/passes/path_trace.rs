@@ -33,6 +33,7 @@ struct PathTracePush {
     albedo: [f32; 4],
     sky: [f32; 4],
     first_row: i32,
+    keys: i32,
 }
 
 same_layout!(
@@ -57,6 +58,7 @@ same_layout!(
     albedo = ALBEDO,
     sky = SKY,
     first_row = FIRST_ROW,
+    keys = KEYS,
 );
 
 /// What rays skip by: cells, rows of the image that the levels' places follow from, levels.
@@ -94,6 +96,7 @@ pub(crate) fn plan(
     };
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let is_line = |n| surface.border != Border::Periodic && n == 1;
+    let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let (albedo, is_map) = match surface.albedo {
         Albedo::Constant(colour) => (colour, false),
@@ -115,7 +118,8 @@ pub(crate) fn plan(
             (3, u32::from(is_map)),
             (4, u32::from(lights.environment.is_some())),
             (5, u32::from(surface.phong.is_some())),
-            (7, u32::from(lights.suns.len() + lights.spheres.len() > 0)),
+            (7, u32::from(count > 0)),
+            (11, u32::from(!lights.keys.is_empty())),
             (8, u32::from(!lights.spheres.is_empty())),
             (9, u32::from(bounces > 0)),
             (10, most_steps(blocks.cells, surface.border)),
@@ -135,11 +139,12 @@ pub(crate) fn plan(
             lobe_share: surface.phong.map_or(0.0, |p| p.scale),
             bounces: bounces as i32,
             suns: lights.suns.len() as i32,
-            light_count: (lights.suns.len() + lights.spheres.len()) as i32,
+            light_count: count as i32,
             seed,
             albedo: four(albedo),
             sky: four(lights.sky.unwrap_or_default()),
             first_row: band.start as i32,
+            keys: lights.keys.len() as i32,
         },
         bound,
         samples * 7 * 16,

@@ -1,11 +1,12 @@
 use super::dirty_list;
 use super::push::ShadePush;
 use crate::gpu::shaders;
+use crate::plan::azimuths::Shape;
 use crate::plan::sweep::Sweep;
 use crate::plan::{Batch, Builder, ResourceId};
 use crate::scene::Border;
 
-/// Light of one sun through the horizons of the azimuths that its disc covers.
+/// Light of one sun or key light through the horizons of the azimuths that it covers.
 #[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
 pub(crate) fn plan(
     builder: &mut Builder,
@@ -14,7 +15,7 @@ pub(crate) fn plan(
     cell_m: [f64; 2],
     batch: &Batch,
     part: &str,
-    is_point: bool,
+    shape: Shape,
     lattice: Option<ResourceId>,
     [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
     edited: Option<[ResourceId; 2]>,
@@ -29,10 +30,10 @@ pub(crate) fn plan(
     let pass = builder.pass(
         &shaders::SUN_SHADE,
         part,
-        if is_point {
-            "a point: lit or not"
-        } else {
-            "the part of each chord of the disc above the horizon"
+        match shape {
+            Shape::Disc => "the part of each chord of the disc above the horizon",
+            Shape::Point => "a point: lit or not",
+            Shape::Patch => "the part of its elevations above the horizon",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &[
@@ -40,7 +41,7 @@ pub(crate) fn plan(
             (1, sweep.lattice_content()),
             (2, sweep.line_shift()),
             (3, border as u32),
-            (4, u32::from(is_point)),
+            (4, shape as u32),
             (5, u32::from(axis.marches_rows)),
             (6, u32::from(edited.is_some())),
         ],

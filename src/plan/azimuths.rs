@@ -1,9 +1,16 @@
-//! The directions of a sweep: even ones, ones along grid vectors, and those that a sun's disc covers.
+//! The directions of a sweep: even ones, ones along grid vectors, and those that a sun's disc or a key
+//! light covers.
+
+mod aimed;
+mod drawn;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::scene::Sun;
 use crate::{Error, Result};
+
+pub use aimed::{Shape, across_key};
+pub use drawn::towards_light;
 
 /// One lane cell in the units of [`Azimuth::shear`].
 pub const CELL: i32 = 1 << 15;
@@ -40,11 +47,11 @@ pub struct Azimuth {
     pub flags: u32,
     /// Azimuth of the wedge's centre, radians, (-π..π].
     pub centre_rad: f32,
-    /// Sun only: slope of the lower end of the disc's chord.
+    /// Sun or key light: slope of the lower end of the disc's chord, or of the light.
     pub low_slope: f32,
-    /// Sun only: slope of the upper end.
+    /// Sun or key light: slope of the upper end.
     pub high_slope: f32,
-    /// Sun only: radiance of the disc (times the chord's width) for irradiance 1.
+    /// Sun: radiance of the disc (times the chord's width) for irradiance 1. Key light: 1.
     pub weight: f32,
     /// Exact azimuths only: march component of the grid vector.
     pub vector_march: i32,

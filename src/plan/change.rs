@@ -9,7 +9,8 @@ impl Plan {
     /// what a pass is told: in their images and buffers, or in which passes there are.
     ///
     /// With [`Picture::keeps_horizons`](super::Picture::keeps_horizons) a change of light alone needs
-    /// no sweep; a change of heights alone never needs an environment's tables.
+    /// no sweep, but for another environment's plan, whose azimuths are drawn to it; a change of heights
+    /// alone never needs an environment's tables.
     pub fn passes_after(&self, before: &Plan, changed: &[ResourceId]) -> Vec<usize> {
         let count = self.passes.len();
         if self.resources != before.resources || !self.has_passes_of(before) {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::scene::{Albedo, Border, Environment, Scene, Sun};
+use super::reference::seen_part;
+use crate::scene::{Albedo, Border, Environment, KeyLight, Scene, Sun};
 
 /// How an environment's texels are chosen, in proportion to the light of all channels that they give:
 /// rows of width + 1. First column: the share of the rows from the zenith down to this one; then the
@@ -61,7 +62,8 @@ pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64>
 /// The most that one path of up to `bounces` can bring, R, G, B.
 ///
 /// With f the most that a vertex scatters of what arrives, and R the most it reflects of an irradiance, a
-/// vertex brings from a sun of irradiance E at most R·E, from a ball of radiance L at most 2π·R·L, and
+/// vertex brings from a sun of irradiance E at most R·E, from a key light of radiance L and solid angle Ω at
+/// most R·L·Ω, from a ball of radiance L at most 2π·R·L, and
 /// from the environment, chosen with density p and weighed by the balance heuristic, at most f·L and
 /// R·L/p; its scattered ray then meets the lights, or the next vertex.
 pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
@@ -90,12 +92,13 @@ pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
         }
         let sky = lights.sky.map_or(0.0, |s| f64::from(s[c]));
         let suns: f64 = lights.suns.iter().map(|s| sun_facing(s, c)).sum();
+        let keys: f64 = lights.keys.iter().map(|k| key_facing(k, surface.border, c)).sum();
         let balls: f64 = lights.spheres.iter().map(|s| f64::from(s.radiance[c])).sum();
         let diffuse = f64::from(albedo[c]);
         // Scattered, reflected at most, chosen directly, met by the scattered ray.
         let vertex = |scattered: f64, reflected: f64, dense: f64| {
             let chosen = (scattered * environment[0]).min(reflected * environment[1]);
-            let direct = reflected * (suns + 2.0 * PI * balls) + chosen;
+            let direct = reflected * (suns + keys + 2.0 * PI * balls) + chosen;
             let met = environment[0].min(dense * environment[1]);
             (direct, scattered * (sky + met + balls), scattered)
         };
@@ -116,4 +119,10 @@ pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
 /// Irradiance facing a sun, spread over all of its cone: see [`super::reference_inputs`].
 fn sun_facing(sun: &Sun, channel: usize) -> f64 {
     2.0 / (1.0 + (0.5 * sun.diameter_rad).cos()) * f64::from(sun.irradiance[channel])
+}
+
+/// Radiance of a key light times its solid angle.
+fn key_facing(key: &KeyLight, border: Border, channel: usize) -> f64 {
+    let [top, bottom] = seen_part(key, border);
+    key.width_rad * 2.0 * (bottom - top) * f64::from(key.radiance[channel])
 }

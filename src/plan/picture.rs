@@ -1,7 +1,8 @@
 mod images;
 
+use super::azimuths::Shape;
 use super::edit::Edits;
-use super::shining::{Shining, sun_name};
+use super::shining::{Aimed, Shining};
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Plan, ResourceId};
@@ -51,10 +52,16 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
         sweep = Sweep::Crossings;
     }
-    if matches!(sweep, Sweep::Surface { .. }) && !shining.suns.is_empty() {
+    if matches!(sweep, Sweep::Surface { .. })
+        && let Some(aimed) = shining.aimed().next()
+    {
+        let (flag, light) = match aimed.shape {
+            Shape::Patch => ("--key", "a key light"),
+            Shape::Disc | Shape::Point => ("--sun", "a sun"),
+        };
         return Err(Error::setting(
-            "--lines exact with --sun",
-            "a sun, whose azimuths are no grid vectors",
+            format!("--lines exact with {flag}"),
+            format!("{light}, whose azimuths are no grid vectors"),
             "--method brute, which is exact in every azimuth",
         ));
     }
@@ -63,7 +70,13 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
-    let lists = shining.lists(images.need_circle(), quality, &sweep, field.cell_m(), &mut notes)?;
+    let lists = shining.lists(
+        images.need_circle(),
+        quality,
+        &sweep,
+        (surface.border, field.cell_m()),
+        &mut notes,
+    )?;
     let (mut tables, mut harmonics) = (None, None);
     match shining.environment.map(|e| (e, surface.border)) {
         Some(lit) if quality.basis == Basis::Sh => {
@@ -171,7 +184,7 @@ impl Drawing<'_> {
     fn light(&mut self, lists: &Lists) -> Result<()> {
         self.is_begun = false;
         self.sky_and_environment(lists);
-        self.suns(lists);
+        self.aimed(lists);
         self.sky_view();
         self.dark()
     }
@@ -236,14 +249,14 @@ impl Drawing<'_> {
         }
     }
 
-    fn suns(&mut self, lists: &Lists) {
+    fn aimed(&mut self, lists: &Lists) {
         let Some(sum) = self.images.sun_sum else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
-        let batches_of_suns = &lists.batches[usize::from(self.images.need_circle())..];
-        for (s, batches) in batches_of_suns.iter().enumerate() {
-            let (position, sun) = self.shining.suns[s];
-            let name = sun_name(position);
-            let is_point = sun.is_point();
+        let batches_of_each = &lists.batches[usize::from(self.images.need_circle())..];
+        let lights: Vec<Aimed> = self.shining.aimed().collect();
+        for (i, (batches, Aimed { name, shape, colour })) in
+            batches_of_each.iter().zip(lights).enumerate()
+        {
             for batch in batches {
                 let part = part(&name, batch, batches);
                 let (builder, sweeping) = (&mut self.builder, &self.sweeping);
@@ -261,13 +274,13 @@ impl Drawing<'_> {
                     cell_m,
                     batch,
                     &part,
-                    is_point,
+                    shape,
                     lattice,
                     ids,
                     self.edited,
                 );
             }
-            self.resolve(&name, sum, Some(sun.irradiance), self.images.sun_layers[s]);
+            self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
         }
     }
 
@@ -362,7 +375,7 @@ fn used(
         }
         (None, _) => {}
     }
-    if shining.suns.iter().any(|(_, s)| !s.is_point()) {
+    if shining.aimed().any(|light| light.shape != Shape::Point) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
     }
     used

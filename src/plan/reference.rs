@@ -1,8 +1,10 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use super::choice::{choice_density, environment_cdf, most_light};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::path_trace::{self, BATCH_PATHS, Blocks};
 use crate::passes::{height_bounds, height_cells};
-use crate::scene::{Albedo, Border, Lights, Scene};
+use crate::scene::{Albedo, Border, KeyLight, Lights, Scene};
 use crate::{Error, Result};
 
 /// Paths a sample of one batch of a [`reference`](reference()).
@@ -33,14 +35,14 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
         return Err(Error::setting("--bounces", bounces.to_string(), expected));
     }
-    let count = lights.suns.len() + lights.spheres.len();
+    let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
     if count == 0 && lights.sky.is_none() && lights.environment.is_none() {
-        let expected = "at least one of sky, environment, sun and local light";
+        let expected = "at least one of sky, environment, sun, key light and local light";
         return Err(Error::setting("lights", "none", expected));
     }
     if count > limits.image_side as usize {
         return Err(Error::Limit {
-            what: format!("{count} suns and local lights"),
+            what: format!("{count} suns, key lights and local lights"),
             needs: format!("an image {count} texels long"),
             limit: format!("{} on this device", limits.image_side),
         });
@@ -152,15 +154,15 @@ pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
         all.push(texels.flat_map(|(t, d)| [t[0], t[1], t[2], *d as f32]).collect());
         all.push(cdf);
     }
-    all.push(light_texels(lights, field.base_m()));
+    all.push(light_texels(lights, surface.border, field.base_m()));
     if let Albedo::Map(map) = &surface.albedo {
         all.push(opaque(map));
     }
     all
 }
 
-/// Two texels a light, suns first: see `path_trace.comp`.
-fn light_texels(lights: &Lights, base_m: f64) -> Vec<f32> {
+/// Two texels a light: suns, key lights, balls. See `path_trace.comp`.
+fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
     let mut all = Vec::new();
     for sun in &lights.suns {
         // The rounding of π is no direction: along a line of samples its sign would decide everything.
@@ -176,6 +178,14 @@ fn light_texels(lights: &Lights, base_m: f64) -> Vec<f32> {
         all.extend(sun.irradiance.map(|e| (spread * f64::from(e)) as f32));
         all.push(1.0);
     }
+    for key in &lights.keys {
+        let [top, bottom] = seen_part(key, border);
+        let first = (key.azimuth_rad - 0.5 * key.width_rad) / TAU;
+        all.extend([first.rem_euclid(1.0), key.width_rad / TAU, top, bottom].map(|v| v as f32));
+        let solid_angle = key.width_rad * 2.0 * (bottom - top);
+        all.extend(key.radiance.map(|l| (solid_angle * f64::from(l)) as f32));
+        all.push(1.0);
+    }
     for ball in &lights.spheres {
         let [x, y, z] = ball.position_m;
         all.extend([x, y, z - base_m, ball.radius_m].map(|v| v as f32));
@@ -186,4 +196,12 @@ fn light_texels(lights: &Lights, base_m: f64) -> Vec<f32> {
         all.resize(8, 0.0);
     }
     all
+}
+
+/// sin² of half the zenith angle, (1 - sin elevation) / 2, of the highest and of the lowest elevation of a
+/// key light that paths may meet: above horizontal, where there is ground.
+pub(super) fn seen_part(key: &KeyLight, border: Border) -> [f64; 2] {
+    let least = if border == Border::Open { -FRAC_PI_2 } else { 0.0 };
+    let [low, high] = key.elevations_rad.map(|e| e.max(least));
+    [high, low].map(|e| (0.5 * (FRAC_PI_2 - e)).sin().powi(2))
 }

@@ -1,8 +1,8 @@
 use super::Picture;
-use super::azimuths::{self, Azimuth};
+use super::azimuths::{self, Azimuth, Shape};
 use super::sweep::Sweep;
 use super::sweeping::circle;
-use crate::scene::{Albedo, Environment, Quality, Scene, Sun};
+use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Quality, Scene, Sun};
 use crate::{Error, Result};
 
 /// The lights that give any light.
@@ -11,6 +11,10 @@ pub(super) struct Shining<'a> {
     pub environment: Option<&'a Environment>,
     /// With their positions in the scene.
     pub suns: Vec<(usize, &'a Sun)>,
+    /// The same.
+    pub keys: Vec<(usize, &'a KeyLight)>,
+    /// Whether what a uniform sky would give is wanted as an image.
+    has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
     pub is_grey: bool,
 }
@@ -26,9 +30,10 @@ impl<'a> Shining<'a> {
         if lights.sky.is_none()
             && environment.is_none()
             && lights.suns.is_empty()
+            && lights.keys.is_empty()
             && !wanted.sky_view
         {
-            let expected = "at least one of sky, environment and sun";
+            let expected = "at least one of sky, environment, sun and key light";
             return Err(Error::setting("lights", "none", expected));
         }
         if lights.sky.is_some() && sky.is_none() {
@@ -37,6 +42,7 @@ impl<'a> Shining<'a> {
         for (i, _) in dark {
             notes.push(format!("sun {} dropped: its irradiance is 0", i + 1));
         }
+        let keys = Self::keys(scene, notes);
         for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
             notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
         }
@@ -44,32 +50,101 @@ impl<'a> Shining<'a> {
         let is_grey = environment.is_none()
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
+            && keys.iter().all(|(_, k)| grey(&k.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
-        Ok(Self { sky, environment, suns, is_grey })
+        Ok(Self { sky, environment, suns, keys, has_sky_view: wanted.sky_view, is_grey })
     }
 
-    /// Azimuths to sweep: the circle's where a sky or an environment needs it, then each sun's.
+    /// The key lights that any sample may see.
+    fn keys(scene: &'a Scene, notes: &mut Vec<String>) -> Vec<(usize, &'a KeyLight)> {
+        let has_ground = scene.surface.border != Border::Open;
+        let why_dark = |key: &KeyLight| match key {
+            k if k.radiance == [0.0; 3] => Some("its radiance is 0"),
+            k if has_ground && k.elevations_rad[1] <= 0.0 => Some("all of it is below horizontal"),
+            _ => None,
+        };
+        let mut keys = Vec::new();
+        for (i, key) in scene.lights.keys.iter().enumerate() {
+            match why_dark(key) {
+                Some(why) => notes.push(format!("key {} dropped: {why}", i + 1)),
+                None => keys.push((i, key)),
+            }
+        }
+        keys
+    }
+
+    /// Suns, then key lights: each is lit through azimuths of its own.
+    pub fn aimed(&self) -> impl Iterator<Item = Aimed> {
+        let suns = self.suns.iter().map(|(i, sun)| Aimed {
+            name: format!("sun{}", i + 1),
+            shape: if sun.is_point() { Shape::Point } else { Shape::Disc },
+            colour: sun.irradiance,
+        });
+        let keys = self.keys.iter().map(|(i, key)| Aimed {
+            name: format!("key{}", i + 1),
+            shape: Shape::Patch,
+            colour: key.radiance,
+        });
+        suns.chain(keys)
+    }
+
+    /// Azimuths to sweep: the circle's where a sky or an environment needs it, then those of each light
+    /// that is [aimed](Self::aimed).
     pub fn lists(
         &self,
         need_circle: bool,
         quality: &Quality,
         sweep: &Sweep,
-        cell_m: [f64; 2],
+        (border, cell_m): (Border, [f64; 2]),
         notes: &mut Vec<String>,
     ) -> Result<Vec<Vec<Azimuth>>> {
         let mut lists = Vec::new();
         if need_circle {
-            lists.push(circle(quality, sweep, cell_m)?);
+            let is_even = matches!(sweep, Sweep::Surface { .. }) || quality.basis == Basis::Sh;
+            lists.push(match self.environment.filter(|_| !is_even) {
+                Some(lit) => {
+                    notes.push("azimuths: closest where the environment is brightest".into());
+                    let (sky, count) = (self.sky_beside(lit), quality.azimuths);
+                    azimuths::towards_light(lit, sky, border, count, cell_m)
+                }
+                None => circle(quality, sweep, cell_m)?,
+            });
         } else {
-            notes.push("no sky, no environment: only the suns' azimuths are swept".into());
+            let whose = match (self.suns.is_empty(), self.keys.is_empty()) {
+                (_, true) => "suns'",
+                (true, false) => "key lights'",
+                (false, false) => "suns' and key lights'",
+            };
+            notes.push(format!("no sky, no environment: only the {whose} azimuths are swept"));
         }
         let across = |sun| azimuths::across_sun(sun, quality.sun_azimuths, cell_m);
         lists.extend(self.suns.iter().map(|(_, sun)| across(sun)));
+        let across = |key| azimuths::across_key(key, quality.sun_azimuths, cell_m);
+        lists.extend(self.keys.iter().map(|(_, key)| across(key)));
         Ok(lists)
+    }
+
+    /// Radiance of the sky, mean over channels; where the sky's view is wanted beside an environment, of a sky
+    /// as bright as that.
+    fn sky_beside(&self, environment: &Environment) -> f64 {
+        let mean = |c: &[f32; 3]| c.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0;
+        match self.sky {
+            Some(sky) => mean(&sky),
+            None if self.has_sky_view => {
+                let texels = environment.texels();
+                texels.iter().map(mean).sum::<f64>() / texels.len() as f64
+            }
+            None => 0.0,
+        }
     }
 }
 
-/// As in labels and layers: "sun1" is the scene's first.
-pub(super) fn sun_name(position: usize) -> String {
-    format!("sun{}", position + 1)
+/// A light that covers a part of the sky.
+pub(super) struct Aimed {
+    /// As in labels and layers: "sun1" is the scene's first.
+    pub name: String,
+    /// What part.
+    pub shape: Shape,
+    /// Irradiance of a sun, radiance of a key light.
+    pub colour: [f32; 3],
 }

@@ -1,4 +1,4 @@
-use super::Environment;
+use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
 /// Everything that shines on the field. Nothing here is nothing lit.
@@ -10,6 +10,8 @@ pub struct Lights {
     pub environment: Option<Environment>,
     /// Suns: discs at infinity.
     pub suns: Vec<Sun>,
+    /// Key lights: patches at infinity.
+    pub keys: Vec<KeyLight>,
     /// Balls of light near the field.
     pub spheres: Vec<SphereLight>,
 }
@@ -58,6 +60,11 @@ impl Sun {
 }
 
 impl Lights {
+    /// Whether some are lit in slices: suns that are no points, key lights.
+    pub fn have_slices(&self) -> bool {
+        self.suns.iter().any(|s| !s.is_point()) || !self.keys.is_empty()
+    }
+
     /// Checks every range.
     ///
     /// # Errors
@@ -102,6 +109,9 @@ impl Lights {
                     "finite numbers, 0 or more",
                 );
             }
+        }
+        for (i, key) in self.keys.iter().enumerate() {
+            key.check(i + 1)?;
         }
         for (i, sphere) in self.spheres.iter().enumerate() {
             let bad = |what: &str, found: String, expected: &str| {

@@ -2,12 +2,14 @@
 
 mod environment;
 mod field;
+mod key;
 mod lights;
 mod quality;
 mod surface;
 
 pub use environment::Environment;
 pub use field::HeightField;
+pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{
     Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Wedges, Window,

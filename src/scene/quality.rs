@@ -7,9 +7,12 @@ pub struct Quality {
     /// How horizons are found.
     pub method: Method,
     /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp
-    /// silhouettes. Time and memory grow in proportion.
+    /// silhouettes. Time and memory grow in proportion. Under an environment they are closest where it is
+    /// brightest when the plan is made (even with exact lines and with harmonics): one that is changed
+    /// later is lit by the same.
     pub azimuths: u32,
-    /// Slices across a sun's disc, [1..256], default 8. Fewer: faster, steps in soft shadows.
+    /// Slices across a sun's disc or a key light, [1..256], default 8. Fewer: faster, steps in soft
+    /// shadows; the wider the light, the more it needs.
     pub sun_azimuths: u32,
     /// Distance between the lines of a sweep. Wider: faster, small occluders missed between lines.
     pub lines: Lines,

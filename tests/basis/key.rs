@@ -1,13 +1,14 @@
 use crate::{project, within};
 use ridgelight::basis::azimuth::Blend;
 use ridgelight::basis::harmonics::turned;
-use ridgelight::basis::key::KeyLight;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::clamped_cosine;
 use ridgelight::basis::{index, zonal};
+use ridgelight::scene::KeyLight;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-const KEY: KeyLight = KeyLight { azimuth_rad: 2.0, width_rad: 0.8, elevations_rad: [0.3, 0.9] };
+const KEY: KeyLight =
+    KeyLight { azimuth_rad: 2.4, width_rad: 0.8, elevations_rad: [0.3, 0.9], radiance: [1.0; 3] };
 
 fn free() -> Vec<f64> {
     project(4, [FRAC_PI_2 - 0.9, FRAC_PI_2 - 0.3], [2.0, 2.8], |_, _| 1.0)
@@ -70,7 +71,8 @@ fn nlp_lose_nothing_zonal() {
 /// odd bands end at 1, the half-sphere's even ones at 0, so two products, π/2 each, hold all of it.
 #[test]
 fn the_whole_sky_is_a_key_light() {
-    let whole = KeyLight { azimuth_rad: 0.0, width_rad: TAU, elevations_rad: [0.0, FRAC_PI_2] };
+    let elevations_rad = [0.0, FRAC_PI_2];
+    let whole = KeyLight { azimuth_rad: PI, width_rad: TAU, elevations_rad, ..KEY };
     let seen = whole.visible(&Slices::new(6), Blend::Linear, &[-0.3; 9]);
     let sky = zonal::sky(6);
     for l in 0..6 {

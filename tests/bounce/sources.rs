@@ -2,8 +2,8 @@
 
 use ridgelight::cpu::bounce::{Fineness, light, truth};
 use ridgelight::cpu::light::sun;
-use ridgelight::scene::{Border, HeightField, Lights, Phong, Scene, SphereLight, Sun};
-use std::f64::consts::PI;
+use ridgelight::scene::{Border, HeightField, KeyLight, Lights, Phong, Scene, SphereLight, Sun};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::{BORDERS, COARSE, field, red, rough, under_sky};
 
@@ -202,4 +202,29 @@ fn a_fineness_of_nothing_is_refused() {
     let scene = under_sky(field(2, 2, [1.0, 1.0], |_, _| 0.0), Border::Plane, 1.0);
     let said = light(&scene, 0, Fineness { azimuths: 0, ..COARSE }).unwrap_err().to_string();
     assert!(said.starts_with("azimuths: "), "{said}");
+}
+
+/// All around from the nadir to the zenith a key light is the sky, whatever the border and the bounces: its
+/// strips are the sky's azimuths, whose weights the sky's alone are scaled to sum to 1.
+#[test]
+fn a_key_light_all_around_is_the_sky() {
+    for border in BORDERS {
+        let sky = under_sky(rough(5, 6, [1.0, 2.0], 1.5), border, 0.6);
+        let radiance = sky.lights.sky.unwrap();
+        let key = KeyLight {
+            azimuth_rad: PI,
+            width_rad: TAU,
+            elevations_rad: [-FRAC_PI_2, FRAC_PI_2],
+            radiance,
+        };
+        let lights = Lights { keys: vec![key], ..Lights::default() };
+        let fineness = Fineness { azimuths: 32, divisions: 1, strips: 32 };
+        let key = light(&Scene { lights, ..sky.clone() }, 2, fineness).unwrap();
+        let sky = light(&sky, 2, fineness).unwrap();
+        // The midpoint rule over 32 azimuths is off by (π/16)²/24 of what a hemisphere's tilted part gives.
+        let off = (PI / 16.0).powi(2) / 24.0;
+        for (key, sky) in key.iter().flatten().zip(sky.iter().flatten()) {
+            assert!((key[0] - sky[0]).abs() <= off * sky[0], "{border:?}: {key:?} {sky:?}");
+        }
+    }
 }

@@ -65,7 +65,8 @@ fn number(settings: &serde_json::Value, name: &str) -> f64 {
     settings[name].as_f64().unwrap_or_else(|| panic!("{name} in {settings}"))
 }
 
-/// Every third sample, most of which were no probe, against the oracle: what is stated is so.
+/// Every third sample against the oracle: what is stated is so. The field is small enough to be probed
+/// whole; choices by a few samples are the library's tests'.
 #[test]
 fn gpu_a_max_error_holds() {
     let folder = Folder::new();
@@ -120,7 +121,7 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     write_field(&folder, SIDE, peaks);
     let before = folder.contents();
     for (goal, says) in [
-        ("--max-error 1e-9", ["--max-error 0.000000001: needs", "nearest found", "probes"]),
+        ("--max-error 1e-9", ["--max-error 0.000000001: needs", "exact light", "half of its rays"]),
         ("--time-budget 1e-6", ["--time-budget 0.000001: needs", "ms a frame", "--azimuths"]),
     ] {
         let args = format!("render field.npy -o out.exr {goal}");
@@ -139,7 +140,7 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     assert!(number(&settings, "error_at_most") < 0.01, "{settings}");
 }
 
-/// One sample, and one with a void beside it: all samples are probes, so that the bound is the error.
+/// One sample, and one with a void beside it: all samples are probes.
 #[test]
 fn gpu_tiny_fields_have_goals_too() {
     let folder = Folder::new();
@@ -153,7 +154,7 @@ fn gpu_tiny_fields_have_goals_too() {
             let settings = settings(&folder);
             let [measured, at_most] =
                 ["error_measured", "error_at_most"].map(|name| number(&settings, name));
-            assert!(measured == at_most && at_most <= 0.01, "{args}: {measured} {at_most}");
+            assert!(measured <= at_most && at_most <= 0.01, "{args}: {measured} {at_most}");
             assert_eq!(number(&settings, "error_probes"), probes, "{args}");
             assert_eq!(number(&settings, "seed"), if goal.contains("seed") { 3.0 } else { 0.0 });
         }

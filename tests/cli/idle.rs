@@ -82,6 +82,7 @@ fn flags_that_act_or_were_not_written_are_not() {
         "--precision packed --hull list",
         "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
         "--sun 90,30 --sun-azimuths 4",
+        "--key 90,45,360,90,1 --sun-azimuths 4",
         "--env env.hdr --table-elevations 64 --azimuths 8",
         "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
         "--border periodic --lines 1/2",

@@ -131,6 +131,30 @@ fn gpu_sun_in_the_east_lights_the_east_side() {
     }
 }
 
+/// The ridge's shadow under a key light in the east, and the layer and settings that are written.
+#[test]
+fn gpu_key_in_the_east_lights_the_east_side() {
+    let folder = Folder::new();
+    write_field(&folder, 17, |_, c| (4.0 - (c as f32 - 8.0).abs()).max(0.0));
+    done(&folder, "render field.npy -o key.exr --key 90,20,30,10,2 --layers lights");
+    let key = read(&folder.path("key.exr"));
+    let [low, high] = [15_f32, 25.0].map(f32::to_radians);
+    // Level ground: L width (sin²high - sin²low) / 2 over π.
+    let level =
+        30_f32.to_radians() * (high.sin().powi(2) - low.sin().powi(2)) / std::f32::consts::PI;
+    for row in 4..13 {
+        let at = |col: usize| plane(&key, "R")[row * 17 + col];
+        assert!((at(15) - level).abs() < 1e-5 * level, "row {row}: {} for {level}", at(15));
+        // The east side faces it, the west side turns away from all of it.
+        assert!(at(10) > 2.0 * level, "row {row}: {}", at(10));
+        assert_eq!((at(6), at(4)), (0.0, 0.0), "row {row}");
+    }
+    assert_eq!(plane(&key, "direct.key1.R"), plane(&key, "R"));
+    let of = attributes(&folder.path("key.exr"));
+    assert_eq!(of.get("key1").map(String::as_str), Some("90,20,30,10,2,2,2"));
+    assert!(!of.contains_key("sky"), "a key light takes the default sky's place");
+}
+
 /// Sides of a pyramid in the field's middle that are lit: north, east, south, west.
 fn sides(folder: &Folder, args: &str) -> [f32; 4] {
     done(folder, &format!("render field.npy -o sides.exr {args}"));

@@ -51,9 +51,14 @@ fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
     all.flatten().map(f32::to_bits).collect()
 }
 
-fn from_nothing(gpu: &mut Headless, scene: &Scene, keeps_horizons: bool) -> Vec<u32> {
+/// What all passes of the scene's plan draw of these contents.
+fn from_nothing(
+    gpu: &mut Headless,
+    scene: &Scene,
+    [heights, environment]: [Vec<f32>; 2],
+    keeps_horizons: bool,
+) -> Vec<u32> {
     let plan = planned(gpu, scene, keeps_horizons);
-    let [heights, environment] = contents(scene);
     let mut frame = gpu.frame(plan, &[&heights, &environment]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");
     let all = bits(gpu, &frame);
@@ -72,7 +77,9 @@ fn passes_after_a_change_give_what_all_would() {
         let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
         gpu.draw(&mut frame).expect("drawn");
         let mut last = bits(gpu, &frame);
-        // A lamp of another colour; a new environment; a new field.
+        // A lamp of another colour; a new environment, by the plan of the old one, whose azimuths are
+        // drawn to that; a new field.
+        let mut texels = texels;
         for change in 0..3 {
             let passes = match change {
                 0 => {
@@ -81,8 +88,10 @@ fn passes_after_a_change_give_what_all_would() {
                     gpu.replace_plan(&mut frame, plan).expect("the same passes")
                 }
                 1 => {
-                    scene.lights.environment = Some(environment(6));
-                    gpu.refill(&frame, 1, &contents(&scene)[1]).expect("refilled");
+                    let mut other = scene.clone();
+                    other.lights.environment = Some(environment(6));
+                    [_, texels] = contents(&other);
+                    gpu.refill(&frame, 1, &texels).expect("refilled");
                     let input = frame.plan().find("environment").expect("an input");
                     frame.plan().passes_after(frame.plan(), &[input])
                 }
@@ -98,8 +107,9 @@ fn passes_after_a_change_give_what_all_would() {
             gpu.draw_passes(&mut frame, &passes).expect("drawn");
             let found = bits(gpu, &frame);
             assert!(found != last, "change {change} shows");
+            let heights = scene.field.heights_m().to_vec();
             assert!(
-                found == from_nothing(gpu, &scene, !keeps_horizons),
+                found == from_nothing(gpu, &scene, [heights, texels.clone()], !keeps_horizons),
                 "change {change}, horizons kept: {keeps_horizons}"
             );
             last = found;
@@ -150,7 +160,7 @@ fn two_changes_before_a_recording_are_both_drawn() {
     assert!(turned.iter().any(|p| !coloured.contains(p)), "two changes");
     assert!(turned.iter().chain(&coloured).all(|p| both.contains(p)) && both.len() < all.len());
     gpu.draw_passes(&mut frame, &both).expect("drawn");
-    assert!(bits(gpu, &frame) == from_nothing(gpu, &scene, true));
+    assert!(bits(gpu, &frame) == from_nothing(gpu, &scene, contents(&scene), true));
     let none: [usize; 0] = [];
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
     gpu.end(frame);
@@ -178,6 +188,6 @@ fn a_sun_that_moves_a_little_is_swept_alone() {
     gpu.draw_passes(&mut frame, &passes).expect("drawn");
     let moved = bits(gpu, &frame);
     assert!(moved != before, "the sun has moved");
-    assert!(moved == from_nothing(gpu, &scene, true));
+    assert!(moved == from_nothing(gpu, &scene, contents(&scene), true));
     gpu.end(frame);
 }

@@ -4,8 +4,8 @@ use ridgelight::gpu::{Frame, Headless, ImageArg, Renderer};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
 use ridgelight::scene::{
-    Border, Environment, Fuse, HeightField, Lights, Lines, Method, Precision, Quality, Scene, Sun,
-    Surface,
+    Border, Environment, Fuse, HeightField, KeyLight, Lights, Lines, Method, Precision, Quality,
+    Scene, Sun, Surface,
 };
 
 use crate::{Device, field, random, under_sky};
@@ -24,6 +24,12 @@ fn scene(field: HeightField, border: Border) -> Scene {
         sky: Some([1.0, 0.9, 0.8]),
         environment: Some(environment),
         suns: vec![sun(1.0, 0.05), sun(4.0, 0.0)],
+        keys: vec![KeyLight {
+            azimuth_rad: 2.2,
+            width_rad: 0.8,
+            elevations_rad: [0.1, 0.5],
+            radiance: [0.5, 0.7, 0.9],
+        }],
         ..Lights::default()
     };
     Scene { field, surface: Surface { border, ..Surface::default() }, lights }

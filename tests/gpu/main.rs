@@ -11,6 +11,7 @@ mod flight;
 mod forms;
 mod goldens;
 mod harmonics;
+mod keys;
 mod pruned;
 mod pyramid;
 mod real;

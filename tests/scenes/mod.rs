@@ -19,6 +19,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             diameter_rad: 0.3,
             irradiance: [0.0, 3.0, 0.0],
         }],
+        keys: Vec::new(),
         spheres: vec![place],
     };
     let grey = |border| Surface { albedo: Albedo::Constant([0.7; 3]), border, phong: None };

@@ -5,15 +5,17 @@ use glam::DVec3;
 use ridgelight::cpu::env_tables::{EnvTables, bottom_rad, env_tables};
 use ridgelight::cpu::env_wedges::env_wedges;
 use ridgelight::cpu::height_transpose::{heights_by_col, heights_by_row};
+use ridgelight::cpu::key::key_of;
 use ridgelight::cpu::light;
 use ridgelight::cpu::light_resolve::{LightSum, add_to_radiance, light_resolve};
+use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::shared::gather::{Swept, elevation_moments};
 use ridgelight::cpu::sky_shade::{env_shade, sky_shade};
 use ridgelight::cpu::sun_shade::sun_shade;
 use ridgelight::measure::tolerance::{EPSILON, march_slope};
-use ridgelight::plan::azimuths::{across_sun, along_grid_vectors, even};
-use ridgelight::scene::{Environment, Sun};
+use ridgelight::plan::azimuths::{Shape, across_key, across_sun, along_grid_vectors, even};
+use ridgelight::scene::{Environment, KeyLight, Sun};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Marches the azimuths with all crossings and hands what was found to `of`: exact horizons, so that
@@ -265,9 +267,10 @@ fn suns_are_those_of_the_reference() {
             irradiance: [1.0; 3],
         };
         for border in [Border::Plane, Border::Open] {
-            let slices = if diameter > 0.0 { 128 } else { 1 };
+            let (shape, slices) =
+                if diameter > 0.0 { (Shape::Disc, 128) } else { (Shape::Point, 1) };
             let mut azimuths = across_sun(&sun, slices, rough.cell_m());
-            let got = lit(&rough, border, &mut azimuths, |s| sun_shade(s, diameter == 0.0));
+            let got = lit(&rough, border, &mut azimuths, |s| sun_shade(s, shape));
             for (i, got) in got.into_iter().enumerate() {
                 let truth = light::sun(&rough, border, i / 7, i % 7, &sun, 2048)[0];
                 let tolerance = if diameter == 0.0 {
@@ -276,6 +279,42 @@ fn suns_are_those_of_the_reference() {
                     4.0 / 128.0_f64.powf(1.5) + march_slope(relief, 2.0) / sun.diameter_rad
                 };
                 assert!((got - truth).abs() <= tolerance, "{sun:?} {border:?} {i}: {got} {truth}");
+            }
+        }
+    }
+}
+
+/// Key lights over bumps, in the reference's own azimuths: what is left is the march's slope over the wedges,
+/// cosines taken at wedges' middles by the one and over them by the other, a share δ²/24 of what the
+/// normal's horizontal part receives, and f32's rounding of wedges and slopes.
+#[test]
+fn key_lights_are_those_of_the_reference() {
+    let rough = bumps(6, 7);
+    let (_, relief) = extent(&rough);
+    let keys: [[f64; 4]; 5] = [
+        [40.0, 30.0, 5.0, 25.0],
+        [200.0, 360.0, 0.0, 90.0],
+        [-70.0, 120.0, 60.0, 90.0],
+        [95.0, 1.0, 10.0, 11.0],
+        [300.0, 90.0, -60.0, 20.0],
+    ];
+    for [azimuth, width, low, high] in keys {
+        let key = KeyLight {
+            azimuth_rad: azimuth.to_radians(),
+            width_rad: width.to_radians(),
+            elevations_rad: [low.to_radians(), high.to_radians()],
+            radiance: [1.0; 3],
+        };
+        for (border, slices) in [(Border::Plane, 64), (Border::Open, 7)] {
+            let mut azimuths = across_key(&key, slices, rough.cell_m());
+            let got = lit(&rough, border, &mut azimuths, |s| sun_shade(s, Shape::Patch));
+            let oracle = Oracle::new(&rough, border);
+            let wedge = key.width_rad / f64::from(slices);
+            let tolerance = key.width_rad / PI
+                * (march_slope(relief, 2.0) + wedge * wedge / 24.0 * FRAC_PI_2 + 8.0 * EPSILON);
+            for (i, got) in got.into_iter().enumerate() {
+                let truth = key_of(&oracle, i / 7, i % 7, &key, slices as usize)[0];
+                assert!((got - truth).abs() <= tolerance, "{key:?} {border:?} {i}: {got} {truth}");
             }
         }
     }

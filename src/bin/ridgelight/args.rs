@@ -24,7 +24,7 @@ pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 pub use values::albedo_colour;
 use values::bytes;
 
-/// Lights height fields: exact horizons, sky, environment and sun, as Vulkan compute passes.
+/// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Cli {

@@ -50,7 +50,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
     let of = |name: &str| used.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str());
     match (setting, of("method"), of("lines")) {
         ("azimuths", ..) => "without a sky or an environment".into(),
-        ("sun_azimuths", ..) => "without a sun wider than 0.01°".into(),
+        ("sun_azimuths", ..) => "without a sun wider than 0.01° or a key light".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         ("table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window", ..) => {
             match (setting, of("basis")) {

@@ -8,7 +8,7 @@ use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
 use ridgelight::scene::{Lights, Scene, Surface};
 use ridgelight::{Error, Result};
 
-use crate::args::ReferenceArgs;
+use crate::args::{LightArgs, ReferenceArgs};
 use crate::setup::{self, Outcome};
 
 /// Batches before the error of the error is small: 1/√(2·7) of it.
@@ -96,8 +96,8 @@ fn check(args: &ReferenceArgs) -> Result<()> {
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
-    let alone =
-        args.lights.sky.is_none() && args.lights.env.is_none() && args.lights.sun.is_empty();
+    let LightArgs { sky, env, .. } = &args.lights;
+    let alone = sky.is_none() && env.is_none() && args.lights.are_none_aimed();
     // A local light takes the default sky's place, as any light does.
     let sky = if alone && !args.light.is_empty() { None } else { lights.sky };
     Ok(Scene {

@@ -69,13 +69,14 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         Some(path) => Some(files::read_environment(path, -lights.env_rotate.to_radians())?),
         None => None,
     };
-    let none = lights.sky.is_none() && environment.is_none() && lights.sun.is_empty();
+    let none = lights.sky.is_none() && environment.is_none() && lights.are_none_aimed();
     Ok(Scene {
         surface: Surface { albedo, border: border(&surface.field), phong: None },
         lights: Lights {
             sky: if none { Some([1.0; 3]) } else { lights.sky },
             environment,
             suns: lights.sun.clone(),
+            keys: lights.key.clone(),
             spheres: Vec::new(),
         },
         field,
@@ -229,13 +230,21 @@ pub fn asked(
         all.push(("env".to_owned(), path.display().to_string()));
         all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
     }
+    // As the flags take them, less the rounding of turning degrees to radians and back.
+    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
+    let compass = |azimuth_rad: f64| degrees(std::f64::consts::FRAC_PI_2 - azimuth_rad);
     for (i, sun) in scene.lights.suns.iter().enumerate() {
-        // As --sun takes it, less the rounding of turning degrees to radians and back.
-        let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
-        let azimuth = degrees(std::f64::consts::FRAC_PI_2 - sun.azimuth_rad);
+        let azimuth = compass(sun.azimuth_rad);
         let [elevation, diameter] = [sun.elevation_rad, sun.diameter_rad].map(degrees);
         let text = format!("{azimuth},{elevation},{diameter},{}", numbers(&sun.irradiance));
         all.push((format!("sun{}", i + 1), text));
+    }
+    for (i, key) in scene.lights.keys.iter().enumerate() {
+        let (azimuth, width) = (compass(key.azimuth_rad), degrees(key.width_rad));
+        let [low, high] = key.elevations_rad.map(degrees);
+        let (elevation, height) = ((low + high) / 2.0, high - low);
+        let text = format!("{azimuth},{elevation},{width},{height},{}", numbers(&key.radiance));
+        all.push((format!("key{}", i + 1), text));
     }
     all
 }
@@ -348,9 +357,10 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 12] = [
+    const FLAGS: [(&str, &str); 13] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
+        ("key ", "--key "),
         ("light ", "--light "),
         ("phong", "--phong"),
         ("albedo", "--albedo"),
@@ -358,7 +368,7 @@ pub fn in_flags(error: Error) -> Error {
         ("z_scale", "--z-scale"),
         ("environment rotation", "--env-rotate"),
         ("distances to the horizon", "--distances"),
-        ("lights", "--sky, --env, --sun"),
+        ("lights", "--sky, --env, --sun, --key"),
         ("cell size", "--cell"),
         ("pixels per degree", "--pixels-per-degree"),
     ];

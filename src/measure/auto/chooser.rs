@@ -3,6 +3,7 @@
 use super::model::{Costs, Model, Part, spacing};
 use super::probes::Measured;
 use super::statistics::Statistics;
+use crate::measure::trade::start;
 use crate::scene::{Fuse, Lines, Method, Quality, Scene};
 
 const AZIMUTHS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
@@ -14,6 +15,8 @@ const FUSES: [Fuse; 2] = [Fuse::AimedNearest, Fuse::Aimed];
 
 /// Frames that are tried at most.
 const TRIALS: usize = 16;
+/// One time of a frame may be so many times another of the same settings.
+const WAVER: f64 = 1.25;
 /// What a further frame must be expected to save of the cost or to take off the error, in ln.
 const WORTH: f64 = 0.05;
 /// How much more accurate than what is asked for the control should be, and at least is, unless so many
@@ -42,15 +45,16 @@ impl Goal {
     pub fn is_reached(&self, trial: &Trial) -> bool {
         match self {
             Goal::MaxError(most) => trial.measured.at_most <= *most,
-            Goal::MaxCost(most) => trial.ns <= *most,
+            Goal::MaxCost(most) => trial.ns <= *most && trial.measured != Measured::UNKNOWN,
         }
     }
 
-    /// Whether they are known not to: an error by its estimate.
+    /// Whether they are known not to: an error by as much less than its estimate as its bound is more, a
+    /// time that is more by what times waver.
     pub fn is_missed(&self, trial: &Trial) -> bool {
         match self {
-            Goal::MaxError(most) => trial.measured.error > *most,
-            Goal::MaxCost(most) => trial.ns > *most,
+            Goal::MaxError(most) => 2.0 * trial.measured.error - trial.measured.at_most > *most,
+            Goal::MaxCost(most) => trial.ns > WAVER * *most,
         }
     }
 }
@@ -149,24 +153,31 @@ impl<'a> Chooser<'a> {
         })
     }
 
-    /// Takes a frame in: its error on the probes, nanoseconds by label of each pass.
-    pub fn measured(&mut self, quality: &Quality, measured: Measured, passes: &[(String, f64)]) {
+    /// Takes nanoseconds of a frame by label of each pass; its error follows by [`judged`](Self::judged).
+    pub fn drawn(&mut self, quality: &Quality, passes: &[(String, f64)]) {
         let ns = passes.iter().map(|p| p.1).sum();
-        let trial = Trial { quality: *quality, measured, ns };
-        self.learn(&trial);
         self.costs.learn(self.scene, quality, passes);
-        self.trials.push(trial);
+        self.trials.push(Trial { quality: *quality, measured: Measured::UNKNOWN, ns });
     }
 
-    /// Takes other errors of all that was drawn, in order: by a better control or by more probes.
-    pub fn judged_anew(&mut self, measured: &[Measured]) {
+    /// Takes errors of all that was drawn, in order: none where one stays as it was.
+    pub fn judged(&mut self, measured: &[Option<Measured>]) {
         self.model = self.first_guess.clone();
         let mut trials = std::mem::take(&mut self.trials);
         for (trial, measured) in trials.iter_mut().zip(measured) {
-            trial.measured = *measured;
-            self.learn(trial);
+            trial.measured = measured.unwrap_or(trial.measured);
+            if trial.measured != Measured::UNKNOWN {
+                self.learn(trial);
+            }
         }
         self.trials = trials;
+    }
+
+    /// Takes error and nanoseconds of what was drawn once more.
+    pub fn confirmed(&mut self, quality: &Quality, measured: Measured, ns: f64) -> Option<&Trial> {
+        let trial = self.trials.iter_mut().find(|t| t.quality == *quality)?;
+        (trial.measured, trial.ns) = (measured, ns);
+        Some(trial)
     }
 
     fn learn(&mut self, trial: &Trial) {
@@ -176,9 +187,23 @@ impl<'a> Chooser<'a> {
         self.model.learn(&trial.quality, error, spread);
     }
 
-    /// Whether nothing reaches the goal, though some may by its estimate: more probes would tell.
+    /// Whether something that was drawn may be better than [`best`](Self::best), by its estimate: more
+    /// probes would tell.
     pub fn is_undecided(&self) -> bool {
-        self.best().is_none() && self.trials.iter().any(|t| !self.goal.is_missed(t))
+        let Goal::MaxError(most) = self.goal else { return false };
+        let best_ns = self.best().map_or(f64::INFINITY, |b| b.ns);
+        let may = |t: &Trial| t.measured.error <= most && most < t.measured.at_most;
+        self.trials.iter().any(|t| may(t) && t.ns < best_ns)
+    }
+
+    /// Whether a trial's picture may still be asked for: it is the best so far, or may become it.
+    pub fn may_be_best(&self, trial: &Trial) -> bool {
+        let Some(best) = self.best() else { return !self.goal.is_missed(trial) };
+        let is_better = match self.goal {
+            Goal::MaxError(_) => trial.ns <= best.ns,
+            Goal::MaxCost(_) => trial.measured.at_most <= best.measured.at_most,
+        };
+        is_better && !self.goal.is_missed(trial)
     }
 
     /// Leaves out settings that cannot be drawn, and all that are no cheaper in any.
@@ -199,6 +224,9 @@ impl<'a> Chooser<'a> {
 
     /// What a refusal lacks: that which ended the search.
     pub fn lacks(&self) -> String {
+        if self.best().is_some() {
+            return "settings that hold by samples that had no part in choosing them".into();
+        }
         let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
         if self.trials.len() >= TRIALS {
             format!("more than the {TRIALS} frames that are drawn at most")
@@ -283,14 +311,15 @@ fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
 }
 
 /// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
-/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns do not have.
+/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns and key
+/// lights do not have.
 fn candidates(scene: &Scene) -> Vec<Quality> {
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
         if part.is_in(scene) { values.to_vec() } else { vec![default] }
     };
-    let plain = Quality { method: Method::Sweep, ..Quality::default() };
+    let plain = start();
     let mut all = vec![Quality { method: Method::Brute, ..plain }];
-    if scene.lights.suns.is_empty() {
+    if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
         all.push(Quality { lines: Lines::Exact, ..plain });
     }
     for lines in LINES {

@@ -17,7 +17,7 @@ pub enum Part {
     Azimuths,
     /// Elevations of an environment's table.
     Table,
-    /// Slices of a sun's disc.
+    /// Slices of a sun's disc or of a key light.
     Strips,
 }
 
@@ -58,7 +58,7 @@ impl Part {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
             }
             Part::Table => lights.environment.is_some(),
-            Part::Strips => lights.suns.iter().any(|s| !s.is_point()),
+            Part::Strips => lights.have_slices(),
         }
     }
 }
@@ -225,7 +225,8 @@ impl Costs {
         let circle = if Part::Azimuths.is_in(scene) { quality.azimuths } else { 0 };
         let suns = scene.lights.suns.iter();
         let discs: u32 = suns.map(|s| if s.is_point() { 1 } else { quality.sun_azimuths }).sum();
-        let all = f64::from(circle + discs);
+        let keys = quality.sun_azimuths * scene.lights.keys.len() as u32;
+        let all = f64::from(circle + discs + keys);
         let table = match &scene.lights.environment {
             Some(_) => f64::from(circle) * f64::from(quality.table_elevations),
             None => 0.0,

@@ -1,5 +1,6 @@
 use crate::cpu::lit::Lit;
-use crate::scene::Scene;
+use crate::cpu::oracle::PERIOD_CAP;
+use crate::scene::{Border, Scene};
 use crate::{Error, Result};
 
 /// Probes: as many as [`CELLS`] allow, within these.
@@ -7,21 +8,22 @@ const FEWEST: usize = 64;
 const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
 const CELLS: usize = 1 << 29;
+/// Probes that tell how far the oracle itself is off.
+const SELVES: usize = 64;
 /// Samples about a difference of pictures in which others' errors are expected, too: a shadow of 40 cells
 /// moves its edge by so much for the 3° of 64 azimuths.
 const REACH: usize = 2;
-/// Quantile of the normal distribution that 5 %/16 lie beyond: up to 16 settings are judged by the same
-/// probes, and all bounds hold together with [`Probes::CONFIDENCE`] (Bonferroni).
-const DEVIATIONS: f64 = 2.734;
 
 /// Samples all over a field, and their light by the f64 oracle.
 #[derive(Clone, Debug)]
 pub struct Probes {
-    count: usize,
+    is_whole: bool,
     places: Vec<usize>,
     /// 1 / (count · chance of the place): 1 where all are as likely.
     factors: Vec<f64>,
     light: Vec<[f64; 3]>,
+    /// Root mean square by which the oracle's light is off that of half its rays.
+    off: f64,
 }
 
 /// A relative RMSE as probes tell it.
@@ -29,8 +31,13 @@ pub struct Probes {
 pub struct Measured {
     /// The estimate: RMSE over all samples and channels, over the mean of the truth.
     pub error: f64,
-    /// With [`Probes::CONFIDENCE`] it is no more than this.
+    /// It is no more than this: see [`Probes::error`].
     pub at_most: f64,
+}
+
+impl Measured {
+    /// Of what was not yet judged, or holds values beyond f32.
+    pub(super) const UNKNOWN: Self = Self { error: f64::INFINITY, at_most: f64::INFINITY };
 }
 
 /// A mean square with its bound, and the mean of the truth.
@@ -42,9 +49,16 @@ struct Square {
 }
 
 impl Probes {
-    /// One-sided, of all that is judged together; by the normal approximation of a mean of 64 or more,
-    /// corrected for its skewness (Chen 1995).
+    /// One-sided, by the normal approximation of a mean of 64 or more, corrected for its skewness (Chen
+    /// 1995).
     pub const CONFIDENCE: f64 = 0.95;
+
+    /// Deviations of the normal distribution that 5 % lie beyond: of a bound that is looked at once.
+    pub const ONE_LOOK: f64 = 1.645;
+
+    /// That 5 %/3 lie beyond: three bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
+    /// (Bonferroni).
+    pub const THREE_LOOKS: f64 = 2.128;
 
     /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
     /// all cores.
@@ -67,25 +81,48 @@ impl Probes {
         let (picks, factors) = picks(&weights, wanted, seed);
         let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
         let lit = Lit::of(scene);
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let light = std::thread::scope(|scope| {
-            let at = |i: &usize| lit.at(i / field.cols(), i % field.cols());
-            let parts = places.chunks(places.len().div_ceil(threads).max(1));
-            let all: Vec<_> = parts
-                .map(|part| scope.spawn(move || part.iter().map(at).collect::<Vec<_>>()))
-                .collect();
-            let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
-            joined
-                .flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect()
+        let light = lights(&lit, field.cols(), &places);
+        let stride = places.len().div_ceil(SELVES);
+        let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
+        let halves = lights(&lit.halved(), field.cols(), &some);
+        let squares = halves.iter().enumerate().map(|(i, half)| {
+            let whole = light[i * stride];
+            let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
+            factors[i * stride] * square
         });
-        Ok(Self { count: known.len(), places, factors, light })
+        let off = (squares.sum::<f64>() / some.len() as f64).sqrt();
+        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, off })
+    }
+
+    /// Takes others in, of another seed and by the same `unsure`; nothing where all samples are known.
+    pub fn extend(&mut self, others: &Self) {
+        if self.is_whole {
+            return;
+        }
+        if others.is_whole {
+            *self = others.clone();
+            return;
+        }
+        let [own, more] = [self.len(), others.len()].map(|n| n as f64);
+        self.off = ((own * self.off.powi(2) + more * others.off.powi(2)) / (own + more)).sqrt();
+        self.places.extend(&others.places);
+        self.factors.extend(&others.factors);
+        self.light.extend(&others.light);
     }
 
     /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
     pub fn affordable(scene: &Scene) -> usize {
         let side = scene.field.rows().max(scene.field.cols());
-        (CELLS / (Lit::of(scene).rays() * side).max(1)).clamp(FEWEST, MOST)
+        // Rays over a field that repeats may go on through that many periods.
+        let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
+        (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(FEWEST, MOST)
+    }
+
+    /// By how much the oracle's light may be off itself, over the mean of it.
+    pub fn own_error(&self) -> f64 {
+        let each = self.light.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
+        if self.off == 0.0 { 0.0 } else { self.off / (sum / self.len() as f64).abs() }
     }
 
     /// How many there are.
@@ -95,7 +132,7 @@ impl Probes {
 
     /// Whether they are all samples without void.
     pub fn is_whole(&self) -> bool {
-        self.places.len() == self.count
+        self.is_whole
     }
 
     /// Never: a field of voids alone has none to give.
@@ -103,7 +140,9 @@ impl Probes {
         self.places.is_empty()
     }
 
-    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids.
+    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids; its bound
+    /// lies so many `deviations` above, and by how far the oracle is off by itself: as far as by half of
+    /// its rays, as errors fall with their number or faster.
     ///
     /// A `control` is a better picture of the same scene, of which all samples are known: with T, C and
     /// L for picture, control and truth, mean (T-L)² = mean of (T-C)² over all samples + mean of
@@ -111,20 +150,31 @@ impl Probes {
     /// its chance (Hansen & Hurwitz 1943). The nearer the control is to the truth, the less is left to
     /// chance. Without one the picture is its own: so too where the probes find the control worse,
     /// or where the sum, a difference, is no square.
-    pub fn error(&self, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) -> Measured {
-        let own = self.square(picture, picture);
-        let better = control.map(|c| (c, self.square(c, c)));
+    pub fn error(
+        &self,
+        picture: &[Vec<f32>],
+        control: Option<&[Vec<f32>]>,
+        deviations: f64,
+    ) -> Measured {
+        let own = self.square(picture, picture, deviations);
+        let better = control.map(|c| (c, self.square(c, c, deviations)));
         let square = match better {
             Some((c, of_control)) if of_control.estimate <= own.estimate => {
-                Some(self.square(picture, c)).filter(|s| s.estimate > 0.0).unwrap_or(own)
+                Some(self.square(picture, c, deviations))
+                    .filter(|s| s.estimate > 0.0)
+                    .unwrap_or(own)
             }
             _ => own,
         };
         let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / square.mean };
-        Measured { error: relative(square.estimate), at_most: relative(square.at_most) }
+        let off = relative(self.off.powi(2));
+        let measured =
+            Measured { error: relative(square.estimate), at_most: relative(square.at_most) + off };
+        // Of a picture with values beyond f32 nothing is known.
+        if measured.at_most.is_finite() { measured } else { Measured::UNKNOWN }
     }
 
-    fn square(&self, picture: &[Vec<f32>], control: &[Vec<f32>]) -> Square {
+    fn square(&self, picture: &[Vec<f32>], control: &[Vec<f32>], deviations: f64) -> Square {
         let at =
             |planes: &[Vec<f32>], c: usize, i: usize| f64::from(planes[c.min(planes.len() - 1)][i]);
         let (mut squares, mut sum, mut values) = (0.0, 0.0, 0.0_f64);
@@ -153,20 +203,35 @@ impl Probes {
         let variance =
             rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
         // Of a field that is probed whole nothing is left to chance.
-        let deviation = if self.is_whole() { 0.0 } else { (variance / count).sqrt() };
+        let deviation = if self.is_whole { 0.0 } else { (variance / count).sqrt() };
         let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
         let skew = if variance > 0.0 { cubes / variance.powf(1.5) } else { 0.0 };
         let estimate = squares / values.max(1.0) + mean_rest;
         let mean = (sum / values.max(1.0) + shift).abs();
-        Square { estimate, at_most: estimate + quantile(skew, count) * deviation, mean }
+        let quantile = quantile(deviations, skew, count);
+        Square { estimate, at_most: estimate + quantile * deviation, mean }
     }
 }
 
-/// Deviations from a mean of so many values to its bound: [`DEVIATIONS`], more where few values are large
-/// (Chen 1995, eq. for upper-tailed tests of positively skewed means).
-fn quantile(skew: f64, count: f64) -> f64 {
-    let (a, z) = (skew.max(0.0) / (6.0 * count.sqrt()), DEVIATIONS);
+/// Deviations from a mean of so many values to its bound: z, more where few values are large (Chen 1995,
+/// eq. for upper-tailed tests of positively skewed means).
+fn quantile(z: f64, skew: f64, count: f64) -> f64 {
+    let a = skew.max(0.0) / (6.0 * count.sqrt());
     z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
+}
+
+/// Light of samples, on all cores.
+fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        let at = |i: &usize| lit.at(i / cols, i % cols);
+        let parts = places.chunks(places.len().div_ceil(threads).max(1));
+        let all: Vec<_> = parts
+            .map(|part| scope.spawn(move || part.iter().map(at).collect::<Vec<_>>()))
+            .collect();
+        let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
+        joined.flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
 }
 
 /// How far two pictures of a scene lie apart at each sample, the farthest within 2 samples.
@@ -252,8 +317,8 @@ mod tests {
         for seed in 0..SEEDS {
             let (places, factors) = picks(unsure, probes, seed);
             let light = vec![[1.0; 3]; places.len()];
-            let probes = Probes { count, places, factors, light };
-            let seen = probes.error(&picture, control.as_deref());
+            let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
+            let seen = probes.error(&picture, control.as_deref(), Probes::THREE_LOOKS);
             sums[0] += f64::from(u8::from(seen.at_most >= square.sqrt()));
             sums[1] += f64::from(u8::from(seen.error >= square.sqrt()));
             sums[2] += seen.error.powi(2) / square;
@@ -261,10 +326,10 @@ mod tests {
         sums.map(|s| s / SEEDS as f64)
     }
 
-    /// The share of seeds whose bound must hold: that of one of 16 trials, less three standard deviations of
-    /// so many seeds.
+    /// The share of seeds whose bound must hold: that of one of three looks, less three standard deviations
+    /// of so many seeds.
     fn promised() -> f64 {
-        let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 16.0;
+        let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 3.0;
         confidence - 3.0 * (confidence * (1.0 - confidence) / SEEDS as f64).sqrt()
     }
 
@@ -323,7 +388,8 @@ mod tests {
         for seed in 0..SEEDS {
             let (places, factors) = picks(&vec![0.0; count], 200, seed);
             let light = vec![[1.0; 3]; places.len()];
-            let seen = Probes { count, places, factors, light }.error(&fine, Some(&rough));
+            let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
+            let seen = probes.error(&fine, Some(&rough), Probes::THREE_LOOKS);
             assert!((seen.error / truth - 1.0).abs() < 0.3 && seen.at_most < 1.5 * truth);
         }
     }

@@ -28,9 +28,9 @@ pub struct Statistics {
     pub azimuth_contrast: f64,
     /// The same over elevation.
     pub elevation_contrast: f64,
-    /// Share of the suns in what all lights give to free level ground, [0..1].
+    /// Share of the suns and key lights in what all lights give to free level ground, [0..1].
     pub sun_share: f64,
-    /// Mean angular diameter of the suns, radians; 0 without.
+    /// Mean angular diameter of the suns and width of the key lights, radians; 0 without.
     pub sun_diameter_rad: f64,
 }
 
@@ -48,11 +48,14 @@ impl Statistics {
         let side = (field.cols() as f64 * cell_x).max(field.rows() as f64 * cell_y);
         let lights = &scene.lights;
         let sky = lights.sky.map_or(0.0, grey);
-        let suns: f64 =
-            lights.suns.iter().map(|s| grey(s.irradiance) * s.elevation_rad.sin() / PI).sum();
+        let suns = lights.suns.iter().map(|s| grey(s.irradiance) * s.elevation_rad.sin() / PI);
+        let keys = lights.keys.iter().map(|k| grey(k.radiance) * k.level_irradiance() / PI);
+        let suns: f64 = suns.chain(keys).sum();
         let env = lights.environment.as_ref().map_or([0.0; 3], contrasts);
         let all = (sky + suns + env[0]).max(f64::MIN_POSITIVE);
-        let count = lights.suns.len().max(1) as f64;
+        let diameters = lights.suns.iter().map(|s| s.diameter_rad);
+        let widths = lights.keys.iter().map(|k| k.width_rad);
+        let count = (lights.suns.len() + lights.keys.len()).max(1) as f64;
         Self {
             hidden: hidden(scene),
             slope,
@@ -61,7 +64,7 @@ impl Statistics {
             azimuth_contrast: env[1] / all,
             elevation_contrast: env[2] / all,
             sun_share: suns / all,
-            sun_diameter_rad: lights.suns.iter().map(|s| s.diameter_rad).sum::<f64>() / count,
+            sun_diameter_rad: diameters.chain(widths).sum::<f64>() / count,
         }
     }
 
@@ -114,7 +117,8 @@ fn hidden(scene: &Scene) -> f64 {
 }
 
 /// Radiance of all lights above horizontal, mean of the colours: columns counter-clockwise from east,
-/// rows of each up from horizontal. A sun fills the place that its middle is in.
+/// rows of each up from horizontal. A sun fills the place that its middle is in, a key light its share of
+/// each.
 fn radiance(lights: &Lights) -> Vec<f64> {
     let sky = lights.sky.map_or(0.0, grey);
     let mut map = vec![sky; COLUMNS * ROWS];
@@ -138,6 +142,21 @@ fn radiance(lights: &Lights) -> Vec<f64> {
         let edge = |i: usize| (FRAC_PI_2 * i as f64 / ROWS as f64).sin();
         let solid_angle = TAU / COLUMNS as f64 * (edge(row + 1) - edge(row));
         map[column(sun.azimuth_rad) * ROWS + row] += grey(sun.irradiance) / solid_angle;
+    }
+    for key in &lights.keys {
+        let cell = [TAU / COLUMNS as f64, FRAC_PI_2 / ROWS as f64];
+        let first = (key.azimuth_rad - key.width_rad / 2.0).rem_euclid(TAU);
+        let [low, high] = key.elevations_rad;
+        for (i, radiance) in map.iter_mut().enumerate() {
+            let share = |cell: f64, at: usize, [from, to]: [f64; 2]| {
+                let [begins, ends] = [at, at + 1].map(|at| cell * at as f64);
+                ((ends.min(to) - begins.max(from)) / cell).max(0.0)
+            };
+            // One that goes on past east is met a second time from there.
+            let turns = [0.0, TAU].map(|t| [first - t, first - t + key.width_rad]);
+            let across: f64 = turns.iter().map(|part| share(cell[0], i / ROWS, *part)).sum();
+            *radiance += grey(key.radiance) * across * share(cell[1], i % ROWS, [low, high]);
+        }
     }
     map
 }
@@ -202,7 +221,7 @@ fn contrasts(environment: &Environment) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Sun, Surface};
+    use crate::scene::{KeyLight, Sun, Surface};
 
     /// A plane rising by 0.5 east: mean square of slopes along rows 0.25, along columns 0; as rough
     /// near as far. Relief: 15 steps of 0.5 over a side of 16. It hides nothing but from itself, which
@@ -249,6 +268,17 @@ mod tests {
         let lit = level(Lights { suns: vec![sun], ..none });
         let expected = 4.0 * elevation_rad.sin() / PI;
         assert!((lit / expected - 1.0).abs() < 0.1, "{lit} {expected}");
+        // Over east and whole rows: exactly its light.
+        let rows = FRAC_PI_2 / ROWS as f64;
+        let key = KeyLight {
+            azimuth_rad: 0.1,
+            width_rad: 1.3,
+            elevations_rad: [3.0 * rows, 7.0 * rows],
+            radiance: [2.0; 3],
+        };
+        let lit = level(Lights { keys: vec![key], ..Lights::default() });
+        let expected = 2.0 * key.level_irradiance() / PI;
+        assert!((lit / expected - 1.0).abs() < 1e-9, "{lit} {expected}");
     }
 
     /// Of 8 columns one shines 8: mean 1, standard deviation √7; all rows alike. A sun at 30° of

@@ -1,8 +1,8 @@
 //! Choices on a small field whose pictures the oracle draws: no device, and costs that are made up.
 
 use super::*;
-use crate::cpu::{light, oracle::Oracle};
-use crate::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Surface};
+use crate::cpu::{light, lit::Lit, oracle::Oracle};
+use crate::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface};
 use crate::{Error, Result};
 
 const SIDE: usize = 12;
@@ -37,6 +37,10 @@ fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
 /// Every sample is a probe; any seed.
 const WHOLE: (usize, u64) = (SIDE * SIDE, 7);
 
+fn error(probes: &Probes, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) -> Measured {
+    probes.error(picture, control, Probes::ONE_LOOK)
+}
+
 fn whole(scene: &Scene) -> Probes {
     Probes::of(scene, SIDE * SIDE, 7, &[]).unwrap()
 }
@@ -59,7 +63,7 @@ fn the_cheapest_that_holds_is_chosen() {
         assert!(found.expected.error > 0.0 && found.expected.factor >= 1.0);
         let half = Quality { azimuths: quality.azimuths / 2, ..quality };
         if half.azimuths >= 8 {
-            let off = probes.error(&draw(&scene, &half).unwrap().planes, None);
+            let off = probes.error(&draw(&scene, &half).unwrap().planes, None, Probes::ONE_LOOK);
             assert!(off.error > most, "{off:?} by half of {quality:?}");
         }
     }
@@ -68,7 +72,11 @@ fn the_cheapest_that_holds_is_chosen() {
 #[test]
 fn what_nothing_reaches_is_refused() {
     for (goal, says) in [
-        (Goal::MaxError(1e-12), ["--max-error 0.000000000001: needs finer", "nearest found"]),
+        (Goal::MaxError(1e-12), ["--max-error 0.000000000001: needs exact light", "half"]),
+        (
+            Goal::MaxError(2e-5),
+            ["--max-error 0.00002: needs more than the 16 frames", "nearest found"],
+        ),
         (Goal::MaxCost(1e6), ["--time-budget 1: needs 8.00 ms", "the limit is 1 ms"]),
     ] {
         let error = chosen(goal).unwrap_err();
@@ -143,14 +151,14 @@ fn costs_have_an_overhead() {
 #[test]
 fn what_ends_a_search_and_what_bounds_it_are_said() {
     let scene = scene();
-    let slow = choose(&scene, Goal::MaxError(1e-12), WHOLE, |quality| {
+    let slow = choose(&scene, Goal::MaxError(3e-5), WHOLE, |quality| {
         let mut drawn = draw(&scene, quality)?;
         drawn.passes[0].1 *= 1e3;
         Ok(drawn)
     });
     assert!(slow.unwrap_err().to_string().contains("take more than 30 s"));
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    for (samples, confidence) in [(64, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
+    for (samples, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
         let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), |quality| {
             frames += 1;
@@ -160,14 +168,83 @@ fn what_ends_a_search_and_what_bounds_it_are_said() {
     }
 }
 
-/// 768 azimuths are 1.5e-6 off those of the truth, and nothing is nearer: by 64 probes they are 1.7e-6 and
-/// at most 3.1e-6, by all samples below 2e-6.
+/// So large that probes are few of its samples.
+const LARGE: usize = 40;
+const SEEDS: u64 = 40;
+
+/// What is stated of a choice, by a few of 1600 samples, holds as often as it says: 95 of 100 seeds, less
+/// three standard deviations of so many. Errors are those of fewer slices of a sun along the slopes of a ridge
+/// that shades the field, none elsewhere; the bare estimate would not do as a bound. Nearly no seed
+/// refuses: an error of 0 is drawn with 128 slices.
 #[test]
-fn more_probes_are_taken_before_a_refusal() {
+fn choices_hold_as_often_as_they_say() {
+    let sun = Sun { azimuth_rad: 0.3, elevation_rad: 0.6, diameter_rad: 0.3, irradiance: [1.0; 3] };
+    let height = |i: usize| f64::from(u8::from((18..20).contains(&(i % LARGE)))) * 6.0;
+    let heights: Vec<f64> = (0..LARGE * LARGE).map(height).collect();
+    let scene = Scene {
+        field: HeightField::new(LARGE, LARGE, &heights, [1.0; 2], None).unwrap(),
+        surface: Surface::default(),
+        lights: Lights { suns: vec![sun], ..Lights::default() },
+    };
+    let lit = Lit::of(&scene);
+    let truth: Vec<f64> = (0..LARGE * LARGE).map(|i| lit.at(i / LARGE, i % LARGE)[0]).collect();
+    let mean = truth.iter().sum::<f64>() / truth.len() as f64;
+    let picture = |quality: &Quality| -> Vec<f32> {
+        let scale = (1.0 / f64::from(quality.sun_azimuths) - 1.0 / 128.0).max(0.0);
+        let off = |i: usize| {
+            let is_edge = (14..24).contains(&(i % LARGE));
+            if is_edge { scale * (1.0 + (i as f64 * 2.4).sin()) } else { 0.02 * scale }
+        };
+        truth.iter().enumerate().map(|(i, t)| (t + off(i)) as f32).collect()
+    };
+    let most = 0.01;
+    let [mut held, mut bare, mut chosen] = [0_u64; 3];
+    for seed in 0..SEEDS {
+        let found = choose(&scene, Goal::MaxError(most), (64, seed), |quality| {
+            let ns = 1e6 * f64::from(quality.sun_azimuths);
+            let passes = vec![("sun_shade".to_owned(), ns)];
+            Ok(Drawn { planes: vec![picture(quality)], passes })
+        });
+        let Ok(found) = found else { continue };
+        let drawn = picture(&found.trial.quality);
+        let squares = drawn.iter().zip(&truth).map(|(d, t)| (f64::from(*d) - t).powi(2));
+        let off = (squares.sum::<f64>() / truth.len() as f64).sqrt() / mean;
+        let Measured { error, at_most } = found.trial.measured;
+        assert!(found.probes < LARGE * LARGE && at_most <= most, "{found:?}");
+        chosen += 1;
+        held += u64::from(off <= at_most);
+        bare += u64::from(off <= error);
+    }
+    let promised = Probes::CONFIDENCE
+        - 3.0 * (Probes::CONFIDENCE * (1.0 - Probes::CONFIDENCE) / SEEDS as f64).sqrt();
+    let said = format!("{held} held, {bare} by the estimate, of {chosen} choices");
+    assert!(chosen as f64 >= 0.9 * SEEDS as f64, "{said}");
+    assert!(held as f64 >= promised * chosen as f64, "{said}");
+    assert!((bare as f64) < promised * chosen as f64, "{said}");
+}
+
+/// Whatever a device says that has to do with no setting is not lost.
+#[test]
+fn what_stands_in_every_settings_way_is_told() {
+    let too_long = || Error::Limit {
+        what: "a field 9 samples long".into(),
+        needs: "longer images".into(),
+        limit: "8".into(),
+    };
+    let refused = choose(&scene(), Goal::MaxError(0.1), WHOLE, |_| Err(too_long()));
+    assert_eq!(refused.unwrap_err().to_string(), too_long().to_string());
+}
+
+/// Pictures beyond f32 are known to hold nothing.
+#[test]
+fn pictures_of_infinities_are_not_chosen() {
     let scene = scene();
-    let goal = Goal::MaxError(2e-6);
-    let found = choose(&scene, goal, (64, 7), |quality| draw(&scene, quality)).unwrap();
-    assert!(found.probes > 64 && found.trial.measured.at_most <= 2e-6, "{found:?}");
+    let refused = choose(&scene, Goal::MaxCost(1e12), WHOLE, |quality| {
+        let mut drawn = draw(&scene, quality)?;
+        drawn.planes[0][3] = f32::INFINITY;
+        Ok(drawn)
+    });
+    assert!(matches!(refused.unwrap_err(), Error::Limit { .. }));
 }
 
 /// 64 azimuths are 0.075 % off, 8 azimuths along lines four cells apart 1.3 % (as two peaks were): no
@@ -192,23 +269,23 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     let scene = scene();
     let all = whole(&scene);
     let right = draw(&scene, &Quality { azimuths: 720, ..Quality::default() }).unwrap().planes;
-    assert!(all.error(&right, None).at_most < 1e-6);
+    assert!(error(&all, &right, None).error < 1e-6);
     let bright: Vec<f32> = right[0].iter().map(|v| 1.1 * v).collect();
     let mean = right[0].iter().sum::<f32>() / right[0].len() as f32;
     let square = right[0].iter().map(|v| v * v).sum::<f32>() / right[0].len() as f32;
     let expected = f64::from(0.1 * square.sqrt() / mean);
-    let seen = all.error(std::slice::from_ref(&bright), None);
+    let seen = error(&all, std::slice::from_ref(&bright), None);
     assert!((seen.error / expected - 1.0).abs() < 1e-3, "{seen:?} {expected}");
     let few = Probes::of(&scene, 64, 1, &[]).unwrap();
     assert_eq!(few.len(), 64);
     let rough = draw(&scene, &Quality { azimuths: 8, ..Quality::default() }).unwrap().planes;
-    let truth = all.error(&rough, None).error;
-    let [alone, helped] = [None, Some(right.as_slice())].map(|c| few.error(&rough, c));
+    let truth = error(&all, &rough, None).error;
+    let [alone, helped] = [None, Some(right.as_slice())].map(|c| error(&few, &rough, c));
     assert!(alone.at_most > alone.error && truth <= alone.at_most, "{alone:?} {truth}");
     assert!((helped.error / truth - 1.0).abs() < 1e-3, "{helped:?} {truth}");
     assert!(helped.at_most - helped.error < 0.1 * (alone.at_most - alone.error));
     // A colour that is off is seen beside grey light.
     let blue = vec![right[0].clone(), right[0].clone(), bright];
-    let seen = all.error(&blue, None).error;
+    let seen = error(&all, &blue, None).error;
     assert!((seen / expected * 3.0_f64.sqrt() - 1.0).abs() < 1e-3, "{seen}");
 }

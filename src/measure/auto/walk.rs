@@ -2,8 +2,9 @@
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::{Measured, Probes, apart};
+use super::probes::{Probes, apart};
 use super::statistics::Statistics;
+use crate::measure::trade::start;
 use crate::scene::{
     Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Scene, Wedges, Window,
 };
@@ -21,11 +22,11 @@ pub struct Drawn {
 /// Settings that reach a goal, and what is known of them.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    /// The settings, their error on the probes, their time.
+    /// The settings; their error by probes that did not choose them; their time, of a frame drawn again.
     pub trial: Trial,
     /// The error that the scene's statistics alone had led to expect.
     pub expected: Expected,
-    /// How many samples were held against the oracle.
+    /// How many samples of the oracle tell that error.
     pub probes: usize,
     /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
     /// and may miss shadows' edges.
@@ -49,49 +50,97 @@ const COARSE: Quality = Quality {
     level_step: 4,
     level_offset: 2,
     levels: Levels::Stack,
-    basis: Basis::Auto,
+    basis: Basis::Table,
     sh_order: 4,
     wedges: Wedges::Slices,
     receiver: Receiver::Plane,
     window: Window::None,
 };
 
-/// Where bounds alone stand in the way probes are doubled up to so many, or twice.
-const MOST_PROBES: usize = 2000;
+/// Where bounds alone stand in the way probes are added up to so many times the first.
+const MOST_PROBES: usize = 4;
 
-/// Probes and all pictures that were drawn: at most 16, of 4 bytes a sample and channel each.
-struct Judge {
+/// What is chosen is judged once more by probes that had no part in choosing it, so many times the first:
+/// its bound is theirs. Where it does not hold, others are chosen, so many times in all.
+const CONFIRMING_PROBES: usize = 3;
+const CONFIRMATIONS: u64 = 3;
+
+/// Probes, and the pictures that may still be asked for, in the order of what was drawn.
+struct Judge<'a> {
+    scene: &'a Scene,
+    /// Where probes are drawn to, how many at a time, and of which seed the next.
+    unsure: Vec<f64>,
+    step: usize,
+    seed: u64,
     probes: Probes,
-    pictures: Vec<Vec<Vec<f32>>>,
+    pictures: Vec<Option<Vec<Vec<f32>>>>,
+    control: usize,
 }
 
-impl Judge {
-    /// Judges a frame, and where it is the best control all others once more.
-    fn take(&mut self, chooser: &mut Chooser, quality: &Quality, Drawn { planes, passes }: Drawn) {
-        self.pictures.push(planes);
-        let all = self.all();
-        if let Some(last) = all.last() {
-            chooser.measured(quality, *last, &passes);
-        }
-        chooser.judged_anew(&all);
+impl<'a> Judge<'a> {
+    fn new(scene: &'a Scene, (step, seed): (usize, u64), unsure: Vec<f64>) -> Result<Self> {
+        let probes = Probes::of(scene, step, seed, &unsure)?;
+        Ok(Self { scene, unsure, step, seed, probes, pictures: vec![], control: 0 })
     }
 
-    /// Errors of all pictures, held against that of the least by the probes alone.
-    fn all(&self) -> Vec<Measured> {
-        let own: Vec<f64> =
-            self.pictures.iter().map(|p| self.probes.error(p, None).error).collect();
-        let control = (0..own.len()).min_by(|a, b| own[*a].total_cmp(&own[*b]));
-        let control = control.map(|i| self.pictures[i].as_slice());
-        self.pictures.iter().map(|p| self.probes.error(p, control)).collect()
+    /// Probes that were not yet drawn.
+    fn fresh(&mut self, wanted: usize) -> Result<Probes> {
+        self.seed = self.seed.wrapping_add(1 << 32);
+        Probes::of(self.scene, wanted, self.seed, &self.unsure)
+    }
+
+    /// Judges a frame, and, where it is the best control or there are more probes than before, all others
+    /// once more; takes more probes where they would decide.
+    fn take(&mut self, chooser: &mut Chooser<'_>, quality: &Quality, drawn: Drawn) -> Result<()> {
+        self.pictures.push(Some(drawn.planes));
+        chooser.drawn(quality, &drawn.passes);
+        self.judge(chooser);
+        self.decide(chooser)
+    }
+
+    fn decide(&mut self, chooser: &mut Chooser<'_>) -> Result<()> {
+        while chooser.is_undecided()
+            && !self.probes.is_whole()
+            && self.probes.len() < MOST_PROBES * self.step
+        {
+            let more = self.fresh(self.probes.len())?;
+            self.probes.extend(&more);
+            self.judge(chooser);
+        }
+        Ok(())
+    }
+
+    fn judge(&mut self, chooser: &mut Chooser<'_>) {
+        let alone = |p: &Vec<Vec<f32>>| self.probes.error(p, None, Probes::ONE_LOOK).error;
+        let own =
+            self.pictures.iter().enumerate().filter_map(|(i, p)| Some((i, alone(p.as_ref()?))));
+        self.control = own.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
+        let control = self.control();
+        let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_LOOK);
+        let all: Vec<_> = self.pictures.iter().map(|p| p.as_ref().map(measured)).collect();
+        chooser.judged(&all);
+        for (i, (picture, trial)) in self.pictures.iter_mut().zip(chooser.trials()).enumerate() {
+            if i != self.control && !chooser.may_be_best(trial) {
+                *picture = None;
+            }
+        }
+    }
+
+    /// The picture of the least error by the probes alone.
+    fn control(&self) -> Option<&[Vec<f32>]> {
+        self.pictures.get(self.control)?.as_deref()
     }
 }
 
 /// Chooses settings for a goal: `draw` draws the scene with what it is told, so many samples of exact
 /// light judge, others for another `seed`.
 ///
+/// What is chosen is drawn again: its time is that of this frame, and its bound is one by samples that
+/// had no part in the choice.
+///
 /// # Errors
 /// A goal out of range; one that nothing reaches, with the nearest that was; what `draw` answers, but for
-/// [`Error::Limit`], which leaves out the settings and all that are dearer.
+/// [`Error::Limit`], which leaves out the settings and all that are dearer, unless all are.
 pub fn choose(
     scene: &Scene,
     goal: Goal,
@@ -106,51 +155,64 @@ pub fn choose(
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
     let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal);
-    let mut pilots = Vec::new();
-    for quality in [Quality { method: Method::Sweep, ..Quality::default() }, COARSE] {
+    let (mut pilots, mut refused) = (Vec::new(), None);
+    for quality in [start(), COARSE] {
         match draw(&quality) {
-            Err(Error::Limit { .. }) => chooser.refuse(&quality),
+            Err(limit @ Error::Limit { .. }) => {
+                chooser.refuse(&quality);
+                refused = Some(limit);
+            }
             drawn => pilots.push((quality, drawn?)),
         }
     }
-    let unsure = match pilots.as_slice() {
-        [(_, a), (_, b)] => apart(&a.planes, &b.planes, scene.field.cols()),
+    let unsure = match (pilots.as_slice(), refused) {
+        ([(_, a), (_, b)], _) => apart(&a.planes, &b.planes, scene.field.cols()),
+        // The coarsest do not fit either: what is in the way is no setting.
+        ([], Some(limit)) => return Err(limit),
         _ => Vec::new(),
     };
-    let mut judge = Judge { probes: Probes::of(scene, probes, seed, &unsure)?, pictures: vec![] };
-    for (quality, drawn) in pilots {
-        judge.take(&mut chooser, &quality, drawn);
+    let is_aimed = !unsure.is_empty();
+    let mut judge = Judge::new(scene, (probes, seed), unsure)?;
+    let own = judge.probes.own_error();
+    if let Goal::MaxError(most) = goal
+        && own >= most
+    {
+        return Err(Error::Limit {
+            what: format!("--max-error {most}"),
+            needs: "exact light that is known so well".into(),
+            limit: format!("{}, by which half of its rays are off", figures(own)),
+        });
     }
-    loop {
+    for (quality, drawn) in pilots {
+        judge.take(&mut chooser, &quality, drawn)?;
+    }
+    for _ in 0..CONFIRMATIONS {
         while let Some(quality) = chooser.next() {
             match draw(&quality) {
                 Err(Error::Limit { .. }) => chooser.refuse(&quality),
-                drawn => judge.take(&mut chooser, &quality, drawn?),
+                drawn => judge.take(&mut chooser, &quality, drawn?)?,
             }
         }
-        let count = judge.probes.len();
-        if !chooser.is_undecided() || count >= MOST_PROBES {
-            break;
+        let Some(best) = chooser.best() else { break };
+        let quality = best.quality;
+        let Drawn { planes, passes } = draw(&quality)?;
+        let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
+        let ns = passes.iter().map(|p| p.1).sum();
+        let measured = fresh.error(&planes, judge.control(), Probes::THREE_LOOKS);
+        let trial = chooser.confirmed(&quality, measured, ns).copied();
+        if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
+            return Ok(Chosen {
+                trial,
+                expected: chooser.expected(&quality),
+                probes: fresh.len(),
+                confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
+                trials: chooser.trials().to_vec(),
+            });
         }
-        judge.probes = Probes::of(scene, 2 * count, seed, &unsure)?;
-        if judge.probes.len() == count {
-            break;
-        }
-        chooser.judged_anew(&judge.all());
+        judge.probes.extend(&fresh);
+        judge.judge(&mut chooser);
     }
-    let probes = judge.probes;
-    let is_sure = !unsure.is_empty() || probes.is_whole();
-    let confidence = is_sure.then_some(Probes::CONFIDENCE);
-    let Some(trial) = chooser.best() else {
-        return Err(out_of_reach(goal, &chooser, probes.len(), scene));
-    };
-    Ok(Chosen {
-        trial: *trial,
-        expected: chooser.expected(&trial.quality),
-        probes: probes.len(),
-        confidence,
-        trials: chooser.trials().to_vec(),
-    })
+    Err(out_of_reach(goal, &chooser, judge.probes.len(), scene))
 }
 
 fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {
@@ -195,6 +257,10 @@ fn figures(x: f64) -> String {
 pub fn flags(quality: &Quality, scene: &Scene) -> String {
     let mut all = match (quality.method, quality.lines) {
         (Method::Brute, _) => "--method brute".to_owned(),
+        (Method::Pyramid, _) => {
+            let Quality { level_step, level_offset, .. } = quality;
+            format!("--method pyramid --level-step {level_step} --level-offset {level_offset}")
+        }
         (_, Lines::Exact) => "--lines exact".to_owned(),
         (_, lines) => format!("--lines {} --fuse {}", lines.name(), quality.fuse.name()),
     };
@@ -202,6 +268,9 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
         match part {
             Part::Geometry => {}
             Part::Azimuths => all += &format!(" --azimuths {}", quality.azimuths),
+            Part::Table if quality.basis == Basis::Sh => {
+                all += &format!(" --basis sh --sh-order {}", quality.sh_order);
+            }
             Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
             Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
         }

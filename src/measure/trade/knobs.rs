@@ -124,13 +124,13 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: |_| false,
         });
     }
-    if lights.suns.iter().any(|s| !s.is_point()) {
+    if lights.have_slices() {
         all.push(Knob {
             name: "sun azimuths",
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
             default: 0,
-            dearer: "more slices of a sun's disc: soft shadows",
+            dearer: "more slices of a sun's disc or a key light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
             idle: |_| false,
         });

@@ -1,7 +1,7 @@
 //! What a picture's passes read and write besides the sweeps' own.
 
 use super::super::sh::Sh;
-use super::super::shining::{Shining, sun_name};
+use super::super::shining::Shining;
 use super::super::{Builder, Format, Owner, ResourceId};
 use super::Picture;
 use crate::scene::{Albedo, Border, Environment, Quality, Scene, Wedges};
@@ -14,8 +14,8 @@ pub(super) struct Images {
     pub radiance: ResourceId,
     pub sky_layer: Option<ResourceId>,
     pub env_layer: Option<ResourceId>,
-    /// In the order of the suns that shine.
-    pub sun_layers: Vec<Option<ResourceId>>,
+    /// In the order of [`Shining::aimed`].
+    pub aimed_layers: Vec<Option<ResourceId>>,
     pub sky_view: Option<ResourceId>,
     pub sky_sum: Option<ResourceId>,
     pub env_sum: Option<ResourceId>,
@@ -48,7 +48,7 @@ impl Images {
         };
         let sky_layer = layer(shining.sky.is_some(), "sky");
         let env_layer = layer(environment.is_some(), "env");
-        let sun_layers = shining.suns.iter().map(|(i, _)| layer(true, &sun_name(*i))).collect();
+        let aimed_layers = shining.aimed().map(|light| layer(true, &light.name)).collect();
         let view = wanted.sky_view;
         let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
         let mut sum = |needed: bool, name: &str, format: Format| {
@@ -56,7 +56,7 @@ impl Images {
         };
         let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
-        let sun_sum = sum(!shining.suns.is_empty(), "sun_sum", Format::R32Float);
+        let sun_sum = sum(shining.aimed().next().is_some(), "sun_sum", Format::R32Float);
         Self {
             heights,
             environment,
@@ -64,7 +64,7 @@ impl Images {
             radiance,
             sky_layer,
             env_layer,
-            sun_layers,
+            aimed_layers,
             sky_view,
             sky_sum,
             env_sum,

@@ -2,8 +2,8 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, Levels, Lights, Lines, Method,
-    Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
+    Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -194,6 +194,11 @@ fn noisy_environment(seed: u64) -> Environment {
     Environment::new(18, 9, texels.collect(), 0.7).expect("an environment")
 }
 
+/// Across both axes of a field.
+fn key(low: f64, high: f64, radiance: [f32; 3]) -> KeyLight {
+    KeyLight { azimuth_rad: 2.6, width_rad: 1.7, elevations_rad: [low, high], radiance }
+}
+
 /// Everything that sums light: sky, environment, discs and a point; colours and a map, or all grey.
 pub(super) fn pictures() -> Vec<Case> {
     let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
@@ -213,6 +218,7 @@ pub(super) fn pictures() -> Vec<Case> {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(13)),
             suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0])],
+            keys: vec![key(-0.4, 0.5, [1.0, 2.0, 0.5])],
             ..Lights::default()
         };
         Scene { field, surface, lights }
@@ -230,7 +236,8 @@ pub(super) fn pictures() -> Vec<Case> {
             ..Surface::default()
         };
         let suns = vec![sun(-1.1, 0.0, [2.0; 3])];
-        let lights = Lights { sky: Some([1.0; 3]), suns, ..Lights::default() };
+        let keys = vec![key(0.1, 0.3, [2.0; 3])];
+        let lights = Lights { sky: Some([1.0; 3]), suns, keys, ..Lights::default() };
         Scene { field: rough(12, 17, 14), surface, lights }
     };
     let picture = |name, scene, quality, light_layers, sky_view| Case {
@@ -284,6 +291,7 @@ pub(super) fn references() -> Vec<Case> {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
             suns: vec![sun(0.2), sun(0.0)],
+            keys: vec![key(-0.4, 0.5, [1.0, 0.3, 0.0]), key(0.9, 1.2, [0.0, 0.4, 2.0])],
             spheres: vec![ball],
         },
     };
@@ -294,7 +302,12 @@ pub(super) fn references() -> Vec<Case> {
             albedo: Albedo::Constant([0.6, 0.3, 0.9]),
             phong: None,
         },
-        lights: Lights { sky: Some([1.0; 3]), suns: vec![sun(0.3)], ..Lights::default() },
+        lights: Lights {
+            sky: Some([1.0; 3]),
+            suns: vec![sun(0.3)],
+            keys: vec![key(-0.4, 0.5, [1.0, 0.3, 2.0])],
+            ..Lights::default()
+        },
     };
     let reference = |name, scene, bounces| Case {
         name,

@@ -11,6 +11,7 @@ use ridgelight::measure::tolerance::{
     ShadeError, twin_fused_slope, twin_resolved, twin_table, twin_wedge_row,
 };
 use ridgelight::plan::Pass;
+use ridgelight::plan::azimuths::{Azimuth, Shape};
 use ridgelight::scene::{Albedo, Environment};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -146,11 +147,16 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
-    let is_point = constant(pass, 4) == 1;
+    let shape = [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, 4) as usize];
+    let is_point = shape == Shape::Point;
     let got = run.floats(pass, "sun_sum").expect("written");
     let [cols, _] = run.size();
     run.swept(range.clone(), fuse_of(pass), |swept| {
-        let weights = swept.azimuths.iter().map(|a| f64::from(a.weight)).sum();
+        let weight = |a: &Azimuth| match shape {
+            Shape::Patch => f64::from(a.wedge_rad),
+            Shape::Disc | Shape::Point => f64::from(a.weight),
+        };
+        let weights = swept.azimuths.iter().map(weight).sum();
         let tolerance = error.sun(weights);
         // A horizon that a point sun grazes within its error may hide it or not.
         let grazes = |col: i32, row: i32| {
@@ -165,7 +171,7 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         for (i, got) in got.iter().enumerate() {
             let (col, row) = ((i % cols) as i32, (i / cols) as i32);
             if !grazes(col, row) {
-                let want = sun_twin::sun_at(swept, is_point, col, row);
+                let want = sun_twin::sun_at(swept, shape, col, row);
                 let at = [range.len(), i / cols, i % cols];
                 pairs.push(Pair { got: (*got).into(), want, tolerance, at });
             }

@@ -3,13 +3,16 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 12] = [
+const CHOSEN: [&str; 15] = [
     "method",
     "azimuths",
     "sun_azimuths",
     "lines",
     "fuse",
     "precision",
+    "level_step",
+    "level_offset",
+    "levels",
     "table_elevations",
     "basis",
     "sh_order",
@@ -22,13 +25,13 @@ const CHOSEN: [&str; 12] = [
 #[command(next_help_heading = "Quality")]
 pub struct AutoArgs {
     /// Choose the cheapest settings of at most this error: RMSE over the mean of the light (0.01 is 1 %),
-    /// bounded with 95 % confidence by exact light at 64 to 1000 samples, or up to 4000 where that decides. Draws up
-    /// to 16 frames, none that is expected to take more than 30 s; refused, with the nearest that was found,
-    /// where none is that accurate
+    /// bounded with 95 % confidence by exact light at 192 to 3000 samples that had no part in choosing. Draws
+    /// up to 16 frames and the chosen once more, none that is expected to take more than 30 s; refused, with
+    /// the nearest that was found, where none is that accurate
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = CHOSEN)]
     pub max_error: Option<f64>,
-    /// Choose the most accurate settings of at most this GPU time a frame on this device, and state
-    /// their error
+    /// Choose the most accurate settings of at most this GPU time a frame on this device, drawn once more
+    /// to hold it, and state their error
     #[arg(long, value_name = "MS", allow_negative_numbers = true, conflicts_with_all = CHOSEN)]
     pub time_budget: Option<f64>,
     /// Another number, other samples of exact light for --max-error and --time-budget: 0..4294967295;

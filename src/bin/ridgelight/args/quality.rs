@@ -12,7 +12,8 @@ pub struct QualityArgs {
     /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
     #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub azimuths: u32,
-    /// Slices across a sun's disc, 1..256
+    /// Slices across a sun's disc or a key light, 1..256: more, smoother soft shadows; a wide light
+    /// needs more
     #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
     pub sun_azimuths: u32,
     /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{cell, colour, sun};
+use super::values::{cell, colour, key, sun};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
@@ -28,6 +28,23 @@ pub struct LightArgs {
     /// it (one number or R,G,B; default 1). Diameter 0 casts hard shadows. May be repeated
     #[arg(long, value_name = "AZ,EL[,ANGLE[,IRRADIANCE]]", value_parser = sun, allow_hyphen_values = true)]
     pub sun: Vec<ridgelight::scene::Sun>,
+    /// A key light, a bright patch of the sky: compass azimuth and elevation of its middle, its width
+    /// and height (all degrees), its radiance (one number or R,G,B). 90,45,360,90,1 is the whole sky;
+    /// 180,30,60,20,4 a window to the south. Lower and narrower, sharper shadows. May be repeated
+    #[arg(
+        long,
+        value_name = "AZ,EL,WIDTH,HEIGHT,RADIANCE",
+        value_parser = key,
+        allow_hyphen_values = true
+    )]
+    pub key: Vec<ridgelight::scene::KeyLight>,
+}
+
+impl LightArgs {
+    /// Whether there is no sun and no key light.
+    pub fn are_none_aimed(&self) -> bool {
+        self.sun.is_empty() && self.key.is_empty()
+    }
 }
 
 #[derive(Args)]

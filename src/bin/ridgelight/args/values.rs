@@ -51,6 +51,23 @@ pub fn sun(text: &str) -> Result<ridgelight::scene::Sun, String> {
     })
 }
 
+pub fn key(text: &str) -> Result<ridgelight::scene::KeyLight, String> {
+    let parts = numbers(text)?;
+    let radiance = match parts.get(4..).unwrap_or_default() {
+        [grey] => [*grey as f32; 3],
+        [r, g, b] => [*r as f32, *g as f32, *b as f32],
+        _ => return Err("expected AZ,EL,WIDTH,HEIGHT and RADIANCE, one number or R,G,B".into()),
+    };
+    let [azimuth, elevation, width, height] = [0, 1, 2, 3].map(|i| parts[i]);
+    Ok(ridgelight::scene::KeyLight {
+        azimuth_rad: (90.0 - azimuth).to_radians(),
+        width_rad: width.to_radians(),
+        // Added in degrees: a patch that ends at 90° ends at the zenith.
+        elevations_rad: [elevation - height / 2.0, elevation + height / 2.0].map(f64::to_radians),
+        radiance,
+    })
+}
+
 pub fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);

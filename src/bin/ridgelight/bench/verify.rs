@@ -1,7 +1,7 @@
 //! Before a time is printed, the light is compared with the oracle's.
 
-use ridgelight::cpu::light;
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::{key, light};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
@@ -16,14 +16,14 @@ const PIECE: usize = 96;
 const PLACES: usize = 100;
 /// Azimuths of the oracle's sky.
 const TRUE_AZIMUTHS: usize = 360;
-/// Slices of the oracle's suns.
+/// Slices of the oracle's suns and key lights.
 const TRUE_STRIPS: usize = 32;
 
 /// What the light of a scene should be, at some of its samples.
 pub struct Truth {
     places: Vec<usize>,
     expected: Vec<f64>,
-    /// Root mean squares of sky, environment and suns, each alone.
+    /// Root mean squares of sky, environment, and suns and key lights, each alone.
     scales: [f64; 3],
     /// Share of a sky's light that the field keeps out.
     dark: f64,
@@ -71,7 +71,7 @@ impl Truth {
     }
 }
 
-/// What sky, environment and suns give to a sample, mean of the colours; and the share of a sky's
+/// What sky, environment, and suns and key lights give to a sample, mean of the colours; and the share of a sky's
 /// light that reaches it.
 fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 3], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
@@ -80,13 +80,14 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 3], f64) {
         Albedo::Map(map) => map[place],
     };
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns, .. } = &scene.lights;
+    let Lights { sky, environment, suns, keys, .. } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
-    let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS))).sum();
-    ([sky, environment, suns], share)
+    let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
+    let keys = keys.iter().map(|k| tint(key::key_of(oracle, row, col, k, TRUE_STRIPS)));
+    ([sky, environment, suns.chain(keys).sum()], share)
 }
 
 /// A scene, or of a large one a piece from its middle, and its light.
@@ -142,7 +143,7 @@ impl Verifier {
     }
 }
 
-/// Largest relative RMSE of sky, environment and suns that settings may have.
+/// Largest relative RMSE of sky, environment, and suns and key lights that settings may have.
 ///
 /// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
 /// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:

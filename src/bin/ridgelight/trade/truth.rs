@@ -14,7 +14,8 @@ use super::rig::Rig;
 /// Share of the budget that drawing the truth may take, and probing it.
 const DRAWING: f64 = 0.4;
 const PROBING: f64 = 0.1;
-/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, elevations.
+/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun or a key light,
+/// elevations.
 const MOST: [u32; 3] = [512, 64, 4096];
 /// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
 const BRUTE_HALVINGS: u32 = 1;
@@ -123,7 +124,7 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Our own: the suns, then all else, each by brute force where that fits into its share of the
+    /// Our own: the suns and key lights, then all else, each by brute force where that fits into its share of the
     /// budget, else by the densest sweep. Light adds up.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
@@ -133,14 +134,20 @@ impl Truth {
                 (lights.sky, lights.environment) = (None, None);
             } else {
                 lights.suns.clear();
+                lights.keys.clear();
             }
             Scene { lights, ..scene.clone() }
         };
         let lights = &scene.lights;
         let has_sky = lights.sky.is_some() || lights.environment.is_some();
         let mut parts = Vec::new();
-        if !lights.suns.is_empty() {
-            parts.push(("suns", without(true)));
+        if !(lights.suns.is_empty() && lights.keys.is_empty()) {
+            let name = match (lights.suns.is_empty(), lights.keys.is_empty()) {
+                (_, true) => "suns",
+                (true, false) => "key lights",
+                (false, false) => "suns and key lights",
+            };
+            parts.push((name, without(true)));
         }
         if has_sky {
             parts.push(("sky", without(false)));
@@ -170,7 +177,7 @@ impl Truth {
         let steps = truth.distance(&halved)?.rmse;
         let unsure = apart(&truth.planes, &halved, truth.cols);
         let probes = probes(scene, &unsure, rig.budget.mul_f64(PROBING))?;
-        let off = probes.error(&truth.planes, None);
+        let off = probes.error(&truth.planes, None, Probes::ONE_LOOK);
         truth.own_error = Some(steps.max(off.at_most));
         truth.quality_of = format!(
             "half its counts are {} (RMSE) off it, which bounds its own error where that at least \

@@ -1,0 +1,101 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use crate::{Error, Result};
+
+/// A patch of uniform radiance at infinity, between two azimuths and two elevations: a window, a bright
+/// part of the sky (Nowrouzezahrai & Snyder 2009, §6).
+///
+/// Its part below horizontal gives light under an `open` border alone, as a sky's does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeyLight {
+    /// Direction of its middle in the plane, radians counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// Extent in azimuth, radians, above 0 up to 2π.
+    pub width_rad: f64,
+    /// Its lowest and its highest elevation, radians, [-π/2..π/2].
+    pub elevations_rad: [f64; 2],
+    /// Radiance that it gives off, linear RGB.
+    pub radiance: [f32; 3],
+}
+
+impl KeyLight {
+    /// Checks every range; `number` counts from 1.
+    pub(super) fn check(&self, number: usize) -> Result<()> {
+        let bad = |what: &str, found: String, expected: &str| {
+            Err(Error::setting(format!("key {number}: {what}"), found, expected))
+        };
+        // Less the rounding of turning degrees to radians and back.
+        let degrees = |rad: f64| format!("{}°", (rad.to_degrees() * 1e9).round() / 1e9);
+        let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = *self;
+        if !azimuth_rad.is_finite() {
+            return bad("azimuth", azimuth_rad.to_string(), "a finite angle");
+        }
+        if !(width_rad > 0.0 && width_rad <= TAU) {
+            return bad("width", degrees(width_rad), "an angle above 0°, up to 360°");
+        }
+        if !(low >= -FRAC_PI_2 && low < high && high <= FRAC_PI_2) {
+            let found = format!("{} to {}", degrees(low), degrees(high));
+            return bad("elevations", found, "a lower and a higher one, from -90° to 90°");
+        }
+        if !radiance.iter().all(|v| v.is_finite() && *v >= 0.0) {
+            return bad("radiance", format!("{radiance:?}"), "finite numbers, 0 or more");
+        }
+        Ok(())
+    }
+
+    /// What radiance 1 gives to level ground that nothing hides it from: ∫∫ sin ω cos ω dω dφ =
+    /// width (sin²high - sin²low) / 2, of its part above horizontal.
+    pub fn level_irradiance(&self) -> f64 {
+        let [low, high] = self.elevations_rad.map(|e| e.max(0.0).sin().powi(2));
+        self.width_rad * (high - low) / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Lights;
+
+    #[test]
+    fn a_key_light_out_of_range_is_named() {
+        let elevations_rad = [-FRAC_PI_2, FRAC_PI_2];
+        let good =
+            KeyLight { azimuth_rad: -9.0, width_rad: TAU, elevations_rad, radiance: [0.0; 3] };
+        let of = |key| Lights { keys: vec![good, key], ..Lights::default() }.check();
+        assert!(of(good).is_ok());
+        let between = |low, high| KeyLight { elevations_rad: [low, high], ..good };
+        for (key, what) in [
+            (KeyLight { azimuth_rad: f64::NAN, ..good }, "azimuth"),
+            (KeyLight { width_rad: 0.0, ..good }, "width"),
+            (KeyLight { width_rad: f64::NAN, ..good }, "width"),
+            (KeyLight { width_rad: 6.3, ..good }, "width"),
+            (between(0.5, 0.5), "elevations"),
+            (between(0.5, 0.2), "elevations"),
+            (between(-1.6, 0.2), "elevations"),
+            (between(0.2, 1.6), "elevations"),
+            (between(f64::NAN, 0.2), "elevations"),
+            (between(0.2, f64::NAN), "elevations"),
+            (KeyLight { radiance: [1.0, -1.0, 0.0], ..good }, "radiance"),
+            (KeyLight { radiance: [f32::INFINITY; 3], ..good }, "radiance"),
+        ] {
+            let said = of(key).unwrap_err().to_string();
+            assert!(said.starts_with(&format!("key 2: {what}: ")), "{said}");
+        }
+    }
+
+    /// All around above horizontal: π, as of a uniform sky. What lies below gives nothing.
+    #[test]
+    fn the_whole_hemisphere_gives_pi() {
+        let all = |low| KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: TAU,
+            elevations_rad: [low, FRAC_PI_2],
+            radiance: [1.0; 3],
+        };
+        for low in [0.0, -0.3, -FRAC_PI_2] {
+            assert!((all(low).level_irradiance() - std::f64::consts::PI).abs() < 1e-15, "{low}");
+        }
+        let sunk = KeyLight { elevations_rad: [-0.5, -0.1], ..all(0.0) };
+        assert_eq!(sunk.level_irradiance(), 0.0);
+    }
+}
