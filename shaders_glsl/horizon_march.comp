@@ -1,8 +1,8 @@
 // Computes: horizons by testing everything a sample's own line meets: the baseline of every speed
 // claim and, with all crossings, the truth on the device. Cost grows with the side of the field.
 // Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][step][lane], and in the
-// next layer, where asked, the march steps to what is met (f32 bits).
-// One invocation is one sample in one azimuth.
+// next layer, where asked, the march steps to what is met (f32 bits); of nodes alone at their own places.
+// One invocation is one sample, or node, in one azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -14,17 +14,22 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool ALL_CROSSINGS = true;
 layout(constant_id = 1) const bool PERIODIC = false;
 layout(constant_id = 2) const bool WRITES_DISTANCES = false;
+// Samples from node to node.
+layout(constant_id = 3) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2) uniform writeonly uimage2DArray slopes;
 
 #include "shared/march.glsl"
+#include "shared/nodes.glsl"
 
 void main() {
     azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
-    int lane = int(gl_GlobalInvocationID.x);
-    int step = int(gl_GlobalInvocationID.y);
+    ivec2 node = ivec2(gl_GlobalInvocationID.xy);
+    bool exists = node.x < node_count(lanes, NODE_STRIDE) && node.y < node_count(steps, NODE_STRIDE);
+    int lane = lane_position(azimuth, node_place(node.x, lanes, NODE_STRIDE), lanes);
+    int step = march_position(azimuth, node_place(node.y, steps, NODE_STRIDE), steps);
     bool split_along = splits_along();
     float advance = float(azimuth.shear) * (1.0 / float(CELL));
     float own = height_at(lane, step);
@@ -34,7 +39,7 @@ void main() {
     for (int back = 1; back < steps + warm_up; back++) {
         int y = lane * CELL - back * azimuth.shear;
         // Some of the segment that begins here lies on the field.
-        bool on = lane < lanes && step < steps && back <= reach
+        bool on = exists && back <= reach
                && (PERIODIC || azimuth.shear == 0 || y + azimuth.shear > 0);
         // Left by all lanes together, as in horizon_sweep.
         if (!subgroupAny(on)) {
@@ -66,10 +71,11 @@ void main() {
             }
         }
     }
-    if (lane >= lanes || step >= steps) {
+    if (!exists) {
         return;
     }
     ivec2 texel = ivec2(lane, step);
+    texel = NODE_STRIDE > 1 ? node : texel;
     int layer = int(azimuth.layer);
     imageStore(slopes, ivec3(texel, layer), uvec4(floatBitsToUint(slope)));
     if (WRITES_DISTANCES) {

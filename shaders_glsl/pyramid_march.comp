@@ -3,8 +3,8 @@
 // both ends; then the largest value of the cubic B-spline over them, at its knots and midpoints
 // (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 // Reads: heights, height_levels or height_stack, level_table, azimuths.
-// Writes: slopes (f32 bits) at [layer][step][lane].
-// One invocation is one sample in all azimuths of a batch.
+// Writes: slopes (f32 bits) at [layer][step][lane]; of nodes alone at their own places.
+// One invocation is one sample, or node, in all azimuths of a batch.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -15,6 +15,8 @@ layout(constant_id = 0) const bool PERIODIC = false;
 layout(constant_id = 1) const bool STACK = false;
 // Levels beside the field itself; may be none.
 layout(constant_id = 2) const int LEVELS = 0;
+// Samples from node to node.
+layout(constant_id = 3) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform textureBuffer azimuths;
@@ -35,6 +37,7 @@ layout(push_constant) uniform PyramidMarchPush {
 };
 
 #include "shared/angle.glsl"
+#include "shared/nodes.glsl"
 #include "shared/spline.glsl"
 
 Azimuth azimuth;
@@ -165,11 +168,10 @@ float horizon(int lane, int step, bool exists) {
 }
 
 void main() {
-    int lane_at = int(gl_GlobalInvocationID.x);
-    int step_at = int(gl_GlobalInvocationID.y);
-    bool exists = lane_at < lanes && step_at < steps;
-    lane_at = min(lane_at, lanes - 1);
-    step_at = min(step_at, steps - 1);
+    ivec2 node = ivec2(gl_GlobalInvocationID.xy);
+    bool exists = node.x < node_count(lanes, NODE_STRIDE) && node.y < node_count(steps, NODE_STRIDE);
+    int lane_at = node_place(node.x, lanes, NODE_STRIDE);
+    int step_at = node_place(node.y, steps, NODE_STRIDE);
     azimuth = azimuth_at(azimuths, first_azimuth);
     int lane = lane_position(azimuth, lane_at, lanes);
     int step = march_position(azimuth, step_at, steps);
@@ -183,7 +185,9 @@ void main() {
         step = march_position(azimuth, step_at, steps);
         float slope = horizon(lane, step, exists);
         if (exists) {
-            imageStore(slopes, ivec3(lane, step, int(azimuth.layer)), uvec4(floatBitsToUint(slope)));
+            ivec2 texel = ivec2(lane, step);
+            texel = NODE_STRIDE > 1 ? node : texel;
+            imageStore(slopes, ivec3(texel, int(azimuth.layer)), uvec4(floatBitsToUint(slope)));
         }
     }
 }

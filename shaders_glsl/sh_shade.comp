@@ -1,7 +1,7 @@
-// Computes: the light of an environment at every sample from what it sees: a series of visibility times
-// the light's matrix, for the sample's own normal.
-// Reads: lane_heights, visibility, light_matrix. Writes: env_sum (exit radiance for albedo 1, RGB; in A
-// 1 where a colour was below 0 and is now 0).
+// Computes: the light of an environment at every sample from what it sees, or from what the nodes around it
+// see: a series of visibility times the light's matrix, for the sample's own normal.
+// Reads: lane_heights, visibility, light_matrix, nodes. Writes: env_sum (exit radiance for albedo 1, RGB; in
+// A 1 where a colour was below 0 and is now 0).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -13,11 +13,16 @@ layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
 // The receiver is N_y, N_z, N_x alone; else the polynomials of bands 0 to 2 (band 1 at order 2).
 layout(constant_id = 3) const bool IS_PLANE = true;
+// Samples from node to node: 1, 2 or 4.
+layout(constant_id = 4) const int NODE_STRIDE = 1;
+const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform texture2DArray visibility;
 layout(binding = 2) uniform texture2D light_matrix;
 layout(binding = 3, rgba32f) uniform writeonly image2D env_sum;
+// Height, slopes towards east and north.
+layout(binding = 4, rgba32f) uniform readonly image2D nodes;
 
 layout(push_constant) uniform ShShadePush {
     int cols;
@@ -27,6 +32,91 @@ layout(push_constant) uniform ShShadePush {
 };
 
 #include "shared/quad.glsl"
+#include "shared/nodes.glsl"
+
+// Nodes across that four samples lie between, at two march positions: where they are stored, and what each
+// counts for each of the four.
+const int ACROSS = 4 / NODE_STRIDE + 1;
+ivec2 node_texels[2 * ACROSS];
+vec4 node_weights[2 * ACROSS];
+
+// 1 at `here`, 0 at the two nodes beside it.
+vec4 hat(vec4 x, int before, int here, int after) {
+    vec4 rising = (x - float(before)) / float(max(here - before, 1));
+    vec4 falling = (float(after) - x) / float(max(after - here, 1));
+    return clamp(min(rising, falling), 0.0, 1.0);
+}
+
+// Light bleeds over ridges from nodes that lie off a sample's plane, or it off theirs. Where the two are off
+// by a quarter of their distance in all, a node counts half. Fitted: of 0.05, 0.1, 0.25, 0.5 and 1 on two
+// elevation models the best or within 2 % of it (`examples/soft`); bilinear weights alone err by 15 to 31 % more.
+const float OFF_PLANE = 0.25;
+
+// What a node counts for samples (`h`, `east`, `north`) that see it so far towards east and north.
+vec4 alike(vec4 node, vec4 h, vec4 east, vec4 north, vec4 east_m, vec4 north_m) {
+    vec4 rise = node.x - h;
+    vec4 off = abs(rise - (east * east_m + north * north_m)) + abs(rise - (node.y * east_m + node.z * north_m));
+    // A sample is no farther off its own node than 0.
+    float cell_m = min(cell_x_m, cell_y_m);
+    vec4 distance2 = max(east_m * east_m + north_m * north_m, vec4(cell_m * cell_m));
+    return 1.0 / (1.0 + off * off / (OFF_PLANE * OFF_PLANE * distance2));
+}
+
+void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
+    vec4 x = vec4(q.lane);
+    int along = q.march / NODE_STRIDE;
+    int last_across = node_count(lanes, NODE_STRIDE) - 1;
+    int last_along = node_count(steps, NODE_STRIDE) - 1;
+    int march_before = node_place(along, steps, NODE_STRIDE);
+    int march_after = node_place(along + 1, steps, NODE_STRIDE);
+    float t = float(q.march - march_before) / float(max(march_after - march_before, 1));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 2 * ACROSS; i++) {
+        int across = q.lane.x / NODE_STRIDE + (i >> 1);
+        int here = node_place(across, lanes, NODE_STRIDE);
+        int before = node_place(across - 1, lanes, NODE_STRIDE);
+        // Beyond the last node nothing lies between two.
+        int next = node_place(across + 1, lanes, NODE_STRIDE);
+        int beyond = here + 1;
+        int after = across < last_across ? next : beyond;
+        float exists = across <= last_across ? 1.0 : 0.0;
+        bool is_after = (i & 1) == 1;
+        int march = is_after ? march_after : march_before;
+        float from_before = 1.0 - t;
+        float weight = is_after ? t : from_before;
+        node_texels[i] = texel_at(min(across, last_across), min(along + (i & 1), last_along));
+        vec4 node = imageLoad(nodes, node_texels[i]);
+        vec4 lane_m = (float(here) - x) * (MARCHES_ROWS ? cell_x_m : -cell_y_m);
+        vec4 march_m = vec4(float(march - q.march) * (MARCHES_ROWS ? -cell_y_m : cell_x_m));
+        vec4 east_m = MARCHES_ROWS ? lane_m : march_m;
+        vec4 north_m = MARCHES_ROWS ? march_m : lane_m;
+        vec4 near = exists * weight * hat(x, before, here, after);
+        node_weights[i] = near * alike(node, q.here.four, east, north, east_m, north_m);
+        sum += node_weights[i];
+    }
+    for (int i = 0; i < 2 * ACROSS; i++) {
+        node_weights[i] /= sum;
+    }
+}
+
+// Four coefficients of what the four samples see: [coefficient][sample].
+mat4 seen_at(int layer, int lane, int march, int lanes) {
+    mat4 four = mat4(0.0);
+    if (NODE_STRIDE > 1) {
+        for (int i = 0; i < 2 * ACROSS; i++) {
+            vec4 node = texelFetch(visibility, ivec3(node_texels[i], layer), 0);
+            four[0] += node.x * node_weights[i];
+            four[1] += node.y * node_weights[i];
+            four[2] += node.z * node_weights[i];
+            four[3] += node.w * node_weights[i];
+        }
+        return four;
+    }
+    for (int k = 0; k < 4; k++) {
+        four[k] = texelFetch(visibility, ivec3(texel_at(min(lane + k, lanes - 1), march), layer), 0);
+    }
+    return transpose(four);
+}
 
 vec4 red;
 vec4 green;
@@ -82,15 +172,14 @@ void main() {
     vec4 z = inversesqrt(1.0 + east * east + north * north);
     vec4 x = -east * z;
     vec4 y = -north * z;
+    if (NODE_STRIDE > 1) {
+        find_nodes(q, lanes, steps, east, north);
+    }
     red = vec4(0.0);
     green = vec4(0.0);
     blue = vec4(0.0);
     for (int layer = 0; layer < (ORDER * ORDER + 3) / 4; layer++) {
-        mat4 four;
-        for (int k = 0; k < 4; k++) {
-            four[k] = texelFetch(visibility, ivec3(texel_at(min(lane + k, lanes - 1), march), layer), 0);
-        }
-        four = transpose(four);
+        mat4 four = seen_at(layer, lane, march, lanes);
         add_coefficient(4 * layer, four[0], x, y, z);
         add_coefficient(4 * layer + 1, four[1], x, y, z);
         add_coefficient(4 * layer + 2, four[2], x, y, z);

@@ -16,6 +16,8 @@ layout(constant_id = 1) const uint LATTICE = 0u;
 layout(constant_id = 2) const int LINE_SHIFT = 15;
 layout(constant_id = 3) const uint BORDER = 0u;
 const bool LATTICE_HAS_DISTANCES = false;
+const int LATTICE_STRIDE = 1;
+const int LANE_STRIDE = 1;
 const bool OWN_PLANE_HIDES = true;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;

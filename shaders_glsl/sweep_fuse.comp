@@ -16,6 +16,8 @@ layout(constant_id = 2) const int LINE_SHIFT = 15;
 layout(constant_id = 3) const uint BORDER = 0u;
 layout(constant_id = 4) const bool WRITES_DISTANCES = false;
 layout(constant_id = 5) const bool LATTICE_HAS_DISTANCES = false;
+const int LATTICE_STRIDE = 1;
+const int LANE_STRIDE = 1;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;

@@ -1,11 +1,12 @@
 #include "shared/lattice.glsl"
+#include "shared/nodes.glsl"
 #include "shared/quad.glsl"
 
 // Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
 // declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
-// LATTICE_HAS_DISTANCES, LINE_SHIFT, BORDER and MARCHES_ROWS.
+// LATTICE_HAS_DISTANCES, LATTICE_STRIDE, LINE_SHIFT, BORDER, MARCHES_ROWS and LANE_STRIDE.
 
-const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample
+const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample, or a node
 const uint FUSE_NEAREST = 1u;  // the slope that the nearer line found
 const uint FUSE_SLOPES = 2u;   // both lines' slopes, interpolated
 const uint FUSE_OWN = 3u;      // both lines' occluders seen from the sample's own height, interpolated
@@ -20,7 +21,7 @@ const uint LATTICE_SLOPES_F32 = 1u;
 const uint LATTICE_SLOPES_F16 = 2u;
 
 // Lines a cell apart pass four neighbouring samples at the same distance and lie in two texels.
-const bool LINES_FOLLOW_LANES = LINE_SHIFT == CELL_SHIFT && BORDER != BORDER_PERIODIC;
+const bool LINES_FOLLOW_LANES = LINE_SHIFT == CELL_SHIFT && BORDER != BORDER_PERIODIC && LANE_STRIDE == 1;
 
 // What four samples meet: slopes, and march steps to it.
 struct Met {
@@ -86,14 +87,14 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    ivec4 lane = quad_lanes(q);
+    ivec4 lane = q.lane;
     bool has_ahead = wraps || (flips_march ? q.march < steps - 1 : q.march > 0);
     bvec4 has_side = flips_lanes ? lessThan(lane, ivec4(wraps ? lanes : lanes - 1)) : greaterThan(lane, ivec4(wraps ? -1 : 0));
     vec4 own = q.here.four;
-    vec4 side = flips_lanes ? lane_above(q.here) : lane_below(q.here);
+    vec4 side = flips_lanes ? q.here.above : q.here.below;
     vec4 ahead = flips_march ? q.after.four : q.before.four;
-    vec4 ahead_above = flips_march ? lane_above(q.after) : lane_above(q.before);
-    vec4 ahead_below = flips_march ? lane_below(q.after) : lane_below(q.before);
+    vec4 ahead_above = flips_march ? q.after.above : q.before.above;
+    vec4 ahead_below = flips_march ? q.after.below : q.before.below;
     vec4 ahead_side = flips_lanes ? ahead_above : ahead_below;
 
     float shear = float(azimuth.shear) * (1.0 / float(CELL));
@@ -154,11 +155,14 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int step = march_position(azimuth, q.march, steps);
-    ivec4 lane = flips_lanes ? lanes - 1 - quad_lanes(q) : quad_lanes(q);
+    ivec4 lane = flips_lanes ? lanes - 1 - q.lane : q.lane;
     Met met;
     if (FUSE == FUSE_DIRECT) {
         for (int k = 0; k < 4; k++) {
             ivec3 texel = ivec3(clamp(lane[k], 0, lanes - 1), step, azimuth.layer);
+            if (LATTICE_STRIDE > 1) {
+                texel.xy = ivec2(node_of(q.lane[k], LATTICE_STRIDE), node_of(q.march, LATTICE_STRIDE));
+            }
             met.slope[k] = uintBitsToFloat(lattice_at(texel).x);
             texel.z++;
             met.steps[k] = LATTICE_HAS_DISTANCES ? uintBitsToFloat(lattice_at(texel).x) : 0.0;
@@ -196,7 +200,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
         // A proposal one step back is the first crossing itself.
         uvec4 back = takes ? mix(uvec4(0), values, greaterThan(values, uvec4(1))) : uvec4(0);
         met = first_crossings(azimuth, q, lanes, steps);
-        return higher(met, seen(azimuth, q, quad_lanes(q) * CELL, back, lanes, steps));
+        return higher(met, seen(azimuth, q, q.lane * CELL, back, lanes, steps));
     }
     // The lines around each sample: before it (or through it), and after it.
     ivec4 before = from_origin >> LINE_SHIFT;
@@ -215,7 +219,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     uvec4 before_back = mix(uvec4(0), before_values, has_before);
     uvec4 after_back = mix(uvec4(0), after_values, has_after);
     if (FUSE == FUSE_AIMED) {
-        ivec4 y = quad_lanes(q) * CELL;
+        ivec4 y = q.lane * CELL;
         before_back = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
         after_back = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
         met = first_crossings(azimuth, q, lanes, steps);
@@ -225,7 +229,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     Met b;
     Met a;
     if (FUSE == FUSE_OWN) {
-        ivec4 y = quad_lanes(q) * CELL;
+        ivec4 y = q.lane * CELL;
         b = seen(azimuth, q, y + (flips_lanes ? offset : -offset), before_back, lanes, steps);
         a = seen(azimuth, q, y + (flips_lanes ? offset - spacing : spacing - offset), after_back, lanes, steps);
     } else {

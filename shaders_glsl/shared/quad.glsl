@@ -2,35 +2,23 @@
 
 // Four samples side by side along the lane axis, and the samples around them. Lanes and march
 // positions are the field's own here, whatever an azimuth flips, so that all azimuths of an axis
-// share them. The including shader declares `lane_heights` and the constants BORDER and MARCHES_ROWS.
+// share them. Where LANE_STRIDE is not 1 they are nodes, that many lanes apart. The including shader
+// declares `lane_heights` and the constants LANE_STRIDE, BORDER and MARCHES_ROWS.
 
-// One march position: the four lanes, and the one to each side.
+// One march position: the four lanes, and those beside each.
 struct Strip {
-    float low;
+    vec4 below;
     vec4 four;
-    float high;
+    vec4 above;
 };
 
 struct Quad {
-    int lane;  // of the first sample; those beyond the last lane are not on the field
+    ivec4 lane;  // those beyond the last lane are not on the field
     int march;
     Strip before;  // held at the edges of the field where it does not repeat, as are the lanes
     Strip here;
     Strip after;
 };
-
-// The lane below each of the four, and above.
-vec4 lane_below(Strip s) {
-    return vec4(s.low, s.four.xyz);
-}
-
-vec4 lane_above(Strip s) {
-    return vec4(s.four.yzw, s.high);
-}
-
-ivec4 quad_lanes(Quad q) {
-    return q.lane + ivec4(0, 1, 2, 3);
-}
 
 // Column and row of a lane at a march position.
 ivec2 texel_at(int lane, int march) {
@@ -52,15 +40,26 @@ int neighbour(int i, int n) {
 
 Strip strip_at(int lane, int march, int lanes) {
     Strip s;
-    s.low = height_at(neighbour(lane - 1, lanes), march);
+    if (LANE_STRIDE > 1) {
+        for (int k = 0; k < 4; k++) {
+            int own = min(lane + k * LANE_STRIDE, lanes - 1);
+            s.below[k] = height_at(neighbour(own - 1, lanes), march);
+            s.four[k] = height_at(own, march);
+            s.above[k] = height_at(neighbour(own + 1, lanes), march);
+        }
+        return s;
+    }
     s.four = imageLoad(lane_heights, ivec2(lane >> 2, march));
-    s.high = height_at(neighbour(lane + 4, lanes), march);
+    s.below = vec4(height_at(neighbour(lane - 1, lanes), march), s.four.xyz);
+    s.above = vec4(s.four.yzw, height_at(neighbour(lane + 4, lanes), march));
     return s;
 }
 
 Quad quad_at(int lane, int march, int lanes, int steps) {
     Quad q;
-    q.lane = lane;
+    ivec4 nodes = min(lane + LANE_STRIDE * ivec4(0, 1, 2, 3), lanes - 1);
+    ivec4 side_by_side = lane + ivec4(0, 1, 2, 3);
+    q.lane = LANE_STRIDE > 1 ? nodes : side_by_side;
     q.march = march;
     q.before = strip_at(lane, neighbour(march - 1, steps), lanes);
     q.here = strip_at(lane, march, lanes);
@@ -79,19 +78,19 @@ void quad_slopes(Quad q, int lanes, int steps, vec2 cell_m, out vec4 east, out v
     float after = steps > 1 && (wraps || q.march < steps - 1) ? 1.0 : 0.0;
     float marches = before + after;
     vec3 march_weight = marches > 0.0 ? vec3(before, marches, after) / (2.0 * marches) : vec3(0.0, 1.0, 0.0);
-    ivec4 lane = quad_lanes(q);
+    ivec4 lane = q.lane;
     vec4 below = vec4(lanes > 1 && wraps ? bvec4(true) : greaterThan(lane, ivec4(0)));
     vec4 above = vec4(lanes > 1 && wraps ? bvec4(true) : lessThan(lane, ivec4(lanes - 1)));
     vec4 sides = below + above;
     vec4 side_weight = 0.5 / max(sides, vec4(1.0));
     vec4 middle_weight = mix(vec4(1.0), vec4(0.5), greaterThan(sides, vec4(0.0)));
 
-    vec4 across = march_weight.x * (lane_above(q.before) - lane_below(q.before)) +
-                  march_weight.y * (lane_above(q.here) - lane_below(q.here)) +
-                  march_weight.z * (lane_above(q.after) - lane_below(q.after));
-    vec4 along = below * side_weight * (lane_below(q.after) - lane_below(q.before)) +
+    vec4 across = march_weight.x * (q.before.above - q.before.below) +
+                  march_weight.y * (q.here.above - q.here.below) +
+                  march_weight.z * (q.after.above - q.after.below);
+    vec4 along = below * side_weight * (q.after.below - q.before.below) +
                  middle_weight * (q.after.four - q.before.four) +
-                 above * side_weight * (lane_above(q.after) - lane_above(q.before));
+                 above * side_weight * (q.after.above - q.before.above);
     vec2 cell = MARCHES_ROWS ? cell_m : cell_m.yx;  // lane, march
     across = across / (max(sides, vec4(1.0)) * cell.x) * vec4(greaterThan(sides, vec4(0.0)));
     along = along / (max(marches, 1.0) * cell.y);

@@ -4,9 +4,37 @@ use crate::basis::light::{fit_above_ground, lobe, plane};
 use crate::basis::product::triples;
 use crate::basis::slice::{Slices, slice_index};
 use crate::basis::{bands, window};
-use crate::scene::{Quality, Receiver, Window};
+use crate::scene::{Border, Quality, Receiver, Window};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Whether the environment's series is fitted to what is above ground: all that a plane can see there
+/// where nothing is open; a window needs a series of all directions.
+pub fn is_fitted(quality: &Quality, border: Border) -> bool {
+    let is_plain = quality.receiver == Receiver::Plane && quality.window == Window::None;
+    is_plain && border != Border::Open
+}
+
+/// What the first `rows` of an environment's `height` rows weigh in each coefficient, times their turn of
+/// its m: ∫ Θ_lm dz, or where `is_fitted` what the best fit above ground makes of those.
+/// `[coefficient][row]`.
+pub fn row_weights((height, rows): (usize, usize), order: usize, is_fitted: bool) -> Vec<Vec<f64>> {
+    let slices = Slices::new(order);
+    let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
+    let edge = |row: usize| (FRAC_PI_2 - PI * row as f64 / height as f64).max(lowest_rad);
+    let rows: Vec<Vec<f64>> =
+        (0..rows).map(|row| slices.between(edge(row + 1), edge(row))).collect();
+    let part = |(l, m): (usize, isize)| slice_index(l, m.unsigned_abs());
+    if !is_fitted {
+        return bands(order).map(|b| rows.iter().map(|s| s[part(b)]).collect()).collect();
+    }
+    let fit = fit_above_ground(order);
+    let of = |(i, (_, m)): (usize, (usize, isize)), slice: &[f64]| {
+        let alike = bands(order).enumerate().filter(|(_, b)| b.1 == m);
+        alike.map(|(k, b)| fit[i][k] * slice[part(b)]).sum()
+    };
+    bands(order).enumerate().map(|at| rows.iter().map(|s| of(at, s)).collect()).collect()
+}
 
 /// The series of an environment of `height` rows, whose first rows' sums are `turns`
 /// ([`super::env_turns`]): its integrals with Y_lm, or where `is_fitted` the best fit above ground.
@@ -14,23 +42,14 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// # Panics
 /// When the sums are of another order.
 pub fn series(turns: &[Vec<DVec3>], height: usize, order: usize, is_fitted: bool) -> Vec<DVec3> {
-    let slices = Slices::new(order);
-    let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
-    let edge = |row: usize| (FRAC_PI_2 - PI * row as f64 / height as f64).max(lowest_rad);
-    let rows: Vec<Vec<f64>> =
-        (0..turns.len()).map(|row| slices.between(edge(row + 1), edge(row))).collect();
-    let integrals: Vec<DVec3> = bands(order)
-        .map(|(l, m)| {
-            let part = slice_index(l, m.unsigned_abs());
+    let weights = row_weights((height, turns.len()), order, is_fitted);
+    bands(order)
+        .zip(weights)
+        .map(|((_, m), weights)| {
             let turn = (order - 1).wrapping_add_signed(m);
-            rows.iter().zip(turns).map(|(slice, sums)| slice[part] * sums[turn]).sum()
+            weights.iter().zip(turns).map(|(w, sums)| *w * sums[turn]).sum()
         })
-        .collect();
-    if !is_fitted {
-        return integrals;
-    }
-    let fitted = |row: &Vec<f64>| row.iter().zip(&integrals).map(|(f, b)| *f * *b).sum();
-    fit_above_ground(order).iter().map(fitted).collect()
+        .collect()
 }
 
 /// Exit radiance's matrix `[receiver][coefficient]` from the environment's series.

@@ -4,6 +4,7 @@ use super::shared::gather::Swept;
 use crate::basis::azimuth::{around, assemble, assemble_nlp};
 use crate::basis::legendre::occlusion;
 use crate::basis::slice::Slices;
+use crate::plan::Azimuth;
 use crate::scene::{Receiver, Wedges};
 use std::f64::consts::SQRT_2;
 
@@ -23,10 +24,19 @@ pub struct Series {
 /// # Panics
 /// Outside the field.
 pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
-    let Series { order, wedges, receiver } = series;
+    let mut lowest = Vec::new();
+    swept.add_seen(col, row, series.receiver == Receiver::Plane, |_, azimuth, slope, _| {
+        lowest.push((*azimuth, slope));
+    });
+    seen_above(series, &lowest)
+}
+
+/// The series of what is free above these slopes along azimuths.
+pub fn seen_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
+    let Series { order, wedges, .. } = series;
     let slices = Slices::new(order);
     let (mut weights, mut along) = (Vec::new(), Vec::new());
-    swept.add_seen(col, row, receiver == Receiver::Plane, |_, azimuth, lowest, _| {
+    for (azimuth, lowest) in lowest {
         let phi = f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into());
         let width = f64::from(azimuth.wedge_rad);
         weights.push(around(order, phi).iter().map(|w| w * width).collect::<Vec<_>>());
@@ -40,7 +50,7 @@ pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
                 above
             }
         });
-    });
+    }
     match wedges {
         Wedges::Slices => assemble(order, &weights, &along),
         Wedges::Nlp => assemble_nlp(order, &weights, &along),

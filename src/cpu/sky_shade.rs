@@ -2,6 +2,7 @@
 
 use super::env_tables::EnvTables;
 use super::shared::gather::{Swept, elevation_moments};
+use crate::plan::Azimuth;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -12,14 +13,19 @@ use std::f64::consts::PI;
 pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
     let mut sky = 0.0;
     swept.add_all(col, row, |_, azimuth, lowest, normal| {
-        // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
-        let moments = elevation_moments(lowest);
-        let flat_part =
-            normal.x * f64::from(azimuth.wedge_cos) + normal.y * f64::from(azimuth.wedge_sin);
-        let wedge = f64::from(azimuth.wedge_rad);
-        sky += (flat_part * moments[0] + normal.z * wedge * moments[1]) / PI;
+        sky += wedge_of_sky(azimuth, lowest, normal);
     });
     sky
+}
+
+/// What a wedge of it gives from a slope up.
+pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
+    // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
+    let moments = elevation_moments(lowest);
+    let flat_part =
+        normal.x * f64::from(azimuth.wedge_cos) + normal.y * f64::from(azimuth.wedge_sin);
+    let wedge = f64::from(azimuth.wedge_rad);
+    (flat_part * moments[0] + normal.z * wedge * moments[1]) / PI
 }
 
 /// Exit radiance of one sample of albedo 1 under an environment, RGB.

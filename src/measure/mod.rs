@@ -4,6 +4,7 @@ pub mod auto;
 pub mod error;
 pub mod flip;
 pub mod fractal;
+pub mod harmonics;
 pub mod scalar_sweep;
 pub mod statistics;
 pub mod tolerance;

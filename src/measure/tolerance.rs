@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use crate::basis::MAX_ORDER;
 use crate::basis::legendre::occlusion_polynomials;
 use crate::basis::slice::{Slices, from_nlp, slice_index};
+use crate::cpu::sh_shade::OFF_PLANE;
 use crate::scene::Wedges;
 
 /// The largest relative error of one rounding to f32.
@@ -346,6 +347,16 @@ impl ShadeError {
         let slice = end * self.lowest_slope + 60.0 * EPSILON * sum + ARC_TANGENT * angle;
         let weights = 2.0 * PI.sqrt();
         weights * (slice + 2.0_f64.sqrt() * (26.0 + self.count) * EPSILON)
+    }
+
+    /// What `sh_shade` counts a node for, relative to that.
+    ///
+    /// Off each other's planes a sample and a node are off by two gradients' errors and two of the rise's 3
+    /// roundings, a quarter of a gradient's each at most, over their distance; of 1 / (1 + x²) the relative
+    /// change is below dx, x in units of [`OFF_PLANE`]. Hats, squares and quotients err by 30 ε. Weights are
+    /// divided by their sum, which errs as they do.
+    pub fn node_weight(&self) -> f64 {
+        2.0 * (2.0 * 1.25 * self.normal / OFF_PLANE + 30.0 * EPSILON)
     }
 
     /// How far a normal is turned, radians.

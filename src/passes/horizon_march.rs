@@ -1,26 +1,28 @@
 use super::push::MarchPush;
 use crate::gpu::shaders;
-use crate::plan::{Batch, Builder, ResourceId};
+use crate::plan::{Batch, Builder, Nodes, ResourceId};
 
 /// Brute force: every crossing of every sample's own line.
 pub(crate) fn plan(
     builder: &mut Builder,
     batch: &Batch,
     part: &str,
-    distances: bool,
+    (distances, nodes): (bool, Nodes),
     [heights, azimuths, slopes]: [ResourceId; 3],
 ) {
     let axis = batch.axis;
+    let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
+    let samples = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
     let pass = builder.pass(
         &shaders::HORIZON_MARCH,
         part,
         format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
-        [axis.lanes.div_ceil(8), axis.steps.div_ceil(8), batch.count],
-        &[(0, 1), (1, u32::from(axis.warm_up > 0)), (2, u32::from(distances))],
+        [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
+        &[(0, 1), (1, u32::from(axis.warm_up > 0)), (2, u32::from(distances)), (3, nodes.stride)],
         &MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
-        axis.samples() * u64::from(batch.count) * 8,
-        axis.samples() * u64::from(batch.count),
+        samples * 8,
+        samples,
     );
     pass.azimuths = batch.azimuths();
 }

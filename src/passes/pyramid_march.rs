@@ -1,6 +1,6 @@
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::pyramid::Pyramid;
-use crate::plan::{Batch, Builder, ResourceId};
+use crate::plan::{Batch, Builder, Nodes, ResourceId};
 use crate::scene::Levels;
 
 #[repr(C)]
@@ -40,7 +40,7 @@ pub(crate) struct Images {
 /// Horizons from the levels, one sample a level.
 pub(crate) fn plan(
     builder: &mut Builder,
-    pyramid: &Pyramid,
+    (pyramid, nodes): (&Pyramid, Nodes),
     batch: &Batch,
     part: &str,
     [heights, azimuths, slopes]: [ResourceId; 3],
@@ -61,13 +61,20 @@ pub(crate) fn plan(
     let fine = pyramid.fine_samples().min(pyramid.samples());
     let looked_at = u64::from(2 * fine + far * pyramid.levels());
     let own = u64::from(1 + own * pyramid.levels());
-    let samples = axis.samples() * u64::from(batch.count);
+    let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
+    let places = u64::from(lanes) * u64::from(steps);
+    let samples = places * u64::from(batch.count);
     let pass = builder.pass(
         &shaders::PYRAMID_MARCH,
         part,
         format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
-        [axis.lanes.div_ceil(8), axis.steps.div_ceil(8), 1],
-        &[(0, u32::from(pyramid.periodic)), (1, u32::from(is_stack)), (2, pyramid.levels())],
+        [lanes.div_ceil(8), steps.div_ceil(8), 1],
+        &[
+            (0, u32::from(pyramid.periodic)),
+            (1, u32::from(is_stack)),
+            (2, pyramid.levels()),
+            (3, nodes.stride),
+        ],
         &PyramidMarchPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,
@@ -79,7 +86,7 @@ pub(crate) fn plan(
             growth: pyramid.growth(),
         },
         &bound,
-        4 * (samples * (1 + looked_at) + axis.samples() * own),
+        4 * (samples * (1 + looked_at) + places * own),
         samples,
     );
     pass.azimuths = batch.azimuths();

@@ -27,8 +27,18 @@ pub(crate) fn plan(
     (axis, border, cell_m): (Axis, Border, [f64; 2]),
     sh: &Sh,
     [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
+    nodes: Option<ResourceId>,
 ) {
     let [cols, rows] = axis.size();
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        ("visibility", visibility),
+        ("light_matrix", light_matrix),
+        ("env_sum", env_sum),
+    ];
+    bound.extend(nodes.map(|n| ("nodes", n)));
+    let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
+    let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
         &shaders::SH_SHADE,
         "env",
@@ -42,6 +52,7 @@ pub(crate) fn plan(
             (1, u32::from(axis.marches_rows)),
             (2, sh.order as u32),
             (3, u32::from(sh.receiver == Receiver::Plane)),
+            (4, sh.nodes.stride),
         ],
         &ShShadePush {
             cols: cols as i32,
@@ -49,13 +60,8 @@ pub(crate) fn plan(
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
         },
-        &[
-            ("lane_heights", lane_heights),
-            ("visibility", visibility),
-            ("light_matrix", light_matrix),
-            ("env_sum", env_sum),
-        ],
-        axis.samples() * (4 + sh.layers() as u64 * 16 + 16),
+        &bound,
+        axis.samples() * (4 + 16) + seen,
         axis.samples(),
     );
 }

@@ -2,7 +2,7 @@ use super::push::ShadePush;
 use crate::gpu::shaders;
 use crate::plan::sh::Sh;
 use crate::plan::sweep::Sweep;
-use crate::plan::{Batch, Builder, ResourceId};
+use crate::plan::{Batch, Builder, Nodes, ResourceId};
 use crate::scene::{Border, Receiver, Wedges};
 
 /// What a batch adds to what is seen.
@@ -11,14 +11,15 @@ pub(crate) struct Images {
     pub lattice: Option<ResourceId>,
     pub azimuths: ResourceId,
     pub visibility: ResourceId,
+    pub nodes: Option<ResourceId>,
 }
 
-/// What samples see through the horizons of a batch, as a series.
+/// What samples, or nodes among them, see through the horizons of a batch, as a series.
 pub(crate) fn plan(
     builder: &mut Builder,
     sweep: &Sweep,
     (border, cell_m): (Border, [f64; 2]),
-    (sh, wedges): (&Sh, Wedges),
+    (sh, wedges, lattice_of): (&Sh, Wedges, Nodes),
     batch: &Batch,
     part: &str,
     images: &Images,
@@ -30,6 +31,9 @@ pub(crate) fn plan(
         ("visibility", images.visibility),
     ];
     bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
+    bound.extend(images.nodes.map(|n| ("nodes", n)));
+    let [lanes, steps] = sh.nodes.size([axis.lanes, axis.steps]);
+    let nodes = u64::from(lanes) * u64::from(steps);
     let kept = sh.layers() as u64 * 16 * if batch.is_first { 1 } else { 2 };
     let pass = builder.pass(
         &shaders::SH_VISIBILITY,
@@ -38,7 +42,7 @@ pub(crate) fn plan(
             Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
             Wedges::Nlp => "what is seen, as harmonics by Legendre coefficients",
         },
-        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
         &[
             (0, sweep.fuse_mode()),
             (1, sweep.lattice_content()),
@@ -48,11 +52,13 @@ pub(crate) fn plan(
             (5, u32::from(wedges == Wedges::Nlp)),
             (6, u32::from(axis.marches_rows)),
             (7, u32::from(sh.receiver == Receiver::Plane)),
+            (8, sh.nodes.stride),
+            (9, lattice_of.stride),
         ],
         &ShadePush::of(batch, cell_m),
         &bound,
-        axis.samples() * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),
-        axis.samples() * u64::from(batch.count),
+        nodes * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),
+        nodes * u64::from(batch.count),
     );
     pass.azimuths = batch.azimuths();
 }

@@ -75,7 +75,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use crate::measure::fractal::fractal;
-    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::plan::{self, Limits, Picture, Plan, Resource};
     use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
     fn scene() -> Scene {
@@ -130,6 +130,38 @@ mod tests {
         let after = plan(&scene);
         let needed = names(&after, &after.passes_after(&before, &[]));
         assert_eq!(needed, ["env_turns", "light_matrix", "sh_shade", "light_resolve"]);
+    }
+
+    /// What is seen is kept: new light of any kind needs no horizons of the circle, whose lattice is one, used
+    /// in turn; a new field needs everything but the light's own.
+    #[test]
+    fn harmonics_keep_what_is_seen() {
+        let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+        for (method, subsample) in [(Method::Sweep, 1), (Method::Sweep, 2), (Method::Pyramid, 4)] {
+            let quality =
+                Quality { method, subsample, azimuths: 16, basis: Basis::Sh, ..Quality::default() };
+            let limits = Limits { image_layers: 64, ..Limits::lavapipe() };
+            let plan = |s: &Scene| plan::picture(s, &quality, &limits, wanted).unwrap();
+            let mut scene = scene();
+            let before = plan(&scene);
+            let swept: Vec<_> =
+                before.passes.iter().filter(|p| p.name() == "sh_visibility").collect();
+            assert!(swept.len() > 1);
+            let lattices = before.resources.iter().filter(|r| r.name.starts_with("lattice_"));
+            let of_suns = |r: &&Resource| r.name.bytes().any(|b| b.is_ascii_digit());
+            assert_eq!(lattices.filter(|r| !of_suns(r)).count(), 1);
+            let environment = before.find("environment").unwrap();
+            let needed = names(&before, &before.passes_after(&before, &[environment]));
+            assert_eq!(needed, ["env_turns", "light_matrix", "sh_shade", "light_resolve"]);
+            scene.lights.sky = Some([9.0, 1.0, 0.5]);
+            scene.lights.suns[0].irradiance = [0.5; 3];
+            let after = plan(&scene);
+            assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
+            let heights = after.find("heights").unwrap();
+            let needed = names(&after, &after.passes_after(&after, &[heights]));
+            assert!(["sh_visibility", "sh_shade", "sun_shade"].iter().all(|n| needed.contains(n)));
+            assert!(!needed.contains(&"env_turns") && !needed.contains(&"light_matrix"));
+        }
     }
 
     #[test]

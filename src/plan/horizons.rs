@@ -1,7 +1,7 @@
 use super::azimuths::Azimuth;
 use super::sweep::Sweep;
 use super::sweeping::{circle, part, prepare, settings};
-use super::{Builder, Format, Limits, Owner, Plan, batch};
+use super::{Builder, Format, Limits, Nodes, Owner, Plan, batch};
 use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 
@@ -48,8 +48,15 @@ pub fn horizons(
     let angles = builder.image("horizon_angles", Owner::Output, Format::R32Float, extent, true);
     let distances = distances
         .then(|| builder.image("horizon_distances", Owner::Output, Format::R32Float, extent, true));
-    let (sweeping, lists) =
-        prepare(&mut builder, field, border, sweep, heights, vec![list], (limits, false))?;
+    let (sweeping, lists) = prepare(
+        &mut builder,
+        field,
+        border,
+        sweep,
+        heights,
+        vec![list],
+        (limits, None, Nodes { stride: 1 }),
+    )?;
     let batches = &lists.batches[0];
     for batch in batches {
         let part = part("", batch, batches);

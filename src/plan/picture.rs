@@ -5,7 +5,7 @@ use super::edit::Edits;
 use super::shining::{Aimed, Shining};
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
-use super::{Builder, Limits, Plan, ResourceId};
+use super::{Builder, Limits, Nodes, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
 use crate::scene::{Albedo, Basis, Border, Lights, Quality, Scene, Surface};
 use crate::{Error, Result};
@@ -20,7 +20,8 @@ pub struct Picture {
     /// receiver, [0..1].
     pub sky_view: bool,
     /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
-    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once.
+    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once, of suns'
+    /// alone where an environment is by spherical harmonics: these keep what is seen instead.
     ///
     /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
     /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics.
@@ -90,7 +91,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let is_editable = sweep.editable(surface.border).is_some() && harmonics.is_none();
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
-    let held = (limits, keeps);
+    // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
+    let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
+    let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
+    let held = (limits, kept_from, nodes);
     let (sweeping, lists) =
         prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
     let used = used(quality, &sweeping.sweep, surface.border, &shining, &images);
@@ -127,6 +131,20 @@ pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
         all.push(opaque(map));
     }
     all
+}
+
+/// Where methods that march from every sample do: at the nodes alone, where nothing else is lit through
+/// their horizons.
+fn marched_nodes(
+    sweep: &Sweep,
+    harmonics: Option<&Harmonics>,
+    shining: &Shining<'_>,
+    wanted: Picture,
+) -> Nodes {
+    let is_marched = matches!(sweep, Sweep::March { .. } | Sweep::Pyramid(_));
+    let is_alone = shining.sky.is_none() && shining.suns.is_empty() && !wanted.sky_view;
+    let nodes = harmonics.map(|h| h.sh.nodes).filter(|_| is_marched && is_alone);
+    nodes.unwrap_or(Nodes { stride: 1 })
 }
 
 /// What only the reference can light so far.
@@ -227,11 +245,16 @@ impl Drawing<'_> {
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
             }
-            if let Some(Harmonics { sh, wedges, visibility, .. }) = &self.harmonics {
-                let visibility = *visibility;
-                let images =
-                    passes::sh_visibility::Images { lane_heights, lattice, azimuths, visibility };
-                let (field, seen) = ((border, cell_m), (sh, *wedges));
+            if let Some(Harmonics { sh, wedges, visibility, nodes, .. }) = &self.harmonics {
+                let (visibility, nodes) = (*visibility, *nodes);
+                let images = passes::sh_visibility::Images {
+                    lane_heights,
+                    lattice,
+                    azimuths,
+                    visibility,
+                    nodes,
+                };
+                let (field, seen) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
                 passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
             }
         }
@@ -239,7 +262,7 @@ impl Drawing<'_> {
             let lane_heights = self.sweeping.lane_heights(batch);
             let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
-            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids);
+            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -368,6 +391,7 @@ fn used(
             add("wedges", quality.wedges.name());
             add("receiver", quality.receiver.name());
             add("window", quality.window.name());
+            add("subsample", &quality.subsample.to_string());
         }
         (Some(_), _) => {
             add("basis", "table");

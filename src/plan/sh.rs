@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use super::Nodes;
 use crate::basis::light::{fit_above_ground, lobe, plane};
 use crate::basis::product::triples;
 use crate::basis::slice::{Slices, parts, slice_index};
@@ -16,6 +17,8 @@ pub(crate) struct Sh {
     /// Of the environment's series.
     pub light_order: usize,
     pub receiver: Receiver,
+    /// Where what is seen is found.
+    pub nodes: Nodes,
     /// Rows of the light's matrix.
     pub receivers: usize,
     /// Of the environment, from the zenith down, that count.
@@ -56,6 +59,7 @@ impl Sh {
             order,
             light_order,
             receiver: quality.receiver,
+            nodes: Nodes { stride: quality.subsample },
             receivers,
             rows,
             column_first: 0,

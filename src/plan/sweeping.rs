@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use super::azimuths::{self, Azimuth};
 use super::batch::{self, Axis, Batch, bytes_text};
 use super::sweep::{HullPlace, LineSweep, Sweep};
-use super::{Builder, Format, Limits, Owner, ResourceId};
+use super::{Builder, Format, Limits, Nodes, Owner, ResourceId};
 use crate::passes::pyramid_march;
 use crate::scene::{Border, HeightField, Lines, Method, Quality};
 use crate::{Error, Result, passes};
@@ -19,6 +19,8 @@ pub(super) struct Sweeping {
     quads: bool,
     /// Levels of a height pyramid, where some are looked at.
     levels: Option<pyramid_march::Images>,
+    /// Where marches that store a value a sample find it.
+    pub nodes: Nodes,
     /// Each batch's; several may have the same in turn.
     lattices: Vec<Lattice>,
 }
@@ -98,7 +100,7 @@ impl Sweeping {
             Sweep::Pyramid(pyramid) => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
                 let levels = self.levels.as_ref();
-                pyramid_march::plan(builder, pyramid, batch, part, ids, levels);
+                pyramid_march::plan(builder, (pyramid, self.nodes), batch, part, ids, levels);
             }
             Sweep::Surface { hull_depth, distances } => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
@@ -106,7 +108,8 @@ impl Sweeping {
             }
             Sweep::March { distances } => {
                 let ids = [self.heights, self.azimuths, self.written(batch)];
-                passes::horizon_march::plan(builder, batch, part, *distances, ids);
+                let wanted = (*distances, self.nodes);
+                passes::horizon_march::plan(builder, batch, part, wanted, ids);
             }
         }
     }
@@ -128,7 +131,8 @@ struct LatticeShape {
 }
 
 impl LatticeShape {
-    fn of(sweep: &Sweep, axis: Axis) -> Self {
+    fn of(sweep: &Sweep, axis: Axis, nodes: Nodes) -> Self {
+        let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
         match sweep {
             Sweep::Lines(lines) => Self {
                 occluders: lines.writes_occluders.then_some(Format::Rg32Uint),
@@ -141,12 +145,9 @@ impl LatticeShape {
                 height: axis.steps + axis.warm_up,
             },
             Sweep::Crossings => Self { occluders: None, slopes: None, width: 1, height: 1 },
-            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => Self {
-                occluders: None,
-                slopes: Some(Format::R32Uint),
-                width: axis.lanes,
-                height: axis.steps,
-            },
+            Sweep::Surface { .. } | Sweep::March { .. } | Sweep::Pyramid(_) => {
+                Self { occluders: None, slopes: Some(Format::R32Uint), width: lanes, height: steps }
+            }
         }
     }
 
@@ -156,7 +157,8 @@ impl LatticeShape {
     }
 }
 
-/// Makes the sweep's own images, within what the budget leaves, and cuts the lists into batches.
+/// Makes the sweep's own images, within what the budget leaves, and cuts the lists into batches. Those of
+/// the lists from `kept_from` on keep a lattice of their own, if there are such; others use some in turn.
 pub(super) fn prepare(
     builder: &mut Builder,
     field: &HeightField,
@@ -164,7 +166,7 @@ pub(super) fn prepare(
     sweep: Sweep,
     heights: ResourceId,
     mut lists: Vec<Vec<Azimuth>>,
-    (limits, keeps): (&Limits, bool),
+    (limits, kept_from, nodes): (&Limits, Option<usize>, Nodes),
 ) -> Result<(Sweeping, Lists)> {
     let size = [field.cols() as u32, field.rows() as u32];
     let count: usize = lists.iter().map(Vec::len).sum();
@@ -178,7 +180,7 @@ pub(super) fn prepare(
         Sweep::Pyramid(pyramid) => pyramid.images(builder),
         _ => None,
     };
-    let shapes = shapes(&lists, &axes, &sweep);
+    let shapes = shapes(&lists, &axes, &sweep, nodes);
     let batches = cut_lists(&mut lists, builder.bytes(), &axes, &shapes, &sweep, limits)?;
     let shape_of =
         |axis: Axis| shapes[usize::from(axis.marches_rows)].expect("a shape for every axis used");
@@ -198,25 +200,31 @@ pub(super) fn prepare(
             can_lose.then(|| builder.buffer(&format!("lost_lines{suffix}"), bytes, false));
         Lattice { occluders, slopes, lost_lines }
     };
-    let all: Vec<Batch> = batches.iter().flatten().copied().collect();
-    let lattices = if keeps {
-        all.iter().map(|b| make(b.axis, b.layers, &format!("_{}", b.number))).collect()
-    } else {
-        let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
-        let mut lattice_of = |batch: &Batch| {
-            let shape = shape_of(batch.axis);
-            if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
-                return *known;
-            }
-            let alike = all.iter().filter(|b| shape_of(b.axis) == shape);
+    let is_kept = |list: usize| kept_from.is_some_and(|first| list >= first);
+    let in_turn: Vec<Batch> = batches
+        .iter()
+        .enumerate()
+        .filter(|(list, _)| !is_kept(*list))
+        .flat_map(|(_, batches)| batches.iter().copied())
+        .collect();
+    let mut shared: Vec<(LatticeShape, Lattice)> = Vec::new();
+    let mut lattices = Vec::new();
+    for (list, batch) in batches.iter().enumerate().flat_map(|(l, b)| b.iter().map(move |b| (l, b)))
+    {
+        let shape = shape_of(batch.axis);
+        if is_kept(list) {
+            lattices.push(make(batch.axis, batch.layers, &format!("_{}", batch.number)));
+        } else if let Some((_, known)) = shared.iter().find(|(of, _)| *of == shape) {
+            lattices.push(*known);
+        } else {
+            let alike = in_turn.iter().filter(|b| shape_of(b.axis) == shape);
             let layers = alike.map(|b| b.layers).max().unwrap_or(1);
             let suffix = if shared.is_empty() { "" } else { "_across" };
             let made = make(batch.axis, layers, suffix);
             shared.push((shape, made));
-            made
-        };
-        all.iter().map(&mut lattice_of).collect()
-    };
+            lattices.push(made);
+        }
+    }
     for (axis, lanes) in axes.iter().zip(lane_heights) {
         if let (Some(axis), Some(lanes)) = (axis, lanes) {
             passes::height_transpose::plan(builder, *axis, border, heights, lanes);
@@ -228,7 +236,8 @@ pub(super) fn prepare(
     // Lines a cell apart pass four neighbouring lanes alike.
     let quads = matches!(sweep, Sweep::Lines(LineSweep { line_shift: 15, .. }))
         && border != Border::Periodic;
-    let sweeping = Sweeping { sweep, heights, azimuths, lane_heights, quads, levels, lattices };
+    let sweeping =
+        Sweeping { sweep, heights, azimuths, lane_heights, quads, levels, nodes, lattices };
     Ok((sweeping, Lists { lists, batches }))
 }
 
@@ -262,8 +271,9 @@ fn shapes(
     lists: &[Vec<Azimuth>],
     axes: &[Option<Axis>; 2],
     sweep: &Sweep,
+    nodes: Nodes,
 ) -> [Option<LatticeShape>; 2] {
-    let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis)));
+    let own = axes.map(|axis| axis.map(|axis| LatticeShape::of(sweep, axis, nodes)));
     let [Some(a), Some(b)] = own else { return own };
     let both = LatticeShape { width: a.width.max(b.width), height: a.height.max(b.height), ..a };
     let bytes = |shapes: [LatticeShape; 2]| {

@@ -41,6 +41,7 @@ fn quality() {
             ("--levels mips", 2, &["mips", "stack"]),
             ("--sh-order 1", 2, &["--sh-order: found 1", "2 to 6"]),
             ("--sh-order 7", 2, &["--sh-order: found 7"]),
+            ("--subsample 3", 2, &["'3'", "--subsample", "1, 2, 4"]),
             ("--method magic", 2, &["--method", "magic", "sweep"]),
             ("--lines 3", 2, &["--lines", "'3'", "exact"]),
             ("--fuse x", 2, &["--fuse"]),
@@ -178,7 +179,6 @@ fn not_yet() {
             ("--light -1,2,3,4,5 --light 0", 2, &["--light: found -1,2,3,4,5", "not yet"]),
             ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--bounces 2", 2, &["--bounces", "not yet"]),
-            ("--subsample 2", 2, &["--subsample", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),
         ],
@@ -302,6 +302,7 @@ fn help_says_units_and_defaults() {
         ("--wedges", &["[default: slices]"]),
         ("--receiver", &["[default: plane]"]),
         ("--window", &["[default: none]"]),
+        ("--subsample", &["samples", "[default: 1]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];

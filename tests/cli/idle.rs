@@ -40,6 +40,14 @@ fn flags_that_change_nothing_are_said() {
         ("--basis sh", &["--basis sh changes nothing without an environment"]),
         ("--env env.hdr --sh-order 3", &["--sh-order 3 changes nothing without --basis sh"]),
         (
+            "--env env.hdr --subsample 2",
+            &["--subsample 2 changes nothing without --basis sh: tables light each sample"],
+        ),
+        (
+            "--subsample 4 --basis sh --sky 1",
+            &["--subsample 4 changes nothing without an env", "--basis sh changes"],
+        ),
+        (
             "--env env.hdr --basis sh --table-elevations 64",
             &["--table-elevations 64 changes nothing with --basis sh"],
         ),
@@ -87,6 +95,7 @@ fn flags_that_act_or_were_not_written_are_not() {
         "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
         "--border periodic --lines 1/2",
         "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver lobe --window hann",
+        "--env env.hdr --basis sh --subsample 4 --method brute",
         "--env env.hdr --basis table --table-elevations 64",
     ] {
         assert_eq!(plan(&folder, "field.npy", flags).err, "", "{flags}");

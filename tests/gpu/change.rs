@@ -3,7 +3,7 @@
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
-use ridgelight::scene::{Environment, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
 use crate::{Device, random};
 
@@ -38,11 +38,21 @@ fn contents(scene: &Scene) -> [Vec<f32>; 2] {
     [scene.field.heights_m().to_vec(), texels]
 }
 
-fn planned(gpu: &Headless, scene: &Scene, keeps_horizons: bool) -> Plan {
-    let quality = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
-    let wanted = Picture { keeps_horizons, light_layers: true, ..Picture::default() };
-    plan::picture(scene, &quality, &gpu.report().limits, wanted).expect("a plan")
+/// Tables, and harmonics at every sample and at some.
+fn qualities() -> [Quality; 4] {
+    let tables = Quality { azimuths: 12, table_elevations: 32, ..Quality::default() };
+    let sh = Quality { basis: Basis::Sh, ..tables };
+    let smoothed = Quality { method: Method::Pyramid, sh_order: 3, subsample: 4, ..sh };
+    [tables, sh, Quality { subsample: 2, ..sh }, smoothed]
 }
+
+fn planned(gpu: &Headless, scene: &Scene, (quality, keeps_horizons): Form) -> Plan {
+    let wanted = Picture { keeps_horizons, light_layers: true, ..Picture::default() };
+    plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
+}
+
+/// A quality, and whether horizons are kept.
+type Form<'a> = (&'a Quality, bool);
 
 /// Every output's bits.
 fn bits(gpu: &mut Headless, frame: &Frame) -> Vec<u32> {
@@ -56,9 +66,9 @@ fn from_nothing(
     gpu: &mut Headless,
     scene: &Scene,
     [heights, environment]: [Vec<f32>; 2],
-    keeps_horizons: bool,
+    form: Form,
 ) -> Vec<u32> {
-    let plan = planned(gpu, scene, keeps_horizons);
+    let plan = planned(gpu, scene, form);
     let mut frame = gpu.frame(plan, &[&heights, &environment]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");
     let all = bits(gpu, &frame);
@@ -70,9 +80,10 @@ fn from_nothing(
 fn passes_after_a_change_give_what_all_would() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
-    for keeps_horizons in [true, false] {
+    let all = qualities();
+    for form in all.iter().flat_map(|quality| [(quality, true), (quality, false)]) {
         let mut scene = scene();
-        let plan = planned(gpu, &scene, keeps_horizons);
+        let plan = planned(gpu, &scene, form);
         let [heights, texels] = contents(&scene);
         let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
         gpu.draw(&mut frame).expect("drawn");
@@ -84,7 +95,7 @@ fn passes_after_a_change_give_what_all_would() {
             let passes = match change {
                 0 => {
                     scene.lights.suns[1].irradiance = [0.1, 0.2, 7.0];
-                    let plan = planned(gpu, &scene, keeps_horizons);
+                    let plan = planned(gpu, &scene, form);
                     gpu.replace_plan(&mut frame, plan).expect("the same passes")
                 }
                 1 => {
@@ -93,7 +104,18 @@ fn passes_after_a_change_give_what_all_would() {
                     [_, texels] = contents(&other);
                     gpu.refill(&frame, 1, &texels).expect("refilled");
                     let input = frame.plan().find("environment").expect("an input");
-                    frame.plan().passes_after(frame.plan(), &[input])
+                    let passes = frame.plan().passes_after(frame.plan(), &[input]);
+                    // The second sun's sum takes the place of the first's, which is added up again.
+                    let label = |i: &usize| frame.plan().passes[*i].label();
+                    let is_of_light = |label: &str| {
+                        let seen =
+                            label.starts_with("sh_visibility") || label.starts_with("sky_shade");
+                        !seen && !label.contains(" sky ")
+                    };
+                    let light_alone = passes.iter().all(|i| is_of_light(&label(i)));
+                    let keeps_seen = form.1 && form.0.basis == Basis::Sh;
+                    assert!(light_alone == keeps_seen, "{form:?}");
+                    passes
                 }
                 _ => {
                     scene.field = fractal(96, 2).expect("a field");
@@ -109,8 +131,8 @@ fn passes_after_a_change_give_what_all_would() {
             assert!(found != last, "change {change} shows");
             let heights = scene.field.heights_m().to_vec();
             assert!(
-                found == from_nothing(gpu, &scene, [heights, texels.clone()], !keeps_horizons),
-                "change {change}, horizons kept: {keeps_horizons}"
+                found == from_nothing(gpu, &scene, [heights, texels.clone()], (form.0, !form.1)),
+                "change {change}: {form:?}"
             );
             last = found;
         }
@@ -123,13 +145,13 @@ fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let mut scene = scene();
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let [heights, texels] = contents(&scene);
     let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");
     let before = bits(gpu, &frame);
     scene.lights.suns.clear();
-    let other = planned(gpu, &scene, true);
+    let other = planned(gpu, &scene, (&qualities()[0], true));
     assert!(gpu.replace_plan(&mut frame, other).is_err());
     gpu.draw(&mut frame).expect("drawn");
     assert!(bits(gpu, &frame) == before);
@@ -141,7 +163,7 @@ fn two_changes_before_a_recording_are_both_drawn() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let mut scene = scene();
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let [heights, texels] = contents(&scene);
     let mut frame = gpu.frame(plan.clone(), &[&heights, &texels]).expect("a frame");
     let all: Vec<usize> = (0..plan.passes.len()).collect();
@@ -151,16 +173,17 @@ fn two_changes_before_a_recording_are_both_drawn() {
     let environment = scene.lights.environment.take().expect("one");
     let texels = environment.texels().to_vec();
     scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let turned = gpu.replace_plan(&mut frame, plan).expect("the same passes");
     scene.lights.suns[0].irradiance = [0.1, 0.2, 7.0];
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let coloured = plan.passes_after(frame.plan(), &[]);
     let both = gpu.replace_plan(&mut frame, plan.clone()).expect("the same passes");
     assert!(turned.iter().any(|p| !coloured.contains(p)), "two changes");
     assert!(turned.iter().chain(&coloured).all(|p| both.contains(p)) && both.len() < all.len());
     gpu.draw_passes(&mut frame, &both).expect("drawn");
-    assert!(bits(gpu, &frame) == from_nothing(gpu, &scene, contents(&scene), true));
+    let nothing = from_nothing(gpu, &scene, contents(&scene), (&qualities()[0], true));
+    assert!(bits(gpu, &frame) == nothing);
     let none: [usize; 0] = [];
     assert_eq!(gpu.replace_plan(&mut frame, plan).expect("the same"), none);
     gpu.end(frame);
@@ -172,13 +195,13 @@ fn a_sun_that_moves_a_little_is_swept_alone() {
     let mut device = Device::new();
     let gpu = device.gpu.as_mut().expect("alive");
     let mut scene = scene();
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let [heights, texels] = contents(&scene);
     let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");
     let before = bits(gpu, &frame);
     scene.lights.suns[0].azimuth_rad += 0.01;
-    let plan = planned(gpu, &scene, true);
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
     let passes = gpu.replace_plan(&mut frame, plan).expect("the same passes");
     let labels: Vec<String> = passes.iter().map(|p| frame.plan().passes[*p].label()).collect();
     assert!(labels.iter().any(|l| l.starts_with("horizon_sweep sun1")), "{labels:?}");
@@ -188,6 +211,7 @@ fn a_sun_that_moves_a_little_is_swept_alone() {
     gpu.draw_passes(&mut frame, &passes).expect("drawn");
     let moved = bits(gpu, &frame);
     assert!(moved != before, "the sun has moved");
-    assert!(moved == from_nothing(gpu, &scene, contents(&scene), true));
+    let nothing = from_nothing(gpu, &scene, contents(&scene), (&qualities()[0], true));
+    assert!(moved == nothing);
     gpu.end(frame);
 }

@@ -19,6 +19,7 @@ mod reference_edges;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
+mod subsampled;
 mod twins;
 
 use std::sync::{Mutex, MutexGuard};

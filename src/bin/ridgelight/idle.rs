@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 /// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 15] = [
+const SETTINGS: [&str; 16] = [
     "azimuths",
     "sun_azimuths",
     "lines",
@@ -19,6 +19,7 @@ const SETTINGS: [&str; 15] = [
     "wedges",
     "receiver",
     "window",
+    "subsample",
 ];
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
@@ -52,13 +53,18 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("azimuths", ..) => "without a sky or an environment".into(),
         ("sun_azimuths", ..) => "without a sun wider than 0.01° or a key light".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
-        ("table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window", ..) => {
-            match (setting, of("basis")) {
-                (_, None) => "without an environment".into(),
-                ("table_elevations", _) => "with --basis sh".into(),
-                _ => "without --basis sh".into(),
+        (
+            "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"
+            | "subsample",
+            ..,
+        ) => match (setting, of("basis")) {
+            (_, None) => "without an environment".into(),
+            ("subsample", _) => {
+                "without --basis sh: tables light each sample through its own horizons".into()
             }
-        }
+            ("table_elevations", _) => "with --basis sh".into(),
+            _ => "without --basis sh".into(),
+        },
         (_, Some("pyramid"), _) => "with --method pyramid".into(),
         (_, Some("brute"), _) => "with --method brute".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),

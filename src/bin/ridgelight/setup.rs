@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SurfaceArgs, WedgesName,
-    WindowName, albedo_colour,
+    LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName, SurfaceArgs,
+    WedgesName, WindowName, albedo_colour,
 };
 
 /// How a command ended that did not fail.
@@ -153,6 +153,11 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             WindowName::Lanczos => Window::Lanczos,
             WindowName::Hann => Window::Hann,
             WindowName::Nonnegative => Window::Nonnegative,
+        },
+        subsample: match args.subsample {
+            SubsampleName::One => 1,
+            SubsampleName::Two => 2,
+            SubsampleName::Four => 4,
         },
     };
     quality.check()?;

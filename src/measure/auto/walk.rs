@@ -55,6 +55,7 @@ const COARSE: Quality = Quality {
     wedges: Wedges::Slices,
     receiver: Receiver::Plane,
     window: Window::None,
+    subsample: 1,
 };
 
 /// Where bounds alone stand in the way probes are added up to so many times the first.

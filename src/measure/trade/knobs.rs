@@ -30,6 +30,7 @@ const AZIMUTHS: [u32; 6] = [8, 16, 32, 64, 128, 256];
 const SUN_AZIMUTHS: [u32; 6] = [1, 2, 4, 8, 16, 32];
 const TABLE_ELEVATIONS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
 const SH_ORDERS: [u32; 5] = [2, 3, 4, 5, 6];
+const SUBSAMPLES: [u32; 3] = [4, 2, 1];
 const LINES: [(Lines, &str); 6] = [
     (Lines::FourCells, "4"),
     (Lines::TwoCells, "2"),
@@ -157,6 +158,15 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
                 None => quality.basis = Basis::Table,
             },
             idle: |_| false,
+        });
+        all.push(Knob {
+            name: "sub-sampling",
+            steps: spell("--subsample", &SUBSAMPLES),
+            range: None,
+            default: 0,
+            dearer: "what is seen at more samples: sharp shadows",
+            set: |quality, step| quality.subsample = SUBSAMPLES[step],
+            idle: |quality| quality.basis != Basis::Sh,
         });
     }
     for knob in &mut all {
@@ -301,6 +311,7 @@ mod tests {
             ("sun azimuths", "--sun-azimuths 8"),
             ("table elevations", "--table-elevations 256"),
             ("basis", "--basis table"),
+            ("sub-sampling", "--subsample 1"),
         ];
         assert_eq!(found, expected);
         for knob in &all {

@@ -108,12 +108,14 @@ pub(super) struct Harmonics {
     pub env_turns: ResourceId,
     pub light_matrix: ResourceId,
     pub visibility: ResourceId,
+    /// The surface at the nodes, where not every sample is one.
+    pub nodes: Option<ResourceId>,
 }
 
 impl Harmonics {
     pub fn make(
         builder: &mut Builder,
-        [cols, rows]: [u32; 2],
+        size: [u32; 2],
         (environment, border): (&Environment, Border),
         quality: &Quality,
     ) -> Self {
@@ -126,7 +128,9 @@ impl Harmonics {
         };
         let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
         let light_matrix = image("light_matrix", extent, false);
+        let [cols, rows] = sh.nodes.size(size);
         let visibility = image("visibility", [cols, rows, sh.layers() as u32], true);
-        Self { sh, wedges: quality.wedges, constants, env_turns, light_matrix, visibility }
+        let nodes = (sh.nodes.stride > 1).then(|| image("nodes", [cols, rows, 1], false));
+        Self { sh, wedges: quality.wedges, constants, env_turns, light_matrix, visibility, nodes }
     }
 }

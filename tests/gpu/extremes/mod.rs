@@ -116,6 +116,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         level_step: _,
         level_offset: _,
         // How an environment is held: no method here is of another basis than tables.
+        subsample: _,
         basis: _,
         sh_order: _,
         wedges: _,

@@ -256,14 +256,33 @@ pub(super) fn pictures() -> Vec<Case> {
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
     let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
+    let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
+    let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
+    let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
+    // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
+    let repeated = {
+        let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
+        let surface = Surface { border: Border::Periodic, ..Surface::default() };
+        Scene { field: rough(19, 12, 18), surface, lights }
+    };
     vec![
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
         picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
-        picture("harmonics by Legendre", colourful, nlp, false, false),
+        picture("harmonics by Legendre", colourful.clone(), nlp, false, false),
         picture("harmonics of order 3", on_a_plane.clone(), sh(3), false, true),
+        picture(
+            "harmonics at every second sample",
+            on_a_plane.clone(),
+            subsampled(2, 5),
+            false,
+            false,
+        ),
+        picture("harmonics at every fourth sample", colourful, subsampled(4, 4), false, false),
+        picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
+        picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, lobe, false, false),
     ]
 }

@@ -190,10 +190,15 @@ impl<'a> Run<'a> {
         [low.abs().max(high.abs()), high - low]
     }
 
+    /// What errs at a sample whatever its horizons.
+    fn sample_error(&self) -> ShadeError {
+        let [x, y] = self.scene.field.cell_m();
+        ShadeError::new(0.0, self.relief()[1], x.min(y), 1)
+    }
+
     /// How far a normal may be turned, radians.
     fn normal_error(&self) -> f64 {
-        let [x, y] = self.scene.field.cell_m();
-        ShadeError::new(0.0, self.relief()[1], x.min(y), 1).normal()
+        self.sample_error().normal()
     }
 
     fn warm_up(&self, marches_rows: bool) -> i32 {

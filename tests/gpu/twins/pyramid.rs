@@ -8,9 +8,10 @@ use ridgelight::cpu::{height_expand as expand_twin, height_reduce as reduce_twin
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
 use ridgelight::plan::pyramid::Pyramid;
-use ridgelight::plan::{Azimuth, Pass};
+use ridgelight::plan::{Azimuth, Nodes, Pass};
 
-use super::{Pair, Run, pushed};
+use super::sweep::marched;
+use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
     fn pyramid(&self) -> Pyramid {
@@ -85,9 +86,8 @@ pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let mut twin = left.clone();
         let warm_up = run.warm_up(azimuth.marches_rows());
         march_twin(run.heights(), &alone, &pyramid, stored, warm_up, &mut twin);
-        for (step, lane) in (0..march.steps).flat_map(|s| (0..march.lanes).map(move |l| (s, l))) {
+        for ([step, lane], [row, col]) in marched(&march, Nodes { stride: constant(pass, 3) }) {
             let texel = left.texel(lane, march.march_position(step), 0);
-            let (row, col) = (step as usize, lane as usize);
             let word = words[(azimuth.layer as usize * height + row) * width + col];
             left.slopes[texel] = f32::from_bits(word);
             let want = f64::from(twin.slopes[texel]);

@@ -2,13 +2,15 @@
 
 use glam::DVec3;
 use ridgelight::cpu::light_matrix as matrix_twin;
-use ridgelight::cpu::sh_shade::light_at;
+use ridgelight::cpu::sh_shade::{light_at, nodes_around};
 use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
+use ridgelight::cpu::shared::field::field_slope;
 use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::harmonics::{Seen, matrix_magnitudes};
 use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_shade, twin_turn};
-use ridgelight::plan::Pass;
-use ridgelight::scene::{Border, Environment, Quality, Receiver, Wedges, Window};
+use ridgelight::plan::{Nodes, Pass};
+use ridgelight::scene::{Environment, Receiver, Wedges};
 
 use super::light::{rgb, so_far};
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -43,12 +45,6 @@ pub(super) fn env_turns(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-/// Whether the light is fitted above ground, by the quality and the border.
-fn is_fitted(quality: &Quality, border: Border) -> bool {
-    let plain = quality.receiver == Receiver::Plane && quality.window == Window::None;
-    plain && border != Border::Open
-}
-
 pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS};
     let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
@@ -57,31 +53,17 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .map(<[_]>::to_vec)
         .collect();
     assert_eq!(turns.len(), rows);
-    let (quality, fitted) = (run.quality, is_fitted(&run.quality, run.border()));
+    let (quality, fitted) = (run.quality, matrix_twin::is_fitted(&run.quality, run.border()));
     let height = environment(run).height();
     let series = matrix_twin::series(&turns, height, light_order, fitted);
     let want = matrix_twin::light_matrix(&quality, &series);
-    // Of a light of 1 in one coefficient, and in one row alone: what is summed, whatever its sign.
-    let share = |i: usize| {
-        let mut unit = vec![DVec3::ZERO; series.len()];
-        unit[i] = DVec3::ONE;
-        matrix_twin::light_matrix(&quality, &unit)
-    };
-    let shares: Vec<_> = (0..series.len()).map(share).collect();
-    let mut summed = vec![DVec3::ZERO; series.len()];
-    for row in 0..rows {
-        let mut alone = vec![vec![DVec3::ZERO; 2 * light_order - 1]; rows];
-        alone[row].clone_from(&turns[row]);
-        let of_row = matrix_twin::series(&alone, height, light_order, fitted);
-        summed.iter_mut().zip(of_row).for_each(|(s, r)| *s += r.abs());
-    }
+    let summed = matrix_magnitudes(&quality, run.border(), height, &turns);
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
     let mut pairs = Vec::new();
     for (entry, got) in got.into_iter().enumerate() {
         let (receiver, k) = (entry / (order * order), entry % (order * order));
-        let all = shares.iter().zip(&summed).map(|(t, s)| t[receiver][k].abs() * *s);
-        let tolerance = twin_light_matrix(height) * all.sum::<DVec3>();
+        let tolerance = twin_light_matrix(height) * summed[receiver][k];
         pairs.extend(three(got, want[receiver][k], tolerance, [0, receiver, k]));
     }
     pairs
@@ -90,7 +72,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// Coefficients of every sample, as the device left them.
 fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec<f64>> {
     let floats = run.floats(pass, "visibility").expect("bound");
-    let [cols, rows] = run.size();
+    let [cols, rows] = run.extent(pass, "visibility");
     let at = |i: usize, k: usize| floats[((k / 4) * cols * rows + i) * 4 + k % 4];
     let series = |i| (0..order * order).map(|k| f64::from(at(i, k))).collect();
     (0..cols * rows).map(series).collect()
@@ -108,10 +90,15 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = device_series(run, pass, order);
     let twin = |swept: &Swept| visibility_twin(swept, series);
     let want = run.swept(range.clone(), fuse_of(pass), twin);
-    let [cols, _] = run.size();
+    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, 8) });
+    let [cols, rows] = nodes.size(size);
+    assert_eq!(got.len(), (cols * rows) as usize);
     let mut pairs = Vec::new();
-    for (i, (got, want)) in got.iter().zip(&want).enumerate() {
-        let at = [range.len(), i / cols, i % cols];
+    for (i, got) in got.iter().enumerate() {
+        let node = [i as u32 % cols, i as u32 / cols];
+        let [col, row] = [0, 1].map(|axis| nodes.place(node[axis], size[axis]) as usize);
+        let want = &want[row * size[0] as usize + col];
+        let at = [range.len(), row, col];
         let bands = ridgelight::basis::bands(order);
         pairs.extend(bands.zip(got.iter().zip(want)).map(|((l, _), (got, want))| Pair {
             got: *got,
@@ -119,6 +106,26 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             tolerance: error.series(l, series.wedges),
             at,
         }));
+    }
+    pairs.extend(node_surfaces(run, pass, nodes));
+    pairs
+}
+
+/// The surface at nodes, where there are fewer than samples.
+fn node_surfaces(run: &mut Run, pass: &Pass, nodes: Nodes) -> Vec<Pair> {
+    let Some(got) = run.floats(pass, "nodes") else { return Vec::new() };
+    let (size, heights, tolerance) = (run.plan.size, run.heights(), run.normal_error());
+    let [cols, _] = nodes.size(size);
+    let mut pairs = Vec::new();
+    for (i, got) in got.chunks_exact(4).enumerate() {
+        let node = [i as u32 % cols, i as u32 / cols];
+        let [col, row] = [0, 1].map(|axis| nodes.place(node[axis], size[axis]) as i32);
+        let slope = field_slope(&heights, col, row);
+        let want = [f64::from(heights.at(col, row)), slope.x, slope.y];
+        let at = [0, row as usize, col as usize];
+        pairs.extend(want.iter().zip(got).zip([0.0, tolerance, tolerance]).map(
+            |((want, got), tolerance)| Pair { got: (*got).into(), want: *want, tolerance, at },
+        ));
     }
     pairs
 }
@@ -131,17 +138,37 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.floats(pass, "env_sum").expect("written");
     let [cols, _] = run.size();
     let heights = run.heights();
-    let gradient = run.normal_error();
+    let error = run.sample_error();
+    let nodes = Nodes { stride: constant(pass, 4) };
+    let across = nodes.size(run.plan.size)[0];
+    let none = vec![0.0; order * order];
+    let seen: Vec<Seen> =
+        seen.into_iter().map(|values| Seen { values, errors: none.clone() }).collect();
     let mut pairs = Vec::new();
-    for (i, (got, seen)) in got.chunks_exact(4).zip(&seen).enumerate() {
+    for (i, got) in got.chunks_exact(4).enumerate() {
         let at = [0, i / cols, i % cols];
-        let want = light_at(&heights, seen, &matrix, [(i % cols) as i32, (i / cols) as i32]);
+        let place = [(i % cols) as i32, (i / cols) as i32];
+        let between;
+        let seen = if nodes.stride == 1 {
+            &seen[i]
+        } else {
+            let around = nodes_around(&heights, nodes, place);
+            let node = |[col, row]: [u32; 2]| &seen[(row * across + col) as usize];
+            between = Seen::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
+            &between
+        };
+        let want = light_at(&heights, &seen.values, &matrix, place);
         // What is summed, whatever its sign, where every polynomial of the normal is 2 at most.
         let summed: DVec3 = matrix
             .iter()
-            .flat_map(|row| row.iter().zip(seen).map(|(m, v)| m.abs() * v.abs()))
+            .flat_map(|row| row.iter().zip(&seen.values).map(|(m, v)| m.abs() * v.abs()))
             .sum();
-        let tolerance = twin_sh_shade(order, gradient) * summed;
+        // What nodes are counted for errs, too, times polynomials of 2.
+        let counted: DVec3 = matrix
+            .iter()
+            .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))
+            .sum();
+        let tolerance = twin_sh_shade(order, error.normal()) * summed + counted;
         pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
         let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);
         let below = f64::from(u8::from(want.min_element() < 0.0));

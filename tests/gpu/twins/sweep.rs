@@ -14,7 +14,7 @@ use ridgelight::measure::tolerance::{
     twin_slope_f16, twin_slope_packed, twin_surface_slope,
 };
 use ridgelight::plan::azimuths::CELL;
-use ridgelight::plan::{Azimuth, Pass};
+use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -203,12 +203,26 @@ fn place_pair(
     Pair { got, want: want.into(), tolerance: 2.0 * tolerance, at }
 }
 
+/// Samples, as (step, lane), whose values a march stores, and where in its layer: by step and lane, or of
+/// nodes alone at their own places.
+pub(super) fn marched(march: &March, nodes: Nodes) -> Vec<([i32; 2], [usize; 2])> {
+    let (steps, lanes) = (march.steps as u32, march.lanes as u32);
+    let all = (0..nodes.count(steps)).flat_map(|y| (0..nodes.count(lanes)).map(move |x| [y, x]));
+    all.map(|[y, x]| {
+        let [row, col] = [nodes.place(y, steps) as i32, nodes.place(x, lanes) as i32];
+        let sample = [march.march_position(row), march.lane_position(col)];
+        let place = if nodes.stride > 1 { [y, x] } else { sample.map(|i| i as u32) };
+        (sample, place.map(|i| i as usize))
+    })
+    .collect()
+}
+
 /// Pairs passes that find one value a sample: [layer][step][lane], distances in the next layer.
 fn one_a_sample(
     run: &mut Run,
     pass: &Pass,
     first: u32,
-    has_distances: bool,
+    (has_distances, nodes): (bool, Nodes),
     twin_of: impl Fn(&Run, &Azimuth, &mut Lattice) -> f64,
 ) -> Vec<Pair> {
     let words = run.floats(pass, "slopes").expect("written");
@@ -221,9 +235,8 @@ fn one_a_sample(
         let mut left = Lattice::new(1, march.lanes as usize, march.steps as usize);
         let mut twin = left.clone();
         let tolerance = twin_of(run, &alone, &mut twin);
-        for (step, lane) in (0..march.steps).flat_map(|s| (0..march.lanes).map(move |l| (s, l))) {
+        for ([step, lane], [row, col]) in marched(&march, nodes) {
             let texel = left.texel(lane, march.march_position(step), 0);
-            let (row, col) = (step as usize, lane as usize);
             let stored = |layer: u32| words[(layer as usize * height + row) * width + col];
             left.slopes[texel] = stored(azimuth.layer);
             let (got, want) = (left.slopes[texel].into(), twin.slopes[texel]);
@@ -242,7 +255,8 @@ fn one_a_sample(
 
 pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
-    one_a_sample(run, pass, first, constant(pass, 3) == 1, |run, azimuth, twin| {
+    let stored = (constant(pass, 3) == 1, Nodes { stride: 1 });
+    one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         surface_twin::surface_sweep(run.heights(), azimuth, warm_up, twin);
         let vector = [azimuth.vector_march, azimuth.vector_lane];
@@ -252,7 +266,8 @@ pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 pub(super) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
-    one_a_sample(run, pass, first, constant(pass, 2) == 1, |run, azimuth, twin| {
+    let stored = (constant(pass, 2) == 1, Nodes { stride: constant(pass, 3) });
+    one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         let options = MarchOptions { all_crossings: constant(pass, 0) == 1, warm_up };
         march_twin::horizon_march(run.heights(), azimuth, options, twin);

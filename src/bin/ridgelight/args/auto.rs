@@ -3,7 +3,7 @@ use clap::Args;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 15] = [
+const CHOSEN: [&str; 16] = [
     "method",
     "azimuths",
     "sun_azimuths",
@@ -19,6 +19,7 @@ const CHOSEN: [&str; 15] = [
     "wedges",
     "receiver",
     "window",
+    "subsample",
 ];
 
 #[derive(Args)]

@@ -10,8 +10,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     bounces: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    subsample: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
@@ -26,7 +24,6 @@ impl LaterArgs {
             ("--light", light),
             ("--phong", self.phong.as_ref()),
             ("--bounces", self.bounces.as_ref()),
-            ("--subsample", self.subsample.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--camera", self.camera.as_ref()),
         ];

@@ -56,6 +56,9 @@ pub struct QualityArgs {
     /// What tames the ringing of an environment's series; with --basis sh
     #[arg(long, default_value = "none")]
     pub window: WindowName,
+    /// What is seen is found at every so many samples, light at all of them; with --basis sh
+    #[arg(long, default_value = "1")]
+    pub subsample: SubsampleName,
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
@@ -162,6 +165,16 @@ pub enum ReceiverName {
     Plane,
     /// A clamped cosine of three bands, whatever lies below its plane
     Lobe,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum SubsampleName {
+    #[value(name = "1")]
+    One,
+    #[value(name = "2")]
+    Two,
+    #[value(name = "4")]
+    Four,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -2,7 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON};
+use glam::DVec3;
+use ridgelight::measure::harmonics::{Harmonics, Seen};
+use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
+use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights};
 
 use super::{Asks, Case, Found, Probe, field, never, none, suns, white};
@@ -107,6 +110,44 @@ fn at_level(found: &Found) -> f64 {
     if is_open(found) { between_nodes(found) } else { 0.0 }
 }
 
+/// Light of the environment by the same series in f64, and how far a device may be from it: on a plane that
+/// rises so much to east and north, whose horizons err by `slope_error`.
+fn series(found: &Found, [east, north]: [f64; 2], slope_error: f64) -> [f64; 2] {
+    let least = if is_open(found) { f64::NEG_INFINITY } else { 0.0 };
+    let rise = |a: &Azimuth| east * f64::from(a.cos_phi) + north * f64::from(a.sin_phi);
+    let lowest: Vec<_> = found.azimuths.iter().map(|a| (*a, rise(a).max(least))).collect();
+    series_above(found, DVec3::new(-east, -north, 1.0).normalize(), &lowest, slope_error)
+}
+
+/// The same above these slopes. Heights that are whole multiples of a number have gradients without error.
+fn series_above(
+    found: &Found,
+    normal: DVec3,
+    lowest: &[(Azimuth, f64)],
+    slope_error: f64,
+) -> [f64; 2] {
+    let quality = &found.method.quality;
+    let environment = found.scene.lights.environment.as_ref().expect("an environment");
+    let harmonics = Harmonics::new(environment, found.scene.surface.border, quality);
+    let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
+    let mut seen = harmonics.seen(lowest, &error);
+    if quality.subsample > 1 {
+        seen = Seen::between([(&seen, 1.0)].into_iter(), &error);
+    }
+    let [light, off] = harmonics.light(normal, &seen, &error);
+    [light.x, off.x]
+}
+
+/// What a constant environment errs by on level ground: [`environment_error`] and what lies between nodes, of
+/// its radiance; of a series, of the light itself.
+fn constant_error(found: &Found, radiance: f64) -> f64 {
+    if found.method.is_soft() {
+        series(found, [0.0; 2], 0.0)[1]
+    } else {
+        radiance * (environment_error(found) + at_level(found))
+    }
+}
+
 pub fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
     Probe { found, expected: [expected; 2], bound, at }
 }
@@ -114,14 +155,15 @@ pub fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
 /// Level ground gives back its albedo's share of what shines all around: L = ρ (1 + 1).
 fn albedo(albedo: f32) -> Case {
     let expected = "under a sky of 1 and an environment of 1, level: 2 ρ";
-    let bound = "ρ times the sky's and the environment's below, and 2 ε a light";
+    let bound =
+        "ρ times the sky's and the environment's below, and 2 ε a light; harmonics: the series'";
     let mut case = light(
         format!("albedo {albedo}"),
         (expected, bound),
         (level(), Border::Plane, around(uniform(1.0))),
         move |found| {
             let albedo = f64::from(albedo);
-            let bound = albedo * (sky_error(found) + environment_error(found) + 4.0 * EPSILON);
+            let bound = albedo * (sky_error(found) + constant_error(found, 1.0) + 4.0 * EPSILON);
             let at = |[r, c]: [usize; 2]| {
                 probe(found.light("radiance", r, c), 2.0 * albedo, bound, [0, r, c])
             };
@@ -137,18 +179,14 @@ fn albedo(albedo: f32) -> Case {
 fn uniform_environment(value: f32, border: Border) -> Case {
     let name = format!("an environment of {value:e} everywhere");
     let expected = "level: its radiance, and 1 of the sky beside it";
-    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more";
+    let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more; harmonics: the series'";
     light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
+        let bound = constant_error(found, value);
         let at = |[r, c]: [usize; 2]| {
             [
                 probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
-                probe(
-                    found.light("direct.env", r, c),
-                    value,
-                    value * (environment_error(found) + at_level(found)),
-                    [1, r, c],
-                ),
+                probe(found.light("direct.env", r, c), value, bound, [1, r, c]),
             ]
         };
         PLACES.map(at).as_flattened().to_vec()
@@ -165,8 +203,8 @@ fn peak(border: Border) -> Case {
     texels[8 * COLUMNS + 10] = [1e6; 3];
     let peak = Environment::new(COLUMNS, ROWS, texels, 0.0).expect("good texels");
     let [a, b] = [8.0, 9.0].map(|row: f64| (PI * row / ROWS as f64).sin().powi(2));
-    let expected = "level: L Δφ (sin² b - sin² a) / 2π, no more and no less";
-    let bound = "(256 + 12 / (sin² b - sin² a)) ε of it, and the environment's of a constant one";
+    let expected = "level: L Δφ (sin² b - sin² a) / 2π, no more and no less; harmonics: what the series keeps of it, in f64";
+    let bound = "(256 + 12 / (sin² b - sin² a)) ε of it, and the environment's of a constant one; harmonics: the series'";
     light(
         "an environment of one texel of 1e6",
         (expected, bound),
@@ -174,8 +212,12 @@ fn peak(border: Border) -> Case {
         move |found| {
             let right = 1e6 * (TAU / COLUMNS as f64) * (b - a) / TAU;
             let relative = (256.0 + 12.0 / (b - a)) * EPSILON + environment_error(found);
+            let [right, bound] = match found.method.is_soft() {
+                true => series(found, [0.0; 2], 0.0),
+                false => [right, right * relative],
+            };
             let at = |[r, c]: [usize; 2]| {
-                probe(found.light("direct.env", r, c), right, right * relative, [1, r, c])
+                probe(found.light("direct.env", r, c), right, bound, [1, r, c])
             };
             PLACES.map(at).into()
         },
@@ -188,17 +230,18 @@ fn peak(border: Border) -> Case {
 /// Azimuths: the sum stops at wedge middles where the own plane begins to hide; half a wedge is missed
 /// or added at each of two ends, where the light is that of its angle, (π/m)² sin(tilt) in all. Elevations
 /// that err by an angle move the slices' ends, where the integrand is at most 1, over 2π / π. The table
-/// is read between nodes.
+/// is read between nodes. In harmonics azimuths stand for their wedges: (2π/m)²/24 of what is horizontal.
 fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> Case {
     // Uphill east, or north in a single column.
+    let uphill = if cols > 1 { [slope, 0.0] } else { [0.0, slope] };
     let tilted = field([rows, cols], [1.0, 1.0], |r, c| {
-        slope * if cols > 1 { c as f64 } else { (rows - 1 - r) as f64 }
+        uphill[0] * c as f64 + uphill[1] * (rows - 1 - r) as f64
     });
     let expected = match border {
         Border::Open => "all of the sky of 1 and of the environment of 1 above its own plane: 1",
         _ => "(1 + cos tilt) / 2 of the sky of 1 and of the environment of 1",
     };
-    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at one cell";
+    let bound = "(π/m)² sin tilt + 2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: + (2π/m)² / 24 and the series'; δ: the method's, at one cell";
     let name = match [rows, cols] {
         [SIDE, SIDE] => format!("light on a slope of {slope:e}"),
         _ => format!("light on a slope of {slope:e} of {rows} × {cols}"),
@@ -213,7 +256,10 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         let angle = found.method.angle_error(slope, (largest, 1.0), ties, &found.azimuths[0]);
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
         let sky = wedge + 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky + between_nodes(found) + environment_error(found);
+        let environment = match found.method.is_soft() {
+            true => sky + (TAU / found.count()).powi(2) / 24.0 + series(found, uphill, angle)[1],
+            false => sky + between_nodes(found) + environment_error(found),
+        };
         vec![
             probe(found.light("direct.sky", row, col), right, sky, [0, row, col]),
             probe(found.light("direct.env", row, col), right, environment, [1, row, col]),
@@ -223,7 +269,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
 
 /// Level ground of any size gives back what shines all around.
 fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
-    let environment = environment_error(found) + at_level(found);
+    let environment = constant_error(found, 1.0);
     let at = |&[r, c]: &[usize; 2]| {
         [
             probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
@@ -235,7 +281,7 @@ fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
 
 const LEVEL: (&str, &str) = (
     "under a sky of 1 and an environment of 1, level: 1 of each",
-    "the sky's and the environment's of level ground",
+    "the sky's and the environment's of level ground; harmonics: the series'",
 );
 
 fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
@@ -281,7 +327,7 @@ fn trench(border: Border) -> Case {
             "level beside an edge of height H, D away: as between two, but for azimuths that leave the field before it, which see all"
         }
     };
-    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at D; pyramid: as its twin's elevations see";
+    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: the series'; δ: the method's, at D; pyramid: as its twin's elevations see";
     let name = "light in a trench";
     light(name, (expected, bound), (ground, border, around(uniform(1.0))), move |found| {
         let [row, col] = PLACE;
@@ -293,7 +339,7 @@ fn trench(border: Border) -> Case {
             0.0,
             &found.azimuths[0],
         );
-        let mut right = [0.0; 2];
+        let (mut right, mut lowest) = ([0.0; 2], Vec::new());
         for azimuth in &found.azimuths {
             let share = f64::from(azimuth.wedge_rad) / TAU;
             if let Some((elevation, error)) = found.twin_elevation(azimuth, row, col) {
@@ -305,13 +351,18 @@ fn trench(border: Border) -> Case {
             // 32 rows north, 31 south.
             let is_inside = cos < -1e-9 && AWAY * (sin / cos).abs() < 31.0;
             let meets = if periodic { cos.abs() > 1e-9 } else { is_inside };
+            lowest.push((*azimuth, if meets { HEIGHT * cos.abs() / AWAY } else { 0.0 }));
             for (sum, away) in right.iter_mut().zip([AWAY - aside, AWAY + aside]) {
                 let slope = if meets { HEIGHT * cos.abs() / away } else { 0.0 };
                 *sum += share / (1.0 + slope * slope);
             }
         }
         let sky = 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky + between_nodes(found) + environment_error(found);
+        let environment = sky
+            + match found.method.is_soft() {
+                true => series_above(found, DVec3::Z, &lowest, angle)[1],
+                false => between_nodes(found) + environment_error(found),
+            };
         let of = |layer: &str, bound, at| Probe {
             found: found.light(layer, row, col),
             expected: right,

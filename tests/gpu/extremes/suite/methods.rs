@@ -7,7 +7,7 @@ use ridgelight::measure::tolerance::{
 };
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
-use ridgelight::scene::{self, Fuse, Hull, Levels, Lines, Precision, Quality};
+use ridgelight::scene::{self, Basis, Fuse, Hull, Levels, Lines, Precision, Quality};
 
 /// A way to find horizons, as the page names it.
 pub struct Method {
@@ -22,6 +22,7 @@ pub fn all() -> Vec<Method> {
     let fused = |fuse| Quality { fuse, ..base };
     let spaced = |lines, fuse| Quality { lines, fuse, ..base };
     let kept = |precision, fuse| Quality { precision, fuse, ..base };
+    let soft = |sh_order, subsample| Quality { basis: Basis::Sh, sh_order, subsample, ..base };
     [
         ("brute", Quality { method: scene::Method::Brute, ..base }),
         ("exact", Quality { lines: Lines::Exact, ..base }),
@@ -43,6 +44,8 @@ pub fn all() -> Vec<Method> {
             "pyramid, levels, 3, 0",
             Quality { levels: Levels::Pyramid, level_step: 3, level_offset: 0, ..pyramid },
         ),
+        ("harmonics, 4", soft(4, 1)),
+        ("harmonics, 6, every 4th", soft(6, 4)),
     ]
     .map(|(name, quality)| Method { name, quality })
     .into()
@@ -60,6 +63,11 @@ impl Method {
 
     pub fn is_pyramid(&self) -> bool {
         self.quality.method == scene::Method::Pyramid
+    }
+
+    /// Whether an environment is lit by spherical harmonics.
+    pub fn is_soft(&self) -> bool {
+        self.quality.basis == Basis::Sh
     }
 
     fn has_lines(&self) -> bool {
