@@ -262,7 +262,8 @@ fn main() -> Result<()> {
     for lines in
         [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell]
     {
-        for fuse in [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed] {
+        use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
+        for fuse in [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround] {
             rows.push((Method::Sweep, lines, fuse));
         }
     }

@@ -30,19 +30,18 @@ void main() {
     float per_rad = float(width) / (2.0 * PI);
     float middle = (PI + rotation_rad - azimuth.centre_rad) * per_rad;
     float half_wedge = 0.5 * azimuth.wedge_rad * per_rad;
-    float first = middle - half_wedge;
-    float last = middle + half_wedge;
     vec3 along = vec3(0.0);
     vec3 across = vec3(0.0);
     vec3 plain = vec3(0.0);
-    // From less than a width before the image to less than two past it.
-    for (int x = int(floor(first)); x < int(ceil(last)); x++) {
-        float low = max(float(x), first);
-        float high = min(float(x + 1), last);
+    // From less than a width before the image to less than two past it. Ends are told from the middle:
+    // a wedge far narrower than a column keeps its width.
+    for (int x = int(floor(middle - half_wedge)); x < int(ceil(middle + half_wedge)); x++) {
+        float low = max(float(x) - middle, -half_wedge);
+        float high = min(float(x + 1) - middle, half_wedge);
         vec3 radiance = texelFetch(environment, ivec2((x + 2 * width) % width, row), 0).rgb;
         // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
-        float turn = (middle - 0.5 * (low + high)) / per_rad;
-        float width_rad = (high - low) / per_rad;
+        float turn = -0.5 * (low + high) / per_rad;
+        float width_rad = max(high - low, 0.0) / per_rad;
         // The integral of cos over an arc is its chord, 2 sin(half), times cos of its middle.
         float chord = 2.0 * sine(0.5 * width_rad);
         along += radiance * (cosine(turn) * chord);

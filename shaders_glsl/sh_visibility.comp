@@ -75,6 +75,10 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     }
 }
 
+float dark_slope(Azimuth azimuth) {
+    return -NO_SLOPE;
+}
+
 #include "shared/gather.glsl"
 
 // Adds what earlier batches left in a layer to four coefficients of nodes, and leaves them.

@@ -77,6 +77,10 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     }
 }
 
+float dark_slope(Azimuth azimuth) {
+    return -NO_SLOPE;
+}
+
 #include "shared/gather.glsl"
 
 void main() {

@@ -64,6 +64,10 @@ void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     sun += mix(vec4(0.0), light * azimuth.weight * (1.0 / PI), lit);
 }
 
+float dark_slope(Azimuth azimuth) {
+    return azimuth.high_slope;
+}
+
 #include "shared/gather.glsl"
 
 void main() {

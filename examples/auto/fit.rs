@@ -38,7 +38,7 @@ fn settings(part: Part) -> (Vec<Quality>, Quality) {
     match part {
         Part::Geometry => {
             let with = |fuse| LINES.map(|lines| Quality { lines, fuse, ..plain });
-            let all = [Fuse::AimedNearest, Fuse::Aimed].map(with).concat();
+            let all = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround].map(with).concat();
             // Exact lines have azimuths of their own: brute force is the truth in the same ones.
             (all, Quality { method: Method::Brute, ..plain })
         }
@@ -125,7 +125,7 @@ pub fn fit(gpu: &mut Headless, asked: &Asked) -> Result<()> {
         asked.side
     );
     let mut seen: [Vec<Seen>; 4] = Default::default();
-    let mut geometry = [[0.0; 5]; 2];
+    let mut geometry = [[0.0; 5]; 3];
     let mut fields = 0.0_f64;
     for (label, scene) in &all {
         let features = Statistics::of(scene).features();
@@ -164,6 +164,6 @@ pub fn fit(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     }
     println!("];");
     let table = geometry.map(|fuse| fuse.map(|sum| sum / fields.max(1.0)));
-    println!("pub(super) const GEOMETRY: [[f64; 5]; 2] = {table:.3?};");
+    println!("pub(super) const GEOMETRY: [[f64; 5]; 3] = {table:.3?};");
     Ok(())
 }

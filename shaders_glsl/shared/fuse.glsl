@@ -1,6 +1,7 @@
 #include "shared/lattice.glsl"
 #include "shared/nodes.glsl"
 #include "shared/quad.glsl"
+#include "shared/surface.glsl"
 
 // Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
 // declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
@@ -14,7 +15,9 @@ const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the sample's own line whe
                                      // occluder stands; and the first crossings of its own line
 const uint FUSE_AIMED = 5u;          // the same with both lines' proposals, the higher one
 
-const uint FUSE_CROSSINGS = 6u;      // no lattice: the first crossings alone
+const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing within two steps of either proposal
+
+const uint FUSE_CROSSINGS = 7u;      // no lattice: the first crossings alone
 
 const uint LATTICE_OCCLUDERS = 0u;
 const uint LATTICE_SLOPES_F32 = 1u;
@@ -150,8 +153,91 @@ Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     return Met(mix(vec4(NO_SLOPE), slope, stands), distance);
 }
 
-// Slopes of the horizons of four samples and how many march steps away they stand.
-Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
+// Heights of four flipped lanes from one on, at a flipped step. Lanes off a field that does not repeat have
+// some height: nothing there counts.
+vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
+    int march = march_position(azimuth, neighbour(step, steps), steps);
+    vec4 row;
+    if (BORDER == BORDER_PERIODIC) {
+        for (int i = 0; i < 4; i++) {
+            row[i] = height_at(lane_position(azimuth, wrapped(lane + i, lanes), lanes), march);
+        }
+        return row;
+    }
+    bool flips = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    int mirrored = lanes - 4 - lane;
+    int first = flips ? mirrored : lane;
+    int last_texel = (lanes - 1) >> 2;
+    vec4 a = imageLoad(lane_heights, ivec2(clamp(first >> 2, 0, last_texel), march));
+    vec4 b = imageLoad(lane_heights, ivec2(clamp((first >> 2) + 1, 0, last_texel), march));
+    vec4 by_one = vec4(a.yzw, b.x);
+    vec4 by_three = vec4(a.w, b.xyz);
+    vec4 even = mix(a, vec4(a.zw, b.xy), bvec4((first & 2) != 0));
+    vec4 odd = mix(by_one, by_three, bvec4((first & 2) != 0));
+    row = mix(even, odd, bvec4((first & 1) != 0));
+    return mix(row, row.wzyx, bvec4(flips));
+}
+
+// Raises `best` (slope, steps) to the highest of all crossings of a sample's own line with grid lines and
+// diagonals between two numbers of steps ahead, the nearer part of a step included: `horizon_march`'s.
+// In flipped lanes and steps.
+void look_around(Azimuth azimuth, int lane, int step, float own, ivec2 ahead, int lanes, int steps, inout vec2 best) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
+    float advance = float(azimuth.shear) * (1.0 / float(CELL));
+    int y = lane * CELL - (ahead.x - 1) * azimuth.shear;
+    int nearer_cell = y >> CELL_SHIFT;
+    vec4 nearer = row_at(azimuth, nearer_cell - 1, step - ahead.x + 1, lanes, steps);
+    for (int back = ahead.x; back <= ahead.y; back++) {
+        bool on = wraps || azimuth.shear == 0 || y > 0;
+        y -= azimuth.shear;
+        int cell = y >> CELL_SHIFT;
+        float f0 = float(y & (CELL - 1)) * (1.0 / float(CELL));
+        vec4 farther = row_at(azimuth, cell - 1, step - back, lanes, steps);
+        // From the line's cell on, at both ends of the step.
+        vec3 far = farther.yzw;
+        vec3 near = mix(nearer.xyz, nearer.yzw, bvec3(cell == nearer_cell));
+        float rise = (far.x - own) + f0 * (far.y - far.x);
+        float found = rise / (float(back) * azimuth.step_m);
+        bool better = on && (wraps || y >= 0) && found > best.x;
+        best = mix(best, vec2(found, float(back)), bvec2(better));
+        vec3 places = segment_crossings(f0, advance, split_along);
+        for (int c = 0; c < 3; c++) {
+            float u = places[c];
+            float f = f0 + u * advance;
+            bool next = f > 1.0;
+            f -= next ? 1.0 : 0.0;
+            vec2 h0 = mix(far.xy, far.yz, bvec2(next));
+            vec2 h1 = mix(near.xy, near.yz, bvec2(next));
+            rise = surface_rise(h0.x, h1.x, h0.y, h1.y, own, u, f, split_along);
+            float distance_steps = float(back) - u;
+            found = rise / (distance_steps * azimuth.step_m);
+            better = on && u < 1.0 && (wraps || float(y) + u * float(azimuth.shear) >= -0.5) && found > best.x;
+            best = mix(best, vec2(found, distance_steps), bvec2(better));
+        }
+        nearer = farther;
+        nearer_cell = cell;
+    }
+}
+
+// What unit steps miss of a ridge stands beside it: all crossings within two steps of where both lines'
+// proposals stand, `back` steps ahead; of 0 there is none. `reach` steps lie ahead.
+void look_around_both(Azimuth azimuth, int lane, int step, float own, ivec2 back, int reach, int lanes, int steps, inout vec2 best) {
+    int first = back.x > 0 ? back.x : back.y;
+    int second = back.y > 0 ? back.y : back.x;
+    int near = min(first, second);
+    int far = max(first, second);
+    ivec2 ahead = ivec2(max(near - 1, 1), min(near + 2, reach));
+    // Then what is left of the other's: one call, as SwiftShader's compiler takes its time for each.
+    for (int side = 0; side < 2 && near > 0 && ahead.x <= ahead.y; side++) {
+        look_around(azimuth, lane, step, own, ahead, lanes, steps, best);
+        ahead = ivec2(max(far - 1, near + 3), min(far + 2, reach));
+    }
+}
+
+// Slopes of the horizons of four samples and how many march steps away they stand. Above `enough` any slope
+// will do.
+Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int step = march_position(azimuth, q.march, steps);
@@ -218,13 +304,23 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up) {
     uvec4 after_values = lattice_values(azimuth, after_line, lowest, lines, step);
     uvec4 before_back = mix(uvec4(0), before_values, has_before);
     uvec4 after_back = mix(uvec4(0), after_values, has_after);
-    if (FUSE == FUSE_AIMED) {
+    if (FUSE == FUSE_AIMED || FUSE == FUSE_AIMED_AROUND) {
         ivec4 y = q.lane * CELL;
-        before_back = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
-        after_back = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
+        uvec4 before_far = mix(uvec4(0), before_back, greaterThan(before_back, uvec4(1)));
+        uvec4 after_far = mix(uvec4(0), after_back, greaterThan(after_back, uvec4(1)));
         met = first_crossings(azimuth, q, lanes, steps);
-        met = higher(met, seen(azimuth, q, y, before_back, lanes, steps));
-        return higher(met, seen(azimuth, q, y, after_back, lanes, steps));
+        met = higher(met, seen(azimuth, q, y, before_far, lanes, steps));
+        met = higher(met, seen(azimuth, q, y, after_far, lanes, steps));
+        for (int k = 0; k < (FUSE == FUSE_AIMED_AROUND ? 4 : 0); k++) {
+            if (met.slope[k] < enough[k]) {
+                vec2 best = vec2(met.slope[k], met.steps[k]);
+                ivec2 back = ivec2(before_back[k], after_back[k]);
+                look_around_both(azimuth, lane[k], step - warm_up, q.here.four[k], back, step, lanes, steps, best);
+                met.slope[k] = best.x;
+                met.steps[k] = best.y;
+            }
+        }
+        return met;
     }
     Met b;
     Met a;

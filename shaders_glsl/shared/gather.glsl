@@ -2,7 +2,8 @@
 #include "shared/dirty.glsl"
 
 // Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
-// constants RELIGHTS and OWN_PLANE_HIDES and defines add_light.
+// constants RELIGHTS and OWN_PLANE_HIDES, and defines add_light and dark_slope, from which on a horizon leaves
+// no light in an azimuth.
 
 layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
@@ -48,12 +49,15 @@ bvec4 lit_samples(int lane, int march) {
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         Azimuth azimuth = azimuth_at(azimuths, k);
-        vec4 horizon = fused(azimuth, q, lanes, steps, warm_up).slope;
-        vec4 lowest = horizon;
+        vec4 lowest = vec4(NO_SLOPE);
         if (OWN_PLANE_HIDES) {
             // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
-            lowest = max(horizon, east * azimuth.cos_phi + north * azimuth.sin_phi);
+            lowest = east * azimuth.cos_phi + north * azimuth.sin_phi;
         }
+        // What the own plane hides already needs no horizon.
+        float dark = dark_slope(azimuth);
+        vec4 enough = mix(vec4(dark), vec4(NO_SLOPE), greaterThanEqual(lowest, vec4(dark)));
+        lowest = max(fused(azimuth, q, lanes, steps, warm_up, enough).slope, lowest);
         if (BORDER != BORDER_OPEN) {
             lowest = max(lowest, vec4(0.0));
         }

@@ -15,15 +15,14 @@ pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3]
     let per_rad = width as f64 / TAU;
     let middle = (PI + env.rotation_rad() - f64::from(azimuth.centre_rad)) * per_rad;
     let half_wedge = 0.5 * f64::from(azimuth.wedge_rad) * per_rad;
-    let (first, last) = (middle - half_wedge, middle + half_wedge);
     let (mut along, mut across, mut plain) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-    for x in first.floor() as i64..last.ceil() as i64 {
-        let low = (x as f64).max(first);
-        let high = ((x + 1) as f64).min(last);
+    for x in (middle - half_wedge).floor() as i64..(middle + half_wedge).ceil() as i64 {
+        let low = (x as f64 - middle).max(-half_wedge);
+        let high = ((x + 1) as f64 - middle).min(half_wedge);
         let texel = env.texels()[row * env.width() + x.rem_euclid(width) as usize];
         let radiance = DVec3::from_array(texel.map(f64::from));
         // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
-        let turn = (middle - 0.5 * (low + high)) / per_rad;
+        let turn = -0.5 * (low + high) / per_rad;
         let width_rad = (high - low) / per_rad;
         // The integral of cos over an arc is its chord, 2 sin(half), times cos of its middle.
         let chord = 2.0 * (0.5 * width_rad).sin();

@@ -27,7 +27,7 @@ pub fn horizons(
         return Err(Error::setting(
             "distances to the horizon",
             format!("--fuse {}", quality.fuse.name()),
-            "a fuse that knows its occluders: own, aimed-nearest or aimed",
+            "a fuse that knows its occluders: own, aimed-nearest, aimed or aimed-around",
         ));
     }
     let mut list = circle(quality, &sweep, field.cell_m())?;

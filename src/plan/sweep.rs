@@ -224,6 +224,8 @@ impl Sweep {
     /// at an edge.
     pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
         match self {
+            // What is looked at around an occluder is not marked.
+            Sweep::Lines(l) if l.fuse == Fuse::AimedAround => None,
             Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
             _ => None,
         }
@@ -231,14 +233,14 @@ impl Sweep {
 
     /// Whether a sample's own first crossings are among its candidates.
     pub(crate) fn sees_own_crossings(&self) -> bool {
-        matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest))
+        matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
     }
 
     /// The shaders' FUSE.
     pub(crate) fn fuse_mode(&self) -> u32 {
         match self {
             Sweep::Lines(lines) => 1 + lines.fuse as u32,
-            Sweep::Crossings => 6,
+            Sweep::Crossings => 7,
             _ => 0,
         }
     }
@@ -265,6 +267,8 @@ impl Sweep {
                 Fuse::Slopes => 8,
                 Fuse::AimedNearest => 2 + 8,
                 Fuse::Own | Fuse::Aimed => 4 + 16,
+                // Six heights of each of four segments a line.
+                Fuse::AimedAround => 4 + 2 * 4 * 24,
             },
             Sweep::Crossings => 0,
             _ => 4,

@@ -182,6 +182,10 @@ pub enum Fuse {
     AimedNearest,
     /// The same with both lines' proposals: the higher one.
     Aimed,
+    /// The same, and every crossing of the sample's own line with grid lines and diagonals within two steps of
+    /// either proposal: ridges between steps, which decide what low suns light. Several times the time of
+    /// [`Aimed`](Self::Aimed) after the sweep; takes no edits.
+    AimedAround,
 }
 
 /// Bits of what a sweep keeps.
@@ -323,6 +327,7 @@ impl Fuse {
             Fuse::Own => "own",
             Fuse::AimedNearest => "aimed-nearest",
             Fuse::Aimed => "aimed",
+            Fuse::AimedAround => "aimed-around",
         }
     }
 }

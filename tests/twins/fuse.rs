@@ -1,6 +1,7 @@
 //! `sweep_fuse`: every mode against the oracle and against marches along the samples' own lines.
 
 use crate::*;
+use ridgelight::cpu::horizon_march::marched as march_of;
 use ridgelight::cpu::lattice::line_position;
 use ridgelight::cpu::shared::fuse::Found;
 use ridgelight::cpu::shared::gather::Swept;
@@ -8,15 +9,15 @@ use ridgelight::cpu::shared::sweep::{March, NO_SLOPE, on_field};
 use ridgelight::cpu::surface_sweep::surface_sweep;
 use ridgelight::cpu::sweep_fuse::{fused_horizon, sweep_fuse};
 use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{aimed_slope, sweep_slope};
+use ridgelight::measure::tolerance::{aimed_slope, march_slope, sweep_slope};
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::Fuse;
 
-pub(crate) const FUSES: [Fuse; 5] =
-    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed];
+pub(crate) const FUSES: [Fuse; 6] =
+    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 
 fn aims(fuse: Fuse) -> bool {
-    matches!(fuse, Fuse::AimedNearest | Fuse::Aimed)
+    matches!(fuse, Fuse::AimedNearest | Fuse::Aimed | Fuse::AimedAround)
 }
 
 /// Sweeps and hands the swept field with one mode after the other to `check`.
@@ -162,9 +163,45 @@ fn errors_fall_from_mode_to_mode() {
         errors.push((sum / truth.len() as f64).to_degrees());
     });
     println!("mean errors {errors:?}");
-    let [nearest, slopes, own, aimed_nearest, aimed] = errors[..] else { unreachable!() };
+    let [nearest, slopes, own, aimed_nearest, aimed, around] = errors[..] else { unreachable!() };
     assert!(slopes < nearest && own < nearest);
     assert!(aimed < aimed_nearest && aimed_nearest < 0.5 * slopes.min(own));
+    assert!(around < 0.5 * aimed);
+}
+
+/// A roof on level ground whose ridge runs along the cells' diagonals: any line rises to where it crosses the ridge
+/// and falls from there, so that the highest whole step lies next to the crossing. Looking around finds what a
+/// march over all crossings does; aiming at whole steps alone misses it somewhere.
+#[test]
+fn a_ridge_between_steps_is_met() {
+    let roof =
+        field(31, 37, [2.0, 3.0], |r, c| (9.0 - 2.0 * (c as f64 - r as f64 - 3.0).abs()).max(0.0));
+    let (_, relief) = extent(&roof);
+    let mut azimuths = even(32, roof.cell_m());
+    let mut missed = 0;
+    each_mode(&roof, Border::Plane, &mut azimuths, SweepOptions::default(), |swept, fuse| {
+        if !matches!(fuse, Fuse::Aimed | Fuse::AimedAround) {
+            return;
+        }
+        for azimuth in swept.azimuths {
+            let march = March::new(swept.heights, azimuth);
+            for (col, row) in samples(&roof) {
+                let (lane, step) = march.of_sample(col, row);
+                let options = MarchOptions { all_crossings: true, warm_up: 0 };
+                let truth = march_of(&march, lane, step, options).slope;
+                let found = swept.found(azimuth, col, row).slope;
+                let tolerance = march_slope(relief, azimuth.step_m.into());
+                // Where nothing rises the horizon is the far edge's.
+                let is_met = truth <= 0.0 || f64::from((found - truth).abs()) <= tolerance;
+                assert!(
+                    is_met || fuse == Fuse::Aimed,
+                    "({row}, {col}) {azimuth:?} {found} {truth}"
+                );
+                missed += usize::from(!is_met);
+            }
+        }
+    });
+    assert!(missed > 0, "whole steps are enough here");
 }
 
 /// Which lines stand beside a sample, found by looking at all of them: the lower within a spacing or

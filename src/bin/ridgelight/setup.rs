@@ -115,6 +115,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             FuseName::Own => Fuse::Own,
             FuseName::AimedNearest => Fuse::AimedNearest,
             FuseName::Aimed => Fuse::Aimed,
+            FuseName::AimedAround => Fuse::AimedAround,
         },
         precision: match args.precision {
             PrecisionName::F32 => Precision::F32,

@@ -1,5 +1,6 @@
 //! `fuse.glsl`: brings the lattice of a sweep back to the field's samples.
 
+use super::segment::met_within;
 use super::sweep::{CELL_SHIFT, LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
 use crate::cpu::lattice::Lattice;
 use crate::plan::azimuths::CELL;
@@ -159,6 +160,18 @@ pub fn fused(
         back => seen(march, y, back, step, o.own),
     };
 
+    // What unit steps miss of a ridge stands beside it.
+    let around = |texel: Option<usize>| {
+        let mut best = NOTHING;
+        let back = i32::from(back(texel));
+        if back > 0 {
+            for back in (back - 1).max(1)..=(back + 2).min(step + warm_up) {
+                met_within(march, (lane, step), back, true, &mut best);
+            }
+        }
+        best
+    };
+
     let nearest = if takes_after { after_texel } else { before_texel };
     let (a, b) = match fuse {
         Fuse::Nearest => return slope(nearest),
@@ -166,6 +179,11 @@ pub fn fused(
         Fuse::Aimed => {
             let found = higher(first_crossings(march, o), aimed(before_texel));
             return higher(found, aimed(after_texel));
+        }
+        Fuse::AimedAround => {
+            let found = higher(first_crossings(march, o), aimed(before_texel));
+            let found = higher(found, aimed(after_texel));
+            return higher(higher(found, around(before_texel)), around(after_texel));
         }
         Fuse::Own => (
             seen(march, after, back(after_texel), step, o.own),

@@ -4,5 +4,6 @@ pub mod field;
 pub mod fuse;
 pub mod gather;
 pub mod levels;
+pub mod segment;
 pub mod surface;
 pub mod sweep;

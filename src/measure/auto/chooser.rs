@@ -1,6 +1,6 @@
 //! Which settings to draw next, and which to take.
 
-use super::model::{Costs, Model, Part, spacing};
+use super::model::{Costs, Model, Part, fuse_row, spacing};
 use super::probes::Measured;
 use super::statistics::Statistics;
 use crate::measure::trade::start;
@@ -11,7 +11,7 @@ const TABLES: [u32; 8] = [32, 64, 128, 256, 512, 1024, 2048, 4096];
 const STRIPS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 const LINES: [Lines; 5] =
     [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell];
-const FUSES: [Fuse; 2] = [Fuse::AimedNearest, Fuse::Aimed];
+const FUSES: [Fuse; 3] = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 
 /// Frames that are tried at most.
 const TRIALS: usize = 16;
@@ -301,7 +301,7 @@ fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
     let numbers = |q: &Quality| {
         [
             spacing(q) as u32 + u32::from(q.lines == Lines::Exact),
-            u32::from(q.fuse == Fuse::Aimed || spacing(q) == LINES.len()),
+            if spacing(q) == LINES.len() { FUSES.len() as u32 } else { fuse_row(q.fuse) as u32 },
             q.azimuths,
             q.table_elevations,
             q.sun_azimuths,

@@ -33,6 +33,10 @@ pub(super) const FITTED: [Fitted; 4] = [
 ];
 
 /// ln of the geometry's error beside that of lines one cell apart with `aimed-nearest`: for 4, 2, 1,
-/// 1/2, 1/4 cells, with `aimed-nearest` and with `aimed`.
-pub(super) const GEOMETRY: [[f64; 5]; 2] =
-    [[1.38, 0.699, 0.0, -0.323, -0.504], [1.179, 0.427, -0.315, -0.589, -0.625]];
+/// 1/2, 1/4 cells, with `aimed-nearest`, with `aimed` and with `aimed-around`; the last of the middle
+/// 96² of each field, all else of 256².
+pub(super) const GEOMETRY: [[f64; 5]; 3] = [
+    [1.38, 0.699, 0.0, -0.323, -0.504],
+    [1.179, 0.427, -0.315, -0.589, -0.625],
+    [-0.604, -2.221, -3.813, -4.474, -4.686],
+];

@@ -40,7 +40,7 @@ impl Part {
         let finer = |value: u32, default: u32| (f64::from(value) / f64::from(default)).ln();
         match self {
             Part::Geometry => {
-                let table = GEOMETRY[usize::from(quality.fuse == Fuse::Aimed)];
+                let table = GEOMETRY[fuse_row(quality.fuse)];
                 table.get(spacing(quality)).map_or(EXACT_FINENESS, |ln| -ln)
             }
             Part::Azimuths => finer(quality.azimuths, 64),
@@ -65,6 +65,15 @@ impl Part {
 
 /// Of exact horizons: what f32 leaves of the geometry's error, e⁻¹².
 const EXACT_FINENESS: f64 = 12.0;
+
+/// Place of a fuse among those that are chosen from.
+pub(super) fn fuse_row(fuse: Fuse) -> usize {
+    match fuse {
+        Fuse::Aimed => 1,
+        Fuse::AimedAround => 2,
+        _ => 0,
+    }
+}
 
 /// Number of the spacing of lines, from 4 cells to a quarter; then exact horizons.
 pub(super) fn spacing(quality: &Quality) -> usize {
@@ -206,8 +215,11 @@ const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
 const EXACT: [f64; 2] = [130.0, 480.0];
 /// In proportion to the side.
 const BRUTE: f64 = 4.7;
-const SHADE: [[f64; 6]; 2] =
-    [[2.16, 2.16, 2.46, 2.91, 4.22, 2.12], [3.2, 3.35, 3.39, 3.97, 5.35, 2.12]];
+const SHADE: [[f64; 6]; 3] = [
+    [2.16, 2.16, 2.46, 2.91, 4.22, 2.12],
+    [3.2, 3.35, 3.39, 3.97, 5.35, 2.12],
+    [40.0, 37.0, 35.0, 33.0, 35.0, 2.12],
+];
 
 impl Costs {
     /// lavapipe's, before anything is measured, for so many samples.
@@ -238,7 +250,7 @@ impl Costs {
             None if quality.method == Method::Brute => [0.0, BRUTE * side],
             None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
-        let shade = SHADE[usize::from(quality.fuse == Fuse::Aimed)][spacing];
+        let shade = SHADE[fuse_row(quality.fuse)][spacing];
         [all * sweep, all * exact, all * shade, table, 1.0]
     }
 

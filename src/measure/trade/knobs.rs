@@ -39,7 +39,8 @@ const LINES: [(Lines, &str); 6] = [
     (Lines::QuarterCell, "1/4"),
     (Lines::Exact, "exact"),
 ];
-const FUSES: [Fuse; 5] = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed];
+const FUSES: [Fuse; 6] =
+    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
@@ -82,7 +83,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
             range: None,
             default: 0,
-            dearer: "more of the lines' results, then the surface itself: horizons of each sample",
+            dearer: "more of the lines' results, then the surface itself, then all around there: horizons of each \
+                     sample",
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
         },
@@ -268,14 +270,14 @@ mod tests {
         assert_eq!(names(sun(0.0)), with(&[]));
     }
 
-    /// 5 spacings × (2 fuses × 3 precisions + 3 fuses × 2 precisions) and exact and brute alone
+    /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
     /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
     #[test]
     fn places_are_all_that_differ() {
         let knobs = knobs(&scene(sky()));
         let start = start();
         let all = places(&knobs, &start);
-        assert_eq!(all.len(), (5 * (2 * 3 + 3 * 2) + 2 + 5 * 5) * 6);
+        assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
         for (i, place) in all.iter().enumerate() {
             place.quality.check().unwrap();
             assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");

@@ -147,6 +147,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         Fuse::Own => 2,
         Fuse::AimedNearest => 3,
         Fuse::Aimed => 4,
+        Fuse::AimedAround => 5,
     };
     let precision = match precision {
         Precision::F32 => 0,
@@ -159,7 +160,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         Hull::Shared => 2,
         Hull::List => 3,
     };
-    [(method, 4), (lines, 6), (fuse, 5), (precision, 3), (hull, 4), (levels, 2)]
+    [(method, 4), (lines, 6), (fuse, 6), (precision, 3), (hull, 4), (levels, 2)]
 }
 
 #[test]

@@ -133,6 +133,20 @@ pub(super) fn sweeps() -> Vec<Case> {
             false,
         ),
         horizons(
+            "aimed around",
+            rough(23, 30, 7),
+            Border::Plane,
+            Quality { fuse: Fuse::AimedAround, ..base },
+            true,
+        ),
+        horizons(
+            "aimed around, periodic",
+            rough(14, 16, 8),
+            Border::Periodic,
+            Quality { lines: Lines::TwoCells, fuse: Fuse::AimedAround, ..base },
+            true,
+        ),
+        horizons(
             "private f32, slopes f16",
             rough(25, 34, 6),
             Border::Open,

@@ -249,7 +249,8 @@ fn pushed(pass: &Pass, offset: usize) -> u32 {
 
 /// FUSE and LINE_SHIFT, which the shaders that include `fuse.glsl` share.
 fn fuse_of(pass: &Pass) -> (Option<Fuse>, u32) {
-    let modes = [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed].map(Some);
+    use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
+    let modes = [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround].map(Some);
     let fuse = (constant(pass, 0) as usize).checked_sub(1).and_then(|mode| modes[mode]);
     (fuse, constant(pass, 2))
 }

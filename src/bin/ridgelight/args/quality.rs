@@ -116,6 +116,8 @@ pub enum FuseName {
     AimedNearest,
     /// The same with both lines' occluders, the higher
     Aimed,
+    /// The same, and every crossing of the sample's own line within two steps of either: low suns
+    AimedAround,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -62,7 +62,8 @@ fn forms(quality: &Quality) -> Vec<Form> {
         let name = format!("horizon_sweep lines {}", lines.name());
         all.push(form(name, Quality { lines, ..base }, false, false));
     }
-    for fuse in [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed] {
+    use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
+    for fuse in [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround] {
         let name = format!("sky_shade {}", fuse.name());
         all.push(form(name, Quality { fuse, ..base }, true, false));
     }

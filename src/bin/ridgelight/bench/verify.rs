@@ -196,7 +196,8 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 3] {
                 Fuse::Slopes => [0.043, 0.048, 0.059, 0.094, 0.160],
                 Fuse::Own => [0.038, 0.038, 0.039, 0.051, 0.082],
                 Fuse::AimedNearest => [0.014, 0.016, 0.024, 0.062, 0.133],
-                Fuse::Aimed => [0.013, 0.014, 0.017, 0.038, 0.095],
+                // The latter sees all that the former does, and nothing above the horizon.
+                Fuse::Aimed | Fuse::AimedAround => [0.013, 0.014, 0.017, 0.038, 0.095],
             };
             2.0 * measured[(shift as usize).saturating_sub(13).min(4)]
         }

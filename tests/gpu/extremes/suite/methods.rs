@@ -31,6 +31,7 @@ pub fn all() -> Vec<Method> {
         ("1, own, list", Quality { hull: Hull::List, ..fused(Fuse::Own) }),
         ("1, slopes, shared", Quality { hull: Hull::Shared, ..fused(Fuse::Slopes) }),
         ("1, nearest, private", Quality { hull: Hull::Private, ..fused(Fuse::Nearest) }),
+        ("1, aimed-around", fused(Fuse::AimedAround)),
         ("1/4, aimed", spaced(Lines::QuarterCell, Fuse::Aimed)),
         ("1/2, aimed-nearest", spaced(Lines::HalfCell, Fuse::AimedNearest)),
         ("2, aimed-nearest", spaced(Lines::TwoCells, Fuse::AimedNearest)),
