@@ -172,16 +172,19 @@ pub fn twin_pyramid_slope(slope: f64, largest_m: f64, relief_m: f64, step_m: f64
 }
 
 /// Elevation that a whole pyramid finds (`height_reduce`, `height_expand`, `pyramid_march`, `sweep_fuse`),
-/// against its twins from the same heights, radians; `slope` is what is found.
+/// against its twins from the same heights, radians.
 ///
 /// Weights of a reduction and of a spline are positive and sum to 1, so that what a level errs by is passed on,
 /// no more: after j octaves j [`twin_level`], at two ends, seen 2^(j-1) steps away or more: j / 2^(j-1) ≤ 1.
-/// The rest of a rise and its angle as in [`twin_pyramid_slope`]; then [`pyramid_angle`] and an arc tangent
-/// on the way to a slope and back, on both sides.
-pub fn twin_pyramid_angle(slope: f64, largest_m: f64, relief_m: f64, step_m: f64) -> f64 {
+/// The rest of a rise as in [`twin_pyramid_slope`]. No slope is steeper than R / s: arc tangents, in
+/// proportion below slope 1 (A&S 4.4.49 bounds the error of atan(x) / x), a spline's 12 ε and the twin's 4 ε,
+/// then [`pyramid_angle`] on the way to a slope and back, all on both sides.
+pub fn twin_pyramid_angle(largest_m: f64, relief_m: f64, step_m: f64) -> f64 {
+    let steepest = relief_m / step_m;
     let end = twin_spline(largest_m) + twin_level(largest_m);
-    let rise = (2.0 * end + 12.0 * EPSILON * relief_m) / step_m;
-    rise + 2.0 * ARC_TANGENT + 16.0 * EPSILON + 2.0 * pyramid_angle(slope)
+    let rise = 2.0 * end / step_m + 12.0 * EPSILON * steepest;
+    let turned = 2.0 * ARC_TANGENT * steepest.min(1.0) + 16.0 * EPSILON * steepest.atan();
+    rise + turned + 2.0 * pyramid_angle(steepest)
 }
 
 /// Elevation of a slope that errs by `slope_error`, radians.

@@ -8,6 +8,7 @@ mod compare;
 mod flags;
 mod idle;
 mod inputs;
+mod light;
 mod needs_vulkan;
 mod plan;
 mod reference;

@@ -203,8 +203,8 @@ pub struct TradeArgs {
     pub lights: LightArgs,
     #[command(flatten)]
     pub surface: SurfaceArgs,
-    /// The truth of this scene as .exr; its layer "standard_error" is taken off the errors. Default:
-    /// brute force in many azimuths, or dense sweeps where that is too dear
+    /// The truth of this scene as .exr; its layer "standard_error" is taken off the errors, and a header of
+    /// another scene is refused. Default: brute force in many azimuths, or dense sweeps where that is too dear
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
     /// Seconds after which no further settings are tried

@@ -50,7 +50,12 @@ fn gives_none(name: &str) -> bool {
 fn is_scene(name: &str) -> bool {
     const NAMES: [&str; 8] =
         ["cell_m", "base_m", "z_scale", "border", "albedo", "sky", "env", "env_rotate_deg"];
-    NAMES.contains(&name) || is_numbered(name, "sun") || gives_none(name)
+    NAMES.contains(&name) || is_aimed(name) || gives_none(name)
+}
+
+/// Lights whose first number is their azimuth.
+fn is_aimed(name: &str) -> bool {
+    is_numbered(name, "sun") || is_numbered(name, "key")
 }
 
 fn is_numbered(name: &str, word: &str) -> bool {
@@ -75,8 +80,8 @@ fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
     };
     match (numbers(a), numbers(b)) {
         (Some(a), Some(b)) => {
-            // A sun's first number is its azimuth: whole turns are none.
-            let turns = is_numbered(name, "sun") || name == "env_rotate_deg";
+            // Whole turns are none.
+            let turns = is_aimed(name) || name == "env_rotate_deg";
             a.len() == b.len()
                 && (0..a.len()).all(|i| {
                     let off = a[i] - b[i];
@@ -100,6 +105,7 @@ mod tests {
             ("albedo", Some("0.5"), Some("0.50,0.5,0.5")),
             ("albedo", Some("maps/moss.png"), Some("/else/moss.png")),
             ("sun1", Some("-90,30,0.53,1,1,1"), Some("270,30,0.53,1,1,1")),
+            ("key1", Some("0,30,20,10,1,1,1"), Some("360,30,20,10,1,1,1")),
             ("cell_m", Some("30,30"), Some("30,30.000001")),
             ("env", Some("a/sky.hdr"), Some("sky.hdr")),
             ("bounces", Some("0"), None),
@@ -112,6 +118,7 @@ mod tests {
             ("albedo", Some("0.5"), Some("moss.png")),
             ("sun1", Some("90,30,0.53,1,1,1"), Some("270,30,0.53,1,1,1")),
             ("sun2", Some("90,30,0.53,1,1,1"), None),
+            ("key1", None, Some("0,30,20,10,1,1,1")),
             ("sky", None, Some("1,1,1")),
             ("cell_m", Some("30,30"), Some("30,30.001")),
             ("env", Some("sky.hdr"), Some("lab.hdr")),
@@ -122,6 +129,7 @@ mod tests {
         ] {
             assert!(!is_same(name, a, b), "{name}: {a:?} {b:?}");
         }
+        assert!(["key1", "sun12", "light3", "bounces"].iter().all(|name| is_scene(name)));
         // Settings of one method are no scene.
         assert!(!["sun_azimuths", "lights", "spp", "seed"].iter().any(|name| is_scene(name)));
     }

@@ -1,19 +1,18 @@
-//! Light at the extremes: on level ground, on slopes, behind an edge.
+//! Light of the whole sky at the extremes: on level ground, on slopes, in a trench.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 use ridgelight::measure::harmonics::{Harmonics, Seen};
 use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
 use ridgelight::plan::Azimuth;
-use ridgelight::plan::azimuths::across_sun;
-use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Sun};
+use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights};
 
-use super::{Asks, Case, Found, Method, Probe, field, never, none, white};
+use super::{Asks, Case, Found, Probe, field, never, none, suns, white};
 
-const SIDE: usize = 65;
+pub const SIDE: usize = 65;
 /// A corner, an edge, the middle.
-const PLACES: [[usize; 2]; 3] = [[0, 0], [30, 64], [32, 32]];
+pub const PLACES: [[usize; 2]; 3] = [[0, 0], [30, 64], [32, 32]];
 /// Columns and rows of every environment here.
 const COLUMNS: usize = 64;
 const ROWS: usize = 32;
@@ -36,13 +35,13 @@ pub fn cases() -> Vec<Case> {
         }
         all.push(voids(border));
         all.push(trench(border));
-        all.push(suns_on_level_ground(border));
-        all.push(suns_along_the_grid(border));
+        all.push(suns::suns_on_level_ground(border));
+        all.push(suns::suns_along_the_grid(border));
     }
     all
 }
 
-fn light(
+pub fn light(
     name: impl Into<String>,
     (expected, bound): (&str, &str),
     (field, border, lights): (HeightField, Border, Lights),
@@ -66,7 +65,7 @@ fn light(
     }
 }
 
-fn level() -> HeightField {
+pub fn level() -> HeightField {
     field([SIDE; 2], [1.0, 1.0], |_, _| 3.0)
 }
 
@@ -112,29 +111,44 @@ fn at_level(found: &Found) -> f64 {
 }
 
 /// Light of the environment by the same series in f64, and how far a device may be from it: on a plane that
-/// rises by `slope` towards east, whose horizons err by `slope_error`. Heights that are whole multiples of a
-/// number have gradients without error.
-fn series(found: &Found, slope: f64, slope_error: f64) -> [f64; 2] {
+/// rises so much to east and north, whose horizons err by `slope_error`.
+fn series(found: &Found, [east, north]: [f64; 2], slope_error: f64) -> [f64; 2] {
+    let least = if is_open(found) { f64::NEG_INFINITY } else { 0.0 };
+    let rise = |a: &Azimuth| east * f64::from(a.cos_phi) + north * f64::from(a.sin_phi);
+    let lowest: Vec<_> = found.azimuths.iter().map(|a| (*a, rise(a).max(least))).collect();
+    series_above(found, DVec3::new(-east, -north, 1.0).normalize(), &lowest, slope_error)
+}
+
+/// The same above these slopes. Heights that are whole multiples of a number have gradients without error.
+fn series_above(
+    found: &Found,
+    normal: DVec3,
+    lowest: &[(Azimuth, f64)],
+    slope_error: f64,
+) -> [f64; 2] {
     let quality = &found.method.quality;
     let environment = found.scene.lights.environment.as_ref().expect("an environment");
     let harmonics = Harmonics::new(environment, found.scene.surface.border, quality);
     let error = ShadeError::new(slope_error, 0.0, 1.0, found.azimuths.len());
-    let rise = |a: &Azimuth| (*a, (slope * f64::from(a.cos_phi)).max(0.0));
-    let lowest: Vec<_> = found.azimuths.iter().map(rise).collect();
-    let mut seen = harmonics.seen(&lowest, &error);
+    let mut seen = harmonics.seen(lowest, &error);
     if quality.subsample > 1 {
         seen = Seen::between([(&seen, 1.0)].into_iter(), &error);
     }
-    let [light, off] = harmonics.light(DVec3::new(-slope, 0.0, 1.0).normalize(), &seen, &error);
+    let [light, off] = harmonics.light(normal, &seen, &error);
     [light.x, off.x]
 }
 
-/// [`environment_error`], or of a series that is a constant everywhere.
-fn constant_error(found: &Found) -> f64 {
-    if found.method.is_soft() { series(found, 0.0, 0.0)[1] } else { environment_error(found) }
+/// What a constant environment errs by on level ground: [`environment_error`] and what lies between nodes, of
+/// its radiance; of a series, of the light itself.
+fn constant_error(found: &Found, radiance: f64) -> f64 {
+    if found.method.is_soft() {
+        series(found, [0.0; 2], 0.0)[1]
+    } else {
+        radiance * (environment_error(found) + at_level(found))
+    }
 }
 
-fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
+pub fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
     Probe { found, expected: [expected; 2], bound, at }
 }
 
@@ -149,7 +163,7 @@ fn albedo(albedo: f32) -> Case {
         (level(), Border::Plane, around(uniform(1.0))),
         move |found| {
             let albedo = f64::from(albedo);
-            let bound = albedo * (sky_error(found) + constant_error(found) + 4.0 * EPSILON);
+            let bound = albedo * (sky_error(found) + constant_error(found, 1.0) + 4.0 * EPSILON);
             let at = |[r, c]: [usize; 2]| {
                 probe(found.light("radiance", r, c), 2.0 * albedo, bound, [0, r, c])
             };
@@ -168,11 +182,7 @@ fn uniform_environment(value: f32, border: Border) -> Case {
     let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more; harmonics: the series'";
     light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
-        // A series' is of the light itself.
-        let bound = match found.method.is_soft() {
-            true => constant_error(found),
-            false => value * (constant_error(found) + at_level(found)),
-        };
+        let bound = constant_error(found, value);
         let at = |[r, c]: [usize; 2]| {
             [
                 probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
@@ -203,7 +213,7 @@ fn peak(border: Border) -> Case {
             let right = 1e6 * (TAU / COLUMNS as f64) * (b - a) / TAU;
             let relative = (256.0 + 12.0 / (b - a)) * EPSILON + environment_error(found);
             let [right, bound] = match found.method.is_soft() {
-                true => series(found, 0.0, 0.0),
+                true => series(found, [0.0; 2], 0.0),
                 false => [right, right * relative],
             };
             let at = |[r, c]: [usize; 2]| {
@@ -223,8 +233,9 @@ fn peak(border: Border) -> Case {
 /// is read between nodes. In harmonics azimuths stand for their wedges: (2π/m)²/24 of what is horizontal.
 fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> Case {
     // Uphill east, or north in a single column.
+    let uphill = if cols > 1 { [slope, 0.0] } else { [0.0, slope] };
     let tilted = field([rows, cols], [1.0, 1.0], |r, c| {
-        slope * if cols > 1 { c as f64 } else { (rows - 1 - r) as f64 }
+        uphill[0] * c as f64 + uphill[1] * (rows - 1 - r) as f64
     });
     let expected = match border {
         Border::Open => "all of the sky of 1 and of the environment of 1 above its own plane: 1",
@@ -246,7 +257,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
         let sky = wedge + 2.0 * (angle + ARC_TANGENT) + sky_error(found);
         let environment = match found.method.is_soft() {
-            true => sky + (TAU / found.count()).powi(2) / 24.0 + series(found, slope, angle)[1],
+            true => sky + (TAU / found.count()).powi(2) / 24.0 + series(found, uphill, angle)[1],
             false => sky + between_nodes(found) + environment_error(found),
         };
         vec![
@@ -258,7 +269,7 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
 
 /// Level ground of any size gives back what shines all around.
 fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
-    let environment = environment_error(found) + at_level(found);
+    let environment = constant_error(found, 1.0);
     let at = |&[r, c]: &[usize; 2]| {
         [
             probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
@@ -270,7 +281,7 @@ fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
 
 const LEVEL: (&str, &str) = (
     "under a sky of 1 and an environment of 1, level: 1 of each",
-    "the sky's and the environment's of level ground",
+    "the sky's and the environment's of level ground; harmonics: the series'",
 );
 
 fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
@@ -316,7 +327,7 @@ fn trench(border: Border) -> Case {
             "level beside an edge of height H, D away: as between two, but for azimuths that leave the field before it, which see all"
         }
     };
-    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides; δ: the method's, at D; pyramid: as its twin's elevations see";
+    let bound = "2 δ + the level ground's; environment: + 3 Δ² / 2 besides, harmonics: the series'; δ: the method's, at D; pyramid: as its twin's elevations see";
     let name = "light in a trench";
     light(name, (expected, bound), (ground, border, around(uniform(1.0))), move |found| {
         let [row, col] = PLACE;
@@ -328,7 +339,7 @@ fn trench(border: Border) -> Case {
             0.0,
             &found.azimuths[0],
         );
-        let mut right = [0.0; 2];
+        let (mut right, mut lowest) = ([0.0; 2], Vec::new());
         for azimuth in &found.azimuths {
             let share = f64::from(azimuth.wedge_rad) / TAU;
             if let Some((elevation, error)) = found.twin_elevation(azimuth, row, col) {
@@ -340,13 +351,18 @@ fn trench(border: Border) -> Case {
             // 32 rows north, 31 south.
             let is_inside = cos < -1e-9 && AWAY * (sin / cos).abs() < 31.0;
             let meets = if periodic { cos.abs() > 1e-9 } else { is_inside };
+            lowest.push((*azimuth, if meets { HEIGHT * cos.abs() / AWAY } else { 0.0 }));
             for (sum, away) in right.iter_mut().zip([AWAY - aside, AWAY + aside]) {
                 let slope = if meets { HEIGHT * cos.abs() / away } else { 0.0 };
                 *sum += share / (1.0 + slope * slope);
             }
         }
         let sky = 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky + between_nodes(found) + environment_error(found);
+        let environment = sky
+            + match found.method.is_soft() {
+                true => series_above(found, DVec3::Z, &lowest, angle)[1],
+                false => between_nodes(found) + environment_error(found),
+            };
         let of = |layer: &str, bound, at| Probe {
             found: found.light(layer, row, col),
             expected: right,
@@ -355,117 +371,4 @@ fn trench(border: Border) -> Case {
         };
         vec![of("direct.sky", sky, [0, row, col]), of("direct.env", environment, [1, row, col])]
     })
-}
-
-fn sun(azimuth_rad: f64, elevation_rad: f64, diameter_rad: f64) -> Sun {
-    Sun { azimuth_rad, elevation_rad, diameter_rad, irradiance: [1.0; 3] }
-}
-
-/// Suns at 90° and at 0° on level ground, E = 1, exit radiance over π.
-///
-/// A point at the zenith: 1. A disc there of angular radius a: its directions' mean cosine is that of a
-/// surface facing it: 1. A point at 0°: 0. A disc at 0°, of which half stands above the ground, of radiance
-/// 1 / (π sin² a): ∫ sin ω over it is ∫ sin² θ dθ ∫ cos ψ dψ = a - sin a cos a, with θ from its middle
-/// and ψ around it. Sums over n chords of a disc err by n^-3/2, the disc's own and that of its scale.
-fn suns_on_level_ground(border: Border) -> Case {
-    const RADIUS: f64 = 0.0046;
-    let suns = vec![
-        sun(0.4, FRAC_PI_2, 0.0),
-        sun(0.4, FRAC_PI_2, 2.0 * RADIUS),
-        sun(0.4, 0.0, 0.0),
-        sun(0.4, 0.0, 2.0 * RADIUS),
-    ];
-    let lights = Lights { suns, ..Lights::default() };
-    let expected =
-        "points: 1/π and 0; discs of angular radius a: 1/π and (a - sin a cos a) / (π² sin² a)";
-    let bound = "16 ε of it for points; 2 n^-3/2 of it for discs of n chords, and ε of their slopes' moments";
-    let case =
-        light("suns at 90° and at 0°", (expected, bound), (level(), border, lights), |found| {
-            let half = (RADIUS - RADIUS.sin() * RADIUS.cos()) / (PI * RADIUS.sin().powi(2));
-            let chords = 2.0 * f64::from(found.method.quality.sun_azimuths).powf(-1.5);
-            // A chord's moments are differences of numbers of 1/2, weighed by 2 / (π a) over its height.
-            let moments = 2.0 / (PI * RADIUS) * 8.0 * EPSILON;
-            let right = [
-                (1.0, 16.0 * EPSILON),
-                (1.0, chords + 16.0 * EPSILON),
-                (0.0, 0.0),
-                (half, chords * half + moments),
-            ];
-            let mut probes = Vec::new();
-            for (s, (light, bound)) in right.into_iter().enumerate() {
-                let layer = format!("direct.sun{}", s + 1);
-                probes.extend(PLACES.map(|[r, c]| {
-                    probe(found.light(&layer, r, c), light / PI, bound / PI, [s, r, c])
-                }));
-            }
-            probes
-        });
-    Case { refuses: suns_off_the_grid, ..case }
-}
-
-/// The top of an eastern slope of height 10 and 2.5 a cell: it throws the shadow.
-const EDGE: usize = 48;
-
-/// Point suns at 30° in the azimuths 0°, 45° and 90° and hairs beside them: the shadow of the edge reaches
-/// H cos φ / tan 30° west. At 180°, where the field repeats, that of the plateau before it reaches as far east
-/// of its end, a cell before the first column. Left out: four cells around either end. A sample looks where a
-/// line beside it has met the edge: with lines 2 cells apart 1 cell before it, at 3/4 of its height, which
-/// still hides the sun up to 10.2 cells away at 45°; with lines 4 apart one of two stands on the top, up to 4
-/// cells behind it, which hides it up to 8.2. The shadow there ends at 12.2.
-fn suns_along_the_grid(border: Border) -> Case {
-    const HEIGHT: f64 = 10.0;
-    let mut hairs = vec![0.0];
-    if border == Border::Plane {
-        hairs.extend([1e-12, -1e-12, 1e-6, -1e-6, 1e-3, -1e-3]);
-    }
-    let mut azimuths: Vec<f64> =
-        [0.0, FRAC_PI_4, FRAC_PI_2].iter().flat_map(|a| hairs.iter().map(move |h| a + h)).collect();
-    azimuths.push(PI);
-    let suns: Vec<Sun> = azimuths.iter().map(|&azimuth| sun(azimuth, FRAC_PI_6, 0.0)).collect();
-    let edge = field([SIDE; 2], [1.0, 1.0], |_, c| {
-        (2.5 * (c as f64 + 4.0 - EDGE as f64)).clamp(0.0, HEIGHT)
-    });
-    let expected = "west of an edge of height H, in its shadow 0, out of it sin 30° / π, but for four cells around the end at H cos φ / tan 30°; where the field repeats, likewise east of it for a sun in the west";
-    let bound = "in the shadow 0, out of it 16 ε of the light; pyramid: where its twin's elevation is as far from the sun as it may err, for suns without a hair";
-    let lights = Lights { suns: suns.clone(), ..Lights::default() };
-    let beside = if border == Border::Plane { ", a hair beside," } else { "" };
-    let name = format!("point suns at 0°, 45°, 90°{beside} and 180°");
-    let case = light(name, (expected, bound), (edge, border, lights), move |found| {
-        let repeats = found.scene.surface.border == Border::Periodic;
-        let mut probes = Vec::new();
-        for (s, azimuth) in azimuths.iter().enumerate() {
-            let layer = format!("direct.sun{}", s + 1);
-            let swept = across_sun(&suns[s], 1, [1.0, 1.0])[0];
-            let reach = HEIGHT * azimuth.cos().abs() / FRAC_PI_6.tan();
-            // Level ground, in rows from which a line at 45° meets the edge inside the field.
-            for (row, col) in (40..60).flat_map(|row| (4..=EDGE - 6).map(move |col| (row, col))) {
-                let is_lit = if found.twin.is_some() {
-                    if s % hairs.len() != 0 {
-                        continue;
-                    }
-                    found.twin_elevation(&swept, row, col).and_then(|(elevation, error)| {
-                        let below = FRAC_PI_6 - elevation;
-                        (below.abs() > error + ARC_TANGENT).then_some(below > 0.0)
-                    })
-                } else {
-                    let away = if *azimuth < PI { EDGE - col } else { col + 1 };
-                    let from_end = away as f64 - reach;
-                    let is_shaded = *azimuth < PI || repeats;
-                    (from_end.abs() >= 4.0 || !is_shaded).then_some(!is_shaded || from_end > 0.0)
-                };
-                let Some(is_lit) = is_lit else { continue };
-                let light = if is_lit { FRAC_PI_6.sin() / PI } else { 0.0 };
-                let value = found.light(&layer, row, col);
-                probes.push(probe(value, light, 16.0 * EPSILON * light, [s, row, col]));
-            }
-        }
-        probes
-    });
-    Case { refuses: suns_off_the_grid, ..case }
-}
-
-fn suns_off_the_grid(method: &Method) -> Option<&'static str> {
-    method.is_exact().then_some(
-        "--lines exact with --sun: found a sun, whose azimuths are no grid vectors, expected --method brute, which is exact in every azimuth",
-    )
 }

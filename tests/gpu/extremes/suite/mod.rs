@@ -6,6 +6,7 @@ pub mod inputs;
 mod lights;
 pub mod methods;
 pub mod page;
+mod suns;
 mod twin;
 
 use ridgelight::gpu::{Headless, Pixels};
@@ -144,7 +145,8 @@ impl Found<'_> {
 
 /// What came of a case under a method.
 pub enum Outcome {
-    /// The worst of so many values, the largest error of all, and the tightest bound of all.
+    /// The worst of so many values, the largest error of all, and the tightest bound as a share of the largest
+    /// that is expected, where that is not 0.
     Measured { worst: Probe, largest_error: f64, tightest: f64, values: usize },
     /// The sentence that was said.
     Refused(String),
@@ -222,17 +224,17 @@ pub fn outcome(probes: Result<Vec<Probe>, String>) -> Outcome {
         Err(sentence) => return Outcome::Refused(sentence),
     };
     let worst = probes.iter().copied().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+    let largest = probes.iter().fold(0.0_f64, |m, p| p.expected[1].abs().max(m));
+    let tightest = probes.iter().fold(f64::INFINITY, |m, p| p.bound.min(m));
     Outcome::Measured {
         worst: worst.expect("a case looks at something under every method"),
         largest_error: probes.iter().fold(0.0, |m, p| p.error().max(m)),
-        tightest: probes
-            .iter()
-            .fold(f64::INFINITY, |m, p| (p.bound / p.expected[1].max(1.0)).min(m)),
+        tightest: if largest > 0.0 { tightest / largest } else { tightest },
         values: probes.len(),
     }
 }
 
-/// A bound that says nothing: a tenth of a radian, or of the light of a sky of 1 or more.
+/// A bound that says little: a tenth of the largest that is to be found.
 const LOOSE: f64 = 0.1;
 
 /// What is wrong with a row, if anything: a value beyond its bound, or no bound that could be missed.
@@ -246,7 +248,7 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
             "no number".to_owned()
         }
         (Outcome::Measured { tightest, .. }, None) if *tightest >= LOOSE => {
-            format!("every bound is as wide as {tightest}, which nothing exceeds")
+            format!("every bound is {tightest} of the largest that is to be found, or more")
         }
         (Outcome::Measured { worst, .. }, None) if worst.ratio() <= 1.0 => return None,
         (Outcome::Measured { worst, .. }, None) => {

@@ -57,7 +57,7 @@ impl<'a> Twin<'a> {
         let angle = if slope <= LOWEST_MET { -FRAC_PI_2 } else { f64::from(slope).atan() };
         let elevation = if border == Border::Open { angle } else { angle.max(0.0) };
         let step = f64::from(azimuth.step_m);
-        let error = twin_pyramid_angle(elevation.tan(), self.largest_m, self.relief_m, step);
+        let error = twin_pyramid_angle(self.largest_m, self.relief_m, step);
         (elevation, error)
     }
 }
