@@ -451,6 +451,19 @@ fn key_lights() {
     assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
 }
 
+/// An edit marks who looks at an occluder, not who looks around it.
+#[test]
+fn looking_around_takes_no_edits() {
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let edits = |fuse| {
+        let quality = Quality { azimuths: 8, fuse, ..Quality::default() };
+        let plan = plan::picture(&under_sky(flat(9, 14)), &quality, &Limits::lavapipe(), wanted);
+        plan.expect("a plan").edit_passes.len()
+    };
+    assert!(edits(Fuse::Aimed) > 0);
+    assert_eq!(edits(Fuse::AimedAround), 0);
+}
+
 /// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.
 #[test]
 fn a_reference() {
