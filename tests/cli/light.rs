@@ -19,7 +19,7 @@ fn gpu_light_that_is_no_number_is_refused() {
         let args = format!("{args} --sky 3e38 --sun 0,90,0.53,3e38");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
         assert_eq!((run.status, run.err.lines().count()), (Some(2), 1), "{args}: {}", run.err);
-        let said = "--sky, --env, --sun, --key: found light of inf at row 0, column 0 of radiance";
+        let said = "--sky, --env, --sun, --key, --light: found light of inf at row 0, column 0 of radiance";
         assert!(run.err.contains(said), "{args}: {}", run.err);
         assert!(folder.contents() == before, "{args}");
     }

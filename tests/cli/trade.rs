@@ -181,7 +181,7 @@ fn gpu_trade_of_a_small_field() {
         .map(|g| g["settings"].as_array().unwrap().len())
         .sum();
     let open = report["not_tried"].as_array().unwrap().len();
-    assert_eq!(points.len() + ruled_out + open, (5 * (2 * 3 + 3 * 2) + 2 + 5 * 5) * 6);
+    assert_eq!(points.len() + ruled_out + open, (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
     let recommended = report["recommendation"]["point"].as_u64().unwrap();
     assert!(report["frontier"].as_array().unwrap().iter().any(|i| i.as_u64() == Some(recommended)));
     // The knee: no other has a smaller product of time and error.
