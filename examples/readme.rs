@@ -187,16 +187,6 @@ fn edits() -> Result<String> {
     Ok(format!("{summary}\n*{device}{}*\n", made(&path)?))
 }
 
-/// The table of examples/lights, as it printed it.
-fn lights() -> Result<String> {
-    let path = Path::new(RESULTS).join("lights.txt");
-    let text = text(&path)?;
-    let missing = || wrong(&path, "no table", "the text of examples/lights");
-    let (head, table) = text.split_once("\n\n").ok_or_else(missing)?;
-    let what = head.lines().nth(1).ok_or_else(missing)?;
-    Ok(format!("{}\n\n*{what}{}*\n", table.trim(), made(&path)?))
-}
-
 /// What examples/auto found of `render --max-error`.
 fn auto() -> Result<String> {
     let figures = Figures::read("auto")?;
@@ -250,14 +240,13 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 7] = [
+    let sections: [Section; 6] = [
         ("picture", picture),
         ("sizes", sizes),
         ("accuracy", accuracy),
         ("auto", auto),
         ("forms", forms),
         ("edits", edits),
-        ("lights", lights),
     ];
     for (name, section) in sections {
         let new = with(&readme, name, &section()?)?;
