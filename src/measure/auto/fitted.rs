@@ -7,36 +7,36 @@ use super::model::Fitted;
 /// In the order of [`super::PARTS`].
 pub(super) const FITTED: [Fitted; 4] = [
     Fitted {
-        bias: -1.105,
-        weights: [0.972, 0.315, 0.224, -0.436, 0.126, 0.354, 0.036, 0.397],
-        power: 1.0,
-        spread: 0.64,
+        bias: 0.318,
+        weights: [0.991, -0.021, 0.333, 0.107, 0.068, 0.338, 0.063, 0.429],
+        power: 1.000,
+        spread: 0.802,
     },
     Fitted {
-        bias: -8.569,
-        weights: [0.753, 1.317, -1.026, -0.697, -0.767, 2.052, 0.176, -0.371],
-        power: 0.862,
-        spread: 0.966,
+        bias: -8.168,
+        weights: [0.341, 1.108, 0.521, -0.152, -0.448, 0.657, 0.099, -0.247],
+        power: 0.930,
+        spread: 0.434,
     },
     Fitted {
-        bias: -8.079,
-        weights: [1.346, -0.872, 0.266, -0.497, -1.529, 3.1, 0.0, 0.0],
-        power: 1.464,
-        spread: 1.334,
+        bias: -5.645,
+        weights: [1.814, -2.887, 0.911, 0.710, -0.690, 1.323, 0.000, 0.000],
+        power: 1.522,
+        spread: 0.995,
     },
     Fitted {
-        bias: -5.08,
-        weights: [0.689, 0.46, -0.034, -0.355, 0.0, 0.0, -0.003, 0.0],
-        power: 0.905,
-        spread: 0.213,
+        bias: -4.230,
+        weights: [0.587, 0.124, 0.398, 0.384, 0.000, 0.000, 0.008, 0.000],
+        power: 0.967,
+        spread: 0.301,
     },
 ];
 
 /// ln of the geometry's error beside that of lines one cell apart with `aimed-nearest`: for 4, 2, 1,
-/// 1/2, 1/4 cells, with `aimed-nearest`, with `aimed` and with `aimed-around`; the last of the middle
-/// 96² of each field, all else of 256².
+/// 1/2, 1/4 cells, with `aimed-nearest`, with `aimed` and with `aimed-around`; all of the middle 128² of
+/// each field.
 pub(super) const GEOMETRY: [[f64; 5]; 3] = [
-    [1.38, 0.699, 0.0, -0.323, -0.504],
-    [1.179, 0.427, -0.315, -0.589, -0.625],
-    [-0.604, -2.221, -3.813, -4.474, -4.686],
+    [1.312, 0.598, 0.000, -0.396, -0.529],
+    [1.078, 0.347, -0.389, -0.604, -0.649],
+    [-0.466, -2.088, -3.579, -4.483, -4.754],
 ];
