@@ -70,8 +70,8 @@ pub struct Trial {
     pub ns: f64,
 }
 
-/// Walks settings towards a goal: [`next`](Self::next) says what to draw, [`measured`](Self::measured)
-/// takes what came of it.
+/// Walks settings towards a goal: [`next`](Self::next) says what to draw, [`drawn`](Self::drawn) and
+/// [`judged`](Self::judged) take what came of it.
 #[derive(Clone, Debug)]
 pub struct Chooser<'a> {
     scene: &'a Scene,
