@@ -196,8 +196,8 @@ fn auto() -> Result<String> {
     let mut out = String::new();
     writeln!(
         out,
-        "5, 2, 1, 0.5 and 0.2 % asked of {} pairs of a field (its middle {}²) and lights on which nothing was \
-         fitted: {held} of {chosen} choices hold ({:.1} %; {} are within the bound that they state), {} of {} are refused ({} of them though \
+        "5, 2, 1, 0.5 and 0.2 % asked of {} pairs of a field (its middle {}²) and lights that nothing was \
+         fitted on (other pairs of each were): {held} of {chosen} choices hold ({:.1} %; {} are within the bound that they state), {} of {} are refused ({} of them though \
          settings that hold were drawn). Time over the cheapest that truly holds of all that a `trade` walk of {} s \
          and the choices drew, in turn: \
          median {:.2}, 90 % {:.2}, worst {:.2}; at most 1.3 in {} of {}.",
