@@ -17,7 +17,7 @@ pub use compare::CompareArgs;
 pub use later::LaterArgs;
 pub use quality::{
     BasisName, FuseName, HullName, LevelsName, LinesName, MethodName, PrecisionName, QualityArgs,
-    ReceiverName, SubsampleName, WedgesName, WindowName,
+    ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};

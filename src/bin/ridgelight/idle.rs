@@ -2,27 +2,7 @@
 
 use std::io::Write as _;
 
-/// Flags of quality, as plans name what they really used.
-const SETTINGS: [&str; 18] = [
-    "azimuths",
-    "sun_azimuths",
-    "light_cutoff",
-    "lines",
-    "fuse",
-    "precision",
-    "hull",
-    "level_step",
-    "level_offset",
-    "levels",
-    "table_elevations",
-    "basis",
-    "sh_order",
-    "wedges",
-    "receiver",
-    "window",
-    "subsample",
-    "wedge_side",
-];
+use crate::args::SETTINGS;
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {

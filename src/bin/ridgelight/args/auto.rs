@@ -1,28 +1,12 @@
 use clap::Args;
 
+use super::quality::SETTINGS;
 use super::values::whole;
 
-/// What `--max-error` and `--time-budget` choose themselves.
-const CHOSEN: [&str; 18] = [
-    "method",
-    "azimuths",
-    "sun_azimuths",
-    "light_cutoff",
-    "lines",
-    "fuse",
-    "precision",
-    "level_step",
-    "level_offset",
-    "levels",
-    "table_elevations",
-    "basis",
-    "sh_order",
-    "wedges",
-    "receiver",
-    "window",
-    "subsample",
-    "wedge_side",
-];
+/// What `--max-error` and `--time-budget` choose themselves: all but where hulls live.
+fn chosen() -> impl Iterator<Item = &'static str> {
+    SETTINGS.into_iter().filter(|s| *s != "hull").chain(["method"])
+}
 
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]
@@ -31,11 +15,11 @@ pub struct AutoArgs {
     /// bounded with 95 % confidence by exact light at 192 to 3000 samples that had no part in choosing. Draws
     /// up to 16 frames and the chosen once more, none that is expected to take more than 30 s; refused, with
     /// the nearest that was found, where none is that accurate
-    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = CHOSEN)]
+    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = chosen())]
     pub max_error: Option<f64>,
     /// Choose the most accurate settings of at most this GPU time a frame on this device, drawn once more
     /// to hold it, and state their error
-    #[arg(long, value_name = "MS", allow_negative_numbers = true, conflicts_with_all = CHOSEN)]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true, conflicts_with_all = chosen())]
     pub time_budget: Option<f64>,
     /// Another number, other samples of exact light for --max-error and --time-budget: 0..4294967295;
     /// 0 where none is given

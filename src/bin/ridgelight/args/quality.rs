@@ -3,6 +3,28 @@ use clap::{ArgMatches, Args, Id, ValueEnum};
 
 use super::values::whole;
 
+/// Flags of quality, as plans name what they really used.
+pub const SETTINGS: [&str; 18] = [
+    "azimuths",
+    "sun_azimuths",
+    "light_cutoff",
+    "lines",
+    "fuse",
+    "precision",
+    "hull",
+    "level_step",
+    "level_offset",
+    "levels",
+    "table_elevations",
+    "basis",
+    "sh_order",
+    "wedges",
+    "receiver",
+    "window",
+    "subsample",
+    "wedge_side",
+];
+
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArgs {
