@@ -30,6 +30,7 @@ pub mod profile;
 pub mod pyramid_march;
 pub mod sh_shade;
 pub mod sh_visibility;
+pub mod sh_wedges;
 pub mod shared;
 pub mod sky_shade;
 pub mod sphere;

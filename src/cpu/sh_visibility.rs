@@ -2,10 +2,8 @@
 
 use super::shared::gather::Swept;
 use crate::basis::azimuth::{around, assemble, assemble_nlp};
-use crate::basis::harmonics::rotate_z;
 use crate::basis::legendre::occlusion;
 use crate::basis::slice::Slices;
-use crate::basis::wedge::WedgeTable;
 use crate::plan::Azimuth;
 use crate::scene::{Receiver, Wedges};
 use std::f64::consts::SQRT_2;
@@ -19,20 +17,6 @@ pub struct Series {
     pub wedges: Wedges,
     /// Whether the sample's own plane hides what lies below it: for [`Receiver::Plane`].
     pub receiver: Receiver,
-}
-
-/// The series of what is free above these slopes along even azimuths, in any order, from a table of wedges.
-pub fn seen_by_wedges(table: &WedgeTable, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
-    let phi = |a: &Azimuth| f64::from(a.sin_phi).atan2(a.cos_phi.into());
-    let mut circle: Vec<(f64, f64)> = lowest.iter().map(|(a, s)| (phi(a), s.atan())).collect();
-    circle.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut sum = vec![0.0; table.texels[0].len()];
-    for (k, (phi, first)) in circle.iter().enumerate() {
-        let (_, last) = circle[(k + 1) % circle.len()];
-        let turned = rotate_z(&table.look_up([*first, last]), *phi);
-        sum.iter_mut().zip(turned).for_each(|(s, t)| *s += t);
-    }
-    sum
 }
 
 /// The series of one sample.
@@ -50,7 +34,7 @@ pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
 /// The series of what is free above these slopes along azimuths, each by itself.
 ///
 /// # Panics
-/// By a table: [`seen_by_wedges`].
+/// By a table: [`sh_wedges`](super::sh_wedges::sh_wedges).
 pub fn seen_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
     let Series { order, wedges, .. } = series;
     let slices = Slices::new(order);

@@ -13,7 +13,8 @@ use crate::basis::wedge::WedgeTable;
 use crate::cpu::env_turns::env_turns;
 use crate::cpu::light_matrix::{is_fitted, light_matrix, row_weights, series};
 use crate::cpu::sh_shade::light_on;
-use crate::cpu::sh_visibility::{Series, seen_above, seen_by_wedges};
+use crate::cpu::sh_visibility::{Series, seen_above};
+use crate::cpu::sh_wedges::sh_wedges;
 use crate::plan::Azimuth;
 use crate::plan::sh::lowest_rad;
 use crate::scene::{Border, Environment, Quality, Receiver, Wedges};
@@ -94,7 +95,7 @@ impl Harmonics {
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
         let errors = bands(order).map(|(l, _)| of_band[l]).collect();
         let values = match &self.table {
-            Some(table) => seen_by_wedges(table, lowest),
+            Some(table) => sh_wedges(table, lowest),
             None => seen_above(self.series, lowest),
         };
         Seen { values, errors }

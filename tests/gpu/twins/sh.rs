@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::cpu::light_matrix as matrix_twin;
 use ridgelight::cpu::sh_shade::{light_at, nodes_around};
-use ridgelight::cpu::sh_visibility::{Series, seen_by_wedges, sh_visibility as visibility_twin};
+use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
+use ridgelight::cpu::sh_wedges::sh_wedges as wedges_twin;
 use ridgelight::cpu::shared::field::field_slope;
 use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
@@ -145,7 +146,7 @@ pub(super) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             (*azimuth, horizon.max(own))
         };
         let lowest: Vec<_> = azimuths.iter().enumerate().map(lowest).collect();
-        let want = seen_by_wedges(&table, &lowest);
+        let want = wedges_twin(&table, &lowest);
         let at = [count, row, col];
         let bands = ridgelight::basis::bands(order);
         pairs.extend(bands.zip(got.iter().zip(&want)).map(|((l, _), (got, want))| Pair {
