@@ -1,4 +1,4 @@
-use super::push::MarchPush;
+use super::MarchPush;
 use crate::gpu::shaders;
 use crate::plan::{Batch, Builder, Nodes, ResourceId};
 

@@ -1,4 +1,4 @@
-use super::push::ShadePush;
+use super::ShadePush;
 use crate::gpu::shaders;
 use crate::plan::sh::Sh;
 use crate::plan::sweep::Sweep;

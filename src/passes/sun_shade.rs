@@ -1,5 +1,5 @@
+use super::ShadePush;
 use super::dirty_list;
-use super::push::ShadePush;
 use crate::gpu::shaders;
 use crate::plan::azimuths::Shape;
 use crate::plan::sweep::Sweep;
