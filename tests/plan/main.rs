@@ -1,0 +1,281 @@
+//! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
+
+mod reference;
+mod sizes;
+
+use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
+use ridgelight::scene::{
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
+    Method, Precision, Quality, Receiver, Scene, Sun, Surface,
+};
+
+fn flat(rows: usize, cols: usize) -> HeightField {
+    HeightField::new(rows, cols, &vec![0.0; rows * cols], [1.0, 1.0], None).expect("a good field")
+}
+
+fn under_sky(field: HeightField) -> Scene {
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    Scene { field, surface: Surface::default(), lights }
+}
+
+/// Sky, environment, a point and a disc over a map of colours.
+fn under_everything(field: HeightField, border: Border) -> Scene {
+    let map = vec![[0.5, 0.4, 0.3]; field.rows() * field.cols()];
+    let sun = |diameter_rad| Sun {
+        azimuth_rad: 2.0,
+        elevation_rad: 0.5,
+        diameter_rad,
+        irradiance: [1.0, 0.9, 0.8],
+    };
+    let environment = Environment::new(8, 4, vec![[0.5, 0.4, 0.3]; 32], 0.3);
+    let lights = Lights {
+        sky: Some([1.0; 3]),
+        environment: Some(environment.expect("an environment")),
+        suns: vec![sun(0.0), sun(0.02)],
+        ..Lights::default()
+    };
+    Scene {
+        field,
+        surface: Surface { border, albedo: Albedo::Map(map), ..Surface::default() },
+        lights,
+    }
+}
+
+/// One line a pass: `|` where a barrier stands before it, label, workgroups. Then the plan's own images
+/// and buffers: columns × rows × layers, or bytes.
+fn short(plan: &Plan) -> String {
+    let passes = plan.passes.iter().map(|pass| {
+        let mark = if pass.barrier_before { '|' } else { ' ' };
+        let [x, y, z] = pass.groups;
+        format!("{mark} {} {x}×{y}×{z}\n", pass.label())
+    });
+    let own = plan.resources.iter().filter(|r| r.owner == Owner::Internal);
+    let resources = own.map(|r| match r.kind {
+        Kind::Image { width, height, layers, .. } => {
+            format!("{} {width}×{height}×{layers}\n", r.name)
+        }
+        Kind::Buffer { bytes, .. } => format!("{} {bytes}\n", r.name),
+    });
+    passes.chain(resources).collect()
+}
+
+fn sky(rows: usize, cols: usize, azimuths: u32, limits: &Limits) -> Plan {
+    let quality = Quality { azimuths, ..Quality::default() };
+    let scene = under_sky(flat(rows, cols));
+    plan::picture(&scene, &quality, limits, Picture::default()).expect("a plan")
+}
+
+fn is(plan: &Plan, text: &str) {
+    let lines: Vec<&str> = text.lines().map(|l| l.strip_prefix("        ").unwrap_or(l)).collect();
+    let kept = lines[1..lines.len() - 1].join("\n") + "\n";
+    assert_eq!(short(plan), kept, "now:\n{}", short(plan));
+    assert_eq!(missing_barriers(&plan.passes), []);
+}
+
+/// Plans of every form of every pass, at sizes that make groups, lanes and layers odd.
+fn plans() -> Vec<Plan> {
+    let base = Quality { azimuths: 12, ..Quality::default() };
+    let qualities = [
+        base,
+        Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base },
+        Quality { hull: Hull::List, fuse: Fuse::Own, ..base },
+        Quality { lines: Lines::TwoCells, fuse: Fuse::Aimed, ..base },
+        Quality { fuse: Fuse::Nearest, precision: Precision::F16, ..base },
+        Quality { precision: Precision::Packed, ..base },
+        Quality { method: Method::Brute, ..base },
+        Quality { lines: Lines::Exact, ..base },
+        Quality { method: Method::Pyramid, ..base },
+        Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
+    ];
+    let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let mut all = Vec::new();
+    for (rows, cols) in [(1, 1), (1, 7), (7, 1), (2, 3), (31, 37), (3, 1021), (1021, 3)] {
+        for border in [Border::Plane, Border::Open, Border::Periodic] {
+            let scene = under_everything(flat(rows, cols), border);
+            all.push(plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan"));
+            for quality in &qualities {
+                let mut scene = under_everything(flat(rows, cols), border);
+                if quality.lines == Lines::Exact {
+                    scene.lights.suns.clear();
+                }
+                let wanted = Picture { light_layers: true, sky_view: true, ..Picture::default() };
+                let mut plan = |limits: &Limits| {
+                    let picture = plan::picture(&scene, quality, limits, wanted);
+                    let circle = (0, quality.azimuths);
+                    let horizons =
+                        plan::horizons(&scene.field, border, quality, limits, circle, false);
+                    let bytes = picture.as_ref().map_or(0, Plan::bytes);
+                    let count = all.len();
+                    all.extend(picture.into_iter().chain(horizons));
+                    (all.len() - count, bytes)
+                };
+                let (count, bytes) = plan(&Limits::lavapipe());
+                assert_eq!((count, plan(&graphics).0), (2, 2));
+                // Less than the whole: in bands, where one azimuth still fits.
+                plan(&Limits { memory_budget: bytes * 9 / 10, ..Limits::lavapipe() });
+                // And with passes for edits, where they can be.
+                let wanted = Picture { keeps_horizons: true, ..wanted };
+                let kept = plan::picture(&scene, quality, &Limits::lavapipe(), wanted);
+                all.push(kept.expect("a plan"));
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn every_plan_has_all_its_barriers_and_needs_each() {
+    let plans = plans();
+    let batches = |plan: &Plan| plan.passes.iter().filter(|p| p.name() == "sky_shade").count();
+    assert!(plans.iter().any(|p| batches(p) > 2), "some plan is cut into bands");
+    let (mut audited, mut removed) = (0, 0);
+    assert!(plans.iter().any(|p| !p.edit_passes.is_empty()), "some plan takes edits");
+    let lists = plans.iter().flat_map(|p| [(p, &p.passes), (p, &p.edit_passes)]);
+    for (plan, list) in lists {
+        assert_eq!(missing_barriers(list), [], "{plan}");
+        audited += 1;
+        for i in 0..list.len() {
+            let mut passes = list.clone();
+            if std::mem::take(&mut passes[i].barrier_before) {
+                let missing = missing_barriers(&passes);
+                assert!(
+                    missing.iter().any(|m| m.1 >= i),
+                    "none seen missing before {i} of\n{plan}"
+                );
+                removed += 1;
+            }
+        }
+    }
+    println!("{audited} lists of passes, {removed} barriers removed, each missed");
+}
+
+/// A group of a GPU sweeps 128 lines, the last one of an azimuth too: what it writes beyond the lines
+/// there are must be the azimuth's own, four layers of 32 lines a group.
+#[test]
+fn an_azimuths_layers_are_whole_groups() {
+    let wide = Limits { is_cpu: false, ..Limits::lavapipe() };
+    let plan = sky(256, 256, 64, &wide);
+    let sweeps: Vec<_> = plan.passes.iter().filter(|p| p.name() == "horizon_sweep").collect();
+    assert!(!sweeps.is_empty() && sweeps.iter().all(|p| p.constants.contains(&(0, 32))));
+    assert!(plan.azimuths.iter().all(|a| a.layer % 4 == 0));
+    let lattice = plan.find("lattice_occluders").expect("a lattice");
+    match plan.resources[lattice.0].kind {
+        Kind::Image { layers, .. } => assert_eq!(layers % 4, 0),
+        Kind::Buffer { .. } => unreachable!("an image"),
+    }
+}
+
+/// What a device cannot make or dispatch is refused by name, not handed to it.
+#[test]
+fn devices_limits_are_kept() {
+    let all = Limits::lavapipe();
+    let refused = |limits: &Limits, scene: &Scene, quality: &Quality| {
+        let plan = plan::picture(scene, quality, limits, Picture::default());
+        plan.expect_err("beyond the limits").to_string()
+    };
+    let quality = Quality { azimuths: 64, ..Quality::default() };
+    let scene = under_sky(flat(40, 50));
+    let groups = Limits { groups: 1, ..all };
+    assert!(refused(&groups, &scene, &quality).contains("workgroups"));
+    let texels = Limits { texels: 255, ..all };
+    let said = refused(&texels, &scene, &quality);
+    assert!(said.contains("azimuths") && said.contains("256 texels"), "{said}");
+    let wide = Environment::new(20_000, 10, vec![[1.0; 3]; 200_000], 0.0).expect("an environment");
+    let lights = Lights { environment: Some(wide), ..Lights::default() };
+    let said = refused(&all, &Scene { lights, ..scene }, &quality);
+    assert!(said.contains("environment") && said.contains("20000 texels a side"), "{said}");
+    let few = Limits { image_layers: 16, ..all };
+    let sky = Environment::new(8, 4, vec![[1.0; 3]; 32], 0.0).expect("an environment");
+    let lights = Lights { environment: Some(sky), ..Lights::default() };
+    let said = refused(&few, &Scene { lights, ..under_sky(flat(4, 4)) }, &quality);
+    assert!(said.contains("env_tables") && said.contains("64 layers"), "{said}");
+}
+
+/// n² numbers a sample, four a texel, beside 3 rows of the light's matrix (9 of a lobe, 4 at order 2); the
+/// sky stays in closed form, and edits draw everything.
+#[test]
+fn harmonics() {
+    let scene = under_everything(flat(7, 13), Border::Plane);
+    let limits = Limits::lavapipe();
+    for (receiver, rows) in [(Receiver::Plane, [3; 5]), (Receiver::Lobe, [4, 9, 9, 9, 9])] {
+        for (sh_order, rows) in (2..=6).zip(rows) {
+            let quality = Quality { basis: Basis::Sh, sh_order, receiver, ..Quality::default() };
+            let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+            let plan = plan::picture(&scene, &quality, &limits, wanted).expect("a plan");
+            let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
+            let count = u64::from(sh_order * sh_order);
+            assert_eq!(bytes("visibility"), 7 * 13 * 16 * count.div_ceil(4));
+            assert_eq!(bytes("light_matrix"), 16 * rows * count);
+            assert_eq!(bytes("constants"), 4 * plan.constants.len() as u64);
+            assert!(plan.find("env_tables").is_none() && plan.find("sky_sum").is_some());
+            assert!(plan.edit_passes.is_empty() && missing_barriers(&plan.passes).is_empty());
+            let told =
+                |name: &str| plan.settings.iter().find(|s| s.0 == name).map(|s| s.1.as_str());
+            assert_eq!(told("sh_order"), Some(sh_order.to_string().as_str()));
+            assert_eq!((told("basis"), told("table_elevations")), (Some("sh"), None));
+        }
+    }
+    let tables = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
+    assert!(tables.expect("a plan").constants.is_empty());
+}
+
+fn key(high: f64, radiance: [f32; 3]) -> KeyLight {
+    KeyLight { azimuth_rad: 0.3, width_rad: 0.5, elevations_rad: [-0.4, high], radiance }
+}
+
+/// Key lights add what suns do: sweeps of their own azimuths, a shading pass, a layer. Where there are
+/// none, where they are black, or below horizontal where there is ground, there is nothing of them.
+#[test]
+fn key_lights() {
+    let picture = |keys: &[KeyLight], border| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.surface.border = border;
+        scene.lights.keys = keys.to_vec();
+        let wanted = Picture { light_layers: true, ..Picture::default() };
+        let quality = Quality { azimuths: 8, ..Quality::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+    };
+    let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
+    let none = picture(&[], Border::Plane);
+    assert!(!short(&none).contains("sun") && !short(&none).contains("key"), "{}", short(&none));
+    assert!(none.settings.iter().all(|(name, _)| name != "sun_azimuths"));
+    let dropped = [key(0.5, [0.0; 3]), key(-0.1, [1.0; 3])];
+    let dark = picture(&dropped, Border::Plane);
+    assert_eq!(short(&dark), short(&none));
+    for note in ["key 1 dropped: its radiance is 0", "key 2 dropped: all of it is below horizontal"]
+    {
+        assert!(dark.notes.iter().any(|n| n == note), "{:?}", dark.notes);
+    }
+    let lit = picture(&dropped, Border::Open);
+    assert_eq!(lit.azimuths.len(), 8 + 8);
+    let seen: Vec<_> = labels(&lit).into_iter().filter(|l| l.contains("key")).collect();
+    assert_eq!(seen, ["horizon_sweep key2", "sun_shade key2", "light_resolve key2"]);
+    let outputs: Vec<&str> = lit.outputs().map(|(_, r)| r.name.as_str()).collect();
+    assert_eq!(outputs, ["radiance", "direct.sky", "direct.key2"]);
+    assert!(lit.settings.contains(&("sun_azimuths".into(), "8".into())));
+    assert_eq!(missing_barriers(&lit.passes), []);
+    // Another colour is resolved anew, in its share of the picture, and nothing is swept.
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let kept = |radiance| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.lights.keys = vec![key(0.5, radiance)];
+        let limits = Limits::lavapipe();
+        plan::picture(&scene, &Quality::default(), &limits, wanted).expect("a plan")
+    };
+    let after = kept([2.0; 3]);
+    let again = after.passes_after(&kept([1.0; 3]), &[]);
+    assert!(again.iter().all(|p| after.passes[*p].name() == "light_resolve") && !again.is_empty());
+}
+
+/// An edit marks who looks at an occluder, not who looks around it.
+#[test]
+fn looking_around_takes_no_edits() {
+    let wanted = Picture { keeps_horizons: true, ..Picture::default() };
+    let edits = |fuse| {
+        let quality = Quality { azimuths: 8, fuse, ..Quality::default() };
+        let plan = plan::picture(&under_sky(flat(9, 14)), &quality, &Limits::lavapipe(), wanted);
+        plan.expect("a plan").edit_passes.len()
+    };
+    assert!(edits(Fuse::Aimed) > 0);
+    assert_eq!(edits(Fuse::AimedAround), 0);
+}
