@@ -4,9 +4,10 @@
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
 use super::blocks::Blocks;
+use super::pyramid::Pyramid;
 use super::{Builder, Format, Owner, ResourceId};
-use crate::passes::bounce_march;
-use crate::scene::{BounceEngine, Bounces, Scene};
+use crate::passes::{bounce_gather, bounce_march, height_cells, pyramid_march, shade_reduce};
+use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -23,32 +24,35 @@ pub(crate) struct Bounce {
 
 /// The bounces of a picture, and what their passes read and write.
 pub(super) struct Bouncing {
-    engine: BounceEngine,
     azimuths: u32,
     grey: bool,
     sum: ResourceId,
+    pyramids: Option<bounce_gather::Pyramids>,
     /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
     /// into the picture alone.
     exits: Vec<Option<ResourceId>>,
 }
 
+/// How many bounces are worth drawing.
+pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
+    let albedo = f64::from(scene.surface.albedo.largest());
+    let count = quality.bounces.worth_drawing(albedo);
+    if count < quality.bounces.count {
+        notes.push(dropped(&quality.bounces, count, albedo));
+    }
+    count
+}
+
 impl Bouncing {
-    /// None where no bounce is worth drawing.
+    /// So many bounces, 1 or more; `levels` are those that direct light has of heights.
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
-        bounces: &Bounces,
+        quality: &Quality,
+        (count, levels): (u32, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
-        notes: &mut Vec<String>,
-    ) -> Option<Self> {
-        let albedo = f64::from(scene.surface.albedo.largest());
-        let count = bounces.worth_drawing(albedo);
-        if count < bounces.count {
-            notes.push(dropped(bounces, count, albedo));
-        }
-        if count == 0 {
-            return None;
-        }
+    ) -> Self {
+        let bounces = &quality.bounces;
         let extent = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
         let colour = if grey { Format::R32Float } else { Format::Rgba32Float };
         let mut image = |name: &str, owner: Owner, format: Format| {
@@ -62,8 +66,9 @@ impl Bouncing {
             (1..=count).map(|k| exit.filter(|_| k < count)).collect()
         };
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
-        let Bounces { engine, azimuths, .. } = *bounces;
-        Some(Self { engine, azimuths, grey, sum, exits })
+        let pyramids = (bounces.engine == BounceEngine::Pyramid)
+            .then(|| pyramids(builder, scene, quality, levels));
+        Self { azimuths: bounces.azimuths, grey, sum, pyramids, exits }
     }
 
     /// How many there are.
@@ -71,19 +76,38 @@ impl Bouncing {
         self.exits.len()
     }
 
-    /// Whether rays over the surface are needed.
-    pub fn needs_blocks(&self) -> bool {
-        self.engine == BounceEngine::Brute
+    /// The passes before the first bounce; `is_recorded` says that the blocks' are there.
+    pub fn prepare(
+        &self,
+        builder: &mut Builder,
+        scene: &Scene,
+        blocks: &Blocks,
+        (heights, is_recorded): (ResourceId, bool),
+    ) {
+        let Some(pyramids) = &self.pyramids else {
+            if !is_recorded {
+                blocks.record(builder, &scene.field, heights, None);
+            }
+            return;
+        };
+        if !is_recorded {
+            let of = (&scene.field, scene.surface.border);
+            let ids = [heights, blocks.images.cells, blocks.images.ground];
+            height_cells::plan(builder, of, ids, None);
+        }
+        if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
+            pyramids.heights.record(builder, heights, images);
+        }
     }
 
-    /// The passes of bounce `k`, the first is 1; `direct` is what it begins with. Returns what arrives, and
-    /// where its exit radiance belongs.
+    /// The passes of bounce `k`, the first is 1; of `heights` and `direct` light it begins with the latter. Returns
+    /// what arrives, and where its exit radiance belongs.
     pub fn record(
         &self,
         builder: &mut Builder,
-        (scene, blocks): (&Scene, Option<&Blocks>),
+        (scene, blocks): (&Scene, &Blocks),
         k: usize,
-        direct: ResourceId,
+        [heights, direct]: [ResourceId; 2],
     ) -> (ResourceId, Option<ResourceId>) {
         let before = k.checked_sub(2).and_then(|i| self.exits[i]);
         let bounce = Bounce {
@@ -96,22 +120,66 @@ impl Bouncing {
             grey: self.grey,
             sum: self.sum,
         };
-        match (self.engine, blocks) {
-            (BounceEngine::Brute, Some(blocks)) => {
-                bounce_march::plan(builder, scene, blocks, self.azimuths, &bounce);
+        match &self.pyramids {
+            None => bounce_march::plan(builder, scene, blocks, self.azimuths, &bounce),
+            Some(of) => {
+                for level in 1..=of.shade.levels() {
+                    let images = of.shade_images.expect("made for every level");
+                    shade_reduce::plan(builder, &of.shade, level, &bounce, images);
+                }
+                let ids = [heights, blocks.images.ground];
+                bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
             }
-            (BounceEngine::Brute, None) => unreachable!("rays have blocks"),
         }
         (self.sum, self.exits[k - 1])
     }
 
     /// The settings really used.
     pub fn used(&self) -> Vec<(String, String)> {
-        vec![
-            ("bounce_engine".into(), self.engine.name().into()),
-            ("bounce_azimuths".into(), self.azimuths.to_string()),
-        ]
+        let mut used = Vec::new();
+        let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
+        add("bounce_azimuths", self.azimuths.to_string());
+        let engine = match &self.pyramids {
+            None => BounceEngine::Brute,
+            Some(of) => {
+                add("bounce_level_step", of.shade.level_step.to_string());
+                add("bounce_level_offset", of.shade.level_offset.to_string());
+                add("level_step", of.heights.level_step.to_string());
+                add("level_offset", of.heights.level_offset.to_string());
+                add("levels", of.heights.stored.name().to_owned());
+                add("receiver", of.receiver.name().to_owned());
+                BounceEngine::Pyramid
+            }
+        };
+        add("bounce_engine", engine.name().to_owned());
+        used
     }
+}
+
+/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own; light follows the receiver.
+fn pyramids(
+    builder: &mut Builder,
+    scene: &Scene,
+    quality: &Quality,
+    levels: Option<pyramid_march::Images>,
+) -> bounce_gather::Pyramids {
+    let size = [scene.field.cols() as u32, scene.field.rows() as u32];
+    let heights = Pyramid::new(quality, size, scene.surface.border);
+    let Bounces { level_step, level_offset, .. } = quality.bounces;
+    let shade = Pyramid { level_step, level_offset, stored: Levels::Pyramid, ..heights };
+    let shade_images = (shade.levels() > 0).then(|| {
+        let width = 1 << shade.width_shift();
+        let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
+        let mut image = |name: &str, format: Format, extent: [u32; 3]| {
+            builder.image(name, Owner::Internal, format, extent, false)
+        };
+        let levels = image("shade_levels", Format::Rgba32Float, [width, height, 1]);
+        [levels, image("shade_table", Format::Rgba32Uint, [shade.levels(), 1, 1])]
+    });
+    let fills_heights = levels.is_none();
+    let height_images = levels.or_else(|| heights.images(builder));
+    let receiver = quality.receiver;
+    bounce_gather::Pyramids { heights, height_images, fills_heights, shade, shade_images, receiver }
 }
 
 /// As in labels.

@@ -1,4 +1,4 @@
-use super::quality::within;
+use super::quality::{Quality, within};
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 
@@ -17,6 +17,12 @@ pub struct Bounces {
     /// reflects at most the share a, all bounces from the k-th on carry at most aᵏ + aᵏ⁺¹ + …: the last
     /// ones are dropped. More: faster, darker hollows. 0: none is dropped.
     pub cutoff: f64,
+    /// Levels an octave of the pyramid of exit radiance, k, [1..16], default 4. Fewer: less memory, colours of
+    /// what stands between two distances smeared. Only with [`BounceEngine::Pyramid`], as is the next.
+    pub level_step: u32,
+    /// Octaves by which samples look at finer levels of it than their distance asks for, o, [0..4], default 2.
+    /// Fewer: soft colours of what is far; more: narrow bright things seen or missed by chance.
+    pub level_offset: u32,
 }
 
 impl Default for Bounces {
@@ -27,8 +33,14 @@ impl Default for Bounces {
 
 impl Bounces {
     /// The default: direct light alone.
-    pub const NONE: Self =
-        Self { count: 0, engine: BounceEngine::Brute, azimuths: 32, cutoff: 1.0 / 65536.0 };
+    pub const NONE: Self = Self {
+        count: 0,
+        engine: BounceEngine::Brute,
+        azimuths: 32,
+        cutoff: 1.0 / 65536.0,
+        level_step: 4,
+        level_offset: 2,
+    };
     /// What [`count`](Self::count) may be.
     pub const COUNT: RangeInclusive<u32> = 0..=64;
     /// What [`azimuths`](Self::azimuths) may be.
@@ -45,7 +57,8 @@ impl Bounces {
             let found = self.cutoff.to_string();
             return Err(Error::setting("--bounce-cutoff", found, "a share from 0 to 1"));
         }
-        Ok(())
+        within("--bounce-level-step", self.level_step, Quality::LEVEL_STEP)?;
+        within("--bounce-level-offset", self.level_offset, Quality::LEVEL_OFFSET)
     }
 
     /// How many of them are drawn on a surface that reflects at most the share `albedo`: the fewest that
@@ -67,6 +80,10 @@ pub enum BounceEngine {
     /// azimuths, and slower in proportion to the side.
     #[default]
     Brute,
+    /// One sample a level of a pyramid of heights, as [`Method::Pyramid`](super::Method::Pyramid) with its levels,
+    /// and of one of exit radiance (Nowrouzezahrai & Snyder 2009): time in proportion to the samples and the
+    /// logarithm of the side, error whatever the settings.
+    Pyramid,
 }
 
 impl BounceEngine {
@@ -74,6 +91,7 @@ impl BounceEngine {
     pub fn name(self) -> &'static str {
         match self {
             BounceEngine::Brute => "brute",
+            BounceEngine::Pyramid => "pyramid",
         }
     }
 }
