@@ -3,10 +3,11 @@ mod images;
 
 use super::azimuths::Shape;
 use super::blocks::Blocks;
+use super::bounces::{self, Bouncing};
 use super::edit::Edits;
 use super::shining::Shining;
 use super::sweep::Sweep;
-use super::sweeping::{Lists, prepare, settings};
+use super::sweeping::{Lists, Sweeping, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface, Wedges};
 use crate::{Error, Result};
@@ -16,7 +17,7 @@ use images::{Harmonics, Images, Tables};
 /// What a picture should hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
-    /// Besides the whole, an image for each light.
+    /// Besides the whole, an image for each light and each bounce.
     pub light_layers: bool,
     /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
     /// receiver, [0..1].
@@ -36,8 +37,8 @@ pub struct Picture {
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
 /// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
-/// "radiance", then one "direct.*" image a light and "sky_view" where asked. All are images of one
-/// channel where every colour is grey, else of four.
+/// "radiance", then one "direct.*" image a light, "sky_view" and one "indirect.*" image a bounce where asked. All
+/// are images of one channel where every colour is grey, else of four.
 ///
 /// # Errors
 /// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -73,6 +74,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
+    let bounces =
+        if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
     let lists = shining.lists(
         images.need_circle(),
         quality,
@@ -99,14 +102,16 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
-        && images.sphere_sum.is_none();
+        && images.sphere_sum.is_none()
+        && bounces == 0;
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let blocks = images.sphere_sum.map(|_| Blocks::make(&mut builder, size, surface.border));
+    let need_blocks = images.sphere_sum.is_some() || bounces > 0;
+    let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
     } else {
@@ -114,8 +119,16 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
         (Some(sweeping), lists)
     };
+    let levels = sweeping.as_ref().and_then(Sweeping::levels);
+    let of_light = (shining.is_grey, wanted.light_layers);
+    let bouncing = (bounces > 0)
+        .then(|| Bouncing::make(&mut builder, scene, quality, (bounces, levels), of_light));
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
-    let used = used(quality, sweep, surface.border, &shining, &images);
+    let mut used = used(quality, sweep, surface.border, &shining, &images);
+    used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
+    let of_bounces = bouncing.iter().flat_map(Bouncing::used);
+    let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();
+    used.extend(more);
     let mut drawing = Drawing {
         builder,
         scene,
@@ -125,6 +138,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         harmonics,
         sweeping,
         blocks,
+        bouncing,
         edited: None,
         is_begun: false,
     };

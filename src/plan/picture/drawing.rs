@@ -1,6 +1,7 @@
 //! The passes of a picture, light by light.
 
 use super::super::blocks::Blocks;
+use super::super::bounces::{Bouncing, bounce_name};
 use super::super::edit::Edits;
 use super::super::shining::{Aimed, Shining};
 use super::super::spheres::light_name;
@@ -21,8 +22,9 @@ pub(super) struct Drawing<'a> {
     pub harmonics: Option<Harmonics>,
     /// None where balls of light are alone: each looks itself for what hides it.
     pub sweeping: Option<Sweeping>,
-    /// What rays towards balls of light look at.
+    /// What rays look at, towards balls of light and of bounces.
     pub blocks: Option<Blocks>,
+    pub bouncing: Option<Bouncing>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     pub edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
@@ -60,6 +62,7 @@ impl Drawing<'_> {
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
+        self.bounces();
         self.sky_view();
         self.dark()
     }
@@ -205,6 +208,21 @@ impl Drawing<'_> {
         }
         if self.images.sphere_layers.iter().all(Option::is_none) {
             self.resolve("lights", sum, None, None);
+        }
+    }
+
+    /// Each bounce from the light of the one before.
+    fn bounces(&mut self) {
+        let (Some(bouncing), Some(blocks)) = (self.bouncing.take(), self.blocks.take()) else {
+            return;
+        };
+        let Images { heights, radiance, sphere_sum, .. } = self.images;
+        let begun = (heights, sphere_sum.is_some());
+        bouncing.prepare(&mut self.builder, self.scene, &blocks, begun);
+        for k in 1..=bouncing.count() {
+            let ids = [heights, radiance];
+            let (sum, exit) = bouncing.record(&mut self.builder, (self.scene, &blocks), k, ids);
+            self.resolve(&bounce_name(k), sum, None, exit);
         }
     }
 
