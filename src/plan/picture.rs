@@ -4,12 +4,13 @@ use super::azimuths::Shape;
 use super::blocks::Blocks;
 use super::edit::Edits;
 use super::shining::{Aimed, Shining};
+use super::sphere_sh::SphereSh;
 use super::spheres::light_name;
 use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface, Wedges};
+use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Surface, Wedges};
 use crate::{Error, Result};
 use images::{Harmonics, Images, Tables};
 
@@ -115,7 +116,14 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (Some(sweeping), lists)
     };
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
-    let used = used(quality, sweep, surface.border, &shining, &images);
+    let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
+        let levels = sweeping.as_ref().and_then(|s| s.levels);
+        SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)
+    });
+    if let Some(soft) = &soft {
+        passes::sphere_sh_shade::check(surface.border, field, soft)?;
+    }
+    let used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
     let mut drawing = Drawing {
         builder,
         scene,
@@ -125,6 +133,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         harmonics,
         sweeping,
         blocks,
+        soft,
         edited: None,
         is_begun: false,
     };
@@ -189,6 +198,8 @@ struct Drawing<'a> {
     sweeping: Option<Sweeping>,
     /// What rays towards balls of light look at.
     blocks: Option<Blocks>,
+    /// Where balls of light are lit by spherical harmonics.
+    soft: Option<SphereSh>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
@@ -356,15 +367,26 @@ impl Drawing<'_> {
     /// Balls add up in one sum; where layers are wanted each begins its own.
     fn spheres(&mut self, quality: &Quality) {
         let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
-        blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
+        let (field, heights) = (&self.scene.field, self.images.heights);
+        if self.soft.as_ref().is_some_and(|s| s.pyramid.is_some()) {
+            blocks.record_ground(&mut self.builder, field, heights, None);
+        } else {
+            blocks.record(&mut self.builder, field, heights, None);
+        }
         let names: Vec<String> =
             self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };
-            let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
             let begins = index == 0 || layer.is_some();
-            self.shining.spheres.record(&mut self.builder, lit, of, begins, sum);
+            let (spheres, builder) = (&self.shining.spheres, &mut self.builder);
+            if let Some(soft) = &self.soft {
+                let lit = (self.scene, blocks, soft);
+                spheres.record_soft(builder, lit, heights, (index, begins), sum);
+            } else {
+                let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
+                spheres.record(builder, lit, of, begins, sum);
+            }
             if layer.is_some() {
                 self.resolve(name, sum, None, layer);
             }
@@ -445,6 +467,7 @@ fn used(
     border: Border,
     shining: &Shining<'_>,
     images: &Images,
+    soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {
     let mut used = settings(quality, sweep, border);
     if images.need_circle() {
@@ -475,6 +498,12 @@ fn used(
     }
     if has_balls {
         used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
+        used.push(("light_basis".into(), quality.light_basis.name().into()));
+    }
+    for setting in soft.map(|soft| soft.settings(quality)).into_iter().flatten() {
+        if used.iter().all(|(name, _)| *name != setting.0) {
+            used.push(setting);
+        }
     }
     used
 }

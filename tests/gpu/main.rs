@@ -19,6 +19,7 @@ mod reference_edges;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
+mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
