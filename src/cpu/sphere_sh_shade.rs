@@ -111,22 +111,14 @@ impl<'a> SphereSh<'a> {
     fn free(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
         match &self.pyramid {
             None => self.oracle.slope_within(row, col, azimuth_rad, within_m),
-            Some((pyramid, stored)) => {
-                Within { oracle: &self.oracle, pyramid, stored: *stored }
-                    .slope([row, col], azimuth_rad, within_m)
-            }
+            Some((pyramid, stored)) => Within { oracle: &self.oracle, pyramid, stored: *stored }
+                .slope([row, col], azimuth_rad, within_m),
         }
     }
 }
 
 /// Exit radiance of albedo 1 from a series of what is seen of a ball that stands there.
-pub fn light_of(
-    quality: &Quality,
-    radius_m: f64,
-    to: DVec3,
-    normal: DVec3,
-    seen: &[f64],
-) -> f64 {
+pub fn light_of(quality: &Quality, radius_m: f64, to: DVec3, normal: DVec3, seen: &[f64]) -> f64 {
     let order = light_order(quality);
     let axis = if to == DVec3::ZERO { DVec3::Z } else { to.normalize() };
     let light = turned(&ball(order, radius_m, to.length()), axis);

@@ -83,7 +83,8 @@ pub(crate) fn plan(
 ) {
     // A wedge of a table needs a ray at both of its ends.
     let more = u32::from(soft.wedges == Wedges::Table);
-    let at_once = (MOST_TURNS / (most_turns(scene.surface.border, &scene.field, soft) + 1)).max(1 + more);
+    let at_once =
+        (MOST_TURNS / (most_turns(scene.surface.border, &scene.field, soft) + 1)).max(1 + more);
     let at_once = at_once - more;
     for first in (0..soft.azimuths).step_by(at_once as usize) {
         let last = soft.azimuths.min(first + at_once);

@@ -48,7 +48,9 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             | "subsample" | "wedge_side",
             ..,
         ) => match (setting, of("basis")) {
-            ("sh_order" | "wedges" | "receiver" | "window", None) if of("light_basis").is_some() => {
+            ("sh_order" | "wedges" | "receiver" | "window", None)
+                if of("light_basis").is_some() =>
+            {
                 "without an environment or --light-basis sh".into()
             }
             (_, None) => "without an environment".into(),

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName, SurfaceArgs,
-    WedgesName, WindowName, albedo_colour,
+    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName,
+    SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
 
 /// How a command ended that did not fail.

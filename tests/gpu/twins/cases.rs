@@ -2,8 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, LightBasis, Lights,
-    Lines, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, LightBasis,
+    Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface,
+    Wedges, Window,
 };
 
 use crate::{field, random};
@@ -333,7 +334,13 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("balls of light", balls.clone(), quality, true, false),
-        picture("balls in one sum", balls.clone(), Quality { sun_azimuths: 5, ..quality }, false, false),
+        picture(
+            "balls in one sum",
+            balls.clone(),
+            Quality { sun_azimuths: 5, ..quality },
+            false,
+            false,
+        ),
         picture("balls by harmonics", balls.clone(), soft(4, 8), true, false),
         picture("balls by harmonics of order 6", balls.clone(), soft(6, 4), false, false),
         picture("balls by a table of wedges", balls.clone(), soft_table, false, false),

@@ -359,10 +359,9 @@ fn a_value_beyond_its_tolerance_is_seen() {
     let mut device = Device::new();
     let cases = cases::pictures();
     let mut all = Vec::new();
-    for case in cases
-        .iter()
-        .filter(|c| ["environment on a plane", "harmonics of order 3", "balls by harmonics"].contains(&c.name))
-    {
+    for case in cases.iter().filter(|c| {
+        ["environment on a plane", "harmonics of order 3", "balls by harmonics"].contains(&c.name)
+    }) {
         let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
         all.extend(run.pairs());
         run.gpu.end(run.frame);
