@@ -238,21 +238,26 @@ fn more_azimuths_tend_to_the_floor_of_the_order() {
     assert!(floors.windows(2).all(|w| w[1] < w[0]), "{floors:?}");
 }
 
-/// How much more a sample changes at most from step to step than the truth does, under a ball that comes from beyond
-/// the edge, crosses the ground, goes through it under samples that it takes in, over others, and comes out.
+/// How much a sample changes at most from step to step beyond what the truth does and a tenth more, which harmonics of
+/// order 4 may be off; where the ball's surface passes it, beyond a tenth of its light. Under a ball that comes from beyond the edge, crosses the ground, goes through it under samples
+/// that it takes in, over others, and comes out.
 fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
     let land = fractal(16, 2).unwrap();
     let oracle = Oracle::new(&land, Border::Plane);
-    let (mut before, mut most): (Vec<[f64; 2]>, f64) = (Vec::new(), 0.0);
+    let (mut before, mut most): (Vec<([f64; 2], bool)>, f64) = (Vec::new(), 0.0);
     for step in 0..=steps {
         let t = step as f64 / steps as f64;
         let up = 6.0 * (4.0 * FRAC_PI_2 * t).cos() + 1.0;
         let light = ball([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let found = values(&gpu.picture(&under(&land, Border::Plane, vec![light]), quality));
         let truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
-        let now: Vec<[f64; 2]> = (0..256).step_by(5).map(|i| [found[i], truth(i)]).collect();
-        for (a, b) in before.iter().zip(&now) {
-            most = most.max((b[0] - a[0]).abs() - (b[1] - a[1]).abs());
+        let is_within = |i: usize| ball_seen(&land, &light, i).distance_m < light.radius_m;
+        let state = |i: usize| ([found[i], truth(i)], is_within(i));
+        let now: Vec<_> = (0..256).step_by(7).map(state).collect();
+        for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {
+            let [soft, truth] = [0, 1].map(|k| (b[k] - a[k]).abs());
+            let off = if was_within == is_within { truth } else { a[1].max(b[1]) };
+            most = most.max(soft - truth - 0.1 * off);
         }
         before = now;
     }
@@ -260,13 +265,13 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
 }
 
 /// Pops that are not the truth's own would stay in shorter steps; what follows the ball, and only blurs it, shrinks
-/// with them: four times as many, half at most.
+/// with them: in an eighth of the length, to half at most.
 #[test]
 fn a_moving_ball_by_harmonics_pops_no_more_than_the_truth() {
     let mut gpu = Device::new();
-    for quality in [soft(4, 8), Quality { wedges: Wedges::Table, ..soft(4, 16) }] {
-        let [long, short] = [40, 160].map(|steps| popped(&mut gpu, &quality, steps));
-        println!("{long:.4} more than the truth, {short:.4} in steps a quarter as long");
+    for quality in [soft(4, 8), Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(4, 16) }] {
+        let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));
+        println!("{long:.4} more than the truth, {short:.4} in steps an eighth as long");
         assert!(short <= 0.5 * long, "{:?}: {long} {short}", quality.wedges);
     }
 }
