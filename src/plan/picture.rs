@@ -6,10 +6,12 @@ use super::blocks::Blocks;
 use super::bounces::{self, Bouncing};
 use super::edit::Edits;
 use super::shining::Shining;
+use super::sphere_sh::SphereSh;
 use super::sweep::Sweep;
-use super::sweeping::{Lists, Sweeping, prepare, settings};
+use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
-use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface, Wedges};
+use crate::passes;
+use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Surface, Wedges};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -119,12 +121,18 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
         (Some(sweeping), lists)
     };
-    let levels = sweeping.as_ref().and_then(Sweeping::levels);
+    let levels = sweeping.as_ref().and_then(|s| s.levels);
     let of_light = (shining.is_grey, wanted.light_layers);
     let bouncing = (bounces > 0)
         .then(|| Bouncing::make(&mut builder, scene, quality, (bounces, levels), of_light));
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
-    let mut used = used(quality, sweep, surface.border, &shining, &images);
+    let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
+        SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)
+    });
+    if let Some(soft) = &soft {
+        passes::sphere_sh_shade::check(surface.border, field, soft)?;
+    }
+    let mut used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
     let of_bounces = bouncing.iter().flat_map(Bouncing::used);
     let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();
@@ -139,6 +147,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         sweeping,
         blocks,
         bouncing,
+        soft,
         edited: None,
         is_begun: false,
     };
@@ -198,6 +207,7 @@ fn used(
     border: Border,
     shining: &Shining<'_>,
     images: &Images,
+    soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {
     let mut used = settings(quality, sweep, border);
     if images.need_circle() {
@@ -228,6 +238,12 @@ fn used(
     }
     if has_balls {
         used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
+        used.push(("light_basis".into(), quality.light_basis.name().into()));
+    }
+    for setting in soft.map(|soft| soft.settings(quality)).into_iter().flatten() {
+        if used.iter().all(|(name, _)| *name != setting.0) {
+            used.push(setting);
+        }
     }
     used
 }

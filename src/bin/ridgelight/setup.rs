@@ -6,16 +6,16 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision,
-    Quality, Receiver, Scene, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Method,
+    Precision, Quality, Receiver, Scene, Surface, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName, SurfaceArgs,
-    WedgesName, WindowName, albedo_colour,
+    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName,
+    SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
 pub use told::{as_json, asked, metadata, typed};
 
@@ -104,6 +104,10 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         azimuths: args.azimuths,
         sun_azimuths: args.sun_azimuths,
         light_cutoff: args.light_cutoff,
+        light_basis: match args.light_basis {
+            LightBasisName::Exact => LightBasis::Exact,
+            LightBasisName::Sh => LightBasis::Sh,
+        },
         lines: match args.lines {
             LinesName::Exact => Lines::Exact,
             LinesName::QuarterCell => Lines::QuarterCell,

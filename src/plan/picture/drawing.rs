@@ -4,6 +4,7 @@ use super::super::blocks::Blocks;
 use super::super::bounces::{Bouncing, bounce_name};
 use super::super::edit::Edits;
 use super::super::shining::{Aimed, Shining};
+use super::super::sphere_sh::SphereSh;
 use super::super::spheres::light_name;
 use super::super::sweeping::{Lists, Sweeping, part};
 use super::super::{Builder, ResourceId};
@@ -25,6 +26,8 @@ pub(super) struct Drawing<'a> {
     /// What rays look at, towards balls of light and of bounces.
     pub blocks: Option<Blocks>,
     pub bouncing: Option<Bouncing>,
+    /// Where balls of light are lit by spherical harmonics.
+    pub soft: Option<SphereSh>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     pub edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
@@ -193,15 +196,26 @@ impl Drawing<'_> {
     /// Balls add up in one sum; where layers are wanted each begins its own.
     fn spheres(&mut self, quality: &Quality) {
         let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
-        blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
+        let (field, heights) = (&self.scene.field, self.images.heights);
+        if self.soft.as_ref().is_some_and(|s| s.pyramid.is_some()) {
+            blocks.record_ground(&mut self.builder, field, heights, None);
+        } else {
+            blocks.record(&mut self.builder, field, heights, None);
+        }
         let names: Vec<String> =
             self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };
-            let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
             let begins = index == 0 || layer.is_some();
-            self.shining.spheres.record(&mut self.builder, lit, of, begins, sum);
+            let (spheres, builder) = (&self.shining.spheres, &mut self.builder);
+            if let Some(soft) = &self.soft {
+                let lit = (self.scene, blocks, soft);
+                spheres.record_soft(builder, lit, heights, (index, begins), sum);
+            } else {
+                let (lit, of) = ((self.scene, blocks), (index, quality.sun_azimuths));
+                spheres.record(builder, lit, of, begins, sum);
+            }
             if layer.is_some() {
                 self.resolve(name, sum, None, layer);
             }
