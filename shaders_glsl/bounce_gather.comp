@@ -183,8 +183,8 @@ void take_in(float angle, vec2 place, int level, bool is_first, bool on) {
     float middle = ((four.x + four.w) + 23.0 * (four.y + four.z)) * (1.0 / 48.0);
     vec2 of = is_first ? place : place_before;
     int of_level = is_first ? level : level_before;
-    cast_light(middle, of, of_level, on);
-    cast_light(knot, of, of_level, on);
+    // Both radiate alike: the higher opens what both do.
+    cast_light(max(middle, knot), of, of_level, on);
     angles = on ? four : angles;
     place_before = on ? place : place_before;
     level_before = on ? level : level_before;

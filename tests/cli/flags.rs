@@ -47,6 +47,8 @@ fn quality() {
             ("--bounces -1", 2, &["--bounces", "'-1'"]),
             ("--bounce-engine magic", 2, &["--bounce-engine", "magic", "brute"]),
             ("--bounce-azimuths 3", 2, &["--bounce-azimuths: found 3", "4 to 1024"]),
+            ("--bounce-level-step 17", 2, &["--bounce-level-step: found 17", "1 to 16"]),
+            ("--bounce-level-offset 5", 2, &["--bounce-level-offset: found 5", "0 to 4"]),
             ("--bounce-cutoff 2", 2, &["--bounce-cutoff: found 2", "0 to 1"]),
             ("--bounce-cutoff nan", 2, &["--bounce-cutoff: found NaN"]),
             ("--method magic", 2, &["--method", "magic", "sweep"]),
@@ -319,6 +321,8 @@ fn help_says_units_and_defaults() {
         ("--bounce-engine", &["[default: brute]"]),
         ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
+        ("--bounce-level-step", &["1..16", "[default: 4]"]),
+        ("--bounce-level-offset", &["0..4", "[default: 2]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];
