@@ -17,7 +17,7 @@ use crate::cpu::sh_visibility::{Series, seen_above};
 use crate::cpu::sh_wedges::sh_wedges;
 use crate::plan::Azimuth;
 use crate::plan::sh::lowest_rad;
-use crate::scene::{Border, Environment, Quality, Receiver, Wedges};
+use crate::scene::{Border, Environment, Quality, Wedges};
 
 /// What a sample sees: coefficients, and how far a device's may be from each.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,10 +61,7 @@ impl Harmonics {
     /// The light's matrix of a quality.
     pub fn new(environment: &Environment, border: Border, quality: &Quality) -> Self {
         let order = quality.sh_order as usize;
-        let light_order = match quality.receiver {
-            Receiver::Plane => order - 1,
-            Receiver::Lobe => order,
-        };
+        let light_order = quality.light_order();
         let (height, fitted) = (environment.height(), is_fitted(quality, border));
         let rows = if fitted { height.div_ceil(2) } else { height };
         let turns = env_turns(environment, rows, light_order);

@@ -8,7 +8,7 @@ use super::edit::Edits;
 use super::shining::Shining;
 use super::sphere_sh::SphereSh;
 use super::sweep::Sweep;
-use super::sweeping::{Lists, Sweeping, prepare, settings};
+use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
 use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Surface, Wedges};

@@ -39,10 +39,7 @@ impl Sh {
         let is_fitted = quality.receiver == Receiver::Plane
             && quality.window == Window::None
             && border != Border::Open;
-        let light_order = match quality.receiver {
-            Receiver::Plane => order - 1,
-            Receiver::Lobe => order,
-        };
+        let light_order = quality.light_order();
         let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
         let rows = match is_fitted {
             true => environment.height().div_ceil(2),

@@ -305,6 +305,7 @@ fn help_says_units_and_defaults() {
         ("--azimuths", &["4..1024", "[default: 64]"]),
         ("--sun-azimuths", &["1..256", "[default: 8]"]),
         ("--light-cutoff", &["0..1", "faster", "[default: 0.0000152587890625]"]),
+        ("--light-basis", &["[default: exact]", "--sh-order"]),
         ("--lines", &["Cells", "[default: 1]"]),
         ("--fuse", &["[default: aimed-nearest]"]),
         ("--precision", &["[default: f32]"]),

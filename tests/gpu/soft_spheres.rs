@@ -10,7 +10,7 @@ use ridgelight::basis::zonal::{ball as zonal_ball, clamped_cosine};
 use ridgelight::cpu::light::normal;
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::sphere::sphere_of;
-use ridgelight::cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of, light_order};
+use ridgelight::cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::measure::soft_ball::SoftBall;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
@@ -43,8 +43,8 @@ fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> 
 /// free level sample gets, over π.
 fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     let count = match quality.receiver {
-        Receiver::Plane => light_order(quality),
-        Receiver::Lobe => light_order(quality).min(3),
+        Receiver::Plane => quality.light_order(),
+        Receiver::Lobe => quality.light_order().min(3),
     };
     let light = zonal_ball(count, radius_m, to.length());
     let cosine = clamped_cosine(count);
@@ -273,5 +273,35 @@ fn a_moving_ball_by_harmonics_pops_no_more_than_the_truth() {
         let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));
         println!("{long:.4} more than the truth, {short:.4} in steps an eighth as long");
         assert!(short <= 0.5 * long, "{:?}: {long} {short}", quality.wedges);
+    }
+}
+
+/// The comparison is not deaf: light of a ball a hundredth of a metre away, of another radius, of another order or by
+/// the surface of another field is beyond its bound at nearly every sample.
+#[test]
+fn wrong_harmonics_are_not_within_their_bound() {
+    let mut gpu = Device::new();
+    let land = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.4);
+    let (quality, light) = (soft(4, 4), ball([11.0, 8.0, 9.0], 2.0));
+    let scene = under(&land, Border::Plane, vec![light]);
+    let oracle = Oracle::new(&land, Border::Plane);
+    let other = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.41);
+    let moved = ball([11.01, 8.0, 9.0], 2.0);
+    let wrong = [
+        (&oracle, ball([11.0, 8.0, 9.0], 2.005), quality),
+        (&oracle, moved, quality),
+        (&oracle, light, soft(5, 4)),
+        (&Oracle::new(&other, Border::Plane), light, quality),
+    ];
+    let found = values(&gpu.picture(&scene, &quality));
+    for (which, (oracle, light, settings)) in wrong.into_iter().enumerate() {
+        let twin = SphereSh::new(*oracle, None, settings);
+        let right = SphereSh::new(Oracle::new(&land, Border::Plane), None, quality);
+        let seen = found.iter().enumerate().filter(|(i, got)| {
+            let bound = twin_bound(&scene, &quality, *i, &right.at(&light, i / 11, i % 11).seen);
+            (*got - twin.at(&light, i / 11, i % 11).light.max(0.0)).abs() > bound
+        });
+        let seen = seen.count();
+        assert!(seen > 80, "{which}: {seen} of 99");
     }
 }
