@@ -12,6 +12,7 @@ mod forms;
 mod goldens;
 mod harmonics;
 mod keys;
+mod many_lights;
 mod pruned;
 mod pyramid;
 mod real;
