@@ -35,6 +35,7 @@ pub mod shared;
 pub mod sky_shade;
 pub mod sphere;
 pub mod sphere_shade;
+pub mod sun_gloss;
 pub mod sun_shade;
 pub mod surface_sweep;
 pub mod sweep_fuse;

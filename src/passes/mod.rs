@@ -22,6 +22,7 @@ pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_shade;
+pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;

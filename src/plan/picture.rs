@@ -1,3 +1,4 @@
+mod gloss;
 mod images;
 
 use super::azimuths::Shape;
@@ -9,7 +10,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, Sweeping, part, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan, ResourceId};
 use crate::passes::{self, light_resolve};
-use crate::scene::{Albedo, Basis, Border, Quality, Scene, Surface, Wedges};
+use crate::scene::{Albedo, Basis, Border, Quality, Scene, Wedges};
 use crate::{Error, Result};
 use images::{Harmonics, Images, Tables};
 
@@ -36,8 +37,12 @@ pub struct Picture {
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
 /// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
-/// "radiance", then one "direct.*" image a light and "sky_view" where asked. All are images of one
-/// channel where every colour is grey, else of four.
+/// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
+/// all, and they without it) and "sky_view". All are images of one channel where every colour is grey, else
+/// of four.
+///
+/// A lobe is seen from straight above. It reflects sky and environment by harmonics, whose order limits it as
+/// it does the light, and suns by the lobe towards their middle and the part of them that is seen.
 ///
 /// # Errors
 /// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -46,10 +51,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     quality.check()?;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
-    refuse_later(surface)?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
+    let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
     if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
@@ -81,25 +86,29 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         &mut notes,
     )?;
     let (mut tables, mut harmonics) = (None, None);
-    match shining.environment.map(|e| (e, surface.border)) {
-        Some(lit) if quality.basis == Basis::Sh => {
-            if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
-                return Err(Error::setting(
-                    "--wedges table with --lines exact",
-                    "wedges of uneven widths",
-                    "--method brute, which is exact in every azimuth",
-                ));
-            }
-            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality, &lists[0]));
+    let exponent = shining.gloss.filter(|_| shining.has_gloss_around()).map(|p| p.exponent);
+    if exponent.is_some() || shining.environment.is_some() && quality.basis == Basis::Sh {
+        if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
+            return Err(Error::setting(
+                "--wedges table with --lines exact",
+                "wedges of uneven widths",
+                "--method brute, which is exact in every azimuth",
+            ));
         }
-        Some(lit) => tables = Some(Tables::make(&mut builder, lit, quality)),
-        None if shining.sky.is_some() => notes.push("no environment: no table".into()),
-        None => {}
+        let (lit, settings) = ((shining.environment, surface.border), (quality, exponent));
+        harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
+    } else if let Some(environment) = shining.environment {
+        let lit = (environment, surface.border);
+        tables = Some(Tables::make(&mut builder, lit, quality));
+    }
+    if shining.environment.is_none() && shining.sky.is_some() {
+        notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
-        && images.sphere_sum.is_none();
+        && images.sphere_sum.is_none()
+        && images.gloss_sum.is_none();
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
@@ -127,6 +136,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         blocks,
         edited: None,
         is_begun: false,
+        gloss_is_begun: false,
     };
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
@@ -164,17 +174,8 @@ fn marched_nodes(
     let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
     // A table is looked up by horizons of all samples.
     let nodes = harmonics.filter(|h| h.wedge_table.is_none() && is_marched && is_alone);
-    let nodes = nodes.map(|h| h.sh.nodes);
+    let nodes = nodes.map(|h| h.sh().nodes);
     nodes.unwrap_or(Nodes { stride: 1 })
-}
-
-/// What only the reference can light so far.
-fn refuse_later(surface: &Surface) -> Result<()> {
-    let expected = "none: it is not yet there for pictures, only for the reference";
-    if surface.phong.is_some() {
-        return Err(Error::setting("phong", "a lobe", expected));
-    }
-    Ok(())
 }
 
 /// A picture while its passes are added.
@@ -193,6 +194,8 @@ struct Drawing<'a> {
     edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
     is_begun: bool,
+    /// The same of what the lobe reflects.
+    gloss_is_begun: bool,
 }
 
 impl Drawing<'_> {
@@ -201,6 +204,7 @@ impl Drawing<'_> {
     }
 
     fn fill_tables(&mut self, quality: &Quality) {
+        self.fill_matrices();
         let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
             return;
         };
@@ -214,18 +218,16 @@ impl Drawing<'_> {
             let nodes = quality.table_elevations;
             passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
         }
-        if let Some(Harmonics { sh, constants, env_turns, light_matrix, .. }) = &self.harmonics {
-            passes::env_turns::plan(builder, e, sh, [image, *constants, *env_turns]);
-            passes::light_matrix::plan(builder, sh, [*env_turns, *constants, *light_matrix]);
-        }
     }
 
     /// Passes from the field to the lit picture; of an edit, from its lattices.
     fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
+        self.gloss_is_begun = false;
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
+        self.gloss();
         self.sky_view();
         self.dark()
     }
@@ -270,9 +272,8 @@ impl Drawing<'_> {
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
             }
-            if let Some(Harmonics { sh, wedges, visibility, nodes, wedge_table, .. }) =
-                &self.harmonics
-            {
+            if let Some(harmonics) = &self.harmonics {
+                let Harmonics { wedges, visibility, nodes, wedge_table, .. } = harmonics;
                 if let Some((angles, _)) = wedge_table {
                     let ids = [lane_heights, azimuths, *angles];
                     let read = (lattice, None);
@@ -287,11 +288,12 @@ impl Drawing<'_> {
                     visibility,
                     nodes,
                 };
+                let sh = harmonics.sh();
                 let (field, seen) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
                 passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
             }
         }
-        if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
+        if let (Some(h), Some(batch)) = (&self.harmonics, batches.last()) {
             let lane_heights = sweeping.lane_heights(batch);
             if let Some((angles, table)) = h.wedge_table {
                 let (constants, visibility, nodes) = (h.constants, h.visibility, h.nodes);
@@ -303,11 +305,17 @@ impl Drawing<'_> {
                     nodes,
                 };
                 let field = (batch.axis, border, cell_m);
-                passes::sh_wedges::plan(&mut self.builder, field, &h.sh, &table, &images);
+                passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
-            let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
-            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
+            let lit = [(&h.diffuse, env_sum), (&h.gloss, self.images.gloss_sum)];
+            for (seen, sum) in lit {
+                if let (Some(seen), Some(sum)) = (seen, sum) {
+                    let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
+                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes);
+                }
+            }
+            self.gloss_is_begun = h.gloss.is_some();
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -350,6 +358,9 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
+            if let (Some((_, sun)), Some(batch)) = (self.shining.suns.get(i), batches.last()) {
+                self.sun_gloss(&name, sun, batch, sum);
+            }
         }
     }
 
@@ -451,8 +462,9 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    match (shining.environment, quality.basis) {
-        (Some(_), Basis::Sh) => {
+    let is_around = shining.environment.is_some() || shining.has_gloss_around();
+    match quality.basis {
+        Basis::Sh if is_around => {
             add("basis", "sh");
             add("sh_order", &quality.sh_order.to_string());
             add("wedges", quality.wedges.name());
@@ -463,11 +475,11 @@ fn used(
                 add("wedge_side", &quality.wedge_side.to_string());
             }
         }
-        (Some(_), _) => {
+        _ if is_around => {
             add("basis", "table");
             add("table_elevations", &quality.table_elevations.to_string());
         }
-        (None, _) => {}
+        _ => {}
     }
     let has_balls = !shining.spheres.shining.is_empty();
     if has_balls || shining.aimed().any(|light| light.shape != Shape::Point) {

@@ -182,7 +182,6 @@ fn not_yet() {
         &[PLAN, RENDER, HORIZON],
         &folder,
         &[
-            ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--bounces 2", 2, &["--bounces", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),

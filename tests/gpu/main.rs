@@ -9,6 +9,7 @@ mod embedding;
 mod extremes;
 mod flight;
 mod forms;
+mod gloss;
 mod goldens;
 mod harmonics;
 mod keys;

@@ -70,7 +70,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         None => None,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), phong: None },
+        surface: Surface { albedo, border: border(&surface.field), phong: surface.phong },
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
@@ -167,6 +167,18 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
     Ok(quality)
 }
 
+/// Refuses a lobe where light is judged by a truth without one.
+pub fn check_diffuse(scene: &Scene, what: &str) -> Result<()> {
+    match scene.surface.phong {
+        None => Ok(()),
+        Some(_) => Err(Error::setting(
+            format!("--phong with {what}"),
+            "a lobe",
+            "none: what it judges light by is diffuse; `reference` and `compare` judge lobes",
+        )),
+    }
+}
+
 /// What is wrong with a request whatever the device: planned for one without limits, so that it is
 /// said before a device is opened.
 pub fn check_plan(global: &GlobalArgs, plan: impl Fn(&Limits) -> Result<Plan>) -> Result<()> {
@@ -231,6 +243,9 @@ pub fn asked(
     }
     let Some((args, surface, scene)) = lit else { return all };
     all.push(("albedo".to_owned(), surface.albedo.clone()));
+    if let Some(phong) = scene.surface.phong {
+        all.push(("phong".to_owned(), format!("{},{}", phong.exponent, phong.scale)));
+    }
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
     }

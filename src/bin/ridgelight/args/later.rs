@@ -4,8 +4,6 @@ use clap::Args;
 #[derive(Args)]
 pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    phong: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     bounces: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     #[arg(long, hide = true, allow_hyphen_values = true)]
@@ -18,7 +16,6 @@ impl LaterArgs {
     /// Refuses them.
     pub fn check(&self) -> ridgelight::Result<()> {
         let given = [
-            ("--phong", self.phong.as_ref()),
             ("--bounces", self.bounces.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--camera", self.camera.as_ref()),
