@@ -18,6 +18,7 @@ mod pruned;
 mod pyramid;
 mod real;
 mod reference_edges;
+mod reference_numbers;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
