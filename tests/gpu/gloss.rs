@@ -78,7 +78,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
         let (peak, radius) = ((n + 1.0) / (2.0 * PI), 0.5 * diameter_rad);
         let mut lit = 0;
         for (i, want) in truth.iter().enumerate() {
-            for c in 0..3 {
+            for (c, want) in want.iter().enumerate() {
                 let got = f64::from(picture.values[i * picture.channels + c]);
                 let irradiance: f64 =
                     scene.lights.suns.iter().map(|s| f64::from(s.irradiance[c])).sum();
@@ -87,9 +87,9 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 let uneven = peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);
-                let off = (got - want[c]).abs();
+                let off = (got - want).abs();
                 assert!(off <= bound, "{diameter_rad} {n}: sample {i}: {off:e} of {bound:e}");
-                lit += usize::from(want[c] > bound);
+                lit += usize::from(*want > bound);
             }
         }
         println!("{diameter_rad} {n}: {lit} of {} are told from dark", 3 * truth.len());

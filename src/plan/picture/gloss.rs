@@ -91,3 +91,87 @@ impl Drawing<'_> {
         self.light_resolve("glossy", &light);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::Result;
+    use crate::measure::fractal::fractal;
+    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::{
+        Albedo, Basis, Border, Environment, KeyLight, Lights, Phong, Quality, Scene, SphereLight,
+        Sun, Surface,
+    };
+
+    fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
+        let surface = Surface {
+            albedo: Albedo::Constant([0.5; 3]),
+            border: Border::Plane,
+            phong: Some(Phong { exponent: 9.0, scale }),
+        };
+        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        let quality = Quality { azimuths: 8, basis, ..Quality::default() };
+        let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted)
+    }
+
+    fn sky() -> Lights {
+        Lights { sky: Some([1.0; 3]), ..Lights::default() }
+    }
+
+    fn sun() -> Lights {
+        let sun =
+            Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.01, irradiance: [1.0; 3] };
+        Lights { suns: vec![sun], ..Lights::default() }
+    }
+
+    fn names(plan: &Plan) -> Vec<String> {
+        plan.passes.iter().map(crate::plan::Pass::label).collect()
+    }
+
+    #[test]
+    fn what_a_lobe_is_not_lit_by_is_said() {
+        let said = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
+        let key = KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: 1.0,
+            elevations_rad: [0.1, 0.5],
+            radiance: [1.0; 3],
+        };
+        let under_key = said(Lights { keys: vec![key], ..sky() }, Basis::Sh);
+        assert!(under_key.contains("a lobe under a key light"), "{under_key}");
+        let ball = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+        let under_ball = said(Lights { spheres: vec![ball], ..sky() }, Basis::Sh);
+        assert!(under_ball.contains("the reference"), "{under_ball}");
+        let by_table = said(sky(), Basis::Table);
+        assert!(by_table.ends_with("--basis sh"), "{by_table}");
+        // Dark ones, and no lobe, are no reason.
+        let dark = KeyLight { radiance: [0.0; 3], ..key };
+        assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
+        assert!(plan(Lights { keys: vec![key], ..sky() }, Basis::Table, 0.0).is_ok());
+        assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+    }
+
+    /// The planner takes harmonics where there is something all around; suns need none, and a lobe of nothing
+    /// nothing. No edits: what is seen of a sky is not kept by sample.
+    #[test]
+    fn harmonics_are_for_what_is_all_around() {
+        let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
+        assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
+        assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
+        assert!(of_sky.find("env_turns").is_none() && of_sky.find("gloss_turns").is_none());
+        assert!(names(&of_sky).contains(&"sh_shade glossy".to_owned()), "{:?}", names(&of_sky));
+        let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
+        let lit = Lights { environment: Some(environment), ..sun() };
+        let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
+        let all = names(&of_all);
+        for name in ["env_turns", "env_turns glossy", "sh_shade env", "sun_gloss sun1"] {
+            assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
+        }
+        assert!(of_all.find("direct.glossy").is_some() && of_all.edit_passes.is_empty());
+        let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
+        assert!(of_sun.find("visibility").is_none() && of_sun.find("gloss_sum").is_some());
+        let none = plan(sky(), Basis::Auto, 0.0).unwrap();
+        assert!(none.notes.iter().any(|n| n.starts_with("lobe dropped")), "{:?}", none.notes);
+        assert!(none.find("gloss_sum").is_none() && none.find("visibility").is_none());
+    }
+}

@@ -210,13 +210,12 @@ pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let light = gloss_twin::gloss_on(normal, &sun, exponent, sums[i].into());
         let tolerance = twin_sun_gloss(exponent, error.normal(), normal.dot(towards));
-        for c in 0..3 {
+        for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
-            let before = run.gloss[i][c];
-            run.gloss[i][c] = got[c].into();
-            let want = before + colour * light;
+            let want = *sum + colour * light;
+            *sum = f64::from(*got);
             let tolerance = colour * tolerance + 2.0 * EPSILON * want;
-            pairs.push(Pair { got: got[c].into(), want, tolerance, at: [c, i / cols, i % cols] });
+            pairs.push(Pair { got: *sum, want, tolerance, at: [c, i / cols, i % cols] });
         }
     }
     pairs
