@@ -310,14 +310,14 @@ fn values_of_harmonics() {
             let mut scene = under_sky(plane.clone(), Border::Open);
             scene.surface.albedo = Albedo::Constant([0.0; 3]);
             scene.surface.phong = Some(Phong { exponent, scale: 1.0 });
-            let quality = Quality { receiver: Receiver::Plane, ..harmonics(16, 4, Wedges::Slices) };
+            let quality = harmonics(16, 4, Wedges::Slices);
             let plan = plan::picture(&scene, &quality, &gpu.limits(), Picture::default());
             let along = |a: &plan::Azimuth| {
                 let slope = east * f64::from(a.cos_phi) + north * f64::from(a.sin_phi);
                 (*a, slope)
             };
             let lowest: Vec<_> = plan.expect("a plan").azimuths.iter().map(along).collect();
-            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Plane };
+            let how = Series { order: 4, wedges: Wedges::Slices, receiver: Receiver::Lobe };
             let seen = seen_above(how, &lowest);
             let lobe = zonal::phong(4, exponent.into());
             let terms: Vec<f64> = bands(4)
