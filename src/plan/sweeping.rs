@@ -18,7 +18,7 @@ pub(super) struct Sweeping {
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
     /// Levels of a height pyramid, where some are looked at.
-    levels: Option<pyramid_march::Images>,
+    pub levels: Option<pyramid_march::Images>,
     /// Where marches that store a value a sample find it.
     pub nodes: Nodes,
     /// Each batch's; several may have the same in turn.

@@ -3,8 +3,8 @@
 use super::super::Batch;
 use super::super::ResourceId;
 use super::super::shining::Shining;
-use super::{Drawing, light_resolve};
-use crate::passes;
+use super::drawing::Drawing;
+use crate::passes::{self, light_resolve};
 use crate::scene::{Basis, Quality, Sun};
 use crate::{Error, Result};
 
@@ -27,6 +27,9 @@ pub(super) fn quality(
     }
     if !shining.spheres.shining.is_empty() {
         return refuse("a lobe under a ball of light", alone);
+    }
+    if quality.bounces.count > 0 {
+        return refuse("a lobe with --bounces", "--bounces 0: a lobe mirrors direct light alone");
     }
     match quality.basis {
         _ if !shining.has_gloss_around() => Ok(*quality),

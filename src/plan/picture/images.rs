@@ -168,7 +168,8 @@ impl Harmonics {
         let sh = diffuse.or(gloss).expect("an environment or a lobe");
         let by_table = quality.wedges == Wedges::Table;
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
-        let constants = builder.constants(constants);
+        // The first: they lie where they count from.
+        let (constants, _) = builder.constants(&constants);
         let diffuse = diffuse.map(|sh| Seen::make(builder, sh, ["env_turns", "light_matrix"]));
         let gloss = gloss.map(|sh| Seen::make(builder, sh, ["gloss_turns", "gloss_matrix"]));
         let wedge_table = table.map(|table| {

@@ -1,9 +1,12 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
+mod reference;
+mod sizes;
+
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
-    Method, Precision, Quality, Receiver, Scene, Sun, Surface,
+    Albedo, Basis, Border, Bounces, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights,
+    Lines, Method, Precision, Quality, Receiver, Scene, Sun, Surface,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -67,193 +70,6 @@ fn is(plan: &Plan, text: &str) {
     let kept = lines[1..lines.len() - 1].join("\n") + "\n";
     assert_eq!(short(plan), kept, "now:\n{}", short(plan));
     assert_eq!(missing_barriers(&plan.passes), []);
-}
-
-#[test]
-fn a_single_sample() {
-    is(
-        &sky(1, 1, 4, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×1×1
-          height_transpose rows 1×1×1
-        | horizon_sweep sky 0+2 1×1×2
-        | sky_shade sky 0+2 1×1×1
-        | horizon_sweep sky 2+2 1×1×2
-        | sky_shade sky 2+2 1×1×1
-        | light_resolve sky 1×1×1
-        sky_sum 1×1×1
-        azimuths 256
-        lane_heights_cols 1×1×1
-        lane_heights_rows 1×1×1
-        lattice_occluders 8×1×2
-        ",
-    );
-}
-
-#[test]
-fn one_row_and_one_column() {
-    is(
-        &sky(1, 9, 4, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×2×1
-          height_transpose rows 1×1×1
-        | horizon_sweep sky 0+2 1×1×2
-        | sky_shade sky 0+2 2×1×1
-        | horizon_sweep sky 2+2 1×1×2
-        | sky_shade sky 2+2 1×1×1
-        | light_resolve sky 2×1×1
-        sky_sum 9×1×1
-        azimuths 256
-        lane_heights_cols 1×9×1
-        lane_heights_rows 3×1×1
-        lattice_occluders 8×9×2
-        ",
-    );
-    is(
-        &sky(9, 1, 4, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×1×1
-          height_transpose rows 1×2×1
-        | horizon_sweep sky 0+2 1×1×2
-        | sky_shade sky 0+2 1×1×1
-        | horizon_sweep sky 2+2 1×1×2
-        | sky_shade sky 2+2 2×1×1
-        | light_resolve sky 1×2×1
-        sky_sum 1×9×1
-        azimuths 256
-        lane_heights_cols 3×1×1
-        lane_heights_rows 1×9×1
-        lattice_occluders 8×9×2
-        ",
-    );
-}
-
-#[test]
-fn two_by_three() {
-    is(
-        &sky(2, 3, 8, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×1×1
-          height_transpose rows 1×1×1
-        | horizon_sweep sky 0+4 1×1×4
-        | sky_shade sky 0+4 1×1×1
-        | horizon_sweep sky 4+4 1×1×4
-        | sky_shade sky 4+4 1×1×1
-        | light_resolve sky 1×1×1
-        sky_sum 3×2×1
-        azimuths 512
-        lane_heights_cols 1×3×1
-        lane_heights_rows 1×2×1
-        lattice_occluders 8×3×4
-        ",
-    );
-}
-
-#[test]
-fn primes() {
-    is(
-        &sky(31, 37, 12, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×5×1
-          height_transpose rows 2×4×1
-        | horizon_sweep sky 0+6 2×1×6
-        | sky_shade sky 0+6 5×1×1
-        | horizon_sweep sky 6+6 2×1×6
-        | sky_shade sky 6+6 4×1×1
-        | light_resolve sky 5×4×1
-        sky_sum 37×31×1
-        azimuths 768
-        lane_heights_cols 8×37×1
-        lane_heights_rows 10×31×1
-        lattice_occluders 8×37×12
-        ",
-    );
-}
-
-#[test]
-fn long_and_thin() {
-    is(
-        &sky(3, 8191, 4, &Limits::lavapipe()),
-        "
-          height_transpose cols 1×1024×1
-          height_transpose rows 256×1×1
-        | horizon_sweep sky 0+2 1×1×2
-        | horizon_sweep sky 0+2 again 1×1×2
-        | sky_shade sky 0+2 1024×1×1
-          horizon_sweep sky 2+2 256×1×2
-        | horizon_sweep sky 2+2 again 256×1×2
-        | sky_shade sky 2+2 1×128×1
-        | light_resolve sky 1024×1×1
-        sky_sum 8191×3×1
-        azimuths 256
-        lane_heights_cols 1×8191×1
-        lane_heights_rows 2048×3×1
-        lattice_occluders 8×8191×2
-        lost_lines 64
-        lattice_occluders_across 8×3×512
-        lost_lines_across 16384
-        ",
-    );
-    is(
-        &sky(8191, 3, 4, &Limits::lavapipe()),
-        "
-          height_transpose cols 256×1×1
-          height_transpose rows 1×1024×1
-        | horizon_sweep sky 0+2 256×1×2
-        | horizon_sweep sky 0+2 again 256×1×2
-        | sky_shade sky 0+2 1×128×1
-          horizon_sweep sky 2+2 1×1×2
-        | horizon_sweep sky 2+2 again 1×1×2
-        | sky_shade sky 2+2 1024×1×1
-        | light_resolve sky 1×1024×1
-        sky_sum 3×8191×1
-        azimuths 256
-        lane_heights_cols 2048×3×1
-        lane_heights_rows 1×8191×1
-        lattice_occluders 8×3×512
-        lost_lines 16384
-        lattice_occluders_across 8×8191×2
-        lost_lines_across 64
-        ",
-    );
-}
-
-/// Five images of 64 MiB leave 120 MiB for lattices, of 32 MiB an azimuth along an axis and 64 MiB along a
-/// diagonal.
-#[test]
-fn a_large_field_in_bands() {
-    let limits = Limits { memory_budget: 440 << 20, ..Limits::lavapipe() };
-    let plan = sky(4096, 4096, 8, &limits);
-    assert!(plan.bytes() <= limits.memory_budget, "{} bytes", plan.bytes());
-    is(
-        &plan,
-        "
-          height_transpose cols 128×512×1
-          height_transpose rows 128×512×1
-        | horizon_sweep sky 0+2 128×1×2
-        | horizon_sweep sky 0+2 again 128×1×2
-        | sky_shade sky 0+2 512×64×1
-        | horizon_sweep sky 2+1 256×1×1
-        | horizon_sweep sky 2+1 again 256×1×1
-        | sky_shade sky 2+1 512×64×1
-        | horizon_sweep sky 3+1 256×1×1
-        | horizon_sweep sky 3+1 again 256×1×1
-        | sky_shade sky 3+1 512×64×1
-        | horizon_sweep sky 4+2 256×1×2
-        | horizon_sweep sky 4+2 again 256×1×2
-        | sky_shade sky 4+2 512×64×1
-        | horizon_sweep sky 6+2 256×1×2
-        | horizon_sweep sky 6+2 again 256×1×2
-        | sky_shade sky 6+2 512×64×1
-        | light_resolve sky 512×512×1
-        sky_sum 4096×4096×1
-        azimuths 512
-        lane_heights_cols 1024×4096×1
-        lane_heights_rows 1024×4096×1
-        lattice_occluders 8×4096×384
-        lost_lines 12288
-        ",
-    );
 }
 
 /// Plans of every form of every pass, at sizes that make groups, lanes and layers odd.
@@ -464,53 +280,43 @@ fn looking_around_takes_no_edits() {
     assert_eq!(edits(Fuse::AimedAround), 0);
 }
 
-/// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.
+/// One pass a bounce, what arrives resolved; exit radiance in one image used in turn, or in a layer each; bounces
+/// that are not worth it are left out, and the plan says why.
 #[test]
-fn a_reference() {
-    let of = |rows, cols, bounces, seed| {
-        let scene = under_sky(flat(rows, cols));
-        plan::reference(&scene, bounces, seed, &Limits::lavapipe()).expect("a plan")
+fn bounces() {
+    let drawn = |count, albedo: f32, cutoff, light_layers| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let bounces = Bounces { count, cutoff, ..Bounces::default() };
+        let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+        let wanted = Picture { light_layers, keeps_horizons: true, ..Picture::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
     };
-    let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
-    let [cells, trace] = ["height_cells", "path_trace"];
-    let level = |l: u32| format!("height_bounds level {l}");
-    assert_eq!(labels(&of(1, 1, 0, 0)), [cells, &level(1), trace]);
-    assert_eq!(labels(&of(5, 2, 0, 0)), [cells, &level(1), trace]);
-    assert_eq!(labels(&of(5, 18, 0, 0)), [cells, &level(1), &level(2), &level(3), trace]);
-    let before = of(5, 5, 0, 0);
-    assert_eq!(before.passes_after(&before, &[]), [0_usize; 0]);
-    for after in [of(5, 5, 1, 0), of(5, 5, 0, 1)] {
-        assert_eq!(after.passes_after(&before, &[]), [0, 1, 2]);
-    }
-    // In bands of 2^24 paths' vertices, in eights of rows: 512 samples a row, 64 paths, two vertices.
-    let bands = of(515, 512, 1, 0);
-    let parts =
-        ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
-    assert_eq!(labels(&bands)[labels(&bands).len() - 3..], parts);
-    let dark = Scene { lights: Lights::default(), ..under_sky(flat(2, 2)) };
-    let refused = plan::reference(&dark, 0, 0, &Limits::lavapipe()).unwrap_err().to_string();
-    assert!(refused.contains("lights: found none"), "{refused}");
-}
-
-/// Three columns and rows of an environment: the shares of its light, by hand.
-#[test]
-fn environments_are_chosen_by_their_light() {
-    let grey = |v: f32| [v / 3.0; 3];
-    let texels = [1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 2.0, 2.0, 4.0].map(grey).to_vec();
-    let mut scene = under_sky(flat(2, 2));
-    scene.surface.border = Border::Open;
-    scene.lights.environment = Some(Environment::new(3, 3, texels, 0.0).expect("an environment"));
-    let close = |got: &[f32], want: &[f32]| {
-        assert_eq!(got.len(), want.len());
-        // Rounded to f32.
-        assert!(got.iter().zip(want).all(|(g, w)| (g - w).abs() < 1e-7), "{got:?} for {want:?}");
+    let labels = |plan: &Plan| -> Vec<String> {
+        let all = plan.passes.iter().map(plan::Pass::label);
+        all.filter(|l| l.contains("bounce")).collect()
     };
-    // Rows of 4 and 8, as wide as each other, around a dark one.
-    let third = 1.0 / 3.0;
-    let rows = [[third, 0.25, 0.25, 1.0], [third, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
-    close(&plan::reference_inputs(&scene)[2], &rows.concat());
-    // The row that lies below horizontal gives no light.
-    scene.surface.border = Border::Plane;
-    let rows = [[1.0, 0.25, 0.25, 1.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
-    close(&plan::reference_inputs(&scene)[2], &rows.concat());
+    let none = drawn(0, 0.8, 0.0, true);
+    assert!(labels(&none).is_empty() && none.find("ground").is_none());
+    assert!(!none.edit_passes.is_empty());
+    let [one, three] = [1, 3].map(|count| drawn(count, 0.8, 0.0, false));
+    assert_eq!(labels(&one), ["bounce_march bounce1", "light_resolve bounce1"]);
+    assert_eq!(labels(&three).len(), 6);
+    assert!(one.find("exit_radiance").is_none() && one.edit_passes.is_empty());
+    assert_eq!(three.bytes() - one.bytes(), 4 * 9 * 14);
+    assert_eq!((missing_barriers(&one.passes), missing_barriers(&three.passes)), (vec![], vec![]));
+    // What a bounce is thrown from has been written before.
+    assert!(three.passes.iter().filter(|p| p.name() == "bounce_march").all(|p| p.barrier_before));
+    let layers = drawn(2, 0.8, 0.0, true);
+    let outputs: Vec<&str> = layers.outputs().map(|(_, r)| r.name.as_str()).collect();
+    assert_eq!(outputs, ["radiance", "direct.sky", "indirect.1", "indirect.2"]);
+    let told = |plan: &Plan| plan.settings.iter().find(|s| s.0 == "bounces").map(|s| s.1.clone());
+    let black = drawn(3, 0.0, 0.0, true);
+    assert_eq!((short(&black), told(&black)), (short(&none), Some("0".to_owned())));
+    assert!(black.notes.iter().any(|n| n.starts_with("no bounces")), "{:?}", black.notes);
+    // 2⁻⁵ + … + 2⁻⁹ is below 1/16.
+    let short = drawn(9, 0.5, 1.0 / 16.0, false);
+    assert_eq!(told(&short), Some("4".to_owned()));
+    let note = "bounces 5 to 9 dropped: of a surface that reflects at most 0.5 they carry at most 6.055e-2";
+    assert!(short.notes.iter().any(|n| n.starts_with(note)), "{:?}", short.notes);
 }
