@@ -39,6 +39,7 @@ pub mod sky_shade;
 pub mod sphere;
 pub mod sphere_sh_shade;
 pub mod sphere_shade;
+pub mod sun_gloss;
 pub mod sun_shade;
 pub mod surface_sweep;
 pub mod sweep_fuse;

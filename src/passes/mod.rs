@@ -26,6 +26,7 @@ pub(crate) mod shade_reduce;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
+pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
