@@ -6,6 +6,7 @@
 //! which finds the same light without chance.
 
 pub mod bounce;
+pub mod bounce_walk;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;
