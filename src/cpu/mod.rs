@@ -7,6 +7,7 @@
 
 pub mod bounce;
 pub mod bounce_walk;
+pub mod bounce_march;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;

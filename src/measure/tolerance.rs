@@ -122,6 +122,20 @@ pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
     128.0 * EPSILON * largest_m / step_m
 }
 
+/// What `bounce_march` throws at a sample, for albedo 1, against its twin: of surface that radiates `brightest`
+/// at most, seen from `near_m` on, in `stretches` an azimuth at most.
+///
+/// The slopes that bound a stretch err as a march's first crossing, seen half a step away: 2 `near_m` is the step.
+/// A bound that is off moves its angle's weight, at most 1, from one stretch to the next, whose radiance differs
+/// by `brightest` at most; a direction, an arc tangent and a moment besides by 24 ε. As much again where the
+/// mean distance of a stretch is off: what it is off by, in shares of the stretch, times the stretch's
+/// weight is what its bounds are off by. The mean over azimuths over that of whole hemispheres, π/4 or
+/// more, is 4/π of one.
+pub fn twin_thrown(relief_m: f64, near_m: f64, stretches: usize, brightest: f64) -> f64 {
+    let bound = twin_march_slope(relief_m, 2.0 * near_m) + ARC_TANGENT + 24.0 * EPSILON;
+    2.0 * 4.0 / PI * stretches as f64 * bound * brightest
+}
+
 /// Level of a height pyramid that `height_reduce` makes of a given one.
 ///
 /// Places are equal (`precise`). A bilinear sample is three interpolations, each of a difference of

@@ -55,7 +55,7 @@ same_layout!(
 );
 
 /// llvmpipe ends all loops of an invocation together after 65,535 turns.
-const MOST_TURNS: u32 = 60_000;
+pub(super) const MOST_TURNS: u32 = 60_000;
 
 /// How a ball is looked at.
 pub(crate) struct Look {

@@ -2,6 +2,7 @@ mod images;
 
 use super::azimuths::Shape;
 use super::blocks::Blocks;
+use super::bounces::{Bouncing, bounce_name};
 use super::edit::Edits;
 use super::shining::{Aimed, Shining};
 use super::spheres::light_name;
@@ -16,7 +17,7 @@ use images::{Harmonics, Images, Tables};
 /// What a picture should hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
-    /// Besides the whole, an image for each light.
+    /// Besides the whole, an image for each light and each bounce.
     pub light_layers: bool,
     /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
     /// receiver, [0..1].
@@ -36,8 +37,8 @@ pub struct Picture {
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
 /// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
-/// "radiance", then one "direct.*" image a light and "sky_view" where asked. All are images of one
-/// channel where every colour is grey, else of four.
+/// "radiance", then one "direct.*" image a light, "sky_view" and one "indirect.*" image a bounce where asked. All
+/// are images of one channel where every colour is grey, else of four.
 ///
 /// # Errors
 /// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -73,6 +74,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
+    let of_light = (shining.is_grey, wanted.light_layers);
+    let bouncing = match shining.is_dark() {
+        true => None,
+        false => Bouncing::make(&mut builder, scene, &quality.bounces, of_light, &mut notes),
+    };
     let lists = shining.lists(
         images.need_circle(),
         quality,
@@ -99,14 +105,17 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
-        && images.sphere_sum.is_none();
+        && images.sphere_sum.is_none()
+        && bouncing.is_none();
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let blocks = images.sphere_sum.map(|_| Blocks::make(&mut builder, size, surface.border));
+    let need_blocks =
+        images.sphere_sum.is_some() || bouncing.as_ref().is_some_and(Bouncing::needs_blocks);
+    let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
     } else {
@@ -115,7 +124,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (Some(sweeping), lists)
     };
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
-    let used = used(quality, sweep, surface.border, &shining, &images);
+    let mut used = used(quality, sweep, surface.border, &shining, &images);
+    used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
+    used.extend(bouncing.iter().flat_map(Bouncing::used));
     let mut drawing = Drawing {
         builder,
         scene,
@@ -125,6 +136,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         harmonics,
         sweeping,
         blocks,
+        bouncing,
         edited: None,
         is_begun: false,
     };
@@ -187,8 +199,9 @@ struct Drawing<'a> {
     harmonics: Option<Harmonics>,
     /// None where balls of light are alone: each looks itself for what hides it.
     sweeping: Option<Sweeping>,
-    /// What rays towards balls of light look at.
+    /// What rays look at, towards balls of light and of bounces.
     blocks: Option<Blocks>,
+    bouncing: Option<Bouncing>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
@@ -223,9 +236,13 @@ impl Drawing<'_> {
     /// Passes from the field to the lit picture; of an edit, from its lattices.
     fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
+        if let Some(blocks) = &self.blocks {
+            blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
+        }
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
+        self.bounces();
         self.sky_view();
         self.dark()
     }
@@ -355,8 +372,7 @@ impl Drawing<'_> {
 
     /// Balls add up in one sum; where layers are wanted each begins its own.
     fn spheres(&mut self, quality: &Quality) {
-        let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
-        blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
+        let Some(sum) = self.images.sphere_sum else { return };
         let names: Vec<String> =
             self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
@@ -371,6 +387,16 @@ impl Drawing<'_> {
         }
         if self.images.sphere_layers.iter().all(Option::is_none) {
             self.resolve("lights", sum, None, None);
+        }
+    }
+
+    /// Each bounce from the light of the one before.
+    fn bounces(&mut self) {
+        for k in 1..=self.bouncing.as_ref().map_or(0, Bouncing::count) {
+            let Some(bouncing) = &self.bouncing else { return };
+            let lit = (self.scene, self.blocks.as_ref());
+            let (sum, exit) = bouncing.record(&mut self.builder, lit, k, self.images.radiance);
+            self.resolve(&bounce_name(k), sum, None, exit);
         }
     }
 

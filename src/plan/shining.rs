@@ -71,6 +71,12 @@ impl<'a> Shining<'a> {
         Ok(Self { sky, environment, suns, keys, spheres, has_sky_view, is_grey })
     }
 
+    /// Whether nothing shines: the picture is black.
+    pub fn is_dark(&self) -> bool {
+        let has_sky = self.sky.is_some() || self.environment.is_some();
+        !has_sky && self.aimed().next().is_none() && self.spheres.shining.is_empty()
+    }
+
     /// The key lights that any sample may see.
     fn keys(scene: &'a Scene, notes: &mut Vec<String>) -> Vec<(usize, &'a KeyLight)> {
         let has_ground = scene.surface.border != Border::Open;

@@ -2,6 +2,7 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod bounces;
 mod change;
 mod contract;
 mod edits;
@@ -16,6 +17,9 @@ mod pruned;
 mod pyramid;
 mod real;
 mod reference_edges;
+#[expect(dead_code, reason = "of its scenes only the pits are drawn here")]
+#[path = "../reference_page/mod.rs"]
+mod reference_page;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;

@@ -42,6 +42,8 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             None,
             _,
         ) => "without a sky, an environment, a sun or a key light".into(),
+        ("bounces", ..) => "for horizons".into(),
+        ("bounce_engine" | "bounce_azimuths" | "bounce_cutoff", ..) => "without --bounces".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"

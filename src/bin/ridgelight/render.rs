@@ -59,7 +59,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             (quality.hull, wanted),
             &progress,
         )?;
-        quality = found.trial.quality;
+        quality = Quality { bounces: auto::bounces(goal, quality.bounces), ..found.trial.quality };
         chosen = Some((goal, found));
         progress.set_message("lighting");
     }
@@ -123,6 +123,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         );
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
+        }
+        if chosen.is_some() && quality.bounces.count > 0 {
+            crate::say!("that is direct light's error and time: bounces are as asked");
         }
     }
     Ok(Outcome::Done)

@@ -162,6 +162,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             SubsampleName::Four => 4,
         },
         wedge_side: args.wedge_side,
+        bounces: args.bounces.bounces()?,
     };
     quality.check()?;
     Ok(quality)

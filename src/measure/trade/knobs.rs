@@ -3,7 +3,7 @@
 //!
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
-use crate::scene::{Basis, Fuse, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{Basis, BounceEngine, Bounces, Fuse, Lines, Method, Precision, Quality, Scene};
 use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
@@ -43,6 +43,8 @@ const FUSES: [Fuse; 6] =
     [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
+const BOUNCE_ENGINES: [BounceEngine; 1] = [BounceEngine::Brute];
+const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
 
@@ -54,9 +56,9 @@ fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
 
-/// The knobs that change how a scene is lit: no azimuths without a sky, no table without an
-/// environment.
-pub fn knobs(scene: &Scene) -> Vec<Knob> {
+/// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
+/// an environment.
+pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
     let lights = &scene.lights;
     let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
     let mut all = vec![
@@ -175,10 +177,36 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: |quality| quality.basis != Basis::Sh,
         });
     }
+    if bounces > 0 {
+        all.extend(bounce_knobs());
+    }
     for knob in &mut all {
         knob.default = default_step(knob);
     }
     all
+}
+
+fn bounce_knobs() -> [Knob; 2] {
+    [
+        Knob {
+            name: "bounce engine",
+            steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "every stretch of surface that a sample sees",
+            set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
+            idle: |_| false,
+        },
+        Knob {
+            name: "bounce azimuths",
+            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
+            range: Some(Bounces::AZIMUTHS),
+            default: 0,
+            dearer: "more azimuths of bounces: narrow things that shine",
+            set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],
+            idle: |_| false,
+        },
+    ]
 }
 
 /// What the defaults walk from: sweeps and tables, which is what they come to.
@@ -266,7 +294,7 @@ mod tests {
 
     #[test]
     fn only_knobs_that_change_something_are_walked() {
-        let names = |lights| knobs(&scene(lights)).iter().map(|k| k.name).collect::<Vec<_>>();
+        let names = |lights| knobs(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
         let always = ["sweep", "fuse", "precision", "level step", "level offset"];
         let with = |more: &[&'static str]| [&always, more].concat();
         assert_eq!(names(sky()), with(&["azimuths"]));
@@ -285,7 +313,7 @@ mod tests {
     /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
     #[test]
     fn places_are_all_that_differ() {
-        let knobs = knobs(&scene(sky()));
+        let knobs = knobs(&scene(sky()), 0);
         let start = start();
         let all = places(&knobs, &start);
         assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
@@ -311,7 +339,7 @@ mod tests {
             ),
             ..sun(0.01)
         };
-        let all = knobs(&scene(light));
+        let all = knobs(&scene(light), 1);
         let found: Vec<(&str, &str)> =
             all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
         let expected = [
@@ -325,6 +353,8 @@ mod tests {
             ("table elevations", "--table-elevations 256"),
             ("basis", "--basis table"),
             ("sub-sampling", "--subsample 1"),
+            ("bounce engine", "--bounce-engine brute"),
+            ("bounce azimuths", "--bounce-azimuths 32"),
         ];
         assert_eq!(found, expected);
         for knob in &all {

@@ -6,9 +6,6 @@ pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
     phong: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    bounces: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     camera: Option<String>,
@@ -19,7 +16,6 @@ impl LaterArgs {
     pub fn check(&self) -> ridgelight::Result<()> {
         let given = [
             ("--phong", self.phong.as_ref()),
-            ("--bounces", self.bounces.as_ref()),
             ("--scene", self.scene.as_ref()),
             ("--camera", self.camera.as_ref()),
         ];

@@ -1,0 +1,44 @@
+use clap::{Args, ValueEnum};
+use ridgelight::Result;
+use ridgelight::scene::{BounceEngine, Bounces};
+
+use super::values::whole;
+
+#[derive(Args)]
+#[command(next_help_heading = "Quality")]
+pub struct BounceArgs {
+    /// Times that light may be reflected on its way to a sample, 0..64: colour bleeds, hollows brighten; 0 is
+    /// direct light alone. Time in proportion
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    pub bounces: u32,
+    /// How what a sample sees of the surface is found; with --bounces
+    #[arg(long, default_value = "brute")]
+    pub bounce_engine: BounceEngineName,
+    /// Azimuths of bounces, 4..1024; with --bounces
+    #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_azimuths: u32,
+    /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1; with --bounces
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
+    pub bounce_cutoff: f64,
+}
+
+impl BounceArgs {
+    /// Checked.
+    pub fn bounces(&self) -> Result<Bounces> {
+        let bounces = Bounces {
+            count: self.bounces,
+            engine: match self.bounce_engine {
+                BounceEngineName::Brute => BounceEngine::Brute,
+            },
+            azimuths: self.bounce_azimuths,
+            cutoff: self.bounce_cutoff,
+        };
+        bounces.check().map(|()| bounces)
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BounceEngineName {
+    /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
+    Brute,
+}

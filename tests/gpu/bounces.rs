@@ -1,0 +1,307 @@
+//! Light that the surface throws at itself: against twins, closed forms, the f64 quadrature and what must be.
+
+use std::f64::consts::TAU;
+
+use ridgelight::cpu::bounce::{self, Fineness};
+use ridgelight::cpu::bounce_march::bounce_march;
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::gpu::Pixels;
+use ridgelight::measure::fractal::fractal;
+use ridgelight::measure::tolerance::{EPSILON, twin_thrown};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{
+    Albedo, Border, Bounces, HeightField, Lights, Method, Quality, Scene, Sun, Surface,
+};
+
+use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
+use crate::{Device, field, random, under_sky};
+
+const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
+
+/// So many bounces in so many azimuths, none dropped, of direct light by brute force in as many.
+fn brute(count: u32, azimuths: u32) -> Quality {
+    let bounces = Bounces { count, azimuths, cutoff: 0.0, ..Bounces::default() };
+    Quality { method: Method::Brute, azimuths, bounces, ..Quality::default() }
+}
+
+/// The whole, and the layer of each bounce.
+fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<Vec<[f64; 3]>> {
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    let plan = plan::picture(scene, quality, &gpu.limits(), wanted).expect("a plan");
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let outputs = gpu.draw(plan, &contents);
+    let is_wanted = |p: &&Pixels| p.name == "radiance" || p.name.starts_with("indirect.");
+    outputs.iter().filter(is_wanted).map(colours).collect()
+}
+
+fn colours(pixels: &Pixels) -> Vec<[f64; 3]> {
+    let colour = |t: &[f32]| match t {
+        [grey] => [f64::from(*grey); 3],
+        t => [t[0], t[1], t[2]].map(f64::from),
+    };
+    pixels.values.chunks_exact(pixels.channels).map(colour).collect()
+}
+
+/// What has been thrown so often, and not yet: the whole less the last bounces.
+fn less(whole: &[[f64; 3]], bounces: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
+    let at =
+        |i: usize| [0, 1, 2].map(|c| whole[i][c] - bounces.iter().map(|b| b[i][c]).sum::<f64>());
+    (0..whole.len()).map(at).collect()
+}
+
+fn albedo_of(scene: &Scene, at: usize) -> [f64; 3] {
+    match &scene.surface.albedo {
+        Albedo::Constant(c) => c.map(f64::from),
+        Albedo::Map(map) => map[at].map(f64::from),
+    }
+}
+
+fn relief(field: &HeightField) -> f64 {
+    let all = || field.heights_m().iter().map(|h| f64::from(*h));
+    all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
+}
+
+/// Fields of every shape, under a sky and a sun of other colours, with an albedo each.
+fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
+    let mut next = random(4);
+    let noise: Vec<f64> = (0..143).map(|_| next()).collect();
+    let rough = |relief: f64| field(11, 13, [1.0, 1.5], |r, c| 90.0 + relief * noise[r * 13 + c]);
+    let map = (0..143).map(|i| [1.0, (i % 5) as f32 / 4.0, (i % 7) as f32 / 6.0]).collect();
+    let sun = Sun {
+        azimuth_rad: 0.7,
+        elevation_rad: 0.5,
+        diameter_rad: 0.0,
+        irradiance: [0.0, 3.0, 1.0],
+    };
+    let lights = Lights { sky: Some([1.0, 0.5, 0.0]), suns: vec![sun], ..Lights::default() };
+    let of = |field: HeightField, albedo| Scene {
+        field,
+        surface: Surface { border, albedo, phong: None },
+        lights: lights.clone(),
+    };
+    let grey = || Albedo::Constant([0.8, 0.8, 0.8]);
+    vec![
+        ("rough", of(rough(3.0), Albedo::Map(map))),
+        ("wild", of(rough(100.0), grey())),
+        ("level", of(field(6, 7, [2.0, 1.0], |_, _| 5.0), grey())),
+        ("tilted", of(field(6, 7, [2.0, 1.0], |r, c| c as f64 - 0.5 * r as f64), grey())),
+        ("fractal", of(fractal(16, 2).unwrap(), grey())),
+        ("one sample", of(field(1, 1, [1.0, 1.0], |_, _| 3.0), grey())),
+        ("two rows", of(field(2, 5, [1.0, 1.0], |r, c| ((r * 3 + c) % 4) as f64), grey())),
+    ]
+}
+
+/// Most stretches that a sample sees along an azimuth, of every seventh sample.
+fn most_stretches(oracle: &Oracle, azimuths: u32) -> usize {
+    let (mut seen, mut most) = (Vec::new(), 1);
+    let cols = oracle.field().cols();
+    for (i, k) in (0..oracle.field().rows() * cols).step_by(7).zip((0..azimuths).cycle()) {
+        let azimuth = TAU * (f64::from(k) + 0.5) / f64::from(azimuths);
+        oracle.stretches(i / cols, i % cols, azimuth, &mut seen);
+        most = most.max(seen.len());
+    }
+    most
+}
+
+/// Each bounce is the twin's of what the device made of the one before.
+#[test]
+fn every_stretch_is_the_twins() {
+    let mut gpu = Device::new();
+    let mut largest = 0.0_f64;
+    for (border, azimuths) in [(Border::Plane, 8), (Border::Open, 12), (Border::Periodic, 4)] {
+        for (name, scene) in scenes(border) {
+            let all = drawn(&mut gpu, &scene, &brute(2, azimuths));
+            let direct = drawn(&mut gpu, &scene, &brute(0, azimuths)).swap_remove(0);
+            let oracle = Oracle::new(&scene.field, border);
+            let (cols, cell) = (scene.field.cols(), scene.field.cell_m());
+            let mut from = direct;
+            for (k, layer) in all[1..].iter().enumerate() {
+                let brightest = from.as_flattened().iter().fold(0.0_f64, |m, v| m.max(*v));
+                let near = 0.5 * cell[0].min(cell[1]);
+                let bound = twin_thrown(
+                    relief(&scene.field),
+                    near,
+                    most_stretches(&oracle, azimuths),
+                    brightest,
+                );
+                for (i, got) in layer.iter().enumerate() {
+                    let want = bounce_march(&oracle, &from, azimuths, i / cols, i % cols);
+                    let albedo = albedo_of(&scene, i);
+                    for c in 0..3 {
+                        let off = (got[c] - albedo[c] * want[c]).abs();
+                        assert!(
+                            off <= bound,
+                            "{border:?} {name} {k} {i} {c}: {got:?} {want:?} {bound:e}"
+                        );
+                        largest = largest.max(off / bound);
+                    }
+                }
+                from.clone_from(layer);
+            }
+        }
+    }
+    println!("{largest:.2e} of the bound");
+}
+
+/// Pits against their closed form, within what the rim's staircase may do.
+#[test]
+fn a_pit_is_lit_as_its_closed_form() {
+    let mut gpu = Device::new();
+    for (alpha, albedo, bounces, _) in PITS {
+        let (rho, count) = (f64::from(albedo), bounces.min(12));
+        let mut scene = under_sky(pit(12.5, alpha), Border::Plane);
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let whole = drawn(&mut gpu, &scene, &brute(count as u32, 32)).swap_remove(0);
+        let expected = pit_radiance(alpha, rho, count);
+        let bounds = pit_bounds(12.5, alpha, rho, count).pop().expect("a bound a bounce");
+        let (mut squares, mut worst) = (0.0, 0.0_f64);
+        for (i, bound) in &bounds {
+            let off = (whole[*i][0] - expected).abs();
+            assert!(off <= *bound, "{alpha} {albedo} {count} {i}: {off} of {bound}");
+            squares += off * off;
+            worst = worst.max(off / bound);
+        }
+        let rms = (squares / bounds.len() as f64).sqrt();
+        println!(
+            "pit {alpha}, {albedo}, {count} bounces: {:.3} %, {worst:.2}",
+            100.0 * rms / expected
+        );
+    }
+}
+
+/// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below.
+///
+/// Sky and what is thrown are two rules over azimuths: where a sample's shares s of sky and t of ground, by the
+/// twin, make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D) ≤ 1 + D: D = d / (1 - t),
+/// and likewise from below. f32 adds 16 roundings a bounce. What is missing after k bounces is at most the
+/// largest tᵏ.
+#[test]
+fn a_furnace_comes_up_to_one() {
+    const COUNT: u32 = 40;
+    const AZIMUTHS: u32 = 32;
+    let mut gpu = Device::new();
+    let mut next = random(9);
+    let noise: Vec<f64> = (0..72).map(|_| next()).collect();
+    for border in [Border::Open, Border::Periodic] {
+        let scene = under_sky(field(8, 9, [1.0, 1.5], |r, c| 1.5 * noise[r * 9 + c]), border);
+        let all = drawn(&mut gpu, &scene, &brute(COUNT, AZIMUTHS));
+        let direct = drawn(&mut gpu, &scene, &brute(0, AZIMUTHS)).swap_remove(0);
+        let oracle = Oracle::new(&scene.field, border);
+        let (mut above, mut below, mut darkest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let white = vec![[1.0; 3]; 72];
+        for (i, [sky, ..]) in direct.iter().enumerate() {
+            let [ground, ..] = bounce_march(&oracle, &white, AZIMUTHS, i / 9, i % 9);
+            let off = (sky + ground - 1.0) / (1.0 - ground);
+            (above, below) = (above.max(off), below.max(-off));
+            darkest = darkest.max(ground);
+        }
+        let rounded = 16.0 * EPSILON * f64::from(COUNT);
+        let (slack, below) = (above + rounded, below + rounded);
+        let mut sum = direct;
+        for layer in &all[1..] {
+            for (sum, more) in sum.iter_mut().zip(layer) {
+                assert!(more[0] >= 0.0, "{border:?}: {more:?}");
+                sum[0] += more[0];
+                assert!(sum[0] <= 1.0 + slack, "{border:?}: {} beyond {slack:e}", sum[0]);
+            }
+        }
+        let left = darkest.powi(COUNT as i32) + below;
+        let least = all[0].iter().fold(f64::MAX, |m, v| m.min(v[0]));
+        assert!(least >= 1.0 - left, "{border:?}: {least}, {left}");
+        println!("{border:?}: {least:.4} to 1 + {slack:.2e}");
+    }
+}
+
+/// RMSE over the mean of the truth.
+fn relative(got: &[[f64; 3]], want: &[[f64; 3]]) -> f64 {
+    let squares: f64 = got.iter().zip(want).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
+    let mean = want.iter().map(|v| v[0]).sum::<f64>() / want.len() as f64;
+    (squares / want.len() as f64).sqrt() / mean
+}
+
+/// The same surface with every cell cut into four, as the quadrature's own: light between samples is linear, so
+/// the error falls at least as fast as a cell's side.
+fn halved(field: &HeightField) -> HeightField {
+    let (rows, cols) = (field.rows(), field.cols());
+    let h =
+        |r: usize, c: usize| f64::from(field.heights_m()[r.min(rows - 1) * cols + c.min(cols - 1)]);
+    crate::field(2 * rows - 1, 2 * cols - 1, field.cell_m().map(|c| c / 2.0), |r, c| {
+        // A cell's middle lies on its diagonal.
+        field.base_m() + 0.5 * (h(r / 2, c / 2) + h(r.div_ceil(2), c.div_ceil(2)))
+    })
+}
+
+/// Mountains against the quadrature, which knows of no samples between its triangles: the bounces' error halves
+/// with the cells, and what is wrong without them is far beyond.
+#[test]
+fn bounces_come_to_the_quadratures() {
+    let mut gpu = Device::new();
+    let land = fractal(12, 3).unwrap();
+    let steep = field(12, 12, [1.0, 1.0], |r, c| 3.0 * f64::from(land.heights_m()[r * 12 + c]));
+    let scene_of = |field: HeightField| {
+        let mut scene = under_sky(field, Border::Plane);
+        scene.surface.albedo = Albedo::Constant([0.8; 3]);
+        scene
+    };
+    let truth = scene_of(halved(&steep));
+    let fineness = Fineness { azimuths: 32, divisions: 2, strips: 8 };
+    let pictures = bounce::light(&truth, 3, fineness).unwrap();
+    let thrown: Vec<[f64; 3]> =
+        (0..23 * 23).map(|i| [0, 1, 2].map(|c| pictures[3][i][c] - pictures[0][i][c])).collect();
+    let at = |every: usize, of: &[[f64; 3]], side: usize| -> Vec<[f64; 3]> {
+        (0..144).map(|i| of[i / 12 * every * side + i % 12 * every]).collect()
+    };
+    let want = at(2, &thrown, 23);
+    let errors: Vec<f64> = [(steep.clone(), 1, 12), (halved(&steep), 2, 23)]
+        .into_iter()
+        .map(|(field, every, side)| {
+            let all = drawn(&mut gpu, &scene_of(field), &brute(3, 32));
+            let none = less(&all[0], &all[1..]);
+            let got: Vec<[f64; 3]> =
+                (0..side * side).map(|i| [0, 1, 2].map(|c| all[0][i][c] - none[i][c])).collect();
+            relative(&at(every, &got, side), &want)
+        })
+        .collect();
+    println!(
+        "bounces are {:.2} % and, with half the cell, {:.2} % off",
+        100.0 * errors[0],
+        100.0 * errors[1]
+    );
+    assert!(errors[1] <= 0.7 * errors[0], "{errors:?}");
+    // Deaf to nothing: two bounces of three.
+    let short = drawn(&mut gpu, &scene_of(halved(&steep)), &brute(2, 32));
+    let none = less(&short[0], &short[1..]);
+    let got: Vec<[f64; 3]> =
+        (0..23 * 23).map(|i| [0, 1, 2].map(|c| short[0][i][c] - none[i][c])).collect();
+    assert!(relative(&at(2, &got, 23), &want) > errors[1]);
+}
+
+/// Voids are filled ground: they throw and hide as the same field without marks, and a field one sample wide
+/// throws nothing.
+#[test]
+fn voids_are_ground_and_lines_throw_nothing() {
+    let mut gpu = Device::new();
+    let height = |i: usize| ((i * 7) % 5) as f64;
+    let mut heights: Vec<f64> = (0..63).map(height).collect();
+    heights[31] = f64::NAN;
+    let voids = (0..63).map(|i| i == 31).collect();
+    let marked = HeightField::new(7, 9, &heights, [1.0, 1.0], Some(voids)).unwrap();
+    let filled: Vec<f64> =
+        marked.heights_m().iter().map(|h| marked.base_m() + f64::from(*h)).collect();
+    let plain = HeightField::new(7, 9, &filled, [1.0, 1.0], None).unwrap();
+    let of = |field: HeightField| under_sky(field, Border::Plane);
+    let [with, without] = [marked, plain].map(|f| drawn(&mut gpu, &of(f), &brute(2, 8)));
+    for (a, b) in with.iter().flatten().zip(without.iter().flatten()) {
+        assert!((a[0] - b[0]).abs() <= 1e-5, "{a:?} {b:?}");
+    }
+    for border in BORDERS {
+        for (rows, cols) in [(1, 9), (9, 1)] {
+            let line = field(rows, cols, [1.0, 1.0], |r, c| height(r + c));
+            let scene = under_sky(line, border);
+            let all = drawn(&mut gpu, &scene, &brute(1, 8));
+            let thrown = all[1].iter().fold(0.0_f64, |m, v| m.max(v[0]));
+            assert_eq!(thrown == 0.0, border != Border::Periodic, "{border:?} {thrown}");
+        }
+    }
+}
