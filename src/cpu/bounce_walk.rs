@@ -3,8 +3,7 @@
 //!
 //! What swept samples meet is a hull tree of their line (Timonen 2012): all between a sample and what it
 //! meets lies below the straight line between the two. Seen from farther along, where both ends are hidden
-//! behind something nearer all between is; where the far end rises over it, what lies between is looked at,
-//! but where all of it is narrower than an angle: then radiance is taken as linear from end to end.
+//! behind something nearer all between is; where the far end rises over it, what lies between is looked at.
 
 use super::lattice::Lattice;
 use super::shared::field::{field_slope, normal_of};
@@ -35,21 +34,14 @@ impl Walked {
     }
 }
 
-/// One sample, from the exit radiance of all. Stretches up to `narrow_rad` wide are not looked into: 0 sees
-/// every one.
+/// One sample, from the exit radiance of all.
 ///
 /// # Panics
 /// Outside the field, or where `exit` is not one colour a sample.
-pub fn bounce_walk(
-    swept: &Swept,
-    exit: &[[f32; 3]],
-    narrow_rad: f32,
-    col: i32,
-    row: i32,
-) -> Walked {
+pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
     let mut sum = Walked::default();
     for azimuth in swept.azimuths {
-        let one = Walk::new(swept, exit, azimuth, col, row).walked(narrow_rad);
+        let one = Walk::new(swept, exit, azimuth, col, row).walked();
         sum.light += one.light;
         sum.whole += one.whole;
         sum.turns += one.turns;
@@ -101,8 +93,8 @@ impl Seen {
 
     fn add(&mut self, slope: f32, light: DVec3) {
         let here = elevation_moments(f64::from(slope));
-        let share = self.faces[0] * (self.passed[0] - here[0])
-            + self.faces[1] * (self.passed[1] - here[1]);
+        let share =
+            self.faces[0] * (self.passed[0] - here[0]) + self.faces[1] * (self.passed[1] - here[1]);
         self.walked.light += share * light;
         self.walked.stretches += 1;
         self.passed = here;
@@ -111,13 +103,7 @@ impl Seen {
 }
 
 impl<'a> Walk<'a> {
-    fn new(
-        swept: &Swept<'a>,
-        exit: &'a [[f32; 3]],
-        azimuth: &Azimuth,
-        col: i32,
-        row: i32,
-    ) -> Self {
+    fn new(swept: &Swept<'a>, exit: &'a [[f32; 3]], azimuth: &Azimuth, col: i32, row: i32) -> Self {
         let march = March::new(swept.heights, azimuth);
         let (lane, step) = march.of_sample(col, row);
         let gradient = field_slope(&swept.heights, col, row);
@@ -176,7 +162,7 @@ impl<'a> Walk<'a> {
             .map_or(0, |texel| i32::from(self.lattice.occluders[texel]))
     }
 
-    fn walked(&self, narrow_rad: f32) -> Walked {
+    fn walked(&self) -> Walked {
         let azimuth = &self.march.azimuth;
         let flat = DVec2::new(azimuth.wedge_cos.into(), azimuth.wedge_sin.into());
         let faces =
@@ -218,8 +204,7 @@ impl<'a> Walk<'a> {
             }
             let mut to = (at + back).min(limit);
             let mut slope = self.slope_at(to);
-            let narrow = narrow_rad * (1.0 + seen.reached * seen.reached);
-            if slope - seen.reached > narrow.max(0.0) && to > at + 1 {
+            if slope > seen.reached && to > at + 1 {
                 to = at + 1;
                 slope = self.slope_at(to);
             }

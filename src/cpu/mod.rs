@@ -6,8 +6,8 @@
 //! which finds the same light without chance.
 
 pub mod bounce;
-pub mod bounce_walk;
 pub mod bounce_march;
+pub mod bounce_walk;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;

@@ -1,6 +1,7 @@
 //! One file a pass: what it binds, how large it is, and why it is there; below, what several push alike.
 
 pub(crate) mod bounce_march;
+pub(crate) mod bounce_walk;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;

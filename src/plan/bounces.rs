@@ -3,9 +3,11 @@
 //! A bounce's engine reads the exit radiance of the one before, and whatever it needs of the heights, and
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
+use super::azimuths::{self, Azimuth};
 use super::blocks::Blocks;
-use super::{Builder, Format, Owner, ResourceId};
-use crate::passes::bounce_march;
+use super::sweeping::{Sweeping, part};
+use super::{Batch, Builder, Format, Owner, ResourceId};
+use crate::passes::{bounce_march, bounce_walk};
 use crate::scene::{BounceEngine, Bounces, Scene};
 
 /// What an engine's passes are told of one bounce.
@@ -76,14 +78,19 @@ impl Bouncing {
         self.engine == BounceEngine::Brute
     }
 
+    /// Azimuths that are swept for bounces alone.
+    pub fn circle(&self, cell_m: [f64; 2]) -> Option<Vec<Azimuth>> {
+        (self.engine == BounceEngine::Sweep).then(|| azimuths::even(self.azimuths, cell_m))
+    }
+
     /// The passes of bounce `k`, the first is 1; `direct` is what it begins with. Returns what arrives, and
     /// where its exit radiance belongs.
     pub fn record(
         &self,
         builder: &mut Builder,
-        (scene, blocks): (&Scene, Option<&Blocks>),
+        (scene, direct): (&Scene, ResourceId),
         k: usize,
-        direct: ResourceId,
+        (blocks, swept): (Option<&Blocks>, Option<(&Sweeping, &[Batch])>),
     ) -> (ResourceId, Option<ResourceId>) {
         let before = k.checked_sub(2).and_then(|i| self.exits[i]);
         let bounce = Bounce {
@@ -96,11 +103,15 @@ impl Bouncing {
             grey: self.grey,
             sum: self.sum,
         };
-        match (self.engine, blocks) {
-            (BounceEngine::Brute, Some(blocks)) => {
+        match self.engine {
+            BounceEngine::Brute => {
+                let blocks = blocks.expect("rays have blocks");
                 bounce_march::plan(builder, scene, blocks, self.azimuths, &bounce);
             }
-            (BounceEngine::Brute, None) => unreachable!("rays have blocks"),
+            BounceEngine::Sweep => {
+                let (sweeping, batches) = swept.expect("walks have sweeps");
+                walk(builder, scene, k, (sweeping, batches), &bounce);
+            }
         }
         (self.sum, self.exits[k - 1])
     }
@@ -111,6 +122,35 @@ impl Bouncing {
             ("bounce_engine".into(), self.engine.name().into()),
             ("bounce_azimuths".into(), self.azimuths.to_string()),
         ]
+    }
+}
+
+/// The sweeps that a bounce walks over, and the walks.
+fn walk(
+    builder: &mut Builder,
+    scene: &Scene,
+    k: usize,
+    (sweeping, batches): (&Sweeping, &[Batch]),
+    bounce: &Bounce,
+) {
+    for (i, batch) in batches.iter().enumerate() {
+        let part = part(&bounce.name, batch, batches);
+        let occluders = sweeping.occluders(batch).expect("kept for walks");
+        // A lattice of its own still holds what the first bounce has swept.
+        let is_shared =
+            batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
+        if k == 1 || is_shared {
+            sweeping.record(builder, batch, &part);
+        }
+        let swept = bounce_walk::Swept {
+            lane_heights: sweeping.lane_heights(batch),
+            azimuths: sweeping.azimuths,
+            occluders,
+            line_shift: sweeping.sweep.line_shift(),
+            is_last: i + 1 == batches.len(),
+        };
+        let field = (scene.surface.border, scene.field.cell_m());
+        bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
 }
 

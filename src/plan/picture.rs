@@ -52,7 +52,12 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let mut notes = Vec::new();
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
-    if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
+    let is_walked = quality.bounces.walk_over(surface);
+    if is_walked {
+        sweep.keep_occluders()?;
+    }
+    if wanted.still && !is_walked && sweep.sees_own_crossings() && field.is_concave(surface.border)
+    {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
         sweep = Sweep::Crossings;
     }
@@ -79,13 +84,15 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         true => None,
         false => Bouncing::make(&mut builder, scene, &quality.bounces, of_light, &mut notes),
     };
-    let lists = shining.lists(
+    let mut lists = shining.lists(
         images.need_circle(),
         quality,
         &sweep,
         (surface.border, field.cell_m()),
         &mut notes,
     )?;
+    // Behind those of the lights.
+    lists.extend(bouncing.as_ref().and_then(|b| b.circle(field.cell_m())));
     let (mut tables, mut harmonics) = (None, None);
     match shining.environment.map(|e| (e, surface.border)) {
         Some(lit) if quality.basis == Basis::Sh => {
@@ -242,7 +249,7 @@ impl Drawing<'_> {
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
-        self.bounces();
+        self.bounces(lists);
         self.sky_view();
         self.dark()
     }
@@ -391,11 +398,13 @@ impl Drawing<'_> {
     }
 
     /// Each bounce from the light of the one before.
-    fn bounces(&mut self) {
+    fn bounces(&mut self, lists: &Lists) {
         for k in 1..=self.bouncing.as_ref().map_or(0, Bouncing::count) {
             let Some(bouncing) = &self.bouncing else { return };
-            let lit = (self.scene, self.blocks.as_ref());
-            let (sum, exit) = bouncing.record(&mut self.builder, lit, k, self.images.radiance);
+            let batches = lists.batches.last().map(Vec::as_slice);
+            let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
+            let lit = (self.scene, self.images.radiance);
+            let (sum, exit) = bouncing.record(&mut self.builder, lit, k, looked_at);
             self.resolve(&bounce_name(k), sum, None, exit);
         }
     }

@@ -1,3 +1,4 @@
+use super::Surface;
 use super::quality::within;
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
@@ -48,6 +49,12 @@ impl Bounces {
         Ok(())
     }
 
+    /// Whether what a sweep along lines has met is walked over for the light that such a surface throws.
+    pub(crate) fn walk_over(&self, surface: &Surface) -> bool {
+        let albedo = f64::from(surface.albedo.largest());
+        self.engine == BounceEngine::Sweep && self.worth_drawing(albedo) > 0
+    }
+
     /// How many of them are drawn on a surface that reflects at most the share `albedo`: the fewest that
     /// leave out no more than [`cutoff`](Self::cutoff).
     pub fn worth_drawing(&self, albedo: f64) -> u32 {
@@ -67,6 +74,9 @@ pub enum BounceEngine {
     /// azimuths, and slower in proportion to the side.
     #[default]
     Brute,
+    /// Those stretches of the surface that a sample sees on its own lines at every march step, found through what
+    /// a sweep along lines has met: a hull tree (Timonen 2012). Needs such a sweep.
+    Sweep,
 }
 
 impl BounceEngine {
@@ -74,6 +84,7 @@ impl BounceEngine {
     pub fn name(self) -> &'static str {
         match self {
             BounceEngine::Brute => "brute",
+            BounceEngine::Sweep => "sweep",
         }
     }
 }

@@ -29,6 +29,7 @@ impl BounceArgs {
             count: self.bounces,
             engine: match self.bounce_engine {
                 BounceEngineName::Brute => BounceEngine::Brute,
+                BounceEngineName::Sweep => BounceEngine::Sweep,
             },
             azimuths: self.bounce_azimuths,
             cutoff: self.bounce_cutoff,
@@ -41,4 +42,6 @@ impl BounceArgs {
 pub enum BounceEngineName {
     /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
     Brute,
+    /// Those that it sees at every march step, through what a sweep along lines has met
+    Sweep,
 }
