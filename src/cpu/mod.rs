@@ -6,6 +6,7 @@
 //! which finds the same light without chance.
 
 pub mod bounce;
+pub mod bounce_gather;
 pub mod bounce_march;
 pub mod bounce_walk;
 pub mod dirty_list;
@@ -33,6 +34,7 @@ pub mod pyramid_march;
 pub mod sh_shade;
 pub mod sh_visibility;
 pub mod sh_wedges;
+pub mod shade_reduce;
 pub mod shared;
 pub mod sky_shade;
 pub mod sphere;

@@ -136,6 +136,27 @@ pub fn twin_thrown(relief_m: f64, near_m: f64, stretches: usize, brightest: f64)
     2.0 * 4.0 / PI * stretches as f64 * bound * brightest
 }
 
+/// What `bounce_gather` throws at a sample, for albedo 1, against its twins from the same heights, in `samples` an
+/// azimuth: of surface that radiates `brightest` at most.
+///
+/// An elevation errs as in [`twin_pyramid_angle`], and by its place: a direction errs by 4 ε, of which a march of any
+/// length makes 4 ε of its length, over which the land rises at R / s. The spline's two values a sample cast as
+/// stretches do ([`twin_thrown`]); radiance is a sum of positive weights, 40 ε a level ([`twin_spline`]) for a few
+/// levels, and where it is looked for errs by the same place. Legendre coefficients of a slice, up to √2, times
+/// three bands' weights, up to 1: as much as an angle's weight, twice.
+pub fn twin_gathered(
+    largest_m: f64,
+    relief_m: f64,
+    step_m: f64,
+    samples: u32,
+    brightest: f64,
+) -> f64 {
+    let placed = 4.0 * EPSILON * relief_m / step_m;
+    let angle = twin_pyramid_angle(largest_m, relief_m, step_m) + placed + 24.0 * EPSILON;
+    let cast = 2.0 * 4.0 / PI * 2.0 * f64::from(samples + 2) * angle;
+    2.0 * (cast + 400.0 * EPSILON) * brightest
+}
+
 /// Level of a height pyramid that `height_reduce` makes of a given one.
 ///
 /// Places are equal (`precise`). A bilinear sample is three interpolations, each of a difference of

@@ -3,12 +3,14 @@
 //! A bounce's engine reads the exit radiance of the one before, and whatever it needs of the heights, and
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
-use super::azimuths::{self, Azimuth};
 use super::blocks::Blocks;
+use super::pyramid::Pyramid;
 use super::sweeping::{Sweeping, part};
 use super::{Batch, Builder, Format, Owner, ResourceId};
-use crate::passes::{bounce_march, bounce_walk};
-use crate::scene::{BounceEngine, Bounces, Scene};
+use crate::passes::{
+    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_reduce,
+};
+use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -25,32 +27,42 @@ pub(crate) struct Bounce {
 
 /// The bounces of a picture, and what their passes read and write.
 pub(super) struct Bouncing {
-    engine: BounceEngine,
     azimuths: u32,
     grey: bool,
     sum: ResourceId,
+    engine: Engine,
     /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
     /// into the picture alone.
     exits: Vec<Option<ResourceId>>,
 }
 
+/// How what a sample sees is found, with what that needs of its own.
+enum Engine {
+    Brute,
+    Sweep,
+    Pyramid(bounce_gather::Pyramids),
+}
+
+/// How many bounces are worth drawing.
+pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
+    let albedo = f64::from(scene.surface.albedo.largest());
+    let count = quality.bounces.worth_drawing(albedo);
+    if count < quality.bounces.count {
+        notes.push(dropped(&quality.bounces, count, albedo));
+    }
+    count
+}
+
 impl Bouncing {
-    /// None where no bounce is worth drawing.
+    /// So many bounces, 1 or more; `levels` are those that direct light has of heights.
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
-        bounces: &Bounces,
+        quality: &Quality,
+        (count, levels): (u32, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
-        notes: &mut Vec<String>,
-    ) -> Option<Self> {
-        let albedo = f64::from(scene.surface.albedo.largest());
-        let count = bounces.worth_drawing(albedo);
-        if count < bounces.count {
-            notes.push(dropped(bounces, count, albedo));
-        }
-        if count == 0 {
-            return None;
-        }
+    ) -> Self {
+        let bounces = &quality.bounces;
         let extent = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
         let colour = if grey { Format::R32Float } else { Format::Rgba32Float };
         let mut image = |name: &str, owner: Owner, format: Format| {
@@ -64,8 +76,12 @@ impl Bouncing {
             (1..=count).map(|k| exit.filter(|_| k < count)).collect()
         };
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
-        let Bounces { engine, azimuths, .. } = *bounces;
-        Some(Self { engine, azimuths, grey, sum, exits })
+        let engine = match bounces.engine {
+            BounceEngine::Brute => Engine::Brute,
+            BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Pyramid => Engine::Pyramid(pyramids(builder, scene, quality, levels)),
+        };
+        Self { azimuths: bounces.azimuths, grey, sum, engine, exits }
     }
 
     /// How many there are.
@@ -73,24 +89,40 @@ impl Bouncing {
         self.exits.len()
     }
 
-    /// Whether rays over the surface are needed.
-    pub fn needs_blocks(&self) -> bool {
-        self.engine == BounceEngine::Brute
+    /// The passes before the first bounce; `is_recorded` says that the blocks' are there.
+    pub fn prepare(
+        &self,
+        builder: &mut Builder,
+        scene: &Scene,
+        blocks: Option<&Blocks>,
+        (heights, is_recorded): (ResourceId, bool),
+    ) {
+        let Some(blocks) = blocks else { return };
+        let pyramids = match &self.engine {
+            Engine::Brute if is_recorded => return,
+            Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
+            Engine::Sweep => return,
+            Engine::Pyramid(pyramids) => pyramids,
+        };
+        if !is_recorded {
+            let of = (&scene.field, scene.surface.border);
+            let ids = [heights, blocks.images.cells, blocks.images.ground];
+            height_cells::plan(builder, of, ids, None);
+        }
+        if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
+            pyramids.heights.record(builder, heights, images);
+        }
     }
 
-    /// Azimuths that are swept for bounces alone.
-    pub fn circle(&self, cell_m: [f64; 2]) -> Option<Vec<Azimuth>> {
-        (self.engine == BounceEngine::Sweep).then(|| azimuths::even(self.azimuths, cell_m))
-    }
-
-    /// The passes of bounce `k`, the first is 1; `direct` is what it begins with. Returns what arrives, and
-    /// where its exit radiance belongs.
+    /// The passes of bounce `k`, the first is 1; of `heights` and `direct` light it begins with the latter. Returns
+    /// what arrives, and where its exit radiance belongs.
     pub fn record(
         &self,
         builder: &mut Builder,
-        (scene, direct): (&Scene, ResourceId),
-        k: usize,
+        scene: &Scene,
         (blocks, swept): (Option<&Blocks>, Option<(&Sweeping, &[Batch])>),
+        k: usize,
+        [heights, direct]: [ResourceId; 2],
     ) -> (ResourceId, Option<ResourceId>) {
         let before = k.checked_sub(2).and_then(|i| self.exits[i]);
         let bounce = Bounce {
@@ -103,14 +135,17 @@ impl Bouncing {
             grey: self.grey,
             sum: self.sum,
         };
-        match self.engine {
-            BounceEngine::Brute => {
-                let blocks = blocks.expect("rays have blocks");
-                bounce_march::plan(builder, scene, blocks, self.azimuths, &bounce);
-            }
-            BounceEngine::Sweep => {
-                let (sweeping, batches) = swept.expect("walks have sweeps");
-                walk(builder, scene, k, (sweeping, batches), &bounce);
+        let blocks = || blocks.expect("made for engines that read cells and ground");
+        match &self.engine {
+            Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
+            Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
+            Engine::Pyramid(of) => {
+                for level in 1..=of.shade.levels() {
+                    let images = of.shade_images.expect("made for every level");
+                    shade_reduce::plan(builder, &of.shade, level, &bounce, images);
+                }
+                let ids = [heights, blocks().images.ground];
+                bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
             }
         }
         (self.sum, self.exits[k - 1])
@@ -118,10 +153,24 @@ impl Bouncing {
 
     /// The settings really used.
     pub fn used(&self) -> Vec<(String, String)> {
-        vec![
-            ("bounce_engine".into(), self.engine.name().into()),
-            ("bounce_azimuths".into(), self.azimuths.to_string()),
-        ]
+        let mut used = Vec::new();
+        let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
+        add("bounce_azimuths", self.azimuths.to_string());
+        let engine = match &self.engine {
+            Engine::Brute => BounceEngine::Brute,
+            Engine::Sweep => BounceEngine::Sweep,
+            Engine::Pyramid(of) => {
+                add("bounce_level_step", of.shade.level_step.to_string());
+                add("bounce_level_offset", of.shade.level_offset.to_string());
+                add("level_step", of.heights.level_step.to_string());
+                add("level_offset", of.heights.level_offset.to_string());
+                add("levels", of.heights.stored.name().to_owned());
+                add("receiver", of.receiver.name().to_owned());
+                BounceEngine::Pyramid
+            }
+        };
+        add("bounce_engine", engine.name().to_owned());
+        used
     }
 }
 
@@ -152,6 +201,32 @@ fn walk(
         let field = (scene.surface.border, scene.field.cell_m());
         bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
+}
+
+/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own; light follows the receiver.
+fn pyramids(
+    builder: &mut Builder,
+    scene: &Scene,
+    quality: &Quality,
+    levels: Option<pyramid_march::Images>,
+) -> bounce_gather::Pyramids {
+    let size = [scene.field.cols() as u32, scene.field.rows() as u32];
+    let heights = Pyramid::new(quality, size, scene.surface.border);
+    let Bounces { level_step, level_offset, .. } = quality.bounces;
+    let shade = Pyramid { level_step, level_offset, stored: Levels::Pyramid, ..heights };
+    let shade_images = (shade.levels() > 0).then(|| {
+        let width = 1 << shade.width_shift();
+        let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
+        let mut image = |name: &str, format: Format, extent: [u32; 3]| {
+            builder.image(name, Owner::Internal, format, extent, false)
+        };
+        let levels = image("shade_levels", Format::Rgba32Float, [width, height, 1]);
+        [levels, image("shade_table", Format::Rgba32Uint, [shade.levels(), 1, 1])]
+    });
+    let fills_heights = levels.is_none();
+    let height_images = levels.or_else(|| heights.images(builder));
+    let receiver = quality.receiver;
+    bounce_gather::Pyramids { heights, height_images, fills_heights, shade, shade_images, receiver }
 }
 
 /// As in labels.

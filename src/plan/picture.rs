@@ -1,8 +1,8 @@
 mod images;
 
-use super::azimuths::Shape;
+use super::azimuths::{self, Shape};
 use super::blocks::Blocks;
-use super::bounces::{Bouncing, bounce_name};
+use super::bounces::{self, Bouncing, bounce_name};
 use super::edit::Edits;
 use super::shining::{Aimed, Shining};
 use super::spheres::light_name;
@@ -79,11 +79,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
-    let of_light = (shining.is_grey, wanted.light_layers);
-    let bouncing = match shining.is_dark() {
-        true => None,
-        false => Bouncing::make(&mut builder, scene, &quality.bounces, of_light, &mut notes),
-    };
+    let bounces =
+        if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
     let mut lists = shining.lists(
         images.need_circle(),
         quality,
@@ -91,8 +88,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (surface.border, field.cell_m()),
         &mut notes,
     )?;
-    // Behind those of the lights.
-    lists.extend(bouncing.as_ref().and_then(|b| b.circle(field.cell_m())));
+    if is_walked && bounces > 0 {
+        // Behind those of the lights.
+        lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
+    }
     let (mut tables, mut harmonics) = (None, None);
     match shining.environment.map(|e| (e, surface.border)) {
         Some(lit) if quality.basis == Basis::Sh => {
@@ -113,15 +112,14 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
         && images.sphere_sum.is_none()
-        && bouncing.is_none();
+        && bounces == 0;
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let need_blocks =
-        images.sphere_sum.is_some() || bouncing.as_ref().is_some_and(Bouncing::needs_blocks);
+    let need_blocks = images.sphere_sum.is_some() || (bounces > 0 && !is_walked);
     let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
@@ -130,10 +128,16 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
         (Some(sweeping), lists)
     };
+    let levels = sweeping.as_ref().and_then(Sweeping::levels);
+    let of_light = (shining.is_grey, wanted.light_layers);
+    let bouncing = (bounces > 0)
+        .then(|| Bouncing::make(&mut builder, scene, quality, (bounces, levels), of_light));
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
     let mut used = used(quality, sweep, surface.border, &shining, &images);
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
-    used.extend(bouncing.iter().flat_map(Bouncing::used));
+    let of_bounces = bouncing.iter().flat_map(Bouncing::used);
+    let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();
+    used.extend(more);
     let mut drawing = Drawing {
         builder,
         scene,
@@ -243,9 +247,6 @@ impl Drawing<'_> {
     /// Passes from the field to the lit picture; of an edit, from its lattices.
     fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
-        if let Some(blocks) = &self.blocks {
-            blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
-        }
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
@@ -379,7 +380,8 @@ impl Drawing<'_> {
 
     /// Balls add up in one sum; where layers are wanted each begins its own.
     fn spheres(&mut self, quality: &Quality) {
-        let Some(sum) = self.images.sphere_sum else { return };
+        let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
+        blocks.record(&mut self.builder, &self.scene.field, self.images.heights, None);
         let names: Vec<String> =
             self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
@@ -399,12 +401,15 @@ impl Drawing<'_> {
 
     /// Each bounce from the light of the one before.
     fn bounces(&mut self, lists: &Lists) {
-        for k in 1..=self.bouncing.as_ref().map_or(0, Bouncing::count) {
-            let Some(bouncing) = &self.bouncing else { return };
-            let batches = lists.batches.last().map(Vec::as_slice);
+        let Some(bouncing) = self.bouncing.take() else { return };
+        let batches = lists.batches.last().map(Vec::as_slice);
+        let Images { heights, radiance, sphere_sum, .. } = self.images;
+        let begun = (heights, sphere_sum.is_some());
+        bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
+        for k in 1..=bouncing.count() {
+            let ids = [heights, radiance];
             let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
-            let lit = (self.scene, self.images.radiance);
-            let (sum, exit) = bouncing.record(&mut self.builder, lit, k, looked_at);
+            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, looked_at, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
         }
     }

@@ -39,6 +39,11 @@ impl Sweeping {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
+    /// Of a height pyramid, where the sweep is one and looks at any.
+    pub fn levels(&self) -> Option<pyramid_march::Images> {
+        self.levels
+    }
+
     fn lattice_of(&self, batch: &Batch) -> Lattice {
         self.lattices[batch.number as usize]
     }

@@ -1,5 +1,5 @@
 use super::Surface;
-use super::quality::within;
+use super::quality::{Quality, within};
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 
@@ -18,6 +18,12 @@ pub struct Bounces {
     /// reflects at most the share a, all bounces from the k-th on carry at most aᵏ + aᵏ⁺¹ + …: the last
     /// ones are dropped. More: faster, darker hollows. 0: none is dropped.
     pub cutoff: f64,
+    /// Levels an octave of the pyramid of exit radiance, k, [1..16], default 4. Fewer: less memory, colours of
+    /// what stands between two distances smeared. Only with [`BounceEngine::Pyramid`], as is the next.
+    pub level_step: u32,
+    /// Octaves by which samples look at finer levels of it than their distance asks for, o, [0..4], default 2.
+    /// Fewer: soft colours of what is far; more: narrow bright things seen or missed by chance.
+    pub level_offset: u32,
 }
 
 impl Default for Bounces {
@@ -28,8 +34,14 @@ impl Default for Bounces {
 
 impl Bounces {
     /// The default: direct light alone.
-    pub const NONE: Self =
-        Self { count: 0, engine: BounceEngine::Brute, azimuths: 32, cutoff: 1.0 / 65536.0 };
+    pub const NONE: Self = Self {
+        count: 0,
+        engine: BounceEngine::Brute,
+        azimuths: 32,
+        cutoff: 1.0 / 65536.0,
+        level_step: 4,
+        level_offset: 2,
+    };
     /// What [`count`](Self::count) may be.
     pub const COUNT: RangeInclusive<u32> = 0..=64;
     /// What [`azimuths`](Self::azimuths) may be.
@@ -46,7 +58,8 @@ impl Bounces {
             let found = self.cutoff.to_string();
             return Err(Error::setting("--bounce-cutoff", found, "a share from 0 to 1"));
         }
-        Ok(())
+        within("--bounce-level-step", self.level_step, Quality::LEVEL_STEP)?;
+        within("--bounce-level-offset", self.level_offset, Quality::LEVEL_OFFSET)
     }
 
     /// Whether what a sweep along lines has met is walked over for the light that such a surface throws.
@@ -77,6 +90,10 @@ pub enum BounceEngine {
     /// Those stretches of the surface that a sample sees on its own lines at every march step, found through what
     /// a sweep along lines has met: a hull tree (Timonen 2012). Needs such a sweep.
     Sweep,
+    /// One sample a level of a pyramid of heights, as [`Method::Pyramid`](super::Method::Pyramid) with its levels,
+    /// and of one of exit radiance (Nowrouzezahrai & Snyder 2009): time in proportion to the samples and the
+    /// logarithm of the side, error whatever the settings.
+    Pyramid,
 }
 
 impl BounceEngine {
@@ -85,6 +102,7 @@ impl BounceEngine {
         match self {
             BounceEngine::Brute => "brute",
             BounceEngine::Sweep => "sweep",
+            BounceEngine::Pyramid => "pyramid",
         }
     }
 }

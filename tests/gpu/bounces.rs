@@ -3,14 +3,23 @@
 use std::f64::consts::TAU;
 
 use ridgelight::cpu::bounce::{self, Fineness};
+use ridgelight::cpu::bounce_gather::BounceGather;
 use ridgelight::cpu::bounce_march::bounce_march;
+use ridgelight::cpu::height_expand::height_expand;
+use ridgelight::cpu::height_reduce::height_levels;
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::pyramid_march::Stored;
+use ridgelight::cpu::shade_reduce::shade_levels;
+use ridgelight::cpu::shared::levels::LevelTexels;
+use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::Pixels;
 use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{EPSILON, twin_thrown};
+use ridgelight::measure::tolerance::{EPSILON, twin_gathered, twin_thrown};
+use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Border, Bounces, HeightField, Lights, Method, Quality, Scene, Sun, Surface,
+    Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Method, Quality, Receiver,
+    Scene, Sun, Surface,
 };
 
 use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
@@ -144,6 +153,98 @@ fn every_stretch_is_the_twins() {
     println!("{largest:.2e} of the bound");
 }
 
+/// The same by pyramids, of either storage and receiver.
+///
+/// A knot's elevation errs as a pyramid's angle against its twin, all levels' own errors in it; a slope's
+/// place by the roundings of its direction, 4 ε of the whole way, and the land along with it, seen from there. At each
+/// of its knots and midpoints the light of an angle's weight may be another's, as of stretches.
+#[test]
+fn pyramids_are_the_twins() {
+    let mut gpu = Device::new();
+    let mut largest = 0.0_f64;
+    for (border, levels, receiver, azimuths) in [
+        (Border::Plane, Levels::Stack, Receiver::Plane, 8),
+        (Border::Open, Levels::Pyramid, Receiver::Lobe, 5),
+        (Border::Periodic, Levels::Stack, Receiver::Lobe, 4),
+        (Border::Periodic, Levels::Pyramid, Receiver::Plane, 4),
+    ] {
+        for (name, scene) in scenes(border).into_iter().filter(|(name, _)| *name != "wild") {
+            let bounces = Bounces {
+                engine: BounceEngine::Pyramid,
+                level_step: 3,
+                level_offset: 1,
+                ..brute(2, azimuths).bounces
+            };
+            let quality = Quality {
+                bounces,
+                levels,
+                receiver,
+                level_step: 2,
+                level_offset: 0,
+                ..brute(2, azimuths)
+            };
+            let all = drawn(&mut gpu, &scene, &quality);
+            let mut from = drawn(&mut gpu, &scene, &brute(0, azimuths)).swap_remove(0);
+            let field = &scene.field;
+            let size = [field.cols() as u32, field.rows() as u32];
+            let heights = Heights::of(field, border);
+            let pyramid = Pyramid::new(&quality, size, border);
+            let shade = Pyramid { level_step: 3, level_offset: 1, ..pyramid };
+            let texels = height_levels(&heights, &pyramid);
+            let of = LevelTexels { pyramid: &pyramid, texels: &texels };
+            let stack: Vec<f32> =
+                (1..=pyramid.levels()).flat_map(|l| height_expand(&of, l)).collect();
+            let stored = match levels {
+                Levels::Stack => Stored::Stack(&stack),
+                Levels::Pyramid => Stored::Levels(&texels),
+            };
+            for (k, layer) in all[1..].iter().enumerate() {
+                let brightest = from.as_flattened().iter().fold(0.0_f64, |m, v| m.max(*v));
+                let shade_texels = &shade_levels(&from, &shade);
+                let (shade, pyramid, exit) = (&shade, &pyramid, &from[..]);
+                let twin = BounceGather {
+                    field,
+                    heights,
+                    pyramid,
+                    stored,
+                    shade,
+                    shade_texels,
+                    exit,
+                    receiver,
+                    azimuths,
+                };
+                let cell = field.cell_m()[0].min(field.cell_m()[1]);
+                let relief = relief(field);
+                let bound = twin_gathered(
+                    largest_height(field),
+                    relief,
+                    cell,
+                    pyramid.samples(),
+                    brightest,
+                );
+                for (i, got) in layer.iter().enumerate() {
+                    let want = twin.light(i / field.cols(), i % field.cols());
+                    let albedo = albedo_of(&scene, i);
+                    for c in 0..3 {
+                        let off = (got[c] - albedo[c] * want[c]).abs();
+                        assert!(
+                            off <= bound,
+                            "{border:?} {levels:?} {receiver:?} {name} {k} {i} {c}: {got:?} {want:?} {bound:e}"
+                        );
+                        largest = largest.max(off / bound);
+                    }
+                }
+                from.clone_from(layer);
+            }
+        }
+    }
+    println!("{largest:.2e} of the bound");
+}
+
+fn largest_height(field: &HeightField) -> f64 {
+    field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m))
+}
+
 /// Pits against their closed form, within what the rim's staircase may do.
 #[test]
 fn a_pit_is_lit_as_its_closed_form() {
@@ -178,8 +279,8 @@ fn a_pit_is_lit_as_its_closed_form() {
 /// largest tᵏ.
 #[test]
 fn a_furnace_comes_up_to_one() {
-    const COUNT: u32 = 40;
-    const AZIMUTHS: u32 = 32;
+    const COUNT: u32 = 24;
+    const AZIMUTHS: u32 = 16;
     let mut gpu = Device::new();
     let mut next = random(9);
     let noise: Vec<f64> = (0..72).map(|_| next()).collect();

@@ -43,7 +43,8 @@ const FUSES: [Fuse; 6] =
     [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
-const BOUNCE_ENGINES: [BounceEngine; 2] = [BounceEngine::Sweep, BounceEngine::Brute];
+const BOUNCE_ENGINES: [BounceEngine; 3] =
+    [BounceEngine::Pyramid, BounceEngine::Sweep, BounceEngine::Brute];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
@@ -193,7 +194,7 @@ fn bounce_knobs() -> [Knob; 2] {
             steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
             range: None,
             default: 0,
-            dearer: "every stretch of surface that a sample sees",
+            dearer: "one sample a level of pyramids; every stretch of surface that a sample sees",
             set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
             idle: |_| false,
         },

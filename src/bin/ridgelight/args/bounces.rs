@@ -20,6 +20,12 @@ pub struct BounceArgs {
     /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1; with --bounces
     #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
     pub bounce_cutoff: f64,
+    /// Levels a doubling of distance of the pyramid of light, 1..16; with --bounce-engine pyramid
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_level_step: u32,
+    /// Doublings of resolution by which its levels are finer than distance asks for, 0..4; with --bounce-engine pyramid
+    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_level_offset: u32,
 }
 
 impl BounceArgs {
@@ -30,9 +36,12 @@ impl BounceArgs {
             engine: match self.bounce_engine {
                 BounceEngineName::Brute => BounceEngine::Brute,
                 BounceEngineName::Sweep => BounceEngine::Sweep,
+                BounceEngineName::Pyramid => BounceEngine::Pyramid,
             },
             azimuths: self.bounce_azimuths,
             cutoff: self.bounce_cutoff,
+            level_step: self.bounce_level_step,
+            level_offset: self.bounce_level_offset,
         };
         bounces.check().map(|()| bounces)
     }
@@ -44,4 +53,6 @@ pub enum BounceEngineName {
     Brute,
     /// Those that it sees at every march step, through what a sweep along lines has met
     Sweep,
+    /// One sample a level of pyramids of heights and of light: soft, in error whatever the settings
+    Pyramid,
 }

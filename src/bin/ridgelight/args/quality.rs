@@ -5,7 +5,7 @@ use super::bounces::BounceArgs;
 use super::values::whole;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 22] = [
+pub const SETTINGS: [&str; 24] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
@@ -28,6 +28,8 @@ pub const SETTINGS: [&str; 22] = [
     "bounce_engine",
     "bounce_azimuths",
     "bounce_cutoff",
+    "bounce_level_step",
+    "bounce_level_offset",
 ];
 
 #[derive(Args)]
