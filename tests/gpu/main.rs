@@ -26,6 +26,7 @@ mod scenes;
 mod spheres;
 mod subsampled;
 mod twins;
+mod walks;
 
 use std::sync::{Mutex, MutexGuard};
 
