@@ -58,17 +58,24 @@ struct Place {
     float t;
 };
 
+// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
 Place place_at(int back) {
-    bool wraps = BORDER == BORDER_PERIODIC;
     int y = own_lane * CELL - back * azimuth.shear;
     int step = own_step - back;
     int cell = y >> CELL_SHIFT;
-    int lane = wraps ? wrapped(cell, lanes) : clamp(cell, 0, lanes - 1);
-    int next = wraps ? wrapped(lane + 1, lanes) : min(lane + 1, lanes - 1);
-    int on = wraps ? wrapped(step, steps) : max(step, 0);
+    int lane_round = wrapped(cell, lanes);
+    int lane_held = clamp(cell, 0, lanes - 1);
+    int lane = BORDER == BORDER_PERIODIC ? lane_round : lane_held;
+    int next_round = wrapped(lane + 1, lanes);
+    int next_held = min(lane + 1, lanes - 1);
+    int next = BORDER == BORDER_PERIODIC ? next_round : next_held;
+    int step_round = wrapped(step, steps);
+    int step_held = max(step, 0);
+    int on = BORDER == BORDER_PERIODIC ? step_round : step_held;
     float t = float(y & (CELL - 1)) * (1.0 / float(CELL));
-    return Place(lane_position(azimuth, lane, lanes), lane_position(azimuth, next, lanes),
-                 march_position(azimuth, on, steps), t);
+    int first = lane_position(azimuth, lane, lanes);
+    int second = lane_position(azimuth, next, lanes);
+    return Place(first, second, march_position(azimuth, on, steps), t);
 }
 
 float slope_at(int back) {
@@ -99,20 +106,19 @@ int occluder_at(int back) {
     int lead = lattice_lead(azimuth.shear, warm_up + steps, LINE_SHIFT, wraps);
     int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
     int step = own_step - back;
-    int on = (wraps ? wrapped(step, steps) : max(step, 0)) + warm_up;
+    int step_round = wrapped(step, steps);
+    int step_held = max(step, 0);
+    int on = (wraps ? step_round : step_held) + warm_up;
     int origin = on * azimuth.shear - lead * spacing;
     int from_origin = own_lane * CELL - back * azimuth.shear - origin;
     // The nearer one; of two, the one before.
-    int line = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
-    bool stands = true;
-    if (wraps) {
-        line = wrapped(line, lines);
-    } else {
-        int first = (spacing - 1 - origin) >> LINE_SHIFT;
-        int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
-        stands = first <= last;
-        line = clamp(line, max(first, 0), max(last, 0));
-    }
+    int nearest = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
+    int first = (spacing - 1 - origin) >> LINE_SHIFT;
+    int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
+    bool stands = wraps || first <= last;
+    int line_round = wrapped(nearest, lines);
+    int line_held = clamp(nearest, max(first, 0), max(last, 0));
+    int line = wraps ? line_round : line_held;
     uint found = lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, on)).xy, line & 3);
     return stands ? int(found) : 0;
 }
@@ -127,9 +133,12 @@ bool crosses_split() {
 
 // The ends of that diagonal: the sample's neighbours across the lanes, and ahead.
 ivec4 split_ends() {
-    bool wraps = BORDER == BORDER_PERIODIC;
-    int low = wraps ? wrapped(own_lane - 1, lanes) : max(own_lane - 1, 0);
-    int ahead = wraps ? wrapped(own_step - 1, steps) : max(own_step - 1, 0);
+    int low_round = wrapped(own_lane - 1, lanes);
+    int low_held = max(own_lane - 1, 0);
+    int low = BORDER == BORDER_PERIODIC ? low_round : low_held;
+    int ahead_round = wrapped(own_step - 1, steps);
+    int ahead_held = max(own_step - 1, 0);
+    int ahead = BORDER == BORDER_PERIODIC ? ahead_round : ahead_held;
     return ivec4(lane_position(azimuth, low, lanes), march_position(azimuth, own_step, steps),
                  lane_position(azimuth, own_lane, lanes), march_position(azimuth, ahead, steps));
 }
@@ -168,61 +177,62 @@ vec4 walked(vec3 normal, float plane) {
     float whole = dot(faces, passed);
     thrown = vec3(0.0);
     reached = plane;
-    int at = 1;
-    float slope = slope_at(1);
-    // The triangle that holds the sample: what leads into it meets it at once.
+    // The triangle that holds the sample: what leads into it meets it at once. Its end is the cell's diagonal,
+    // where that is crossed, else the first step.
     bool split = crosses_split();
     ivec4 ends = split_ends();
     float u = 1.0 / (1.0 + float(azimuth.shear) * (1.0 / float(CELL)));
     float side = height_at(ends.x, ends.y);
-    precise float split_rise = (side - own_height) + u * (height_at(ends.z, ends.w) - side);
-    precise float split_slope = split_rise / (u * azimuth.step_m);
-    float first = split ? split_slope : slope;
-    if (walking && first > reached) {
-        add(first, leaving(lane_position(azimuth, own_lane, lanes), march_position(azimuth, own_step, steps)));
+    precise float rise = (side - own_height) + u * (height_at(ends.z, ends.w) - side);
+    precise float split_slope = rise / (u * azimuth.step_m);
+    vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
+    vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
+    if (walking && split && split_slope > reached) {
+        add(split_slope, own_light);
     }
-    // The radiance where the next piece begins, if it is known.
-    vec3 light = vec3(0.0);
-    bool is_known = false;
-    if (walking && split && slope > reached) {
-        light = light_at(1);
-        is_known = true;
-        vec3 begins = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
-        // Where the piece comes up over what is before it: radiance is linear.
-        float under = max(reached - split_slope, 0.0) * u;
-        float over = slope - reached;
-        begins = mix(begins, light, under / (under + over));
-        add(slope, 0.5 * (begins + light));
-    }
-    walking = walking && at < limit;
+    // Where the next piece begins: its distance in steps, slope, and radiance, if that is known.
+    int at = 0;
+    float from = split ? u : 0.0;
+    float slope = split ? split_slope : plane;
+    vec3 light = mix(own_light, split_light, bvec3(split));
+    bool is_known = true;
     // At most one turn a step. Left by all together, as in horizon_sweep.
     while (subgroupAny(walking)) {
-        int back = occluder_at(at);
+        int met = occluder_at(at);
+        int back = at == 0 ? 1 : met;
         walking = walking && back > 0;
         int next = min(at + 1, max(limit, 1));
         int to = clamp(at + back, next, max(limit, 1));
         float to_slope = slope_at(to);
         // What lies between may rise as well.
         bool searches = walking && to_slope > reached && to > next;
-        if (searches) {
-            to = next;
-            to_slope = slope_at(to);
+        if (subgroupAny(searches)) {
+            float next_slope = slope_at(next);
+            to = searches ? next : to;
+            to_slope = searches ? next_slope : to_slope;
         }
         bool sees = walking && to_slope > reached;
-        if (sees) {
-            vec3 far = light_at(to);
-            if (!is_known) {
-                light = light_at(at);
-            }
-            float under = max(reached - slope, 0.0) * float(at);
+        bool is_own = at == 0 && !split;
+        if (subgroupAny(sees)) {
+            vec3 there = light_at(to);
+            vec3 here = light_at(at);
+            vec3 far = mix(there, own_light, bvec3(is_own));
+            // Where the piece comes up over what is before it: radiance is linear.
+            float under = max(reached - slope, 0.0) * from;
             float over = (to_slope - reached) * float(to);
-            vec3 begins = mix(light, far, under / (under + over));
-            add(to_slope, 0.5 * (begins + far));
-            light = far;
+            vec3 near = mix(here, light, bvec3(is_known));
+            vec3 begins = mix(near, far, under / max(under + over, 1e-30));
+            vec2 now = moments_above(to_slope);
+            vec3 more = dot(faces, passed - now) * 0.5 * (begins + far);
+            thrown += mix(vec3(0.0), more, bvec3(sees));
+            passed = mix(passed, now, bvec2(sees));
+            light = mix(light, far, bvec3(sees));
+            reached = sees ? to_slope : reached;
         }
-        is_known = walking ? sees : is_known;
-        at = mix(at, to, walking);
-        slope = mix(slope, to_slope, walking);
+        is_known = walking ? sees && !is_own : is_known;
+        at = walking ? to : at;
+        from = walking ? float(to) : from;
+        slope = walking ? to_slope : slope;
         walking = walking && at < limit;
     }
     return vec4(thrown, whole);
