@@ -215,12 +215,15 @@ vec4 walked(vec3 normal, float plane) {
         bool is_own = at == 0 && !split;
         if (subgroupAny(sees)) {
             vec3 there = light_at(to);
-            vec3 here = light_at(at);
             vec3 far = mix(there, own_light, bvec3(is_own));
             // Where the piece comes up over what is before it: radiance is linear.
             float under = max(reached - slope, 0.0) * from;
             float over = (to_slope - reached) * float(to);
-            vec3 near = mix(here, light, bvec3(is_known));
+            vec3 near = light;
+            if (subgroupAny(sees && !is_known)) {
+                vec3 here = light_at(at);
+                near = mix(here, light, bvec3(is_known));
+            }
             vec3 begins = mix(near, far, under / max(under + over, 1e-30));
             vec2 now = moments_above(to_slope);
             vec3 more = dot(faces, passed - now) * 0.5 * (begins + far);

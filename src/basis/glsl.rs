@@ -127,26 +127,26 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, four samples
-/// at a time, for every order that `ORDER` may be.
+/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, of one sample or
+/// four at a time, for every order that `ORDER` may be.
 ///
 /// `add_slices` has the exact slices, `add_nlps` what n NLP coefficients keep of them ([`from_nlp`]).
 pub fn glsl_seen() -> String {
     let mut text = String::from(
         "// Made by basis::glsl::glsl_seen, and held to it by a test.\n//\n\
          // Adds what is seen along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
-         // the zenith, to the series of four samples. The including shader declares ORDER, the azimuth's\n\
-         // weights float turn[11], of m at m + 5, and vec4 series[36].\n\n\
+         // the zenith, to the series of what SEEN is, one sample or four. The including shader declares ORDER,\n\
+         // the azimuth's weights float turn[11], of m at m + 5, and SEEN series[36].\n\n\
          // By exact integrals over elevation.\n\
-         void add_slices(vec4 rise, vec4 sin_, vec4 cos_) {\n    vec4 t;\n",
+         void add_slices(SEEN rise, SEEN sin_, SEEN cos_) {\n    SEEN t;\n",
     );
     let slices = Slices::new(MAX_ORDER);
     let exact: Vec<String> = slices.parts().iter().map(above).collect();
     add_parts(&mut text, &exact);
     text += "}\n\n// By ORDER coefficients of normalised Legendre polynomials (NS09 eq. 11).\n\
-             void add_nlps(vec4 sin_, vec4 cos_) {\n    vec4 t;\n    vec4 cos2 = cos_ * cos_;\n";
+             void add_nlps(SEEN sin_, SEEN cos_) {\n    SEEN t;\n    SEEN cos2 = cos_ * cos_;\n";
     for (l, line) in visibility_nlp(MAX_ORDER).iter().enumerate() {
-        let line = format!("vec4 nlp{l} = {line}");
+        let line = format!("SEEN nlp{l} = {line}");
         match l {
             0 | 1 => writeln!(text, "    {line};").unwrap(),
             _ => writeln!(text, "    {line} * (ORDER > {l} ? 1.0 : 0.0);").unwrap(),

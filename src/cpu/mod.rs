@@ -38,6 +38,7 @@ pub mod shade_reduce;
 pub mod shared;
 pub mod sky_shade;
 pub mod sphere;
+pub mod sphere_sh_shade;
 pub mod sphere_shade;
 pub mod sun_shade;
 pub mod surface_sweep;

@@ -25,6 +25,7 @@ pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
 pub(crate) mod shade_reduce;
 pub(crate) mod sky_shade;
+pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;

@@ -52,11 +52,23 @@ impl Blocks {
         heights: ResourceId,
         paths: Option<[ResourceId; 2]>,
     ) {
-        let BlockImages { cells, ground, maxima } = self.images;
-        height_cells::plan(builder, (field, self.border), [heights, cells, ground], paths);
+        self.record_ground(builder, field, heights, paths);
+        let BlockImages { cells, maxima, .. } = self.images;
         for level in 1..=self.top_level {
             height_bounds::plan(builder, self.cells, self.padded_rows, level, [cells, maxima]);
         }
+    }
+
+    /// The same without what rays skip by: for those that need the ground alone.
+    pub fn record_ground(
+        &self,
+        builder: &mut Builder,
+        field: &HeightField,
+        heights: ResourceId,
+        paths: Option<[ResourceId; 2]>,
+    ) {
+        let BlockImages { cells, ground, .. } = self.images;
+        height_cells::plan(builder, (field, self.border), [heights, cells, ground], paths);
     }
 
     /// Steps that no ray can ask for: over the field's longest side, or as far as a ray over repetitions

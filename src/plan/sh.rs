@@ -116,7 +116,7 @@ pub(crate) fn lowest_rad(border: Border) -> f64 {
 }
 
 /// Numbers as texels of four f32, zeros at the end.
-fn by_fours(values: &[f64]) -> Vec<f32> {
+pub(super) fn by_fours(values: &[f64]) -> Vec<f32> {
     let mut all: Vec<f32> = values.iter().map(|v| *v as f32).collect();
     all.resize(values.len().next_multiple_of(4), 0.0);
     all
@@ -166,7 +166,7 @@ fn elevations(
 
 /// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
 /// The light of one coefficient at a time makes a column of it.
-fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
+pub(super) fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
     let order = quality.sh_order as usize;
     let triples = triples(order);
     let factors = factors(quality.window, light_order);

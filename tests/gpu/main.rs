@@ -23,6 +23,7 @@ mod reference_page;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
+mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;

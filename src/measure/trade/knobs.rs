@@ -3,7 +3,9 @@
 //!
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
-use crate::scene::{Basis, BounceEngine, Bounces, Fuse, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{
+    Basis, BounceEngine, Bounces, Fuse, LightBasis, Lines, Method, Precision, Quality, Scene,
+};
 use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
@@ -41,6 +43,7 @@ const LINES: [(Lines, &str); 6] = [
 ];
 const FUSES: [Fuse; 6] =
     [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
+const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
 const BOUNCE_ENGINES: [BounceEngine; 3] =
@@ -142,6 +145,17 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             default: 0,
             dearer: "more slices of a sun's disc, a key light or a ball of light: soft shadows",
             set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
+            idle: |_| false,
+        });
+    }
+    if !lights.spheres.is_empty() {
+        all.push(Knob {
+            name: "light basis",
+            steps: LIGHT_BASES.iter().map(|b| format!("--light-basis {}", b.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "each slice of a ball of light exact: sharp shadows",
+            set: |quality, step| quality.light_basis = LIGHT_BASES[step],
             idle: |_| false,
         });
     }
@@ -305,9 +319,10 @@ mod tests {
         let spheres = vec![ball];
         assert_eq!(
             names(Lights { spheres: spheres.clone(), ..Lights::default() }),
-            ["sun azimuths"]
+            ["sun azimuths", "light basis"]
         );
-        assert_eq!(names(Lights { spheres, ..sun(0.0) }), with(&["sun azimuths"]));
+        let balls_too = with(&["sun azimuths", "light basis"]);
+        assert_eq!(names(Lights { spheres, ..sun(0.0) }), balls_too);
     }
 
     /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone

@@ -135,7 +135,8 @@ impl Harmonics {
         let (sh, mut constants) = Sh::of(environment, border, quality);
         let by_table = quality.wedges == Wedges::Table;
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
-        let constants = builder.constants(constants);
+        // The first: they lie where they count from.
+        let (constants, _) = builder.constants(&constants);
         let turns = sh.rows * (2 * sh.light_order - 1);
         let env_turns = builder.buffer("env_turns", turns as u64 * 16, false);
         let mut image = |name: &str, extent: [u32; 3], layered: bool| {

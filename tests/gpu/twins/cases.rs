@@ -3,8 +3,8 @@
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun,
-    Surface, Wedges, Window,
+    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -288,6 +288,34 @@ pub(super) fn pictures() -> Vec<Case> {
     };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
+    let soft = |sh_order, sun_azimuths| Quality {
+        light_basis: LightBasis::Sh,
+        sh_order,
+        sun_azimuths,
+        ..quality
+    };
+    let soft_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(3, 6) };
+    let soft_nlp = Quality {
+        wedges: Wedges::Nlp,
+        receiver: Receiver::Lobe,
+        window: Window::Lanczos,
+        ..soft(5, 7)
+    };
+    let soft_levels = Quality {
+        method: Method::Pyramid,
+        level_step: 3,
+        level_offset: 0,
+        levels: Levels::Pyramid,
+        ..soft(2, 1)
+    };
+    let soft_stack = Quality {
+        wedges: Wedges::Table,
+        receiver: Receiver::Lobe,
+        levels: Levels::Stack,
+        level_step: 2,
+        level_offset: 1,
+        ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
+    };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
     let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
@@ -306,7 +334,19 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("balls of light", balls.clone(), quality, true, false),
-        picture("balls in one sum", balls, Quality { sun_azimuths: 5, ..quality }, false, false),
+        picture(
+            "balls in one sum",
+            balls.clone(),
+            Quality { sun_azimuths: 5, ..quality },
+            false,
+            false,
+        ),
+        picture("balls by harmonics", balls.clone(), soft(4, 8), true, false),
+        picture("balls by harmonics of order 6", balls.clone(), soft(6, 4), false, false),
+        picture("balls by a table of wedges", balls.clone(), soft_table, false, false),
+        picture("balls by Legendre, periodic", balls_alone.clone(), soft_nlp, false, false),
+        picture("balls by a pyramid's levels", balls, soft_levels, false, false),
+        picture("balls by a stack, periodic", balls_alone.clone(), soft_stack, true, false),
         picture("balls alone, periodic", balls_alone, quality, false, false),
         picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
         picture("harmonics beside a sky", colourful.clone(), windowed, true, false),

@@ -8,6 +8,7 @@ pub(crate) mod light;
 mod paths;
 mod pyramid;
 mod sh;
+pub(crate) mod soft;
 mod sweep;
 
 use std::collections::BTreeMap;
@@ -80,6 +81,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
     ("sphere_shade", light::sphere_shade),
+    ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
     ("bounce_walk", bounce::bounce_walk),
 ];
@@ -368,10 +370,9 @@ fn a_value_beyond_its_tolerance_is_seen() {
     let mut device = Device::new();
     let cases = cases::pictures();
     let mut all = Vec::new();
-    for case in cases
-        .iter()
-        .filter(|c| ["environment on a plane", "harmonics of order 3"].contains(&c.name))
-    {
+    for case in cases.iter().filter(|c| {
+        ["environment on a plane", "harmonics of order 3", "balls by harmonics"].contains(&c.name)
+    }) {
         let mut run = Run::new(device.gpu.as_mut().expect("alive"), case);
         all.extend(run.pairs());
         run.gpu.end(run.frame);

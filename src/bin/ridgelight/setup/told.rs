@@ -1,0 +1,137 @@
+//! What a command was asked for, what it used and how long that took, for files' metadata and --json.
+
+use std::path::Path;
+
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::plan::Plan;
+use ridgelight::scene::{HeightField, Scene};
+
+use crate::args::{FieldArgs, LightArgs, SurfaceArgs};
+
+/// What was used and how long it took, for files' metadata and --json.
+pub fn metadata(
+    gpu: &Headless,
+    field: &HeightField,
+    plan: &Plan,
+    times: &[Timing],
+) -> Vec<(String, String)> {
+    let report = gpu.report();
+    let mut all = vec![
+        ("ridgelight".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        ("device".to_owned(), report.name.clone()),
+        ("driver".to_owned(), report.driver.clone()),
+        ("rows".to_owned(), field.rows().to_string()),
+        ("cols".to_owned(), field.cols().to_string()),
+        ("cell_m".to_owned(), format!("{},{}", field.cell_m()[0], field.cell_m()[1])),
+        ("base_m".to_owned(), field.base_m().to_string()),
+        ("device_bytes".to_owned(), plan.bytes().to_string()),
+    ];
+    all.extend(plan.settings.iter().cloned());
+    all.extend(plan.notes.iter().enumerate().map(|(i, n)| (format!("note{}", i + 1), n.clone())));
+    let total: f64 = times.iter().map(|t| t.ns).sum();
+    if !times.is_empty() {
+        all.push(("gpu_ms".to_owned(), format!("{:.3}", total / 1e6)));
+        let each = times.iter().map(|t| format!("{} {:.3}", t.label, t.ns / 1e6));
+        all.push(("gpu_ms_of_passes".to_owned(), each.collect::<Vec<_>>().join("; ")));
+    }
+    all
+}
+
+/// What was asked for that no plan knows.
+pub fn asked(
+    input: &Path,
+    surface: &FieldArgs,
+    lit: Option<(&LightArgs, &SurfaceArgs, &Scene)>,
+) -> Vec<(String, String)> {
+    let numbers = |c: &[f32; 3]| format!("{},{},{}", c[0], c[1], c[2]);
+    let mut all = vec![
+        ("input".to_owned(), input.display().to_string()),
+        ("z_scale".to_owned(), surface.z_scale.to_string()),
+    ];
+    if let Some(nodata) = surface.nodata {
+        all.push(("nodata".to_owned(), nodata.to_string()));
+    }
+    let Some((args, surface, scene)) = lit else { return all };
+    all.push(("albedo".to_owned(), surface.albedo.clone()));
+    if let Some(sky) = &scene.lights.sky {
+        all.push(("sky".to_owned(), numbers(sky)));
+    }
+    if let Some(path) = &args.env {
+        all.push(("env".to_owned(), path.display().to_string()));
+        all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
+    }
+    // As the flags take them, less the rounding of turning degrees to radians and back.
+    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
+    let compass = |azimuth_rad: f64| degrees(std::f64::consts::FRAC_PI_2 - azimuth_rad);
+    for (i, sun) in scene.lights.suns.iter().enumerate() {
+        let azimuth = compass(sun.azimuth_rad);
+        let [elevation, diameter] = [sun.elevation_rad, sun.diameter_rad].map(degrees);
+        let text = format!("{azimuth},{elevation},{diameter},{}", numbers(&sun.irradiance));
+        all.push((format!("sun{}", i + 1), text));
+    }
+    for (i, key) in scene.lights.keys.iter().enumerate() {
+        let (azimuth, width) = (compass(key.azimuth_rad), degrees(key.width_rad));
+        let [low, high] = key.elevations_rad.map(degrees);
+        let (elevation, height) = ((low + high) / 2.0, high - low);
+        let text = format!("{azimuth},{elevation},{width},{height},{}", numbers(&key.radiance));
+        all.push((format!("key{}", i + 1), text));
+    }
+    for (i, ball) in scene.lights.spheres.iter().enumerate() {
+        let [x, y, z] = ball.position_m;
+        let text = format!("{x},{y},{z},{},{}", ball.radius_m, numbers(&ball.radiance));
+        all.push((format!("light{}", i + 1), text));
+    }
+    all
+}
+
+/// Settings as JSON: a number as a number, numbers with commas between them as a list of numbers, all
+/// else as text. A file, a device and the spelling of `--lines` (1, 1/2, exact) are text, whatever they
+/// look like.
+pub fn typed(settings: &[(String, String)]) -> serde_json::Map<String, serde_json::Value> {
+    const WORDS: [&str; 6] = ["ridgelight", "device", "driver", "input", "env", "lines"];
+    let typed = |name: &str, text: &str| {
+        let number = |t: &str| serde_json::from_str::<serde_json::Number>(t).ok();
+        let all: Option<Vec<_>> = text.split(',').map(number).collect();
+        match all {
+            Some(numbers) if !WORDS.contains(&name) => match numbers.as_slice() {
+                [one] => one.clone().into(),
+                more => more.into(),
+            },
+            _ => text.into(),
+        }
+    };
+    settings.iter().map(|(name, text)| (name.clone(), typed(name, text))).collect()
+}
+
+pub fn as_json(metadata: &[(String, String)], times: &[Timing]) -> serde_json::Value {
+    let passes: Vec<_> =
+        times.iter().map(|t| serde_json::json!({ "pass": t.label, "ns": t.ns })).collect();
+    serde_json::json!({ "settings": typed(metadata), "passes": passes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_numbers_and_words_are_words() {
+        let settings = [
+            ("azimuths", "64"),
+            ("z_scale", "0.5"),
+            ("nodata", "-32768"),
+            ("sky", "0.25,1,1e6"),
+            ("lines", "1"),
+            ("input", "7"),
+            ("albedo", "colours.png"),
+            ("note1", "1, of 2"),
+            ("until", "inf"),
+            ("empty", ""),
+        ]
+        .map(|(name, text)| (name.to_owned(), text.to_owned()));
+        let expected = serde_json::json!({
+            "azimuths": 64, "z_scale": 0.5, "nodata": -32768, "sky": [0.25, 1, 1e6], "lines": "1", "input": "7",
+            "albedo": "colours.png", "note1": "1, of 2", "until": "inf", "empty": "",
+        });
+        assert_eq!(serde_json::Value::from(typed(&settings)), expected);
+    }
+}

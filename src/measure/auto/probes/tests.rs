@@ -1,0 +1,123 @@
+use super::*;
+
+const SIDE: usize = 64;
+const SEEDS: u64 = 200;
+
+fn noise(k: u64) -> f64 {
+    let z =
+        k.wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(31).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    ((z ^ (z >> 29)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+}
+
+/// Shares of seeds whose bound, and whose bare estimate, is no less than the true error of a picture
+/// of light 1 with `off` at each sample; and the mean of the estimate's square over it.
+fn covered(
+    off: impl Fn(usize) -> f64,
+    probes: usize,
+    control: Option<f64>,
+    unsure: &[f64],
+) -> [f64; 3] {
+    let count = SIDE * SIDE;
+    let square = (0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64;
+    let of = |scale: f64| vec![(0..count).map(|i| (1.0 + scale * off(i)) as f32).collect()];
+    let picture: Vec<Vec<f32>> = of(1.0);
+    let control: Option<Vec<Vec<f32>>> = control.map(of);
+    let mut sums = [0.0; 3];
+    for seed in 0..SEEDS {
+        let (places, factors) = picks(unsure, probes, seed);
+        let light = vec![[1.0; 3]; places.len()];
+        let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
+        let seen = probes.error(&picture, control.as_deref(), Probes::THREE_LOOKS);
+        sums[0] += f64::from(u8::from(seen.at_most >= square.sqrt()));
+        sums[1] += f64::from(u8::from(seen.error >= square.sqrt()));
+        sums[2] += seen.error.powi(2) / square;
+    }
+    sums.map(|s| s / SEEDS as f64)
+}
+
+/// The share of seeds whose bound must hold: that of one of three looks, less three standard deviations
+/// of so many seeds.
+fn promised() -> f64 {
+    let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 3.0;
+    confidence - 3.0 * (confidence * (1.0 - confidence) / SEEDS as f64).sqrt()
+}
+
+/// Errors everywhere, errors along a twentieth of the samples (as shadows' edges make), errors that
+/// grow across the field: the bound holds as often as it says, less three standard deviations of so
+/// many seeds; the estimate's square is right in the mean (that of the twentieth wavers by
+/// √(19 / probes), here by no more than 0.55, and its mean by 0.55/√200); and the bare estimate
+/// would not do as a bound, but across, where equal parts leave nothing to chance.
+#[test]
+fn the_bound_covers_as_often_as_it_says() {
+    let everywhere = |i: usize| 0.02 * noise(i as u64);
+    let edges = |i: usize| if noise(i as u64) > 0.45 { 0.1 * noise(!i as u64) } else { 0.0 };
+    let across = |i: usize| 0.03 * (i / SIDE) as f64 / SIDE as f64;
+    for (name, off) in
+        [("everywhere", everywhere as fn(usize) -> f64), ("edges", edges), ("across", across)]
+    {
+        for (probes, control) in [(200, None), (400, None), (200, Some(0.3)), (64, Some(-0.2))] {
+            let [bound, bare, mean] = covered(off, probes, control, &vec![0.0; SIDE * SIDE]);
+            let said = format!("{name}, {probes} probes, {control:?}: {bound} {bare} {mean}");
+            assert!(bound >= promised(), "{said}");
+            assert!(bare < 0.8 || name == "across", "{said}");
+            assert!((mean - 1.0).abs() < 3.0 * 0.55 / (SEEDS as f64).sqrt(), "{said}");
+        }
+    }
+}
+
+/// All of the error in 9 of 4096 samples, as the edge of a short shadow makes it: even probes mostly
+/// miss them, and their bound does not hold. Where pictures lay apart within 2 samples of them (and in
+/// 300 samples elsewhere), half of the probes are there, and it does.
+#[test]
+fn errors_of_few_samples_are_found_where_pictures_differ() {
+    let is_edge = |i: usize| i / SIDE == 20 && (30..39).contains(&(i % SIDE));
+    let off = |i: usize| if is_edge(i) { 0.5 } else { 0.0 };
+    let even = covered(off, 300, None, &vec![0.0; SIDE * SIDE]);
+    assert!(even[0] < 0.8, "{even:?}");
+    let drawn = |scale: f32| -> Vec<f32> {
+        let at = |i| if is_edge(i) || (1000..1300).contains(&i) { scale } else { 0.0 };
+        (0..SIDE * SIDE).map(at).collect()
+    };
+    let unsure = apart(&[drawn(0.3)], &[drawn(0.5)], SIDE);
+    let touched = unsure.iter().filter(|u| **u > 0.0).count();
+    assert!((5 * 13 + 300..5 * 13 + 1000).contains(&touched), "{touched}");
+    let aimed = covered(off, 300, None, &unsure);
+    assert!(aimed[0] >= promised(), "{aimed:?}");
+}
+
+/// A far better picture than its control is judged by itself: no noise of the control's, no 0.
+#[test]
+fn a_better_picture_than_its_control_has_an_error() {
+    let count = SIDE * SIDE;
+    let off = |i: usize| 1e-4 * noise(i as u64);
+    let rough = vec![(0..count).map(|i| (1.0 + 0.1 * noise(!i as u64)) as f32).collect()];
+    let fine = vec![(0..count).map(|i| (1.0 + off(i)) as f32).collect::<Vec<f32>>()];
+    let truth = ((0..count).map(|i| off(i).powi(2)).sum::<f64>() / count as f64).sqrt();
+    for seed in 0..SEEDS {
+        let (places, factors) = picks(&vec![0.0; count], 200, seed);
+        let light = vec![[1.0; 3]; places.len()];
+        let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
+        let seen = probes.error(&fine, Some(&rough), Probes::THREE_LOOKS);
+        assert!((seen.error / truth - 1.0).abs() < 0.3 && seen.at_most < 1.5 * truth);
+    }
+}
+
+/// One in each of as many equal parts, the same for the same seed; all where all are wanted. Of
+/// weights, the factors' mean over draws is 1 and heavy places are met often.
+#[test]
+fn probes_are_spread() {
+    let even = vec![0.0; 1000];
+    let (places, factors) = picks(&even, 10, 5);
+    assert!(places.iter().enumerate().all(|(k, p)| p / 100 == k), "{places:?}");
+    assert_eq!(factors, vec![1.0; 10]);
+    assert_eq!(places, picks(&even, 10, 5).0);
+    assert_ne!(places, picks(&even, 10, 6).0);
+    assert_eq!(picks(&even, 5000, 1).0, (0..1000).collect::<Vec<_>>());
+    let weights: Vec<f64> = (0..1000).map(|i| f64::from(u8::from(i >= 900))).collect();
+    let (places, factors) = picks(&weights, 200, 1);
+    // Half of all draws, and a tenth of the other half.
+    let heavy = places.iter().filter(|p| **p >= 900).count();
+    assert!((109..=111).contains(&heavy), "{heavy}");
+    let mean = factors.iter().sum::<f64>() / 200.0;
+    assert!((mean - 1.0).abs() < 0.02, "{mean}");
+}

@@ -1,0 +1,57 @@
+//! Plans of the reference, and what its paths choose by.
+
+use ridgelight::plan::{self, Limits, Plan};
+use ridgelight::scene::{Border, Environment, Lights, Scene};
+
+use super::{flat, under_sky};
+
+/// Blocks of 4, 16 and 64 cells up to one that holds all; another light begins the paths anew.
+#[test]
+fn a_reference() {
+    let of = |rows, cols, bounces, seed| {
+        let scene = under_sky(flat(rows, cols));
+        plan::reference(&scene, bounces, seed, &Limits::lavapipe()).expect("a plan")
+    };
+    let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
+    let [cells, trace] = ["height_cells", "path_trace"];
+    let level = |l: u32| format!("height_bounds level {l}");
+    assert_eq!(labels(&of(1, 1, 0, 0)), [cells, &level(1), trace]);
+    assert_eq!(labels(&of(5, 2, 0, 0)), [cells, &level(1), trace]);
+    assert_eq!(labels(&of(5, 18, 0, 0)), [cells, &level(1), &level(2), &level(3), trace]);
+    let before = of(5, 5, 0, 0);
+    assert_eq!(before.passes_after(&before, &[]), [0_usize; 0]);
+    for after in [of(5, 5, 1, 0), of(5, 5, 0, 1)] {
+        assert_eq!(after.passes_after(&before, &[]), [0, 1, 2]);
+    }
+    // In bands of 2^24 paths' vertices, in eights of rows: 512 samples a row, 64 paths, two vertices.
+    let bands = of(515, 512, 1, 0);
+    let parts =
+        ["rows 0..256", "rows 256..512", "rows 512..515"].map(|p| format!("path_trace {p}"));
+    assert_eq!(labels(&bands)[labels(&bands).len() - 3..], parts);
+    let dark = Scene { lights: Lights::default(), ..under_sky(flat(2, 2)) };
+    let refused = plan::reference(&dark, 0, 0, &Limits::lavapipe()).unwrap_err().to_string();
+    assert!(refused.contains("lights: found none"), "{refused}");
+}
+
+/// Three columns and rows of an environment: the shares of its light, by hand.
+#[test]
+fn environments_are_chosen_by_their_light() {
+    let grey = |v: f32| [v / 3.0; 3];
+    let texels = [1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 2.0, 2.0, 4.0].map(grey).to_vec();
+    let mut scene = under_sky(flat(2, 2));
+    scene.surface.border = Border::Open;
+    scene.lights.environment = Some(Environment::new(3, 3, texels, 0.0).expect("an environment"));
+    let close = |got: &[f32], want: &[f32]| {
+        assert_eq!(got.len(), want.len());
+        // Rounded to f32.
+        assert!(got.iter().zip(want).all(|(g, w)| (g - w).abs() < 1e-7), "{got:?} for {want:?}");
+    };
+    // Rows of 4 and 8, as wide as each other, around a dark one.
+    let third = 1.0 / 3.0;
+    let rows = [[third, 0.25, 0.25, 1.0], [third, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
+    close(&plan::reference_inputs(&scene)[2], &rows.concat());
+    // The row that lies below horizontal gives no light.
+    scene.surface.border = Border::Plane;
+    let rows = [[1.0, 0.25, 0.25, 1.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
+    close(&plan::reference_inputs(&scene)[2], &rows.concat());
+}

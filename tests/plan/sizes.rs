@@ -1,0 +1,192 @@
+//! Plans as text, at odd sizes and in bands.
+
+use ridgelight::plan::Limits;
+
+use super::{is, sky};
+
+#[test]
+fn a_single_sample() {
+    is(
+        &sky(1, 1, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 1×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 1×1×1
+        | light_resolve sky 1×1×1
+        sky_sum 1×1×1
+        azimuths 256
+        lane_heights_cols 1×1×1
+        lane_heights_rows 1×1×1
+        lattice_occluders 8×1×2
+        ",
+    );
+}
+
+#[test]
+fn one_row_and_one_column() {
+    is(
+        &sky(1, 9, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×2×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 2×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 1×1×1
+        | light_resolve sky 2×1×1
+        sky_sum 9×1×1
+        azimuths 256
+        lane_heights_cols 1×9×1
+        lane_heights_rows 3×1×1
+        lattice_occluders 8×9×2
+        ",
+    );
+    is(
+        &sky(9, 1, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×2×1
+        | horizon_sweep sky 0+2 1×1×2
+        | sky_shade sky 0+2 1×1×1
+        | horizon_sweep sky 2+2 1×1×2
+        | sky_shade sky 2+2 2×1×1
+        | light_resolve sky 1×2×1
+        sky_sum 1×9×1
+        azimuths 256
+        lane_heights_cols 3×1×1
+        lane_heights_rows 1×9×1
+        lattice_occluders 8×9×2
+        ",
+    );
+}
+
+#[test]
+fn two_by_three() {
+    is(
+        &sky(2, 3, 8, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1×1
+          height_transpose rows 1×1×1
+        | horizon_sweep sky 0+4 1×1×4
+        | sky_shade sky 0+4 1×1×1
+        | horizon_sweep sky 4+4 1×1×4
+        | sky_shade sky 4+4 1×1×1
+        | light_resolve sky 1×1×1
+        sky_sum 3×2×1
+        azimuths 512
+        lane_heights_cols 1×3×1
+        lane_heights_rows 1×2×1
+        lattice_occluders 8×3×4
+        ",
+    );
+}
+
+#[test]
+fn primes() {
+    is(
+        &sky(31, 37, 12, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×5×1
+          height_transpose rows 2×4×1
+        | horizon_sweep sky 0+6 2×1×6
+        | sky_shade sky 0+6 5×1×1
+        | horizon_sweep sky 6+6 2×1×6
+        | sky_shade sky 6+6 4×1×1
+        | light_resolve sky 5×4×1
+        sky_sum 37×31×1
+        azimuths 768
+        lane_heights_cols 8×37×1
+        lane_heights_rows 10×31×1
+        lattice_occluders 8×37×12
+        ",
+    );
+}
+
+#[test]
+fn long_and_thin() {
+    is(
+        &sky(3, 8191, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 1×1024×1
+          height_transpose rows 256×1×1
+        | horizon_sweep sky 0+2 1×1×2
+        | horizon_sweep sky 0+2 again 1×1×2
+        | sky_shade sky 0+2 1024×1×1
+          horizon_sweep sky 2+2 256×1×2
+        | horizon_sweep sky 2+2 again 256×1×2
+        | sky_shade sky 2+2 1×128×1
+        | light_resolve sky 1024×1×1
+        sky_sum 8191×3×1
+        azimuths 256
+        lane_heights_cols 1×8191×1
+        lane_heights_rows 2048×3×1
+        lattice_occluders 8×8191×2
+        lost_lines 64
+        lattice_occluders_across 8×3×512
+        lost_lines_across 16384
+        ",
+    );
+    is(
+        &sky(8191, 3, 4, &Limits::lavapipe()),
+        "
+          height_transpose cols 256×1×1
+          height_transpose rows 1×1024×1
+        | horizon_sweep sky 0+2 256×1×2
+        | horizon_sweep sky 0+2 again 256×1×2
+        | sky_shade sky 0+2 1×128×1
+          horizon_sweep sky 2+2 1×1×2
+        | horizon_sweep sky 2+2 again 1×1×2
+        | sky_shade sky 2+2 1024×1×1
+        | light_resolve sky 1×1024×1
+        sky_sum 3×8191×1
+        azimuths 256
+        lane_heights_cols 2048×3×1
+        lane_heights_rows 1×8191×1
+        lattice_occluders 8×3×512
+        lost_lines 16384
+        lattice_occluders_across 8×8191×2
+        lost_lines_across 64
+        ",
+    );
+}
+
+/// Five images of 64 MiB leave 120 MiB for lattices, of 32 MiB an azimuth along an axis and 64 MiB along a
+/// diagonal.
+#[test]
+fn a_large_field_in_bands() {
+    let limits = Limits { memory_budget: 440 << 20, ..Limits::lavapipe() };
+    let plan = sky(4096, 4096, 8, &limits);
+    assert!(plan.bytes() <= limits.memory_budget, "{} bytes", plan.bytes());
+    is(
+        &plan,
+        "
+          height_transpose cols 128×512×1
+          height_transpose rows 128×512×1
+        | horizon_sweep sky 0+2 128×1×2
+        | horizon_sweep sky 0+2 again 128×1×2
+        | sky_shade sky 0+2 512×64×1
+        | horizon_sweep sky 2+1 256×1×1
+        | horizon_sweep sky 2+1 again 256×1×1
+        | sky_shade sky 2+1 512×64×1
+        | horizon_sweep sky 3+1 256×1×1
+        | horizon_sweep sky 3+1 again 256×1×1
+        | sky_shade sky 3+1 512×64×1
+        | horizon_sweep sky 4+2 256×1×2
+        | horizon_sweep sky 4+2 again 256×1×2
+        | sky_shade sky 4+2 512×64×1
+        | horizon_sweep sky 6+2 256×1×2
+        | horizon_sweep sky 6+2 again 256×1×2
+        | sky_shade sky 6+2 512×64×1
+        | light_resolve sky 512×512×1
+        sky_sum 4096×4096×1
+        azimuths 512
+        lane_heights_cols 1024×4096×1
+        lane_heights_rows 1024×4096×1
+        lattice_occluders 8×4096×384
+        lost_lines 12288
+        ",
+    );
+}
