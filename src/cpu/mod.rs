@@ -8,6 +8,7 @@
 pub mod bounce;
 pub mod bounce_gather;
 pub mod bounce_march;
+pub mod bounce_walk;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;

@@ -2,6 +2,7 @@
 
 pub(crate) mod bounce_gather;
 pub(crate) mod bounce_march;
+pub(crate) mod bounce_walk;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;

@@ -2,7 +2,7 @@ mod drawing;
 mod gloss;
 mod images;
 
-use super::azimuths::Shape;
+use super::azimuths::{self, Shape};
 use super::blocks::Blocks;
 use super::bounces::{self, Bouncing};
 use super::edit::Edits;
@@ -59,7 +59,12 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
     let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
-    if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
+    let is_walked = quality.bounces.walk_over(surface);
+    if is_walked {
+        sweep.keep_occluders()?;
+    }
+    if wanted.still && !is_walked && sweep.sees_own_crossings() && field.is_concave(surface.border)
+    {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
         sweep = Sweep::Crossings;
     }
@@ -83,13 +88,17 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let images = Images::make(&mut builder, scene, &shining, wanted);
     let bounces =
         if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
-    let lists = shining.lists(
+    let mut lists = shining.lists(
         images.need_circle(),
         quality,
         &sweep,
         (surface.border, field.cell_m()),
         &mut notes,
     )?;
+    if is_walked && bounces > 0 {
+        // Behind those of the lights.
+        lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
+    }
     let (mut tables, mut harmonics) = (None, None);
     let exponent = shining.gloss.filter(|_| shining.has_gloss_around()).map(|p| p.exponent);
     if exponent.is_some() || shining.environment.is_some() && quality.basis == Basis::Sh {
@@ -121,7 +130,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let need_blocks = images.sphere_sum.is_some() || bounces > 0;
+    let need_blocks = images.sphere_sum.is_some() || (bounces > 0 && !is_walked);
     let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())

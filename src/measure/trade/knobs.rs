@@ -47,7 +47,8 @@ const FUSES: [Fuse; 6] =
 const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
-const BOUNCE_ENGINES: [BounceEngine; 2] = [BounceEngine::Pyramid, BounceEngine::Brute];
+const BOUNCE_ENGINES: [BounceEngine; 3] =
+    [BounceEngine::Pyramid, BounceEngine::Sweep, BounceEngine::Brute];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];

@@ -65,7 +65,7 @@ impl Drawing<'_> {
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
-        self.bounces();
+        self.bounces(lists);
         self.gloss();
         self.sky_view();
         self.dark()
@@ -236,16 +236,18 @@ impl Drawing<'_> {
     }
 
     /// Each bounce from the light of the one before.
-    fn bounces(&mut self) {
-        let (Some(bouncing), Some(blocks)) = (self.bouncing.take(), self.blocks.take()) else {
-            return;
-        };
+    fn bounces(&mut self, lists: &Lists) {
+        let Some(bouncing) = self.bouncing.take() else { return };
+        let batches = lists.batches.last().map(Vec::as_slice);
         let Images { heights, radiance, sphere_sum, .. } = self.images;
-        let begun = (heights, sphere_sum.is_some());
-        bouncing.prepare(&mut self.builder, self.scene, &blocks, begun);
+        // Balls by harmonics over pyramids leave no maxima.
+        let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
+        let begun = (heights, sphere_sum.is_some() && !ground_alone);
+        bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];
-            let (sum, exit) = bouncing.record(&mut self.builder, (self.scene, &blocks), k, ids);
+            let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
+            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, looked_at, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
         }
     }

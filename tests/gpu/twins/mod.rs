@@ -1,6 +1,7 @@
 //! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
 //! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
+mod bounce;
 mod cases;
 mod edit;
 pub(crate) mod light;
@@ -83,6 +84,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
+    ("bounce_walk", bounce::bounce_walk),
 ];
 
 fn twin_of(pass: &Pass) -> Twin {
@@ -299,6 +301,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pyramids(),
         cases::pictures(),
         cases::references(),
+        cases::walks(),
     ]
     .into_iter()
     .flatten()
@@ -345,6 +348,14 @@ fn pyramids_are_their_twins() {
 fn pictures_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::pictures() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn walks_are_their_twins_pass_by_pass() {
+    let mut device = Device::new();
+    for case in cases::walks() {
         check(&mut device, &case);
     }
 }
