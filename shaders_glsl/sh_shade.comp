@@ -134,21 +134,6 @@ void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
     if (column >= ORDER * ORDER) {
         return;
     }
-    if (RECEIVER == RECEIVER_GLOSS) {
-        vec4 r = vec4(0.0);
-        vec4 g = vec4(0.0);
-        vec4 b = vec4(0.0);
-        for (int row = 0; row < ORDER * ORDER; row++) {
-            vec3 on = texelFetch(light_matrix, ivec2(column, row), 0).rgb;
-            r += on.r * harmonics[row];
-            g += on.g * harmonics[row];
-            b += on.b * harmonics[row];
-        }
-        red += r * seen;
-        green += g * seen;
-        blue += b * seen;
-        return;
-    }
     int first = RECEIVER == RECEIVER_PLANE ? 0 : 1;
     vec3 on_y = texelFetch(light_matrix, ivec2(column, first), 0).rgb;
     vec3 on_z = texelFetch(light_matrix, ivec2(column, first + 1), 0).rgb;
@@ -179,6 +164,20 @@ void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
     blue += b * seen;
 }
 
+// The same of the lobe, for all coefficients of a layer: one loop, as SwiftShader compiles each for seconds.
+void add_gloss(int layer, mat4 four) {
+    for (int k = 0; k < 4 && 4 * layer + k < ORDER * ORDER; k++) {
+        vec4 seen = four[k];
+        for (int row = 0; row < ORDER * ORDER; row++) {
+            vec3 on = texelFetch(light_matrix, ivec2(4 * layer + k, row), 0).rgb;
+            vec4 share = harmonics[row] * seen;
+            red += on.r * share;
+            green += on.g * share;
+            blue += on.b * share;
+        }
+    }
+}
+
 void main() {
     int lanes = MARCHES_ROWS ? cols : rows;
     int steps = MARCHES_ROWS ? rows : cols;
@@ -205,6 +204,10 @@ void main() {
     blue = vec4(0.0);
     for (int layer = 0; layer < (ORDER * ORDER + 3) / 4; layer++) {
         mat4 four = seen_at(layer, lane, march, lanes);
+        if (RECEIVER == RECEIVER_GLOSS) {
+            add_gloss(layer, four);
+            continue;
+        }
         add_coefficient(4 * layer, four[0], x, y, z);
         add_coefficient(4 * layer + 1, four[1], x, y, z);
         add_coefficient(4 * layer + 2, four[2], x, y, z);

@@ -120,7 +120,7 @@ pub fn text(places: &[Place]) -> Option<String> {
 mod tests {
     use super::*;
     use ridgelight::plan::{self, Limits, Picture};
-    use ridgelight::scene::{HeightField, Lights, Lines, Method, Scene, Surface};
+    use ridgelight::scene::{HeightField, Lights, Lines, Method, Scene, SphereLight, Surface};
 
     #[test]
     fn sweeps_along_lines_alone_have_a_hull() {
@@ -139,6 +139,13 @@ mod tests {
             let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
             assert_eq!(home(&plan).is_some(), has_hull, "{quality:?}");
         }
+        // Balls of light look themselves for what hides them: no sweep, whatever the method.
+        let ball = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
+        let lights = Lights { spheres: vec![ball], ..Lights::default() };
+        let scene = Scene { lights, ..scene };
+        let limits = Limits::boundless(true, 1 << 30);
+        let plan = plan::picture(&scene, &base, &limits, Picture::default()).unwrap();
+        assert!(home(&plan).is_none(), "{:?}", plan.settings);
     }
 
     /// 0.97 of the time is not worth a flag, 0.8 is, but not where the same place took 1.3 × or the
