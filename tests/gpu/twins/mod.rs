@@ -3,7 +3,7 @@
 
 mod cases;
 mod edit;
-pub(crate) mod light;
+mod light;
 mod paths;
 mod pyramid;
 mod sh;
