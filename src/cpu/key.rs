@@ -20,7 +20,10 @@ pub fn key_of(oracle: &Oracle, row: usize, col: usize, key: &KeyLight, strips: u
 }
 
 /// [`key_of`] on other receivers than the diffuse one of the sample's normal, for radiance 1.
-pub(super) fn key_on(
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn key_on(
     oracle: &Oracle,
     row: usize,
     col: usize,

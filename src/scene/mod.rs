@@ -1,5 +1,6 @@
 //! What is lit and by what: plain data, range-checked when it is made.
 
+mod bounces;
 mod environment;
 mod field;
 mod key;
@@ -7,12 +8,14 @@ mod lights;
 mod quality;
 mod surface;
 
+pub use bounces::{BounceEngine, Bounces};
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{
-    Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Wedges, Window,
+    Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
+    Window,
 };
 pub use surface::{Albedo, Border, Phong, Surface};
 

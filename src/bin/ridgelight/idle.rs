@@ -36,18 +36,28 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("sun_azimuths", ..) => {
             "without a sun wider than 0.01°, a key light or a ball of light".into()
         }
-        ("light_cutoff", ..) => "without a ball of light".into(),
+        ("light_cutoff" | "light_basis", ..) => "without a ball of light".into(),
         (
             "lines" | "fuse" | "precision" | "hull" | "level_step" | "level_offset" | "levels",
             None,
             _,
         ) => "without a sky, an environment, a sun or a key light".into(),
+        ("bounces", ..) => "for horizons".into(),
+        ("bounce_engine" | "bounce_azimuths" | "bounce_cutoff", ..) => "without --bounces".into(),
+        ("bounce_level_step" | "bounce_level_offset", ..) => {
+            "without --bounces and --bounce-engine pyramid".into()
+        }
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"
             | "subsample" | "wedge_side",
             ..,
         ) => match (setting, of("basis")) {
+            ("sh_order" | "wedges" | "receiver" | "window", None)
+                if of("light_basis").is_some() =>
+            {
+                "without an environment or --light-basis sh".into()
+            }
             (_, None) => "without an environment".into(),
             ("wedge_side", Some("sh")) => "without --wedges table".into(),
             ("subsample", _) => {

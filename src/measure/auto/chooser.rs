@@ -1,5 +1,7 @@
 //! Which settings to draw next, and which to take.
 
+use std::cmp::Ordering;
+
 use super::model::{Costs, Model, Part, fuse_row, spacing};
 use super::probes::Measured;
 use super::statistics::Statistics;
@@ -13,8 +15,9 @@ const LINES: [Lines; 5] =
     [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell];
 const FUSES: [Fuse; 3] = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 
-/// Frames that are tried at most.
+/// Frames that are tried at most, and exact ones beyond them.
 const TRIALS: usize = 16;
+const RESORTS: usize = 2;
 /// One time of a frame may be so many times another of the same settings.
 const WAVER: f64 = 1.25;
 /// What a further frame must be expected to save of the cost or to take off the error, in ln.
@@ -180,6 +183,30 @@ impl<'a> Chooser<'a> {
         Some(trial)
     }
 
+    /// What to draw where nothing holds, or all that was chosen turned out not to: of exact horizons, which
+    /// have no errors that few samples see, what is well expected to hold. None where one holds.
+    pub fn last_resort(&self, has_failed: bool) -> Option<Quality> {
+        let Goal::MaxError(most) = self.goal else { return None };
+        let is_held = |t: &Trial| self.goal.is_reached(t) && (!has_failed || is_exact(&t.quality));
+        if self.trials.len() >= TRIALS + RESORTS || self.trials.iter().any(is_held) {
+            return None;
+        }
+        let exact = || self.open().filter(|q| is_exact(q));
+        let least = exact().map(|q| self.error(q)).min_by(f64::total_cmp)?;
+        let enough = (most / CONTROL).max(least);
+        exact()
+            .filter(|q| self.error(q) <= enough)
+            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
+            .copied()
+    }
+
+    /// Of what was drawn and reaches the goal that of the least error, of exact horizons if any is.
+    pub fn surest(&self) -> Option<&Trial> {
+        let reached = || self.trials.iter().filter(|t| self.goal.is_reached(t));
+        let exact = reached().filter(|t| is_exact(&t.quality));
+        exact.min_by(by_error).or_else(|| reached().min_by(by_error))
+    }
+
     fn learn(&mut self, trial: &Trial) {
         let Measured { error, at_most } = trial.measured;
         // At most is 2.7 standard deviations or more above, in ln about so of it.
@@ -216,20 +243,15 @@ impl<'a> Chooser<'a> {
         let reached = self.trials.iter().filter(|t| self.goal.is_reached(t));
         match self.goal {
             Goal::MaxError(_) => reached.min_by(|a, b| a.ns.total_cmp(&b.ns)),
-            Goal::MaxCost(_) => {
-                reached.min_by(|a, b| a.measured.at_most.total_cmp(&b.measured.at_most))
-            }
+            Goal::MaxCost(_) => reached.min_by(by_error),
         }
     }
 
     /// What a refusal lacks: that which ended the search.
     pub fn lacks(&self) -> String {
-        if self.best().is_some() {
-            return "settings that hold by samples that had no part in choosing them".into();
-        }
         let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
         if self.trials.len() >= TRIALS {
-            format!("more than the {TRIALS} frames that are drawn at most")
+            format!("more than the {} frames that are drawn at most", self.trials.len())
         } else if self.candidates.iter().any(|q| !is_drawn(q) && self.cost(q) > LONGEST_NS) {
             format!("frames that are expected to take more than {} s each", LONGEST_NS / 1e9)
         } else {
@@ -294,6 +316,15 @@ impl<'a> Chooser<'a> {
 /// The normal distribution, to 0.01, by a logistic one (Bowling et al. 2009).
 fn normal(deviations: f64) -> f64 {
     1.0 / (1.0 + (-1.702 * deviations).exp())
+}
+
+fn by_error(a: &&Trial, b: &&Trial) -> Ordering {
+    a.measured.at_most.total_cmp(&b.measured.at_most)
+}
+
+/// Whether horizons are those of the surface itself, of no lines between its samples.
+fn is_exact(quality: &Quality) -> bool {
+    spacing(quality) == LINES.len()
 }
 
 /// Whether `fine` is at least as fine as `coarse` in every setting.

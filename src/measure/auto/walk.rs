@@ -6,7 +6,8 @@ use super::probes::{Probes, apart};
 use super::statistics::Statistics;
 use crate::measure::trade::start;
 use crate::scene::{
-    Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Scene, Wedges, Window,
+    Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
+    Scene, Wedges, Window,
 };
 use crate::{Error, Result};
 
@@ -42,6 +43,7 @@ const COARSE: Quality = Quality {
     azimuths: 8,
     sun_azimuths: 2,
     light_cutoff: 1.0 / 65536.0,
+    light_basis: LightBasis::Exact,
     lines: Lines::FourCells,
     fuse: Fuse::AimedNearest,
     precision: Precision::F32,
@@ -58,13 +60,15 @@ const COARSE: Quality = Quality {
     window: Window::None,
     subsample: 1,
     wedge_side: 64,
+    bounces: Bounces::NONE,
 };
 
 /// Where bounds alone stand in the way probes are added up to so many times the first.
 const MOST_PROBES: usize = 4;
 
 /// What is chosen is judged once more by probes that had no part in choosing it, so many times the first:
-/// its bound is theirs. Where it does not hold, others are chosen, so many times in all.
+/// its bound is theirs. Where it does not hold, others are chosen, so many times in all; the last are the
+/// surest.
 const CONFIRMING_PROBES: usize = 3;
 const CONFIRMATIONS: u64 = 3;
 
@@ -189,14 +193,16 @@ pub fn choose(
     for (quality, drawn) in pilots {
         judge.take(&mut chooser, &quality, drawn)?;
     }
-    for _ in 0..CONFIRMATIONS {
-        while let Some(quality) = chooser.next() {
+    for look in 1..=CONFIRMATIONS {
+        let is_last = look == CONFIRMATIONS;
+        while let Some(quality) = chooser.next().or_else(|| chooser.last_resort(is_last)) {
             match draw(&quality) {
                 Err(Error::Limit { .. }) => chooser.refuse(&quality),
                 drawn => judge.take(&mut chooser, &quality, drawn?)?,
             }
         }
-        let Some(best) = chooser.best() else { break };
+        let best = if is_last { chooser.surest() } else { chooser.best() };
+        let Some(best) = best else { break };
         let quality = best.quality;
         let Drawn { planes, passes } = draw(&quality)?;
         let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;

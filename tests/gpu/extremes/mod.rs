@@ -119,11 +119,15 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 7] {
         // How an environment is held: no method here is of another basis than tables.
         subsample: _,
         light_cutoff: _,
+        // Balls of light have extremes of their own: `spheres` and `soft_spheres`.
+        light_basis: _,
         wedge_side: _,
         basis: _,
         sh_order: _,
         receiver: _,
         window: _,
+        // What the surface throws at itself: tests of bounces.
+        bounces: _,
     } = *quality;
     let method = match method {
         Method::Auto => 0,

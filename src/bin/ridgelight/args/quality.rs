@@ -1,13 +1,15 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Id, ValueEnum};
 
+use super::bounces::BounceArgs;
 use super::values::whole;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 18] = [
+pub const SETTINGS: [&str; 25] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
+    "light_basis",
     "lines",
     "fuse",
     "precision",
@@ -23,6 +25,12 @@ pub const SETTINGS: [&str; 18] = [
     "window",
     "subsample",
     "wedge_side",
+    "bounces",
+    "bounce_engine",
+    "bounce_azimuths",
+    "bounce_cutoff",
+    "bounce_level_step",
+    "bounce_level_offset",
 ];
 
 #[derive(Args)]
@@ -42,6 +50,10 @@ pub struct QualityArgs {
     /// samples: more, faster
     #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
     pub light_cutoff: f64,
+    /// What balls of light are lit by; sh takes --sh-order, --wedges, --receiver and --window as an environment
+    /// does, and horizons from --method pyramid
+    #[arg(long, default_value = "exact")]
+    pub light_basis: LightBasisName,
     /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
     #[arg(long, default_value = "1")]
     pub lines: LinesName,
@@ -70,16 +82,16 @@ pub struct QualityArgs {
     /// What an environment's light is looked up in
     #[arg(long, default_value = "auto")]
     pub basis: BasisName,
-    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh
+    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh or --light-basis sh
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
     pub sh_order: u32,
-    /// How what is seen along an azimuth becomes harmonics; with --basis sh
+    /// How what is seen along an azimuth becomes harmonics; with --basis sh or --light-basis sh
     #[arg(long, default_value = "slices")]
     pub wedges: WedgesName,
-    /// How a surface turns what it sees into light; with --basis sh
+    /// How a surface turns what it sees into light; with --basis sh or --light-basis sh
     #[arg(long, default_value = "plane")]
     pub receiver: ReceiverName,
-    /// What tames the ringing of an environment's series; with --basis sh
+    /// What tames the ringing of a light's series; with --basis sh or --light-basis sh
     #[arg(long, default_value = "none")]
     pub window: WindowName,
     /// What is seen is found at every so many samples, light at all of them; with --basis sh
@@ -88,6 +100,8 @@ pub struct QualityArgs {
     /// Horizons of either side of a table of wedges, 4..256; with --wedges table
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub wedge_side: u32,
+    #[command(flatten)]
+    pub bounces: BounceArgs,
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
@@ -179,6 +193,14 @@ pub enum BasisName {
     /// Tables of each azimuth's light above each elevation
     Table,
     /// Spherical harmonics
+    Sh,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum LightBasisName {
+    /// Slices of the ball, each exact
+    Exact,
+    /// Spherical harmonics of what is seen up to the ball: soft, in error whatever the settings
     Sh,
 }
 
