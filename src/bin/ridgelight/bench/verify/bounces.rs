@@ -63,12 +63,12 @@ fn white(scene: &Scene) -> Scene {
 }
 
 /// A rule over azimuths errs by a squared part of the circle where light is smooth and by a part where the edge
-/// of something bright turns past: a quarter of what a part is of a radian. Pyramids: twice what the coarsest
-/// but one of their settings (one level an octave, no finer ones) has on the bundled mountain, 0.4.
+/// of something bright turns past: a quarter of what a part is of a radian. Pyramids: half as much again as
+/// their coarsest settings have on the bundled mountain under a low sun, 0.5; no bounce at all has 1.
 fn bound(quality: &Quality) -> f64 {
     let rule = std::f64::consts::TAU / f64::from(quality.bounces.azimuths) / 4.0;
     rule + match quality.bounces.engine {
         BounceEngine::Brute => 0.0,
-        BounceEngine::Pyramid => 0.8,
+        BounceEngine::Pyramid => 0.75,
     }
 }
