@@ -2,11 +2,18 @@
 //! their radius.
 //!
 //! `cargo run --release --example lights -- [SIDE]`: samples a side of the field (512).
+//!
+//! `… -- cones [-o SHEET.png]`: spherical harmonics beside the exact form, on the scene of cones of the thesis on local
+//! lights: its figures 6.1 and 6.2 with errors, details to a PNG; its tables 6.1 to 6.4 as ratios.
 
+#[path = "lights/cones.rs"]
+mod cones;
+
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ridgelight::cpu::lit::Lit;
-use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, SphereLight, Surface};
@@ -51,20 +58,46 @@ fn error(scene: &Scene, values: &[f32]) -> f64 {
     (squares / PLACES as f64).sqrt() * PLACES as f64 / sum
 }
 
+/// Milliseconds of a frame, by the device's timestamps, once it has been drawn.
+fn typical_ms(gpu: &mut Headless, frame: &mut Frame) -> Result<f64> {
+    gpu.draw(frame)?;
+    let begun = Instant::now();
+    let mut times: Vec<f64> = Vec::new();
+    while times.is_empty() || (times.len() < DRAWS && begun.elapsed() < LONGEST) {
+        times.push(gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
+}
+
 fn main() -> Result<()> {
-    let side = match std::env::args().nth(1) {
-        Some(text) => {
-            text.parse().map_err(|_| Error::setting("SIDE", &text, "a whole number, 1 or more"))?
-        }
-        None => 512,
-    };
-    let field = fractal(side, 1)?;
+    let args: Vec<String> = std::env::args().skip(1).collect();
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let report = gpu.report().clone();
-    println!(
-        "{}, {}: {side}², {ABOVE_M} m above a fractal in cells of 1 m",
-        report.name, report.driver
-    );
+    let device = format!("{}, {}", report.name, report.driver);
+    match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["cones"] => {
+            println!("{device}");
+            cones::run(&mut gpu, None)
+        }
+        ["cones", "-o", path] => {
+            println!("{device}");
+            cones::run(&mut gpu, Some(Path::new(path)))
+        }
+        [] => lamps_of(&mut gpu, &device, 512),
+        [text] => {
+            let side = text.parse();
+            let wrong = |_| Error::setting("SIDE", text, "a whole number, 1 or more, or cones");
+            lamps_of(&mut gpu, &device, side.map_err(wrong)?)
+        }
+        _ => Err(Error::setting("arguments", args.join(" "), "SIDE, or cones -o SHEET.png")),
+    }
+}
+
+/// By number and radius.
+fn lamps_of(gpu: &mut Headless, device: &str, side: usize) -> Result<()> {
+    let field = fractal(side, 1)?;
+    println!("{device}: {side}², {ABOVE_M} m above a fractal in cells of 1 m");
     println!();
     println!("| lights | radius m | frame ms | ms a light | RMSE % |");
     println!("|---|---|---|---|---|");
@@ -72,19 +105,12 @@ fn main() -> Result<()> {
         let spheres = lamps(&field, count, radius_m);
         let lights = Lights { spheres, ..Lights::default() };
         let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
-        let plan = plan::picture(&scene, &Quality::default(), &report.limits, Picture::default())?;
-        let (mut times, values) =
-            gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
-                gpu.draw(frame)?;
-                let begun = Instant::now();
-                let mut times: Vec<f64> = Vec::new();
-                while times.is_empty() || (times.len() < DRAWS && begun.elapsed() < LONGEST) {
-                    times.push(gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6);
-                }
-                Ok((times, gpu.pixels(frame, 0)?.values))
-            })?;
-        times.sort_by(f64::total_cmp);
-        let ms = times[times.len() / 2];
+        let limits = gpu.report().limits;
+        let plan = plan::picture(&scene, &Quality::default(), &limits, Picture::default())?;
+        let (ms, values) = gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
+            let ms = typical_ms(gpu, frame)?;
+            Ok((ms, gpu.pixels(frame, 0)?.values))
+        })?;
         let off = 100.0 * error(&scene, &values);
         println!("| {count} | {radius_m} | {ms:.1} | {:.1} | {off:.3} |", ms / count as f64);
     }

@@ -36,36 +36,15 @@ layout(binding = 3, rgba32f) uniform image2DArray visibility;
 layout(binding = 4, rgba32f) uniform writeonly image2D nodes;
 
 // Of the four samples; and the azimuth's weights.
+#define SEEN vec4
 vec4 series[36];
 float turn[11];
 
 #include "shared/seen.glsl"
-
-// Weights of an azimuth: its width times 1 / sqrt(2 pi), cos m phi / sqrt(pi) and sin m phi / sqrt(pi),
-// as powers of cos phi + i sin phi.
-void turn_to(Azimuth azimuth) {
-    float width = azimuth.wedge_rad * 0.5641895835477563;
-    vec2 one = vec2(azimuth.cos_phi, azimuth.sin_phi);
-    vec2 power = one * width;
-    turn[5] = azimuth.wedge_rad * 0.3989422804014327;
-    turn[6] = power.x;
-    turn[4] = power.y;
-    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
-    turn[7] = power.x;
-    turn[3] = power.y;
-    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
-    turn[8] = power.x;
-    turn[2] = power.y;
-    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
-    turn[9] = power.x;
-    turn[1] = power.y;
-    power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
-    turn[10] = power.x;
-    turn[0] = power.y;
-}
+#include "shared/turn.glsl"
 
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
-    turn_to(azimuth);
+    turn_to(azimuth.wedge_rad, vec2(azimuth.cos_phi, azimuth.sin_phi));
     vec4 cos_ = inversesqrt(1.0 + lowest * lowest);
     vec4 sin_ = lowest * cos_;
     if (BY_NLP) {

@@ -41,8 +41,11 @@ layout(push_constant) uniform ShWedgesPush {
 const int LAYERS = (ORDER * ORDER + 3) / 4;
 
 // Of the four samples; and of one wedge, as the table has it.
+#define SEEN vec4
 vec4 series[4 * LAYERS];
 vec4 wedge[4 * LAYERS];
+
+#include "shared/wedge.glsl"
 
 // Where in the table the horizons of the four samples in an azimuth stand.
 vec4 places(vec4 of_azimuth, ivec4 lane, int march, vec4 east, vec4 north) {
@@ -77,24 +80,6 @@ void look_up(vec4 first, vec4 last) {
         wedge[4 * layer + 1] = four[1];
         wedge[4 * layer + 2] = four[2];
         wedge[4 * layer + 3] = four[3];
-    }
-}
-
-// Adds the wedge, turned about the vertical by an azimuth of this cosine and sine.
-void add_turned(vec2 one) {
-    for (int l = 0; l < ORDER; l++) {
-        series[l * (l + 1)] += wedge[l * (l + 1)];
-    }
-    vec2 power = vec2(1.0, 0.0);
-    for (int m = 1; m < ORDER; m++) {
-        power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
-        for (int l = m; l < ORDER; l++) {
-            int place = l * (l + 1);
-            vec4 cosine = wedge[place + m];
-            vec4 sine = wedge[place - m];
-            series[place + m] += power.x * cosine - power.y * sine;
-            series[place - m] += power.x * sine + power.y * cosine;
-        }
     }
 }
 

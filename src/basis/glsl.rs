@@ -2,9 +2,10 @@
 //! numbers of a slice, and sums of slices.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-use super::legendre::occlusion_polynomials;
+use super::legendre::{associated, occlusion_polynomials};
 use super::product::{orders, triples};
 use super::slice::{Above, Slices, from_nlp, parts};
 use super::{MAX_ORDER, bands, index};
@@ -127,26 +128,26 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, four samples
-/// at a time, for every order that `ORDER` may be.
+/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, of one sample or
+/// four at a time, for every order that `ORDER` may be.
 ///
 /// `add_slices` has the exact slices, `add_nlps` what n NLP coefficients keep of them ([`from_nlp`]).
 pub fn glsl_seen() -> String {
     let mut text = String::from(
         "// Made by basis::glsl::glsl_seen, and held to it by a test.\n//\n\
          // Adds what is seen along an azimuth above elevations of sine `sin_` and cosine `cos_`, `rise` from\n\
-         // the zenith, to the series of four samples. The including shader declares ORDER, the azimuth's\n\
-         // weights float turn[11], of m at m + 5, and vec4 series[36].\n\n\
+         // the zenith, to the series of what SEEN is, one sample or four. The including shader declares ORDER,\n\
+         // the azimuth's weights float turn[11], of m at m + 5, and SEEN series[36].\n\n\
          // By exact integrals over elevation.\n\
-         void add_slices(vec4 rise, vec4 sin_, vec4 cos_) {\n    vec4 t;\n",
+         void add_slices(SEEN rise, SEEN sin_, SEEN cos_) {\n    SEEN t;\n",
     );
     let slices = Slices::new(MAX_ORDER);
     let exact: Vec<String> = slices.parts().iter().map(above).collect();
     add_parts(&mut text, &exact);
     text += "}\n\n// By ORDER coefficients of normalised Legendre polynomials (NS09 eq. 11).\n\
-             void add_nlps(vec4 sin_, vec4 cos_) {\n    vec4 t;\n    vec4 cos2 = cos_ * cos_;\n";
+             void add_nlps(SEEN sin_, SEEN cos_) {\n    SEEN t;\n    SEEN cos2 = cos_ * cos_;\n";
     for (l, line) in visibility_nlp(MAX_ORDER).iter().enumerate() {
-        let line = format!("vec4 nlp{l} = {line}");
+        let line = format!("SEEN nlp{l} = {line}");
         match l {
             0 | 1 => writeln!(text, "    {line};").unwrap(),
             _ => writeln!(text, "    {line} * (ORDER > {l} ? 1.0 : 0.0);").unwrap(),
@@ -161,6 +162,44 @@ pub fn glsl_seen() -> String {
         })
         .collect();
     add_parts(&mut text, &kept);
+    text + "}\n"
+}
+
+/// `shaders_glsl/shared/harmonics.glsl`: Y_lm of four directions, for every order that `ORDER` may be.
+pub fn glsl_harmonics() -> String {
+    let mut text = String::from(
+        "// Made by basis::glsl::glsl_harmonics, and held to it by a test.\n//\n\
+         // Y_lm of four unit directions (x, y, z). The including shader declares ORDER and vec4 harmonics[36].\n\
+         void find_harmonics(vec4 x, vec4 y, vec4 z) {\n    vec4 t;\n",
+    );
+    // cos mφ and sin mφ, times sinᵐθ: powers of x + iy.
+    for m in 1..MAX_ORDER {
+        let (c, s) = match m {
+            1 => ("x".to_owned(), "y".to_owned()),
+            _ => (format!("x * c{0} - y * s{0}", m - 1), format!("x * s{0} + y * c{0}", m - 1)),
+        };
+        writeln!(text, "    vec4 c{m} = {c};\n    vec4 s{m} = {s};").unwrap();
+    }
+    for (l, m) in parts(MAX_ORDER) {
+        let indent = if l < 2 { "    " } else { "        " };
+        if m == 0 && l >= 2 {
+            writeln!(text, "    if (ORDER > {l}) {{").unwrap();
+        }
+        let norm = if m == 0 { 0.5 * FRAC_1_PI } else { FRAC_1_PI }.sqrt();
+        let scaled: Vec<f64> = associated(l, m).iter().map(|c| c * norm).collect();
+        let polynomial = horner(&scaled).replace("sin_", "z");
+        if m == 0 {
+            writeln!(text, "{indent}harmonics[{}] = vec4({polynomial});", index(l, 0)).unwrap();
+        } else {
+            let m = m as isize;
+            writeln!(text, "{indent}t = vec4({polynomial});").unwrap();
+            writeln!(text, "{indent}harmonics[{}] = s{m} * t;", index(l, -m)).unwrap();
+            writeln!(text, "{indent}harmonics[{}] = c{m} * t;", index(l, m)).unwrap();
+        }
+        if m == l && l >= 2 {
+            writeln!(text, "    }}").unwrap();
+        }
+    }
     text + "}\n"
 }
 

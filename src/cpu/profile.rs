@@ -119,6 +119,22 @@ impl Oracle<'_> {
         }
     }
 
+    /// Slope of the lowest direction that the surface up to a distance leaves free along an azimuth; what the
+    /// sample's own piece hides it does from however near. -∞ where the ray leaves the field at once.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
+        let mut seen = Vec::new();
+        self.stretches(row, col, azimuth_rad, &mut seen);
+        let slope = |stretch: &Stretch| {
+            let [near, far] = stretch.span_m;
+            let end = if near == 0.0 { far } else { far.min(within_m) };
+            (near == 0.0 || near < within_m).then(|| stretch.slope + stretch.rise_m / end)
+        };
+        seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// The piece of surface between two distances from a sample, all of it taken as visible; none
     /// outside the field. Between them lies no crossing.
     fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<Stretch> {

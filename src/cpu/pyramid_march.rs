@@ -3,6 +3,7 @@
 //! angles (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 
 use super::lattice::Lattice;
+use super::oracle::Oracle;
 use super::shared::levels::LevelTexels;
 use super::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, wrapped};
 use crate::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
@@ -152,5 +153,137 @@ pub fn pyramid_march(
             let texel = lattice.texel(lane, march.march.march_position(step), azimuth.layer);
             lattice.slopes[texel] = march.slope(lane, step, warm_up);
         }
+    }
+}
+
+/// Horizons of a pyramid up to a distance, in any direction: `within.glsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct Within<'a> {
+    /// Of the field.
+    pub oracle: &'a Oracle<'a>,
+    /// Its levels.
+    pub pyramid: &'a Pyramid,
+    /// Their heights.
+    pub stored: Stored<'a>,
+}
+
+impl Within<'_> {
+    /// Height of a level where a line between columns (`crosses_row`) or between rows is crossed.
+    fn height(&self, number: u32, [x, y]: [f64; 2], crosses_row: bool) -> f64 {
+        let [cols, rows] = self.pyramid.size.map(|n| n as i32);
+        let inside = |i: i32, n: i32| {
+            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
+        };
+        let on_line = |of: &dyn Fn(usize) -> f32| {
+            let texel = |col: i32, row: i32| {
+                f64::from(of((inside(row, rows) * cols + inside(col, cols)) as usize))
+            };
+            let [col, row] = [x, y].map(|v| v.floor() as i32);
+            let [beside, f] = if crosses_row {
+                [texel(col + 1, row), x - x.floor()]
+            } else {
+                [texel(col, row + 1), y - y.floor()]
+            };
+            let h = texel(col, row);
+            h + f * (beside - h)
+        };
+        match self.stored {
+            _ if number == 0 => on_line(&|i| self.oracle.field().heights_m()[i]),
+            Stored::Stack(stack) => {
+                let first = (number - 1) as usize * (cols * rows) as usize;
+                on_line(&|i| stack[first + i])
+            }
+            Stored::Levels(texels) => {
+                let level = self.pyramid.level(number);
+                let place = [x as f32 * level.per_sample[0], y as f32 * level.per_sample[1]];
+                LevelTexels { pyramid: self.pyramid, texels }.spline_at(&level, place).into()
+            }
+        }
+    }
+
+    /// Slope of the lowest direction that is free up to a distance; -∞ where the march leaves the field at once.
+    ///
+    /// The spline over the angles is looked at up to the distance. It takes in the two samples beyond that it
+    /// depends on there (NS09 eq. 14-17; the thesis, eq. 4.24, 4.25).
+    ///
+    /// # Panics
+    /// When levels lack texels.
+    pub fn slope(&self, [row, col]: [usize; 2], azimuth_rad: f64, within_m: f64) -> f64 {
+        let [cell_x, cell_y] = self.oracle.field().cell_m();
+        let (sin, cos) = azimuth_rad.sin_cos();
+        let direction = [cos / cell_x, -sin / cell_y];
+        let scale = direction[0].abs().max(direction[1].abs());
+        let advance = direction.map(|d| d / scale);
+        let here = [col as f64, row as f64];
+        let last = self.pyramid.size.map(|n| f64::from(n) - 1.0);
+        let room = |i: usize| {
+            let to = if advance[i] > 0.0 { last[i] - here[i] } else { here[i] };
+            if advance[i].abs() < 1e-8 { 1e8 } else { to / advance[i].abs() }
+        };
+        // A hair more, so that rounding does not leave the field a step early.
+        let inside = room(0).min(room(1)) + 1e-4;
+        let reach = if self.pyramid.periodic { 1e8 } else { inside } as i32;
+        if reach <= 0 {
+            return f64::NEG_INFINITY;
+        }
+        let crosses_row = advance[1].abs() >= advance[0].abs();
+        let end = f64::from(self.pyramid.level_step) * (within_m * scale).max(1e-6).log2();
+        let (mut back, mut before, mut angle) = (1.0_f32, 0, 0.0);
+        let mut blocked = BlockedWithin { angles: [0.0; 4], taken: 0, end, highest: 0.0 };
+        for i in 0..self.pyramid.samples().max(self.pyramid.fine_samples()) {
+            let whole = (back + 0.5) as i32;
+            if whole > before {
+                let at = f64::from(whole.min(reach));
+                let number = (i + 1).saturating_sub(self.pyramid.fine_samples());
+                let number = number.min(self.pyramid.levels());
+                let place = [0, 1].map(|k| here[k] + at * advance[k]);
+                let rise = self.height(number, place, crosses_row)
+                    - self.height(number, here, crosses_row);
+                angle = (rise * scale / at).atan();
+            }
+            blocked.take(angle);
+            if whole >= reach || f64::from(i) >= end.floor() + 2.0 {
+                break;
+            }
+            before = whole;
+            back *= self.pyramid.growth();
+        }
+        blocked.take(angle);
+        blocked.take(angle);
+        blocked.highest.tan()
+    }
+}
+
+/// The last four angles, the newest last, how many there were, and the largest value of their spline up to its
+/// end, where it is looked at too.
+#[derive(Clone, Copy, Debug)]
+struct BlockedWithin {
+    angles: [f64; 4],
+    taken: i32,
+    end: f64,
+    highest: f64,
+}
+
+impl BlockedWithin {
+    fn take(&mut self, angle: f64) {
+        if self.taken == 0 {
+            (self.angles, self.highest) = ([angle; 4], angle);
+        } else {
+            self.angles.rotate_left(1);
+            self.angles[3] = angle;
+        }
+        let [a, b, c, d] = self.angles;
+        let newest = f64::from(self.taken);
+        let t = self.end - (newest - 2.0);
+        let mut look = |is_there: bool, value: f64| {
+            self.highest = if is_there { self.highest.max(value) } else { self.highest };
+        };
+        look(newest - 1.0 <= self.end, (b + 4.0 * c + d) / 6.0);
+        look(newest - 1.5 <= self.end, (a + d + 23.0 * (b + c)) / 48.0);
+        let inner = |v: f64| (3.0 * v - 6.0) * v * v + 4.0;
+        let s = 1.0 - t;
+        let at_end = (s.powi(3) * a + inner(t) * b + inner(s) * c + t.powi(3) * d) / 6.0;
+        look((0.0..1.0).contains(&t), at_end);
+        self.taken += 1;
     }
 }

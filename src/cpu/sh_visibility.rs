@@ -36,20 +36,30 @@ pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
 /// # Panics
 /// By a table: [`sh_wedges`](super::sh_wedges::sh_wedges).
 pub fn seen_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
+    let ray = |(azimuth, lowest): &(Azimuth, f64)| {
+        let phi = f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into());
+        [phi, azimuth.wedge_rad.into(), *lowest]
+    };
+    seen_along(series, &lowest.iter().map(ray).collect::<Vec<_>>())
+}
+
+/// The same of azimuths, the widths that they stand for, radians, and slopes.
+///
+/// # Panics
+/// By a table.
+pub fn seen_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
     let Series { order, wedges, .. } = series;
     let slices = Slices::new(order);
     let (mut weights, mut along) = (Vec::new(), Vec::new());
-    for (azimuth, lowest) in lowest {
-        let phi = f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into());
-        let width = f64::from(azimuth.wedge_rad);
-        weights.push(around(order, phi).iter().map(|w| w * width).collect::<Vec<_>>());
+    for [phi, width, lowest] in rays {
+        weights.push(around(order, *phi).iter().map(|w| w * width).collect::<Vec<_>>());
         along.push(match wedges {
             Wedges::Slices => slices.above(lowest.atan()),
             Wedges::Table => panic!("a table is looked up by two azimuths at once"),
             Wedges::Nlp => {
-                let cos = 1.0 / lowest.hypot(1.0);
+                let (sin, cos) = lowest.atan().sin_cos();
                 let mut above: Vec<f64> =
-                    occlusion(order, lowest * cos, cos).iter().map(|below| -below).collect();
+                    occlusion(order, sin, cos).iter().map(|below| -below).collect();
                 above[0] += SQRT_2;
                 above
             }

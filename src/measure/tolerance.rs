@@ -277,6 +277,26 @@ pub fn twin_sh_shade(order: usize, normal_error: f64) -> f64 {
     2.0 * (24.0 + (order * order) as f64) * EPSILON + 6.0 * normal_error
 }
 
+/// The same of a lobe: Y_lm of its direction are 1 at most, change by 4 a radian of it, as it turns twice as far as
+/// the normal, and err by 100 ε: polynomials of degree 5 whose coefficients sum to 15, six roundings each. Rows
+/// are as many as columns.
+pub fn twin_sh_gloss(order: usize, normal_error: f64) -> f64 {
+    (110.0 + 3.0 * (order * order) as f64) * EPSILON + 8.0 * normal_error
+}
+
+/// `sun_gloss` from a given sun's sum, for irradiance 1, at a sample that the sun faces by `facing`, the cosine.
+///
+/// The lobe is (n + 1)/2π at most and changes by √(n/e) of that a radian; its direction turns by twice the
+/// normal's error, and the difference of two directions, the sun's rounded to f32, by 6 ε. Its power errs by
+/// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is seen
+/// is a quotient by a cosine that errs as the normal does and by 6 ε: at most 1, of which that is the share.
+pub fn twin_sun_gloss(exponent: f64, normal_error: f64, facing: f64) -> f64 {
+    let peak = (exponent + 1.0) / (2.0 * PI);
+    let turned = (exponent / std::f64::consts::E).sqrt() * (2.0 * normal_error + 6.0 * EPSILON);
+    let part = ((normal_error + 6.0 * EPSILON) / facing.max(1e-30)).min(1.0);
+    peak * (turned + part + 44.0 * EPSILON)
+}
+
 /// What the light that a sample gets through its horizons errs by.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadeError {

@@ -2,6 +2,7 @@
 
 pub(crate) mod bounce_gather;
 pub(crate) mod bounce_march;
+pub(crate) mod bounce_walk;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
@@ -25,7 +26,9 @@ pub(crate) mod sh_wedges;
 pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
 pub(crate) mod sky_shade;
+pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
+pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;

@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Builder, Rectangle, ResourceId, samples_within};
-use crate::scene::{Scene, SphereLight};
+use crate::scene::{HeightField, Scene, SphereLight};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -114,6 +114,16 @@ fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
     }
 }
 
+/// Of a ball's middle: whole cells east of the first column and south of the first row, and the rest of a cell.
+pub(super) fn place_of(field: &HeightField, ball: &SphereLight) -> ([i32; 2], [f32; 2]) {
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = ball.position_m;
+    let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
+    // Beyond this a whole cell is less than a rounding of the distance.
+    let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
+    (base.map(|b| b as i32), [0, 1].map(|i| (place[i] - base[i]) as f32))
+}
+
 #[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
 fn dispatch(
     builder: &mut Builder,
@@ -128,10 +138,7 @@ fn dispatch(
     let field = &scene.field;
     let [cell_x, cell_y] = field.cell_m();
     let [narrow, around] = ball.slices(look.slices, field.cell_m());
-    let [x, y, z] = ball.position_m;
-    let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
-    // Beyond this a whole cell is less than a rounding of the distance.
-    let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
+    let (base, offset) = place_of(field, ball);
     let Rectangle { col, row, cols, rows } = look.rectangle;
     let samples = u64::from(cols) * u64::from(rows);
     let [thin_rows, thin_cols] = blocks.thin(field);
@@ -158,9 +165,9 @@ fn dispatch(
             cell_x_m: cell_x as f32,
             cell_y_m: cell_y as f32,
             first: [col as i32, row as i32],
-            base: base.map(|b| b as i32),
-            offset: [0, 1].map(|i| (place[i] - base[i]) as f32),
-            up_m: (z - field.base_m()) as f32,
+            base,
+            offset,
+            up_m: (ball.position_m[2] - field.base_m()) as f32,
             radius_m: ball.radius_m as f32,
             reach_m: look.reach_m,
             slices: narrow as i32,

@@ -5,9 +5,11 @@
 
 use super::blocks::Blocks;
 use super::pyramid::Pyramid;
-use super::{Builder, Format, Owner, ResourceId};
+use super::sweeping::{Sweeping, part};
+use super::{Batch, Builder, Format, Owner, ResourceId};
 use crate::passes::{
-    bounce_gather, bounce_march, height_cells, pyramid_march, shade_expand, shade_reduce,
+    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_expand,
+    shade_reduce,
 };
 use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
 
@@ -29,10 +31,17 @@ pub(super) struct Bouncing {
     azimuths: u32,
     grey: bool,
     sum: ResourceId,
-    pyramids: Option<bounce_gather::Pyramids>,
+    engine: Engine,
     /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
     /// into the picture alone.
     exits: Vec<Option<ResourceId>>,
+}
+
+/// How what a sample sees is found, with what that needs of its own.
+enum Engine {
+    Brute,
+    Sweep,
+    Pyramid(bounce_gather::Pyramids),
 }
 
 /// How many bounces are worth drawing.
@@ -68,9 +77,14 @@ impl Bouncing {
             (1..=count).map(|k| exit.filter(|_| k < count)).collect()
         };
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
-        let pyramids = (bounces.engine == BounceEngine::Pyramid)
-            .then(|| pyramids(builder, (scene, grey), quality, levels));
-        Self { azimuths: bounces.azimuths, grey, sum, pyramids, exits }
+        let engine = match bounces.engine {
+            BounceEngine::Brute => Engine::Brute,
+            BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Pyramid => {
+                Engine::Pyramid(pyramids(builder, (scene, grey), quality, levels))
+            }
+        };
+        Self { azimuths: bounces.azimuths, grey, sum, engine, exits }
     }
 
     /// How many there are.
@@ -83,14 +97,15 @@ impl Bouncing {
         &self,
         builder: &mut Builder,
         scene: &Scene,
-        blocks: &Blocks,
+        blocks: Option<&Blocks>,
         (heights, is_recorded): (ResourceId, bool),
     ) {
-        let Some(pyramids) = &self.pyramids else {
-            if !is_recorded {
-                blocks.record(builder, &scene.field, heights, None);
-            }
-            return;
+        let Some(blocks) = blocks else { return };
+        let pyramids = match &self.engine {
+            Engine::Brute if is_recorded => return,
+            Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
+            Engine::Sweep => return,
+            Engine::Pyramid(pyramids) => pyramids,
         };
         if !is_recorded {
             let of = (&scene.field, scene.surface.border);
@@ -107,7 +122,8 @@ impl Bouncing {
     pub fn record(
         &self,
         builder: &mut Builder,
-        (scene, blocks): (&Scene, &Blocks),
+        scene: &Scene,
+        (blocks, swept): (Option<&Blocks>, Option<(&Sweeping, &[Batch])>),
         k: usize,
         [heights, direct]: [ResourceId; 2],
     ) -> (ResourceId, Option<ResourceId>) {
@@ -122,9 +138,11 @@ impl Bouncing {
             grey: self.grey,
             sum: self.sum,
         };
-        match &self.pyramids {
-            None => bounce_march::plan(builder, scene, blocks, self.azimuths, &bounce),
-            Some(of) => {
+        let blocks = || blocks.expect("made for engines that read cells and ground");
+        match &self.engine {
+            Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
+            Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
+            Engine::Pyramid(of) => {
                 if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
                     for level in 1..=of.shade.levels() {
                         shade_reduce::plan(builder, &of.shade, level, &bounce, [levels, table]);
@@ -133,7 +151,7 @@ impl Bouncing {
                         shade_expand::plan(builder, &of.shade, &bounce, [levels, table, stack]);
                     }
                 }
-                let ids = [heights, blocks.images.ground];
+                let ids = [heights, blocks().images.ground];
                 bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
             }
         }
@@ -145,9 +163,10 @@ impl Bouncing {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());
-        let engine = match &self.pyramids {
-            None => BounceEngine::Brute,
-            Some(of) => {
+        let engine = match &self.engine {
+            Engine::Brute => BounceEngine::Brute,
+            Engine::Sweep => BounceEngine::Sweep,
+            Engine::Pyramid(of) => {
                 add("bounce_level_step", of.shade.level_step.to_string());
                 add("bounce_level_offset", of.shade.level_offset.to_string());
                 add("level_step", of.heights.level_step.to_string());
@@ -159,6 +178,35 @@ impl Bouncing {
         };
         add("bounce_engine", engine.name().to_owned());
         used
+    }
+}
+
+/// The sweeps that a bounce walks over, and the walks.
+fn walk(
+    builder: &mut Builder,
+    scene: &Scene,
+    k: usize,
+    (sweeping, batches): (&Sweeping, &[Batch]),
+    bounce: &Bounce,
+) {
+    for (i, batch) in batches.iter().enumerate() {
+        let part = part(&bounce.name, batch, batches);
+        let occluders = sweeping.occluders(batch).expect("kept for walks");
+        // A lattice of its own still holds what the first bounce has swept.
+        let is_shared =
+            batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
+        if k == 1 || is_shared {
+            sweeping.record(builder, batch, &part);
+        }
+        let swept = bounce_walk::Swept {
+            lane_heights: sweeping.lane_heights(batch),
+            azimuths: sweeping.azimuths,
+            occluders,
+            line_shift: sweeping.sweep.line_shift(),
+            is_last: i + 1 == batches.len(),
+        };
+        let field = (scene.surface.border, scene.field.cell_m());
+        bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
 }
 

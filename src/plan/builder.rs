@@ -102,11 +102,16 @@ impl Builder {
         passes.last_mut().expect("pushed above")
     }
 
-    /// The buffer that the host fills with constants.
-    pub(super) fn constants(&mut self, constants: Vec<f32>) -> ResourceId {
-        let bytes = size_of_val(constants.as_slice()) as u64;
-        self.constants = constants;
-        self.buffer("constants", bytes, true)
+    /// Adds texels to the buffer that the host fills with constants; where they begin.
+    pub(super) fn constants(&mut self, more: &[f32]) -> (ResourceId, usize) {
+        let first = self.constants.len() / 4;
+        self.constants.extend(more);
+        let size = size_of_val(self.constants.as_slice()) as u64;
+        let Some(i) = self.resources.iter().position(|r| r.name == "constants") else {
+            return (self.buffer("constants", size, true), first);
+        };
+        self.resources[i].kind = Kind::Buffer { bytes: size, texels: true };
+        (ResourceId(i), first)
     }
 
     pub(super) fn bytes(&self) -> u64 {

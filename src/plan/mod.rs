@@ -20,6 +20,7 @@ mod reference;
 mod resource;
 pub(crate) mod sh;
 mod shining;
+pub(crate) mod sphere_sh;
 mod spheres;
 pub mod sweep;
 mod sweeping;

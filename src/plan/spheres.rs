@@ -1,7 +1,9 @@
 //! Balls of light: which samples each is looked for at, and the passes that do it.
 
 use super::blocks::Blocks;
+use super::sphere_sh::SphereSh;
 use super::{Builder, Rectangle, ResourceId};
+use crate::passes::sphere_sh_shade;
 use crate::passes::sphere_shade::{self, Look};
 use crate::scene::{HeightField, Scene, SphereLight};
 
@@ -66,6 +68,20 @@ impl<'a> Spheres<'a> {
         spheres
     }
 
+    /// As [`record`](Self::record), by spherical harmonics.
+    pub fn record_soft(
+        &self,
+        builder: &mut Builder,
+        lit: (&Scene, &Blocks, &SphereSh),
+        heights: ResourceId,
+        (index, begins): (usize, bool),
+        sum: ResourceId,
+    ) {
+        let (position, ball) = self.shining[index];
+        let look = self.look(&lit.0.field, index, lit.2.azimuths, begins);
+        sphere_sh_shade::plan(builder, lit, heights, &light_name(position), ball, &look, sum);
+    }
+
     /// The passes of the ball at `index` of those that shine; `begins` the sum with it.
     pub fn record(
         &self,
@@ -76,11 +92,15 @@ impl<'a> Spheres<'a> {
         sum: ResourceId,
     ) {
         let (position, ball) = self.shining[index];
+        let look = self.look(&scene.field, index, slices, begins);
+        sphere_shade::plan(builder, scene, blocks, &light_name(position), ball, &look, sum);
+    }
+
+    fn look(&self, field: &HeightField, index: usize, slices: u32, begins: bool) -> Look {
         let (rectangle, reach_m) = self.looks[index];
         // What begins the sum writes all of it.
-        let rectangle = if begins { whole(&scene.field) } else { rectangle };
-        let look = Look { slices, rectangle, reach_m, begins };
-        sphere_shade::plan(builder, scene, blocks, &light_name(position), ball, &look, sum);
+        let rectangle = if begins { whole(field) } else { rectangle };
+        Look { slices, rectangle, reach_m, begins }
     }
 }
 

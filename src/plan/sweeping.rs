@@ -18,7 +18,7 @@ pub(super) struct Sweeping {
     /// Whether the sweep reads its heights from them too, four lanes at a time.
     quads: bool,
     /// Levels of a height pyramid, where some are looked at.
-    levels: Option<pyramid_march::Images>,
+    pub levels: Option<pyramid_march::Images>,
     /// Where marches that store a value a sample find it.
     pub nodes: Nodes,
     /// Each batch's; several may have the same in turn.
@@ -39,11 +39,6 @@ impl Sweeping {
         self.lane_heights[usize::from(batch.axis.marches_rows)].expect("made for every axis used")
     }
 
-    /// Of a height pyramid, where the sweep is one and looks at any.
-    pub fn levels(&self) -> Option<pyramid_march::Images> {
-        self.levels
-    }
-
     fn lattice_of(&self, batch: &Batch) -> Lattice {
         self.lattices[batch.number as usize]
     }
@@ -52,6 +47,11 @@ impl Sweeping {
     pub fn lattice(&self, batch: &Batch) -> Option<ResourceId> {
         let lattice = self.lattice_of(batch);
         lattice.slopes.or(lattice.occluders)
+    }
+
+    /// What a batch's sweep along lines has met.
+    pub fn occluders(&self, batch: &Batch) -> Option<ResourceId> {
+        self.lattice_of(batch).occluders
     }
 
     /// The same of a sweep that there is.

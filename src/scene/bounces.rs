@@ -1,3 +1,4 @@
+use super::Surface;
 use super::quality::{Quality, within};
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
@@ -61,6 +62,12 @@ impl Bounces {
         within("--bounce-level-offset", self.level_offset, Quality::LEVEL_OFFSET)
     }
 
+    /// Whether what a sweep along lines has met is walked over for the light that such a surface throws.
+    pub(crate) fn walk_over(&self, surface: &Surface) -> bool {
+        let albedo = f64::from(surface.albedo.largest());
+        self.engine == BounceEngine::Sweep && self.worth_drawing(albedo) > 0
+    }
+
     /// How many of them are drawn on a surface that reflects at most the share `albedo`: the fewest that
     /// leave out no more than [`cutoff`](Self::cutoff).
     pub fn worth_drawing(&self, albedo: f64) -> u32 {
@@ -80,6 +87,9 @@ pub enum BounceEngine {
     /// azimuths, and slower in proportion to the side.
     #[default]
     Brute,
+    /// Those stretches of the surface that a sample sees on its own lines at every march step, found through what
+    /// a sweep along lines has met: a hull tree (Timonen 2012). Needs such a sweep.
+    Sweep,
     /// One sample a level of a pyramid of heights, as [`Method::Pyramid`](super::Method::Pyramid) with its levels,
     /// and of one of exit radiance (Nowrouzezahrai & Snyder 2009): time in proportion to the samples and the
     /// logarithm of the side, error whatever the settings.
@@ -91,6 +101,7 @@ impl BounceEngine {
     pub fn name(self) -> &'static str {
         match self {
             BounceEngine::Brute => "brute",
+            BounceEngine::Sweep => "sweep",
             BounceEngine::Pyramid => "pyramid",
         }
     }

@@ -14,7 +14,8 @@ pub use field::HeightField;
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{
-    Basis, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Wedges, Window,
+    Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
+    Window,
 };
 pub use surface::{Albedo, Border, Phong, Surface};
 

@@ -20,6 +20,10 @@ pub struct Quality {
     /// sample nearest to its foot, [0..1], default 1/65536: one step of a picture of 16 bits. More: faster, as each
     /// ball is looked for at fewer samples. 0: at all.
     pub light_cutoff: f64,
+    /// What balls of light are lit by. [`LightBasis::Sh`] takes `sh_order`, `wedges`, `receiver`, `window` and
+    /// `wedge_side` as an environment does, `sun_azimuths` whatever a ball's width, and horizons from a pyramid
+    /// where that is the method.
+    pub light_basis: LightBasis,
     /// Distance between the lines of a sweep. Wider: faster, small occluders missed between lines.
     pub lines: Lines,
     /// How the lines' results come back to the samples between them.
@@ -43,7 +47,8 @@ pub struct Quality {
     /// What an environment is looked up in.
     pub basis: Basis,
     /// Order n of what samples see as spherical harmonics, [2..6], default 4: n² numbers a sample. Lower:
-    /// faster, less memory, the environment blurred. Only with [`Basis::Sh`], as are those below.
+    /// faster, less memory, the environment blurred. Only with [`Basis::Sh`] or [`LightBasis::Sh`], as are those
+    /// below.
     pub sh_order: u32,
     /// How what is seen along an azimuth becomes harmonics.
     pub wedges: Wedges,
@@ -70,6 +75,7 @@ impl Default for Quality {
             azimuths: 64,
             sun_azimuths: 8,
             light_cutoff: 1.0 / 65536.0,
+            light_basis: LightBasis::Exact,
             lines: Lines::Cell,
             fuse: Fuse::AimedNearest,
             precision: Precision::F32,
@@ -106,6 +112,14 @@ impl Quality {
 
     /// What [`wedge_side`](Self::wedge_side) may be.
     pub const WEDGE_SIDE: RangeInclusive<u32> = 4..=256;
+
+    /// Order of the lights' own series: with an exact cosine one less than what is seen has.
+    pub fn light_order(&self) -> usize {
+        match self.receiver {
+            Receiver::Plane => self.sh_order as usize - 1,
+            Receiver::Lobe => self.sh_order as usize,
+        }
+    }
 
     /// Checks every range.
     ///
@@ -269,6 +283,17 @@ pub enum Basis {
     Sh,
 }
 
+/// What balls of light are lit by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightBasis {
+    /// Slices of the ball, each exact up to where the surface hides it.
+    #[default]
+    Exact,
+    /// Spherical harmonics of what is seen up to the ball, times those of the ball (after Snyder & Nowrouzezahrai
+    /// 2008): soft, in error whatever the settings.
+    Sh,
+}
+
 /// How what is seen along an azimuth becomes spherical harmonics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wedges {
@@ -316,6 +341,16 @@ impl Wedges {
             Wedges::Slices => "slices",
             Wedges::Nlp => "nlp",
             Wedges::Table => "table",
+        }
+    }
+}
+
+impl LightBasis {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            LightBasis::Exact => "exact",
+            LightBasis::Sh => "sh",
         }
     }
 }

@@ -10,22 +10,27 @@ mod embedding;
 mod extremes;
 mod flight;
 mod forms;
+mod gloss;
 mod goldens;
 mod harmonics;
 mod keys;
+mod many_lights;
 mod pruned;
 mod pyramid;
 mod real;
 mod reference_edges;
+mod reference_numbers;
 #[expect(dead_code, reason = "of its scenes only the pits are drawn here")]
 #[path = "../reference_page/mod.rs"]
 mod reference_page;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
+mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
+mod walks;
 
 use std::sync::{Mutex, MutexGuard};
 

@@ -16,11 +16,11 @@ use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, SphereLight
 use crate::twins::light::ball_seen;
 use crate::{Device, field, random};
 
-fn ball(position_m: [f64; 3], radius_m: f64) -> SphereLight {
+pub(crate) fn ball(position_m: [f64; 3], radius_m: f64) -> SphereLight {
     SphereLight { position_m, radius_m, radiance: [1.0; 3] }
 }
 
-fn under(field: &HeightField, border: Border, spheres: Vec<SphereLight>) -> Scene {
+pub(crate) fn under(field: &HeightField, border: Border, spheres: Vec<SphereLight>) -> Scene {
     Scene {
         field: field.clone(),
         surface: Surface { border, ..Surface::default() },
@@ -34,7 +34,7 @@ fn all(slices: u32) -> Quality {
 }
 
 /// One value of each sample, which is finite and not negative.
-fn values(pixels: &Pixels) -> Vec<f64> {
+pub(crate) fn values(pixels: &Pixels) -> Vec<f64> {
     assert_eq!(pixels.channels, 1);
     let all: Vec<f64> = pixels.values.iter().map(|v| f64::from(*v)).collect();
     assert!(all.iter().all(|v| v.is_finite() && *v >= 0.0), "{all:?}");

@@ -17,8 +17,8 @@ pub use auto::AutoArgs;
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
 pub use quality::{
-    BasisName, FuseName, HullName, LevelsName, LinesName, MethodName, PrecisionName, QualityArgs,
-    ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
+    BasisName, FuseName, HullName, LevelsName, LightBasisName, LinesName, MethodName,
+    PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};

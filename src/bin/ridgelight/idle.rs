@@ -36,7 +36,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("sun_azimuths", ..) => {
             "without a sun wider than 0.01°, a key light or a ball of light".into()
         }
-        ("light_cutoff", ..) => "without a ball of light".into(),
+        ("light_cutoff" | "light_basis", ..) => "without a ball of light".into(),
         (
             "lines" | "fuse" | "precision" | "hull" | "level_step" | "level_offset" | "levels",
             None,
@@ -53,6 +53,11 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             | "subsample" | "wedge_side",
             ..,
         ) => match (setting, of("basis")) {
+            ("sh_order" | "wedges" | "receiver" | "window", None)
+                if of("light_basis").is_some() =>
+            {
+                "without an environment or --light-basis sh".into()
+            }
             (_, None) => "without an environment".into(),
             ("wedge_side", Some("sh")) => "without --wedges table".into(),
             ("subsample", _) => {

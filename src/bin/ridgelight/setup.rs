@@ -6,16 +6,16 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, Lights, Lines, Method, Precision,
-    Quality, Receiver, Scene, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Method,
+    Precision, Quality, Receiver, Scene, Surface, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName, SurfaceArgs,
-    WedgesName, WindowName, albedo_colour,
+    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName,
+    SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
 pub use told::{as_json, asked, metadata, typed};
 
@@ -73,7 +73,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         None => None,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), phong: None },
+        surface: Surface { albedo, border: border(&surface.field), phong: surface.phong },
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
@@ -104,6 +104,10 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         azimuths: args.azimuths,
         sun_azimuths: args.sun_azimuths,
         light_cutoff: args.light_cutoff,
+        light_basis: match args.light_basis {
+            LightBasisName::Exact => LightBasis::Exact,
+            LightBasisName::Sh => LightBasis::Sh,
+        },
         lines: match args.lines {
             LinesName::Exact => Lines::Exact,
             LinesName::QuarterCell => Lines::QuarterCell,
@@ -169,6 +173,18 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
     };
     quality.check()?;
     Ok(quality)
+}
+
+/// Refuses a lobe where light is judged by a truth without one.
+pub fn check_diffuse(scene: &Scene, what: &str) -> Result<()> {
+    match scene.surface.phong {
+        None => Ok(()),
+        Some(_) => Err(Error::setting(
+            format!("--phong with {what}"),
+            "a lobe",
+            "none: what it judges light by is diffuse; `reference` and `compare` judge lobes",
+        )),
+    }
 }
 
 /// What is wrong with a request whatever the device: planned for one without limits, so that it is

@@ -6,8 +6,8 @@ use super::probes::{Probes, apart};
 use super::statistics::Statistics;
 use crate::measure::trade::start;
 use crate::scene::{
-    Basis, Bounces, Fuse, Hull, Levels, Lines, Method, Precision, Quality, Receiver, Scene, Wedges,
-    Window,
+    Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
+    Scene, Wedges, Window,
 };
 use crate::{Error, Result};
 
@@ -43,6 +43,7 @@ const COARSE: Quality = Quality {
     azimuths: 8,
     sun_azimuths: 2,
     light_cutoff: 1.0 / 65536.0,
+    light_basis: LightBasis::Exact,
     lines: Lines::FourCells,
     fuse: Fuse::AimedNearest,
     precision: Precision::F32,

@@ -118,6 +118,8 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         // How an environment is held: no method here is of another basis than tables.
         subsample: _,
         light_cutoff: _,
+        // Balls of light have extremes of their own: `spheres` and `soft_spheres`.
+        light_basis: _,
         wedge_side: _,
         basis: _,
         sh_order: _,

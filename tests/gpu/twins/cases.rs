@@ -2,8 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
-    Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
+    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -287,6 +288,34 @@ pub(super) fn pictures() -> Vec<Case> {
     };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
+    let soft = |sh_order, sun_azimuths| Quality {
+        light_basis: LightBasis::Sh,
+        sh_order,
+        sun_azimuths,
+        ..quality
+    };
+    let soft_table = Quality { wedges: Wedges::Table, wedge_side: 17, ..soft(3, 6) };
+    let soft_nlp = Quality {
+        wedges: Wedges::Nlp,
+        receiver: Receiver::Lobe,
+        window: Window::Lanczos,
+        ..soft(5, 7)
+    };
+    let soft_levels = Quality {
+        method: Method::Pyramid,
+        level_step: 3,
+        level_offset: 0,
+        levels: Levels::Pyramid,
+        ..soft(2, 1)
+    };
+    let soft_stack = Quality {
+        wedges: Wedges::Table,
+        receiver: Receiver::Lobe,
+        levels: Levels::Stack,
+        level_step: 2,
+        level_offset: 1,
+        ..Quality { sun_azimuths: 8, sh_order: 6, ..soft_levels }
+    };
     let windowed = Quality { window: Window::Hann, fuse: Fuse::Own, ..sh(4) };
     let lobe = Quality { receiver: Receiver::Lobe, window: Window::Nonnegative, ..sh(2) };
     let subsampled = |subsample, sh_order| Quality { subsample, ..sh(sh_order) };
@@ -294,6 +323,27 @@ pub(super) fn pictures() -> Vec<Case> {
     let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
     let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
+    // A lobe under all that it mirrors, and under a sky alone.
+    let mirrored = {
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(41)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+            ..Lights::default()
+        };
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            phong: Some(Phong { exponent: 20.0, scale: 0.4 }),
+        };
+        Scene { field: rough(14, 11, 42), surface, lights }
+    };
+    let mirrored_sky = {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let phong = Some(Phong { exponent: 3.0, scale: 1.0 });
+        let surface = Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), phong };
+        Scene { field: rough(9, 14, 43), surface, lights }
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -305,7 +355,19 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("balls of light", balls.clone(), quality, true, false),
-        picture("balls in one sum", balls, Quality { sun_azimuths: 5, ..quality }, false, false),
+        picture(
+            "balls in one sum",
+            balls.clone(),
+            Quality { sun_azimuths: 5, ..quality },
+            false,
+            false,
+        ),
+        picture("balls by harmonics", balls.clone(), soft(4, 8), true, false),
+        picture("balls by harmonics of order 6", balls.clone(), soft(6, 4), false, false),
+        picture("balls by a table of wedges", balls.clone(), soft_table, false, false),
+        picture("balls by Legendre, periodic", balls_alone.clone(), soft_nlp, false, false),
+        picture("balls by a pyramid's levels", balls, soft_levels, false, false),
+        picture("balls by a stack, periodic", balls_alone.clone(), soft_stack, true, false),
         picture("balls alone, periodic", balls_alone, quality, false, false),
         picture("harmonics of order 6", on_a_plane.clone(), sh(6), false, false),
         picture("harmonics beside a sky", colourful.clone(), windowed, true, false),
@@ -330,6 +392,67 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, lobe, false, false),
+        picture("a lobe", mirrored, sh(5), true, false),
+        picture("a lobe at every second sample", mirrored_sky, subsampled(2, 3), false, false),
+    ]
+}
+
+/// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, one sample and lines of them,
+/// in batches.
+pub(super) fn walks() -> Vec<Case> {
+    let base = Quality { azimuths: 8, ..Quality::default() };
+    let walked = |count, azimuths, lines| {
+        let (engine, cutoff) = (BounceEngine::Sweep, 0.0);
+        let bounces = Bounces { count, engine, azimuths, cutoff, ..Bounces::default() };
+        Quality { bounces, lines, ..base }
+    };
+    let of = |field: HeightField, border, albedo| Scene {
+        field,
+        surface: Surface { border, albedo, phong: None },
+        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+    };
+    let colourful = {
+        let map = (0..17 * 21).map(|i| [1.0, (i % 5) as f32 / 4.0, (i % 7) as f32 / 6.0]).collect();
+        of(rough(17, 21, 31), Border::Open, Albedo::Map(map))
+    };
+    let grey = |field, border| of(field, border, Albedo::Constant([0.8; 3]));
+    let case = |name, scene, quality, keeps_horizons| Case {
+        name,
+        scene,
+        quality,
+        wanted: Wanted::Picture(Picture {
+            light_layers: true,
+            keeps_horizons,
+            ..Picture::default()
+        }),
+        loses_lines: false,
+    };
+    vec![
+        case("walks, colours", colourful, walked(2, 13, Lines::HalfCell), false),
+        case(
+            "walks, periodic",
+            grey(rough(10, 12, 32), Border::Periodic),
+            walked(2, 8, Lines::Cell),
+            true,
+        ),
+        case(
+            "walks, wide lines",
+            grey(rough(14, 11, 33), Border::Plane),
+            walked(1, 12, Lines::TwoCells),
+            true,
+        ),
+        case(
+            "walks, one sample",
+            grey(rough(1, 1, 34), Border::Plane),
+            walked(1, 4, Lines::Cell),
+            false,
+        ),
+        case(
+            "walks, a row",
+            grey(rough(1, 9, 35), Border::Plane),
+            walked(1, 8, Lines::Cell),
+            false,
+        ),
     ]
 }
 

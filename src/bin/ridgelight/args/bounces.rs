@@ -35,6 +35,7 @@ impl BounceArgs {
             count: self.bounces,
             engine: match self.bounce_engine {
                 BounceEngineName::Brute => BounceEngine::Brute,
+                BounceEngineName::Sweep => BounceEngine::Sweep,
                 BounceEngineName::Pyramid => BounceEngine::Pyramid,
             },
             azimuths: self.bounce_azimuths,
@@ -50,6 +51,8 @@ impl BounceArgs {
 pub enum BounceEngineName {
     /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
     Brute,
+    /// Those that it sees at every march step, through what a sweep along lines has met
+    Sweep,
     /// One sample a level of pyramids of heights and of light: soft, in error whatever the settings
     Pyramid,
 }

@@ -5,10 +5,11 @@ use super::bounces::BounceArgs;
 use super::values::whole;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 24] = [
+pub const SETTINGS: [&str; 25] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
+    "light_basis",
     "lines",
     "fuse",
     "precision",
@@ -49,6 +50,10 @@ pub struct QualityArgs {
     /// samples: more, faster
     #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
     pub light_cutoff: f64,
+    /// What balls of light are lit by; sh takes --sh-order, --wedges, --receiver and --window as an environment
+    /// does, and horizons from --method pyramid
+    #[arg(long, default_value = "exact")]
+    pub light_basis: LightBasisName,
     /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
     #[arg(long, default_value = "1")]
     pub lines: LinesName,
@@ -77,16 +82,16 @@ pub struct QualityArgs {
     /// What an environment's light is looked up in
     #[arg(long, default_value = "auto")]
     pub basis: BasisName,
-    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh
+    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh or --light-basis sh
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
     pub sh_order: u32,
-    /// How what is seen along an azimuth becomes harmonics; with --basis sh
+    /// How what is seen along an azimuth becomes harmonics; with --basis sh or --light-basis sh
     #[arg(long, default_value = "slices")]
     pub wedges: WedgesName,
-    /// How a surface turns what it sees into light; with --basis sh
+    /// How a surface turns what it sees into light; with --basis sh or --light-basis sh
     #[arg(long, default_value = "plane")]
     pub receiver: ReceiverName,
-    /// What tames the ringing of an environment's series; with --basis sh
+    /// What tames the ringing of a light's series; with --basis sh or --light-basis sh
     #[arg(long, default_value = "none")]
     pub window: WindowName,
     /// What is seen is found at every so many samples, light at all of them; with --basis sh
@@ -188,6 +193,14 @@ pub enum BasisName {
     /// Tables of each azimuth's light above each elevation
     Table,
     /// Spherical harmonics
+    Sh,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum LightBasisName {
+    /// Slices of the ball, each exact
+    Exact,
+    /// Spherical harmonics of what is seen up to the ball: soft, in error whatever the settings
     Sh,
 }
 

@@ -69,6 +69,7 @@ fn bound(quality: &Quality) -> f64 {
     let rule = std::f64::consts::TAU / f64::from(quality.bounces.azimuths) / 4.0;
     rule + match quality.bounces.engine {
         BounceEngine::Brute => 0.0,
+        BounceEngine::Sweep => 0.25,
         BounceEngine::Pyramid => 0.75,
     }
 }

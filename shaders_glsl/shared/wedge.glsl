@@ -1,0 +1,18 @@
+// Adds the wedge, turned about the vertical by an azimuth of this cosine and sine, to the series. The including
+// shader declares ORDER, SEEN (a type: of one sample or of four), SEEN series[] and SEEN wedge[].
+void add_turned(vec2 one) {
+    for (int l = 0; l < ORDER; l++) {
+        series[l * (l + 1)] += wedge[l * (l + 1)];
+    }
+    vec2 power = vec2(1.0, 0.0);
+    for (int m = 1; m < ORDER; m++) {
+        power = vec2(power.x * one.x - power.y * one.y, power.x * one.y + power.y * one.x);
+        for (int l = m; l < ORDER; l++) {
+            int place = l * (l + 1);
+            SEEN cosine = wedge[place + m];
+            SEEN sine = wedge[place - m];
+            series[place + m] += power.x * cosine - power.y * sine;
+            series[place - m] += power.x * sine + power.y * cosine;
+        }
+    }
+}

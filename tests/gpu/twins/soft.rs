@@ -1,0 +1,77 @@
+//! Balls of light by spherical harmonics.
+
+use ridgelight::cpu::light::normal;
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::pyramid_march::Stored;
+use ridgelight::cpu::sphere_sh_shade::SphereSh;
+use ridgelight::gpu::shaders::offsets;
+use ridgelight::measure::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight::measure::tolerance::{BallSeen, EPSILON, twin_pyramid_slope};
+use ridgelight::plan::Pass;
+use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::scene::Quality;
+
+use super::light::ball_seen;
+use super::{Pair, Run, pushed};
+
+/// What slopes err by, of a pyramid's steepest at most.
+pub(crate) fn slope_error(seen: &BallSeen, quality: &Quality, is_pyramid: bool) -> f64 {
+    if !is_pyramid {
+        return twin_surface_within(seen);
+    }
+    let (largest, relief, step) = (seen.largest_m, seen.relief_m, seen.cell_m);
+    let steepest = relief / step;
+    let march = twin_pyramid_slope(steepest, largest, relief, step);
+    twin_pyramid_within(seen, march, steepest, quality.level_step)
+}
+
+/// All azimuths of one ball, once the last are there: the sum of the balls so far, and this one's light before it
+/// is kept from below 0.
+pub(super) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sphere_sh_shade_push::{AZIMUTHS, LAST_AZIMUTH, RADIANCE, REACH_M};
+    if f32::from_bits(pushed(pass, RADIANCE + 12)) > 0.0 {
+        run.balls = vec![([0.0; 3], 0.0); run.scene.field.heights_m().len()];
+    }
+    if pushed(pass, LAST_AZIMUTH) < pushed(pass, AZIMUTHS) {
+        return Vec::new();
+    }
+    let name = pass.part.split(' ').next().and_then(|part| part.strip_prefix("light"));
+    let number: usize = name.and_then(|n| n.parse().ok()).expect("light and its number");
+    let ball = run.scene.lights.spheres[number - 1];
+    let reach = f64::from(f32::from_bits(pushed(pass, REACH_M)));
+    let (quality, border) = (run.quality, run.border());
+    let [stack, levels] = ["height_stack", "height_levels"].map(|name| run.floats(pass, name));
+    let is_pyramid = Run::bound(pass, "heights").is_some();
+    let stored = match (&stack, &levels) {
+        (Some(stack), _) => Stored::Stack(stack),
+        (None, levels) => Stored::Levels(levels.as_deref().unwrap_or_default()),
+    };
+    let pyramid = is_pyramid.then(|| (Pyramid::new(&quality, run.plan.size, border), stored));
+    let oracle = Oracle::new(&run.scene.field, border);
+    let (twin, errors) = (SphereSh::new(oracle, pyramid, quality), SoftBall::new(&quality));
+    let got = run.floats(pass, "sphere_sum").expect("written");
+    let [cols, _] = run.size();
+    let mut balls = std::mem::take(&mut run.balls);
+    let mut pairs = Vec::new();
+    for (i, ((sum, tolerance), got)) in balls.iter_mut().zip(got.chunks_exact(4)).enumerate() {
+        let (seen, row, col) = (ball_seen(&run.scene.field, &ball, i), i / cols, i % cols);
+        if seen.distance_m <= reach {
+            let soft = twin.at(&ball, row, col);
+            let n = normal(&run.scene.field, border, row, col);
+            let slope = slope_error(&seen, &quality, is_pyramid);
+            let off = errors.twin(&seen, slope, n, &soft.seen);
+            let brightest = ball.radiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+            let light = soft.light.max(0.0);
+            sum.iter_mut().zip(ball.radiance).for_each(|(s, r)| *s += light * f64::from(r));
+            *tolerance += f64::from(brightest) * (off + 4.0 * EPSILON * light);
+            let at = [1, row, col];
+            pairs.push(Pair { got: got[3].into(), want: soft.light, tolerance: off, at });
+        }
+        pairs.extend((0..3).map(|c| {
+            let (got, want) = (got[c].into(), sum[c]);
+            Pair { got, want, tolerance: *tolerance, at: [0, row, col] }
+        }));
+    }
+    run.balls = balls;
+    pairs
+}
