@@ -63,14 +63,16 @@ fn white(scene: &Scene) -> Scene {
 }
 
 /// A rule over azimuths errs by a squared part of the circle where light is smooth and by a part where the edge
-/// of something bright turns past: a quarter of what a part is of a radian. Walks along swept lines: twice and a half what unit steps
-/// leave on a fractal field, 0.012, however many azimuths there are. Pyramids: twice what the coarsest
-/// but one of their settings (one level an octave, no finer ones) has on the bundled mountain, 0.4.
+/// of something bright turns past: a quarter of what a part is of a radian. Sweeps: twice what lines a cell apart
+/// have on the bundled mountain and on a fractal, 0.015, in proportion to their distance. Pyramids: half as much
+/// again as their coarsest settings have on that mountain under a low sun, 0.5; no bounce at all has 1.
 fn bound(quality: &Quality) -> f64 {
     let rule = std::f64::consts::TAU / f64::from(quality.bounces.azimuths) / 4.0;
+    // Cells from line to line.
+    let apart = f64::from(quality.lines.shift().unwrap_or(15)).exp2() / 32768.0;
     rule + match quality.bounces.engine {
         BounceEngine::Brute => 0.0,
-        BounceEngine::Sweep => 0.03,
-        BounceEngine::Pyramid => 0.8,
+        BounceEngine::Sweep => 0.03 * apart.max(1.0),
+        BounceEngine::Pyramid => 0.75,
     }
 }
