@@ -14,8 +14,6 @@ layout(binding = 0) uniform texture2D heights;
 layout(binding = 1, r32f) uniform image2D height_levels;
 layout(binding = 2, rgba32ui) uniform writeonly uimage2D level_table;
 
-#include "shared/levels.glsl"
-
 layout(push_constant) uniform HeightReducePush {
     int cols;
     int rows;
@@ -31,39 +29,15 @@ layout(push_constant) uniform HeightReducePush {
     int width_shift;
 };
 
+const bool HOLDS_ENDS = false;
+#define TEXEL float
+#include "shared/reduce.glsl"
+
 float source_at(int x, int y) {
     if (FROM_FIELD) {
         return texelFetch(heights, ivec2(x, y), 0).x;
     }
     return imageLoad(height_levels, level_texel(source_first + y * source_cols + x, width_shift)).x;
-}
-
-// Two neighbouring texels of an axis, and how far between them. Beyond the ends the last two go on
-// straight.
-struct Between {
-    int low;
-    int high;
-    float t;
-};
-
-Between between(float place, int count) {
-    int cell = int(floor(place));
-    int held = clamp(cell, 0, max(count - 2, 0));
-    int before = wrapped(cell, count);
-    int after = wrapped(cell + 1, count);
-    int next = min(held + 1, count - 1);
-    cell = PERIODIC ? cell : held;
-    return Between(PERIODIC ? before : held, PERIODIC ? after : next, place - float(cell));
-}
-
-float row_at(Between x, int y) {
-    float low = source_at(x.low, y);
-    return low + x.t * (source_at(x.high, y) - low);
-}
-
-float bilinear(Between x, Between y) {
-    float low = row_at(x, y.low);
-    return low + y.t * (row_at(x, y.high) - low);
 }
 
 void main() {
@@ -72,17 +46,8 @@ void main() {
     if (x >= cols || y >= rows) {
         return;
     }
-    // At ratio 1 all four are the texel itself, at 2 they weigh 1, 2, 1.
-    float beside_x = 0.5 * (ratio_x - 1.0);
-    float beside_y = 0.5 * (ratio_y - 1.0);
-    precise float place_x = float(x) * ratio_x;
-    precise float place_y = float(y) * ratio_y;
-    Between west = between(place_x - beside_x, source_cols);
-    Between east = between(place_x + beside_x, source_cols);
-    Between north = between(place_y - beside_y, source_rows);
-    Between south = between(place_y + beside_y, source_rows);
-    float sum = (bilinear(west, north) + bilinear(east, north)) + (bilinear(west, south) + bilinear(east, south));
-    imageStore(height_levels, level_texel(first + y * cols + x, width_shift), vec4(0.25 * sum));
+    float sum = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
+    imageStore(height_levels, level_texel(first + y * cols + x, width_shift), vec4(sum));
     if (x == 0 && y == 0) {
         Level made = Level(first, cols, rows, vec2(per_sample_x, per_sample_y));
         imageStore(level_table, ivec2(level - 1, 0), words_of(made));

@@ -77,7 +77,7 @@ fn walked(
     seconds: f64,
 ) -> Result<Vec<(Quality, Point)>> {
     let start = start();
-    let knobs = knobs(scene);
+    let knobs = knobs(scene, 0);
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
     let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);
     let places: Vec<_> =

@@ -277,7 +277,7 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
 
 /// Where on a stretch its mean radiance is found, radiance being linear in the distance: the distance
 /// averaged by Gauss' rule of two points over the elevations above the slice's plane.
-fn mean_distance_m(slice: &Slice, stretch: &Stretch) -> f64 {
+pub(super) fn mean_distance_m(slice: &Slice, stretch: &Stretch) -> f64 {
     let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
     let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
     let [(near, f), (far, g)] =

@@ -6,6 +6,9 @@
 //! which finds the same light without chance.
 
 pub mod bounce;
+pub mod bounce_gather;
+pub mod bounce_march;
+pub mod bounce_walk;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;
@@ -31,11 +34,13 @@ pub mod pyramid_march;
 pub mod sh_shade;
 pub mod sh_visibility;
 pub mod sh_wedges;
+pub mod shade_reduce;
 pub mod shared;
 pub mod sky_shade;
 pub mod sphere;
 pub mod sphere_sh_shade;
 pub mod sphere_shade;
+pub mod sun_gloss;
 pub mod sun_shade;
 pub mod surface_sweep;
 pub mod sweep_fuse;

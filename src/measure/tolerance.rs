@@ -122,6 +122,41 @@ pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
     128.0 * EPSILON * largest_m / step_m
 }
 
+/// What `bounce_march` throws at a sample, for albedo 1, against its twin: of surface that radiates `brightest`
+/// at most, seen from `near_m` on, in `stretches` an azimuth at most.
+///
+/// The slopes that bound a stretch err as a march's first crossing, seen half a step away: 2 `near_m` is the step.
+/// A bound that is off moves its angle's weight, at most 1, from one stretch to the next, whose radiance differs
+/// by `brightest` at most; a direction, an arc tangent and a moment besides by 24 ε. As much again where the
+/// mean distance of a stretch is off: what it is off by, in shares of the stretch, times the stretch's
+/// weight is what its bounds are off by. The mean over azimuths over that of whole hemispheres, π/4 or
+/// more, is 4/π of one.
+pub fn twin_thrown(relief_m: f64, near_m: f64, stretches: usize, brightest: f64) -> f64 {
+    let bound = twin_march_slope(relief_m, 2.0 * near_m) + ARC_TANGENT + 24.0 * EPSILON;
+    2.0 * 4.0 / PI * stretches as f64 * bound * brightest
+}
+
+/// What `bounce_gather` throws at a sample, for albedo 1, against its twins from the same heights, in `samples` an
+/// azimuth: of surface that radiates `brightest` at most.
+///
+/// An elevation errs as in [`twin_pyramid_angle`], and by its place: a direction errs by 4 ε, of which a march of any
+/// length makes 4 ε of its length, over which the land rises at R / s. The spline's values, one a sample, cast as
+/// stretches do ([`twin_thrown`]); radiance is a sum of positive weights, 40 ε a level ([`twin_spline`]) for a few
+/// levels, and where it is looked for errs by the same place. Legendre coefficients of a slice, up to √2, times
+/// three bands' weights, up to 1: as much as an angle's weight, twice.
+pub fn twin_gathered(
+    largest_m: f64,
+    relief_m: f64,
+    step_m: f64,
+    samples: u32,
+    brightest: f64,
+) -> f64 {
+    let placed = 4.0 * EPSILON * relief_m / step_m;
+    let angle = twin_pyramid_angle(largest_m, relief_m, step_m) + placed + 24.0 * EPSILON;
+    let cast = 2.0 * 4.0 / PI * f64::from(samples + 2) * angle;
+    2.0 * (cast + 400.0 * EPSILON) * brightest
+}
+
 /// Level of a height pyramid that `height_reduce` makes of a given one.
 ///
 /// Places are equal (`precise`). A bilinear sample is three interpolations, each of a difference of
@@ -240,6 +275,26 @@ pub fn twin_light_matrix(rows: usize) -> f64 {
 /// sums in a column, and one of each for every coefficient.
 pub fn twin_sh_shade(order: usize, normal_error: f64) -> f64 {
     2.0 * (24.0 + (order * order) as f64) * EPSILON + 6.0 * normal_error
+}
+
+/// The same of a lobe: Y_lm of its direction are 1 at most, change by 4 a radian of it, as it turns twice as far as
+/// the normal, and err by 100 ε: polynomials of degree 5 whose coefficients sum to 15, six roundings each. Rows
+/// are as many as columns.
+pub fn twin_sh_gloss(order: usize, normal_error: f64) -> f64 {
+    (110.0 + 3.0 * (order * order) as f64) * EPSILON + 8.0 * normal_error
+}
+
+/// `sun_gloss` from a given sun's sum, for irradiance 1, at a sample that the sun faces by `facing`, the cosine.
+///
+/// The lobe is (n + 1)/2π at most and changes by √(n/e) of that a radian; its direction turns by twice the
+/// normal's error, and the difference of two directions, the sun's rounded to f32, by 6 ε. Its power errs by
+/// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is seen
+/// is a quotient by a cosine that errs as the normal does and by 6 ε: at most 1, of which that is the share.
+pub fn twin_sun_gloss(exponent: f64, normal_error: f64, facing: f64) -> f64 {
+    let peak = (exponent + 1.0) / (2.0 * PI);
+    let turned = (exponent / std::f64::consts::E).sqrt() * (2.0 * normal_error + 6.0 * EPSILON);
+    let part = ((normal_error + 6.0 * EPSILON) / facing.max(1e-30)).min(1.0);
+    peak * (turned + part + 44.0 * EPSILON)
 }
 
 /// What the light that a sample gets through its horizons errs by.

@@ -1,5 +1,8 @@
 //! One file a pass: what it binds, how large it is, and why it is there; below, what several push alike.
 
+pub(crate) mod bounce_gather;
+pub(crate) mod bounce_march;
+pub(crate) mod bounce_walk;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
@@ -20,9 +23,11 @@ pub(crate) mod pyramid_march;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
+pub(crate) mod shade_reduce;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
+pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;

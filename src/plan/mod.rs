@@ -4,6 +4,7 @@
 pub mod azimuths;
 mod batch;
 mod blocks;
+mod bounces;
 mod builder;
 mod change;
 mod choice;
@@ -27,6 +28,7 @@ mod sweeping;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use blocks::Blocks;
+pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
 pub use horizons::horizons;

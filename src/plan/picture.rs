@@ -1,8 +1,10 @@
 mod drawing;
+mod gloss;
 mod images;
 
-use super::azimuths::Shape;
+use super::azimuths::{self, Shape};
 use super::blocks::Blocks;
+use super::bounces::{self, Bouncing};
 use super::edit::Edits;
 use super::shining::Shining;
 use super::sphere_sh::SphereSh;
@@ -10,7 +12,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
-use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Surface, Wedges};
+use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Wedges};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -18,7 +20,7 @@ use images::{Harmonics, Images, Tables};
 /// What a picture should hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
-    /// Besides the whole, an image for each light.
+    /// Besides the whole, an image for each light and each bounce.
     pub light_layers: bool,
     /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
     /// receiver, [0..1].
@@ -38,8 +40,12 @@ pub struct Picture {
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
 /// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
-/// "radiance", then one "direct.*" image a light and "sky_view" where asked. All are images of one
-/// channel where every colour is grey, else of four.
+/// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
+/// all, and they without it), "sky_view" and one "indirect.*" image a bounce. All are images of one channel
+/// where every colour is grey, else of four.
+///
+/// A lobe is seen from straight above. It reflects sky and environment by harmonics, whose order limits it as
+/// it does the light, and suns by the lobe towards their middle and the part of them that is seen.
 ///
 /// # Errors
 /// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -48,12 +54,17 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     quality.check()?;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
-    refuse_later(surface)?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
+    let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
-    if wanted.still && sweep.sees_own_crossings() && field.is_concave(surface.border) {
+    let is_walked = quality.bounces.walk_over(surface);
+    if is_walked {
+        sweep.keep_occluders()?;
+    }
+    if wanted.still && !is_walked && sweep.sees_own_crossings() && field.is_concave(surface.border)
+    {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
         sweep = Sweep::Crossings;
     }
@@ -75,40 +86,52 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut builder = Builder::new();
     let images = Images::make(&mut builder, scene, &shining, wanted);
-    let lists = shining.lists(
+    let bounces =
+        if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
+    let mut lists = shining.lists(
         images.need_circle(),
         quality,
         &sweep,
         (surface.border, field.cell_m()),
         &mut notes,
     )?;
+    if is_walked && bounces > 0 {
+        // Behind those of the lights.
+        lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
+    }
     let (mut tables, mut harmonics) = (None, None);
-    match shining.environment.map(|e| (e, surface.border)) {
-        Some(lit) if quality.basis == Basis::Sh => {
-            if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
-                return Err(Error::setting(
-                    "--wedges table with --lines exact",
-                    "wedges of uneven widths",
-                    "--method brute, which is exact in every azimuth",
-                ));
-            }
-            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality, &lists[0]));
+    let exponent = shining.gloss.filter(|_| shining.has_gloss_around()).map(|p| p.exponent);
+    if exponent.is_some() || shining.environment.is_some() && quality.basis == Basis::Sh {
+        if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
+            return Err(Error::setting(
+                "--wedges table with --lines exact",
+                "wedges of uneven widths",
+                "--method brute, which is exact in every azimuth",
+            ));
         }
-        Some(lit) => tables = Some(Tables::make(&mut builder, lit, quality)),
-        None if shining.sky.is_some() => notes.push("no environment: no table".into()),
-        None => {}
+        let (lit, settings) = ((shining.environment, surface.border), (quality, exponent));
+        harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
+    } else if let Some(environment) = shining.environment {
+        let lit = (environment, surface.border);
+        tables = Some(Tables::make(&mut builder, lit, quality));
+    }
+    if shining.environment.is_none() && shining.sky.is_some() {
+        notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
-        && images.sphere_sum.is_none();
+        && images.sphere_sum.is_none()
+        && images.gloss_sum.is_none()
+        && bounces == 0;
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
     // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let blocks = images.sphere_sum.map(|_| Blocks::make(&mut builder, size, surface.border));
+    let need_blocks = images.sphere_sum.is_some() || (bounces > 0 && !is_walked);
+    let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
     } else {
@@ -116,15 +139,22 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
             prepare(&mut builder, field, surface.border, sweep, images.heights, lists, held)?;
         (Some(sweeping), lists)
     };
+    let levels = sweeping.as_ref().and_then(|s| s.levels);
+    let of_light = (shining.is_grey, wanted.light_layers);
+    let bouncing = (bounces > 0)
+        .then(|| Bouncing::make(&mut builder, scene, quality, (bounces, levels), of_light));
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
     let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
-        let levels = sweeping.as_ref().and_then(|s| s.levels);
         SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)
     });
     if let Some(soft) = &soft {
         passes::sphere_sh_shade::check(surface.border, field, soft)?;
     }
-    let used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
+    let mut used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
+    used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
+    let of_bounces = bouncing.iter().flat_map(Bouncing::used);
+    let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();
+    used.extend(more);
     let mut drawing = Drawing {
         builder,
         scene,
@@ -134,9 +164,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         harmonics,
         sweeping,
         blocks,
+        bouncing,
         soft,
         edited: None,
         is_begun: false,
+        gloss_is_begun: false,
     };
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
@@ -174,17 +206,8 @@ fn marched_nodes(
     let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
     // A table is looked up by horizons of all samples.
     let nodes = harmonics.filter(|h| h.wedge_table.is_none() && is_marched && is_alone);
-    let nodes = nodes.map(|h| h.sh.nodes);
+    let nodes = nodes.map(|h| h.sh().nodes);
     nodes.unwrap_or(Nodes { stride: 1 })
-}
-
-/// What only the reference can light so far.
-fn refuse_later(surface: &Surface) -> Result<()> {
-    let expected = "none: it is not yet there for pictures, only for the reference";
-    if surface.phong.is_some() {
-        return Err(Error::setting("phong", "a lobe", expected));
-    }
-    Ok(())
 }
 
 /// The settings really used.
@@ -201,8 +224,9 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    match (shining.environment, quality.basis) {
-        (Some(_), Basis::Sh) => {
+    let is_around = shining.environment.is_some() || shining.has_gloss_around();
+    match quality.basis {
+        Basis::Sh if is_around => {
             add("basis", "sh");
             add("sh_order", &quality.sh_order.to_string());
             add("wedges", quality.wedges.name());
@@ -213,11 +237,11 @@ fn used(
                 add("wedge_side", &quality.wedge_side.to_string());
             }
         }
-        (Some(_), _) => {
+        _ if is_around => {
             add("basis", "table");
             add("table_elevations", &quality.table_elevations.to_string());
         }
-        (None, _) => {}
+        _ => {}
     }
     let has_balls = !shining.spheres.shining.is_empty();
     if has_balls || shining.aimed().any(|light| light.shape != Shape::Point) {

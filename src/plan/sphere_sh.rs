@@ -94,7 +94,7 @@ fn entries(quality: &Quality) -> Vec<f32> {
     let (order, light_order) = (quality.sh_order as usize, quality.light_order());
     let row_first = if quality.receiver == Receiver::Plane { 1 } else { 0 };
     let mut all = Vec::new();
-    for (at, shares) in matrix(quality, light_order).iter().enumerate() {
+    for (at, shares) in matrix(quality, light_order, None).iter().enumerate() {
         let (row, seen) = (row_first + at / (order * order), at % (order * order));
         for (i, ((_, m), share)) in bands(light_order).zip(shares).enumerate() {
             // What is not 0 is above 1e-4: a product of three harmonics, over π.

@@ -220,6 +220,23 @@ impl Sweep {
         }))
     }
 
+    /// Has a sweep along lines store what its samples meet, for walks over it.
+    ///
+    /// # Errors
+    /// Other sweeps, which do not know it.
+    pub(crate) fn keep_occluders(&mut self) -> Result<()> {
+        match self {
+            Sweep::Lines(lines) => {
+                lines.writes_occluders = true;
+                Ok(())
+            }
+            Sweep::Surface { .. } => Err(no_lines("--lines exact")),
+            Sweep::Pyramid(_) => Err(no_lines("--method pyramid")),
+            Sweep::March { .. } => Err(no_lines("--method brute")),
+            Sweep::Crossings => Ok(()),
+        }
+    }
+
     /// The lines of a sweep whose occluders an edit can go on from: stored, and in lines that begin
     /// at an edge.
     pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
@@ -352,4 +369,12 @@ impl Lines {
             Lines::FourCells => "4",
         }
     }
+}
+
+fn no_lines(asked: &str) -> Error {
+    Error::setting(
+        "--bounce-engine sweep",
+        asked,
+        "a sweep along lines, or --bounce-engine brute, which needs none",
+    )
 }

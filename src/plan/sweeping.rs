@@ -49,6 +49,11 @@ impl Sweeping {
         lattice.slopes.or(lattice.occluders)
     }
 
+    /// What a batch's sweep along lines has met.
+    pub fn occluders(&self, batch: &Batch) -> Option<ResourceId> {
+        self.lattice_of(batch).occluders
+    }
+
     /// The same of a sweep that there is.
     pub fn written(&self, batch: &Batch) -> ResourceId {
         self.lattice(batch).expect("a sweep stores something")

@@ -1,5 +1,6 @@
 //! What is lit and by what: plain data, range-checked when it is made.
 
+mod bounces;
 mod environment;
 mod field;
 mod key;
@@ -7,6 +8,7 @@ mod lights;
 mod quality;
 mod surface;
 
+pub use bounces::{BounceEngine, Bounces};
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;

@@ -1,3 +1,4 @@
+use super::Bounces;
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 
@@ -63,6 +64,8 @@ pub struct Quality {
     /// Horizons of either side of a table of wedges, [4..256], default 64. Fewer: less memory, horizons
     /// rounded off between them. Only with [`Wedges::Table`].
     pub wedge_side: u32,
+    /// Light that the surface throws at itself.
+    pub bounces: Bounces,
 }
 
 impl Default for Quality {
@@ -88,6 +91,7 @@ impl Default for Quality {
             window: Window::None,
             subsample: 1,
             wedge_side: 64,
+            bounces: Bounces::default(),
         }
     }
 }
@@ -122,17 +126,6 @@ impl Quality {
     /// # Errors
     /// The first setting out of range, by its name on the command line.
     pub fn check(&self) -> Result<()> {
-        let within = |name: &str, value: u32, range: RangeInclusive<u32>| {
-            if range.contains(&value) {
-                Ok(())
-            } else {
-                Err(Error::setting(
-                    name,
-                    value.to_string(),
-                    format!("a whole number from {} to {}", range.start(), range.end()),
-                ))
-            }
-        };
         within("--azimuths", self.azimuths, Self::AZIMUTHS)?;
         within("--sun-azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
         if !(0.0..=1.0).contains(&self.light_cutoff) {
@@ -147,8 +140,16 @@ impl Quality {
         if !matches!(self.subsample, 1 | 2 | 4) {
             return Err(Error::setting("--subsample", self.subsample.to_string(), "1, 2 or 4"));
         }
-        Ok(())
+        self.bounces.check()
     }
+}
+
+pub(super) fn within(name: &str, value: u32, range: RangeInclusive<u32>) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let expected = format!("a whole number from {} to {}", range.start(), range.end());
+    Err(Error::setting(name, value.to_string(), expected))
 }
 
 /// How horizons are found.

@@ -104,7 +104,7 @@ impl Albedo {
     }
 
     /// The largest channel anywhere.
-    fn largest(&self) -> f32 {
+    pub(crate) fn largest(&self) -> f32 {
         match self {
             Albedo::Constant(c) => c.iter().copied().fold(0.0, f32::max),
             Albedo::Map(map) => map.as_flattened().iter().copied().fold(0.0, f32::max),

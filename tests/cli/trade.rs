@@ -283,8 +283,15 @@ fn gpu_trade_against_a_reference() {
         ("truth.exr --z-scale 2", "truth.exr: header: base_m: found 0.89"),
         ("truth.exr --border open", "truth.exr: header: border: found plane, expected open"),
         ("truth.exr --albedo 0.5", "truth.exr: header: albedo: found 1, expected 0.5"),
-        ("traced.exr --sky 0.5 --sun 90,20", "traced.exr: header: bounces: found 2, expected none"),
+        (
+            "traced.exr --sky 0.5 --sun 90,20",
+            "traced.exr: header: bounces: found 2, expected 0, as --bounces here",
+        ),
         ("traced.exr --sky 0.5 --sun 180,20", "traced.exr: header: "),
+        (
+            "traced.exr --sky 0.5 --sun 90,20 --bounces 1",
+            "traced.exr: header: bounces: found 2, expected 1",
+        ),
     ] {
         let args = format!("trade field.npy -o other --budget 1 --reference {args}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());

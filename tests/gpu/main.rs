@@ -2,6 +2,7 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod bounces;
 mod change;
 mod contract;
 mod edits;
@@ -9,13 +10,19 @@ mod embedding;
 mod extremes;
 mod flight;
 mod forms;
+mod gloss;
 mod goldens;
 mod harmonics;
 mod keys;
+mod many_lights;
 mod pruned;
 mod pyramid;
 mod real;
 mod reference_edges;
+mod reference_numbers;
+#[expect(dead_code, reason = "of its scenes only the pits are drawn here")]
+#[path = "../reference_page/mod.rs"]
+mod reference_page;
 mod reference_truth;
 #[path = "../scenes/mod.rs"]
 mod scenes;
@@ -23,6 +30,7 @@ mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
+mod walks;
 
 use std::sync::{Mutex, MutexGuard};
 

@@ -5,8 +5,8 @@ mod sizes;
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights, Lines,
-    Method, Precision, Quality, Receiver, Scene, Sun, Surface,
+    Albedo, Basis, Border, Bounces, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights,
+    Lines, Method, Precision, Quality, Receiver, Scene, Sun, Surface,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -278,4 +278,45 @@ fn looking_around_takes_no_edits() {
     };
     assert!(edits(Fuse::Aimed) > 0);
     assert_eq!(edits(Fuse::AimedAround), 0);
+}
+
+/// One pass a bounce, what arrives resolved; exit radiance in one image used in turn, or in a layer each; bounces
+/// that are not worth it are left out, and the plan says why.
+#[test]
+fn bounces() {
+    let drawn = |count, albedo: f32, cutoff, light_layers| {
+        let mut scene = under_sky(flat(9, 14));
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let bounces = Bounces { count, cutoff, ..Bounces::default() };
+        let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+        let wanted = Picture { light_layers, keeps_horizons: true, ..Picture::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+    };
+    let labels = |plan: &Plan| -> Vec<String> {
+        let all = plan.passes.iter().map(plan::Pass::label);
+        all.filter(|l| l.contains("bounce")).collect()
+    };
+    let none = drawn(0, 0.8, 0.0, true);
+    assert!(labels(&none).is_empty() && none.find("ground").is_none());
+    assert!(!none.edit_passes.is_empty());
+    let [one, three] = [1, 3].map(|count| drawn(count, 0.8, 0.0, false));
+    assert_eq!(labels(&one), ["bounce_march bounce1", "light_resolve bounce1"]);
+    assert_eq!(labels(&three).len(), 6);
+    assert!(one.find("exit_radiance").is_none() && one.edit_passes.is_empty());
+    assert_eq!(three.bytes() - one.bytes(), 4 * 9 * 14);
+    assert_eq!((missing_barriers(&one.passes), missing_barriers(&three.passes)), (vec![], vec![]));
+    // What a bounce is thrown from has been written before.
+    assert!(three.passes.iter().filter(|p| p.name() == "bounce_march").all(|p| p.barrier_before));
+    let layers = drawn(2, 0.8, 0.0, true);
+    let outputs: Vec<&str> = layers.outputs().map(|(_, r)| r.name.as_str()).collect();
+    assert_eq!(outputs, ["radiance", "direct.sky", "indirect.1", "indirect.2"]);
+    let told = |plan: &Plan| plan.settings.iter().find(|s| s.0 == "bounces").map(|s| s.1.clone());
+    let black = drawn(3, 0.0, 0.0, true);
+    assert_eq!((short(&black), told(&black)), (short(&none), Some("0".to_owned())));
+    assert!(black.notes.iter().any(|n| n.starts_with("no bounces")), "{:?}", black.notes);
+    // 2⁻⁵ + … + 2⁻⁹ is below 1/16.
+    let short = drawn(9, 0.5, 1.0 / 16.0, false);
+    assert_eq!(told(&short), Some("4".to_owned()));
+    let note = "bounces 5 to 9 dropped: of a surface that reflects at most 0.5 they carry at most 6.055e-2";
+    assert!(short.notes.iter().any(|n| n.starts_with(note)), "{:?}", short.notes);
 }

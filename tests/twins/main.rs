@@ -6,6 +6,7 @@ mod march;
 mod resweep;
 mod surface;
 mod sweep;
+mod walk;
 
 use ridgelight::cpu::horizon_march::{MarchOptions, horizon_march};
 use ridgelight::cpu::horizon_sweep::{SweepOptions, horizon_sweep};

@@ -1,6 +1,7 @@
 //! What can be asked for, and how it is spelled.
 
 mod auto;
+mod bounces;
 mod compare;
 mod later;
 mod quality;
@@ -207,6 +208,9 @@ pub struct TradeArgs {
     /// another scene is refused. Default: brute force in many azimuths, or dense sweeps where that is too dear
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
+    /// Times that light may be reflected on its way to a sample, 0..64; above 0 only with --reference
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = values::whole, allow_negative_numbers = true)]
+    pub bounces: u32,
     /// Seconds after which no further settings are tried
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0, allow_negative_numbers = true)]
     pub budget: f64,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::measure::auto::{self, Chosen, Drawn, Goal, Measured, Probes};
 use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Hull, Quality, Scene};
+use ridgelight::scene::{Bounces, Hull, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use crate::args::AutoArgs;
@@ -101,6 +101,14 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
         doing: "timing a frame".into(),
         reason: "the device has no timestamps".into(),
     })
+}
+
+/// Bounces beside chosen settings, of which the last may be left out up to the error asked for.
+pub fn bounces(goal: Goal, asked: Bounces) -> Bounces {
+    match goal {
+        Goal::MaxError(most) => Bounces { cutoff: most.min(1.0), ..asked },
+        Goal::MaxCost(_) => asked,
+    }
 }
 
 /// For metadata and --json.

@@ -43,6 +43,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let mut quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
+    if goal.is_some() {
+        setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+    }
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
@@ -59,7 +62,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             (quality.hull, wanted),
             &progress,
         )?;
-        quality = found.trial.quality;
+        quality = Quality { bounces: auto::bounces(goal, quality.bounces), ..found.trial.quality };
         chosen = Some((goal, found));
         progress.set_message("lighting");
     }
@@ -123,6 +126,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         );
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
+        }
+        if chosen.is_some() && quality.bounces.count > 0 {
+            crate::say!("that is direct light's error and time: bounces are as asked");
         }
     }
     Ok(Outcome::Done)

@@ -19,6 +19,7 @@ use std::time::Duration;
 use ridgelight::files;
 use ridgelight::measure::trade::{Rule, knobs, places, start};
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 
 use crate::args::TradeArgs;
@@ -50,18 +51,28 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let start = start();
+    setup::check_diffuse(&scene, "trade")?;
+    if args.bounces > 0 && args.reference.is_none() {
+        let expected = "--reference, made with as many: no other truth here has bounces";
+        return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
+    }
+    let bounces = Bounces { count: args.bounces, ..Bounces::default() };
+    bounces.check()?;
+    let start = Quality { bounces, ..start() };
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
         let found = path.display().to_string();
         return Err(Error::setting("--reference", found, "an .exr: others clip what is bright"));
     }
-    let asked = setup::asked(
+    let mut asked = setup::asked(
         &args.input.path,
         &args.surface.field,
         Some((&args.lights, &args.surface, &scene)),
     );
+    if args.bounces > 0 {
+        asked.push(("bounces".to_owned(), args.bounces.to_string()));
+    }
     let read = |path: &Path| {
         let truth = Truth::read(path, &scene.field)?;
         same::check(path, &scene, &asked).map(|()| truth)
@@ -78,7 +89,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     let truth_s = rig.spent();
     let tones = Tones::of(&truth);
-    let knobs = knobs(&scene);
+    let knobs = knobs(&scene, args.bounces);
     let places = places(&knobs, &start);
     let (walk, recommended) =
         walk::walk(&mut rig, (&truth, &tones), (&knobs, &places), (&start, rule), &bar)?;

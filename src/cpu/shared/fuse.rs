@@ -91,13 +91,24 @@ pub fn first_crossings(march: &March, o: &Octant) -> Found {
     }
     let rise = (o.ahead - o.own) + shear * (o.ahead_low - o.ahead);
     let found = Found { slope: rise / azimuth.step_m, steps: 1.0 };
-    if !(o.split_crosses && o.low_exists) {
-        return found;
+    split_slope(march, o).map_or(found, |split| higher(found, split))
+}
+
+/// Where the sample's own line crosses the diagonal of its cell, if it does within its first step.
+fn split_slope(march: &March, o: &Octant) -> Option<Found> {
+    let shear = march.azimuth.shear as f32 * PER_CELL;
+    if !(o.split_crosses && o.low_exists && o.ahead_exists) {
+        return None;
     }
     // (1, 0) to (0, 1) is crossed by (u, u * shear) at u = 1 / (1 + shear).
     let u = 1.0 / (1.0 + shear);
-    let split_rise = (o.low - o.own) + u * (o.ahead - o.low);
-    higher(found, Found { slope: split_rise / (u * azimuth.step_m), steps: u })
+    let rise = (o.low - o.own) + u * (o.ahead - o.low);
+    Some(Found { slope: rise / (u * march.azimuth.step_m), steps: u })
+}
+
+/// The same of a sample (lane, step) of height `own`.
+pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Option<Found> {
+    split_slope(march, &octant_around(march, lane, step, own))
 }
 
 /// The surface where a proposal stands, seen from a height at lane position y.
@@ -113,26 +124,27 @@ fn seen(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
     Found { slope: (h - own) / (steps * march.azimuth.step_m), steps }
 }
 
-/// Slope of the horizon at a sample (lane, step) and how many march steps away it stands: unknown, 0,
-/// where slopes are read. Without a mode, the lattice holds one value a sample.
-///
-/// # Panics
-/// When the lattice is not that of the azimuth and `line_shift`.
-pub fn fused(
+/// The swept lines around a place: before it (or through it) and after it, where they are on the field.
+struct Around {
+    before: i32,
+    after: i32,
+    before_texel: Option<usize>,
+    after_texel: Option<usize>,
+    /// From the one before to the one after, 0 to 1.
+    t: f32,
+    /// Whether the one after is nearer or alone; of two equally near, the one before is taken.
+    takes_after: bool,
+}
+
+fn lines_around(
     lattice: &Lattice,
     march: &March,
-    (fuse, line_shift, warm_up): (Option<Fuse>, u32, i32),
-    (lane, step): (i32, i32),
-    o: &Octant,
-) -> Found {
+    (line_shift, warm_up): (u32, i32),
+    y: i32,
+    step: i32,
+) -> Around {
     let (azimuth, lanes) = (&march.azimuth, march.lanes);
     let at = march.march_position(step);
-    let y = lane * CELL;
-    let Some(fuse) = fuse else {
-        let texel = lattice.texel(lane, at, azimuth.layer);
-        return Found { slope: lattice.slopes[texel], steps: lattice.distances[texel] };
-    };
-    // The lines around the sample, before it (or through it) and after it.
     let wraps = march.periodic();
     let spacing = 1_i32 << line_shift;
     let slots = (lanes * CELL) >> line_shift;
@@ -149,6 +161,44 @@ pub fn fused(
     let (before_texel, after_texel) = (texel(slot, has_before), texel(slot + 1, has_after));
     let t = (y - before) as f32 / spacing as f32;
     let takes_after = has_after && (t > 0.5 || !has_before);
+    Around { before, after, before_texel, after_texel, t, takes_after }
+}
+
+/// Where the nearest swept line's value lies at a lane position and a step of the field; none where no line
+/// is on the field.
+///
+/// # Panics
+/// When the lattice is not that of the azimuth and `line_shift`.
+pub fn nearest_texel(
+    lattice: &Lattice,
+    march: &March,
+    settings: (u32, i32),
+    y: i32,
+    step: i32,
+) -> Option<usize> {
+    let around = lines_around(lattice, march, settings, y, step);
+    if around.takes_after { around.after_texel } else { around.before_texel }
+}
+
+/// Slope of the horizon at a sample (lane, step) and how many march steps away it stands: unknown, 0,
+/// where slopes are read. Without a mode, the lattice holds one value a sample.
+///
+/// # Panics
+/// When the lattice is not that of the azimuth and `line_shift`.
+pub fn fused(
+    lattice: &Lattice,
+    march: &March,
+    (fuse, line_shift, warm_up): (Option<Fuse>, u32, i32),
+    (lane, step): (i32, i32),
+    o: &Octant,
+) -> Found {
+    let y = lane * CELL;
+    let Some(fuse) = fuse else {
+        let texel = lattice.texel(lane, march.march_position(step), march.azimuth.layer);
+        return Found { slope: lattice.slopes[texel], steps: lattice.distances[texel] };
+    };
+    let lines = lines_around(lattice, march, (line_shift, warm_up), y, step);
+    let Around { before, after, before_texel, after_texel, t, takes_after } = lines;
     let slope = |texel: Option<usize>| Found {
         slope: texel.map_or(NO_SLOPE, |i| sloped(lattice.slopes[i])),
         steps: 0.0,

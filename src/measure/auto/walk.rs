@@ -6,8 +6,8 @@ use super::probes::{Probes, apart};
 use super::statistics::Statistics;
 use crate::measure::trade::start;
 use crate::scene::{
-    Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Scene,
-    Wedges, Window,
+    Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
+    Scene, Wedges, Window,
 };
 use crate::{Error, Result};
 
@@ -60,6 +60,7 @@ const COARSE: Quality = Quality {
     window: Window::None,
     subsample: 1,
     wedge_side: 64,
+    bounces: Bounces::NONE,
 };
 
 /// Where bounds alone stand in the way probes are added up to so many times the first.

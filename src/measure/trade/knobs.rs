@@ -3,7 +3,10 @@
 //!
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
-use crate::scene::{Basis, Fuse, LightBasis, Lines, Method, Precision, Quality, Scene};
+use crate::scene::{
+    Basis, BounceEngine, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision, Quality,
+    Scene,
+};
 use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
@@ -44,6 +47,9 @@ const FUSES: [Fuse; 6] =
 const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
+const BOUNCE_ENGINES: [BounceEngine; 3] =
+    [BounceEngine::Pyramid, BounceEngine::Sweep, BounceEngine::Brute];
+const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
 
@@ -55,10 +61,21 @@ fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
 
-/// The knobs that change how a scene is lit: no azimuths without a sky, no table without an
-/// environment.
-pub fn knobs(scene: &Scene) -> Vec<Knob> {
-    let lights = &scene.lights;
+/// The lights that give any light: of others no setting changes anything.
+fn shining(lights: &Lights) -> Lights {
+    let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
+    let mut shining = lights.clone();
+    shining.sky = lights.sky.filter(is_lit);
+    shining.suns.retain(|sun| is_lit(&sun.irradiance));
+    shining.keys.retain(|key| is_lit(&key.radiance));
+    shining.spheres.retain(|ball| is_lit(&ball.radiance));
+    shining
+}
+
+/// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
+/// an environment.
+pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
+    let lights = &shining(&scene.lights);
     let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
     let mut all = vec![
         Knob {
@@ -118,7 +135,8 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
         },
     ];
     // Balls of light look themselves for what hides them.
-    if lights.sky.is_none() && lights.environment.is_none() && lights.suns.is_empty() {
+    let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
+    if lights.sky.is_none() && lights.environment.is_none() && are_none_aimed {
         all.clear();
     }
     if lights.sky.is_some() || lights.environment.is_some() {
@@ -187,10 +205,36 @@ pub fn knobs(scene: &Scene) -> Vec<Knob> {
             idle: |quality| quality.basis != Basis::Sh,
         });
     }
+    if bounces > 0 {
+        all.extend(bounce_knobs());
+    }
     for knob in &mut all {
         knob.default = default_step(knob);
     }
     all
+}
+
+fn bounce_knobs() -> [Knob; 2] {
+    [
+        Knob {
+            name: "bounce engine",
+            steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "one sample a level of pyramids; every stretch of surface that a sample sees",
+            set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
+            idle: |_| false,
+        },
+        Knob {
+            name: "bounce azimuths",
+            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
+            range: Some(Bounces::AZIMUTHS),
+            default: 0,
+            dearer: "more azimuths of bounces: narrow things that shine",
+            set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],
+            idle: |_| false,
+        },
+    ]
 }
 
 /// What the defaults walk from: sweeps and tables, which is what they come to.
@@ -260,7 +304,7 @@ pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{HeightField, Lights, SphereLight, Sun, Surface};
+    use crate::scene::{HeightField, KeyLight, SphereLight, Sun, Surface};
 
     fn scene(lights: Lights) -> Scene {
         let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -278,7 +322,7 @@ mod tests {
 
     #[test]
     fn only_knobs_that_change_something_are_walked() {
-        let names = |lights| knobs(&scene(lights)).iter().map(|k| k.name).collect::<Vec<_>>();
+        let names = |lights| knobs(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
         let always = ["sweep", "fuse", "precision", "level step", "level offset"];
         let with = |more: &[&'static str]| [&always, more].concat();
         assert_eq!(names(sky()), with(&["azimuths"]));
@@ -291,14 +335,25 @@ mod tests {
             ["sun azimuths", "light basis"]
         );
         let balls_too = with(&["sun azimuths", "light basis"]);
-        assert_eq!(names(Lights { spheres, ..sun(0.0) }), balls_too);
+        assert_eq!(names(Lights { spheres: spheres.clone(), ..sun(0.0) }), balls_too);
+        // A patch of the sky needs horizons as a sun does; a dark sky and a dark sun none.
+        let keys = vec![KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: 1.0,
+            elevations_rad: [0.1, 0.5],
+            radiance: [1.0; 3],
+        }];
+        assert_eq!(names(Lights { keys, ..Lights::default() }), with(&["sun azimuths"]));
+        let mut dark = Lights { sky: Some([0.0; 3]), spheres, ..sun(0.01) };
+        dark.suns[0].irradiance = [0.0; 3];
+        assert_eq!(names(dark), ["sun azimuths", "light basis"]);
     }
 
     /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
     /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
     #[test]
     fn places_are_all_that_differ() {
-        let knobs = knobs(&scene(sky()));
+        let knobs = knobs(&scene(sky()), 0);
         let start = start();
         let all = places(&knobs, &start);
         assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
@@ -324,7 +379,7 @@ mod tests {
             ),
             ..sun(0.01)
         };
-        let all = knobs(&scene(light));
+        let all = knobs(&scene(light), 1);
         let found: Vec<(&str, &str)> =
             all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
         let expected = [
@@ -338,6 +393,8 @@ mod tests {
             ("table elevations", "--table-elevations 256"),
             ("basis", "--basis table"),
             ("sub-sampling", "--subsample 1"),
+            ("bounce engine", "--bounce-engine brute"),
+            ("bounce azimuths", "--bounce-azimuths 32"),
         ];
         assert_eq!(found, expected);
         for knob in &all {

@@ -1,6 +1,7 @@
 //! The passes of a picture, light by light.
 
 use super::super::blocks::Blocks;
+use super::super::bounces::{Bouncing, bounce_name};
 use super::super::edit::Edits;
 use super::super::shining::{Aimed, Shining};
 use super::super::sphere_sh::SphereSh;
@@ -22,22 +23,26 @@ pub(super) struct Drawing<'a> {
     pub harmonics: Option<Harmonics>,
     /// None where balls of light are alone: each looks itself for what hides it.
     pub sweeping: Option<Sweeping>,
-    /// What rays towards balls of light look at.
+    /// What rays look at, towards balls of light and of bounces.
     pub blocks: Option<Blocks>,
+    pub bouncing: Option<Bouncing>,
     /// Where balls of light are lit by spherical harmonics.
     pub soft: Option<SphereSh>,
     /// Marks of the samples to be lit and their list, while passes of an edit are added.
     pub edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
     pub is_begun: bool,
+    /// The same of what the lobe reflects.
+    pub gloss_is_begun: bool,
 }
 
 impl Drawing<'_> {
-    fn border(&self) -> Border {
+    pub fn border(&self) -> Border {
         self.scene.surface.border
     }
 
     pub fn fill_tables(&mut self, quality: &Quality) {
+        self.fill_matrices();
         let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
             return;
         };
@@ -51,18 +56,17 @@ impl Drawing<'_> {
             let nodes = quality.table_elevations;
             passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
         }
-        if let Some(Harmonics { sh, constants, env_turns, light_matrix, .. }) = &self.harmonics {
-            passes::env_turns::plan(builder, e, sh, [image, *constants, *env_turns]);
-            passes::light_matrix::plan(builder, sh, [*env_turns, *constants, *light_matrix]);
-        }
     }
 
     /// Passes from the field to the lit picture; of an edit, from its lattices.
     pub fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
+        self.gloss_is_begun = false;
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
+        self.bounces(lists);
+        self.gloss();
         self.sky_view();
         self.dark()
     }
@@ -107,9 +111,8 @@ impl Drawing<'_> {
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
             }
-            if let Some(Harmonics { sh, wedges, visibility, nodes, wedge_table, .. }) =
-                &self.harmonics
-            {
+            if let Some(harmonics) = &self.harmonics {
+                let Harmonics { wedges, visibility, nodes, wedge_table, .. } = harmonics;
                 if let Some((angles, _)) = wedge_table {
                     let ids = [lane_heights, azimuths, *angles];
                     let read = (lattice, None);
@@ -124,11 +127,12 @@ impl Drawing<'_> {
                     visibility,
                     nodes,
                 };
+                let sh = harmonics.sh();
                 let (field, seen) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
                 passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
             }
         }
-        if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
+        if let (Some(h), Some(batch)) = (&self.harmonics, batches.last()) {
             let lane_heights = sweeping.lane_heights(batch);
             if let Some((angles, table)) = h.wedge_table {
                 let (constants, visibility, nodes) = (h.constants, h.visibility, h.nodes);
@@ -140,11 +144,17 @@ impl Drawing<'_> {
                     nodes,
                 };
                 let field = (batch.axis, border, cell_m);
-                passes::sh_wedges::plan(&mut self.builder, field, &h.sh, &table, &images);
+                passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
-            let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
-            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
+            let lit = [(&h.diffuse, env_sum), (&h.gloss, self.images.gloss_sum)];
+            for (seen, sum) in lit {
+                if let (Some(seen), Some(sum)) = (seen, sum) {
+                    let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
+                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes);
+                }
+            }
+            self.gloss_is_begun = h.gloss.is_some();
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -187,6 +197,9 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
+            if let (Some((_, sun)), Some(batch)) = (self.shining.suns.get(i), batches.last()) {
+                self.sun_gloss(&name, sun, batch, sum);
+            }
         }
     }
 
@@ -222,6 +235,23 @@ impl Drawing<'_> {
         }
     }
 
+    /// Each bounce from the light of the one before.
+    fn bounces(&mut self, lists: &Lists) {
+        let Some(bouncing) = self.bouncing.take() else { return };
+        let batches = lists.batches.last().map(Vec::as_slice);
+        let Images { heights, radiance, sphere_sum, .. } = self.images;
+        // Balls by harmonics over pyramids leave no maxima.
+        let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
+        let begun = (heights, sphere_sum.is_some() && !ground_alone);
+        bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
+        for k in 1..=bouncing.count() {
+            let ids = [heights, radiance];
+            let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
+            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, looked_at, k, ids);
+            self.resolve(&bounce_name(k), sum, None, exit);
+        }
+    }
+
     /// Adds the light of a sum to the picture: of one channel times `colour`, or of its own colour.
     fn resolve(
         &mut self,
@@ -249,7 +279,7 @@ impl Drawing<'_> {
         self.light_resolve(name, &light);
     }
 
-    fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
+    pub fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         light_resolve::plan(&mut self.builder, size, name, light);
     }

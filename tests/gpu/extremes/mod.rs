@@ -126,6 +126,8 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         wedges: _,
         receiver: _,
         window: _,
+        // What the surface throws at itself: tests of bounces.
+        bounces: _,
     } = *quality;
     let method = match method {
         Method::Auto => 0,

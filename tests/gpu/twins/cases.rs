@@ -2,9 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, LightBasis,
-    Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun, Surface,
-    Wedges, Window,
+    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
+    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -323,6 +323,27 @@ pub(super) fn pictures() -> Vec<Case> {
     let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
     let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
+    // A lobe under all that it mirrors, and under a sky alone.
+    let mirrored = {
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(41)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+            ..Lights::default()
+        };
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            phong: Some(Phong { exponent: 20.0, scale: 0.4 }),
+        };
+        Scene { field: rough(14, 11, 42), surface, lights }
+    };
+    let mirrored_sky = {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let phong = Some(Phong { exponent: 3.0, scale: 1.0 });
+        let surface = Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), phong };
+        Scene { field: rough(9, 14, 43), surface, lights }
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -371,6 +392,67 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, lobe, false, false),
+        picture("a lobe", mirrored, sh(5), true, false),
+        picture("a lobe at every second sample", mirrored_sky, subsampled(2, 3), false, false),
+    ]
+}
+
+/// `bounce_walk`: colours and grey, every border, lines half a cell and two cells apart, one sample and lines of them,
+/// in batches.
+pub(super) fn walks() -> Vec<Case> {
+    let base = Quality { azimuths: 8, ..Quality::default() };
+    let walked = |count, azimuths, lines| {
+        let (engine, cutoff) = (BounceEngine::Sweep, 0.0);
+        let bounces = Bounces { count, engine, azimuths, cutoff, ..Bounces::default() };
+        Quality { bounces, lines, ..base }
+    };
+    let of = |field: HeightField, border, albedo| Scene {
+        field,
+        surface: Surface { border, albedo, phong: None },
+        lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+    };
+    let colourful = {
+        let map = (0..17 * 21).map(|i| [1.0, (i % 5) as f32 / 4.0, (i % 7) as f32 / 6.0]).collect();
+        of(rough(17, 21, 31), Border::Open, Albedo::Map(map))
+    };
+    let grey = |field, border| of(field, border, Albedo::Constant([0.8; 3]));
+    let case = |name, scene, quality, keeps_horizons| Case {
+        name,
+        scene,
+        quality,
+        wanted: Wanted::Picture(Picture {
+            light_layers: true,
+            keeps_horizons,
+            ..Picture::default()
+        }),
+        loses_lines: false,
+    };
+    vec![
+        case("walks, colours", colourful, walked(2, 13, Lines::HalfCell), false),
+        case(
+            "walks, periodic",
+            grey(rough(10, 12, 32), Border::Periodic),
+            walked(2, 8, Lines::Cell),
+            true,
+        ),
+        case(
+            "walks, wide lines",
+            grey(rough(14, 11, 33), Border::Plane),
+            walked(1, 12, Lines::TwoCells),
+            true,
+        ),
+        case(
+            "walks, one sample",
+            grey(rough(1, 1, 34), Border::Plane),
+            walked(1, 4, Lines::Cell),
+            false,
+        ),
+        case(
+            "walks, a row",
+            grey(rough(1, 9, 35), Border::Plane),
+            walked(1, 8, Lines::Cell),
+            false,
+        ),
     ]
 }
 

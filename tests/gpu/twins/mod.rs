@@ -1,6 +1,7 @@
 //! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
 //! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
+mod bounce;
 mod cases;
 mod edit;
 pub(crate) mod light;
@@ -79,9 +80,11 @@ const TWINS: &[(&str, Twin)] = &[
     ("sh_wedges", sh::sh_wedges),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
+    ("sun_gloss", light::sun_gloss),
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
+    ("bounce_walk", bounce::bounce_walk),
 ];
 
 fn twin_of(pass: &Pass) -> Twin {
@@ -105,6 +108,8 @@ struct Run<'a> {
     lights: usize,
     /// The sum of the balls of light so far, by the twin, and how far each sample may be off it.
     balls: Vec<([f64; 3], f64)>,
+    /// What the lobe's passes have left so far.
+    gloss: Vec<[f64; 3]>,
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
     edit: Option<edit::Edit>,
@@ -127,6 +132,7 @@ impl<'a> Run<'a> {
             radiance: Vec::new(),
             lights: 0,
             balls: Vec::new(),
+            gloss: Vec::new(),
             lost: 0,
             edit: None,
             plan,
@@ -295,6 +301,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pyramids(),
         cases::pictures(),
         cases::references(),
+        cases::walks(),
     ]
     .into_iter()
     .flatten()
@@ -341,6 +348,14 @@ fn pyramids_are_their_twins() {
 fn pictures_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::pictures() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn walks_are_their_twins_pass_by_pass() {
+    let mut device = Device::new();
+    for case in cases::walks() {
         check(&mut device, &case);
     }
 }

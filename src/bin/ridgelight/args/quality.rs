@@ -1,10 +1,11 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Id, ValueEnum};
 
+use super::bounces::BounceArgs;
 use super::values::whole;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 19] = [
+pub const SETTINGS: [&str; 25] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
@@ -24,6 +25,12 @@ pub const SETTINGS: [&str; 19] = [
     "window",
     "subsample",
     "wedge_side",
+    "bounces",
+    "bounce_engine",
+    "bounce_azimuths",
+    "bounce_cutoff",
+    "bounce_level_step",
+    "bounce_level_offset",
 ];
 
 #[derive(Args)]
@@ -93,6 +100,8 @@ pub struct QualityArgs {
     /// Horizons of either side of a table of wedges, 4..256; with --wedges table
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub wedge_side: u32,
+    #[command(flatten)]
+    pub bounces: BounceArgs,
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,

@@ -1,5 +1,6 @@
 //! Before a time is printed, the light is compared with the oracle's.
 
+mod bounces;
 mod harmonics;
 
 use ridgelight::cpu::oracle::Oracle;
@@ -8,8 +9,8 @@ use ridgelight::cpu::{key, light};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, LightBasis, Lights, Method, Precision, Quality,
-    Scene, SphereLight, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
+    Quality, Scene, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -133,6 +134,20 @@ impl Verifier {
     /// # Errors
     /// An error beyond its bound, in a sentence.
     pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
+        let direct = Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality };
+        let found = self.check_direct(gpu, &direct, limits)?;
+        match quality.bounces.count {
+            0 => Ok(found),
+            _ => Ok(format!("{found}; {}", bounces::check(&self.scene, gpu, quality, limits)?)),
+        }
+    }
+
+    fn check_direct(
+        &self,
+        gpu: &mut Headless,
+        quality: &Quality,
+        limits: &Limits,
+    ) -> Result<String> {
         if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
             return Err(Error::setting(
                 "--light-basis",

@@ -28,21 +28,25 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
     for name in names {
         let [found, expected] = [&told, &ours].map(|all| all.get(name).map(String::as_str));
         if !is_same(name, found, expected) {
-            let expected = format!("{}, as in this scene", expected.unwrap_or("none"));
+            let expected = match name.as_str() {
+                "bounces" => format!("{}, as --bounces here", expected.unwrap_or("0")),
+                name if gives_none(name) => format!("none: {NO_SETTINGS}"),
+                _ => format!("{}, as in this scene", expected.unwrap_or("none")),
+            };
             return Err(Error::File {
                 path: path.to_owned(),
                 place: format!("header: {name}"),
                 found: found.unwrap_or("none").to_owned(),
-                expected: if gives_none(name) { format!("none: {NO_SETTINGS}") } else { expected },
+                expected,
             });
         }
     }
     Ok(())
 }
 
-const NO_SETTINGS: &str = "no settings of `render` give such light";
+const NO_SETTINGS: &str = "no settings that are walked give such light";
 
-/// Light that `reference` alone has.
+/// Light that no settings that are walked give where the scene has none.
 fn gives_none(name: &str) -> bool {
     matches!(name, "bounces" | "phong") || is_numbered(name, "light")
 }

@@ -1,0 +1,57 @@
+// Computes: one level of the pyramid of exit radiance from the level an octave finer (from the samples themselves
+// for the first octave), as height_reduce, but never beyond what it is made of: light is not below 0.
+// Reads: exit_radiance, shade_levels. Writes: shade_levels (R, G, B), shade_table (one texel for this level).
+// One invocation is one texel of the level.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const bool PERIODIC = false;
+layout(constant_id = 1) const bool FROM_FIELD = false;
+// Radiance of one channel.
+layout(constant_id = 2) const bool GREY = false;
+
+layout(binding = 0) uniform texture2D exit_radiance;
+layout(binding = 1, rgba32f) uniform image2D shade_levels;
+layout(binding = 2, rgba32ui) uniform writeonly uimage2D shade_table;
+
+layout(push_constant) uniform ShadeReducePush {
+    int cols;
+    int rows;
+    int first;
+    int source_cols;
+    int source_rows;
+    int source_first;
+    float ratio_x;  // texels of the source a texel
+    float ratio_y;
+    float per_sample_x;
+    float per_sample_y;
+    int level;
+    int width_shift;
+};
+
+const bool HOLDS_ENDS = true;
+#define TEXEL vec4
+#include "shared/reduce.glsl"
+
+vec4 source_at(int x, int y) {
+    if (FROM_FIELD) {
+        vec4 texel = texelFetch(exit_radiance, ivec2(x, y), 0);
+        return GREY ? texel.xxxx : texel;
+    }
+    return imageLoad(shade_levels, level_texel(source_first + y * source_cols + x, width_shift));
+}
+
+void main() {
+    int x = int(gl_GlobalInvocationID.x);
+    int y = int(gl_GlobalInvocationID.y);
+    if (x >= cols || y >= rows) {
+        return;
+    }
+    vec4 mean = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
+    imageStore(shade_levels, level_texel(first + y * cols + x, width_shift), mean);
+    if (x == 0 && y == 0) {
+        Level made = Level(first, cols, rows, vec2(per_sample_x, per_sample_y));
+        imageStore(shade_table, ivec2(level - 1, 0), words_of(made));
+    }
+}

@@ -1,0 +1,58 @@
+use clap::{Args, ValueEnum};
+use ridgelight::Result;
+use ridgelight::scene::{BounceEngine, Bounces};
+
+use super::values::whole;
+
+#[derive(Args)]
+#[command(next_help_heading = "Quality")]
+pub struct BounceArgs {
+    /// Times that light may be reflected on its way to a sample, 0..64: colour bleeds, hollows brighten; 0 is
+    /// direct light alone. Time in proportion
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    pub bounces: u32,
+    /// How what a sample sees of the surface is found; with --bounces
+    #[arg(long, default_value = "brute")]
+    pub bounce_engine: BounceEngineName,
+    /// Azimuths of bounces, 4..1024; with --bounces
+    #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_azimuths: u32,
+    /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1; with --bounces
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
+    pub bounce_cutoff: f64,
+    /// Levels a doubling of distance of the pyramid of light, 1..16; with --bounce-engine pyramid
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_level_step: u32,
+    /// Doublings of resolution by which its levels are finer than distance asks for, 0..4; with --bounce-engine pyramid
+    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
+    pub bounce_level_offset: u32,
+}
+
+impl BounceArgs {
+    /// Checked.
+    pub fn bounces(&self) -> Result<Bounces> {
+        let bounces = Bounces {
+            count: self.bounces,
+            engine: match self.bounce_engine {
+                BounceEngineName::Brute => BounceEngine::Brute,
+                BounceEngineName::Sweep => BounceEngine::Sweep,
+                BounceEngineName::Pyramid => BounceEngine::Pyramid,
+            },
+            azimuths: self.bounce_azimuths,
+            cutoff: self.bounce_cutoff,
+            level_step: self.bounce_level_step,
+            level_offset: self.bounce_level_offset,
+        };
+        bounces.check().map(|()| bounces)
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BounceEngineName {
+    /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
+    Brute,
+    /// Those that it sees at every march step, through what a sweep along lines has met
+    Sweep,
+    /// One sample a level of pyramids of heights and of light: soft, in error whatever the settings
+    Pyramid,
+}

@@ -1,0 +1,261 @@
+//! What the surface throws at every sample by pyramids of heights and of exit radiance: along each azimuth one
+//! sample a level; each knot and midpoint of the B-spline over their elevations that is above all before it casts
+//! its radiance over the elevations that it opens (Nowrouzezahrai & Snyder 2009, eq. 6-17).
+
+use super::light::{Receiver as Place, Slice, normal};
+use super::pyramid_march::Stored;
+use super::shared::levels::{LevelTexels, spline_taps};
+use super::shared::sweep::{Heights, wrapped};
+use crate::basis::legendre::{nlp, occlusion};
+use crate::plan::pyramid::Pyramid;
+use crate::plan::sweep::WARM_UP_PERIODS;
+use crate::scene::{HeightField, Receiver};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Samples and levels, and how they are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct BounceGather<'a> {
+    /// The field, for its normals.
+    pub field: &'a HeightField,
+    /// Its heights.
+    pub heights: Heights<'a>,
+    /// Levels of heights.
+    pub pyramid: &'a Pyramid,
+    /// As they are stored.
+    pub stored: Stored<'a>,
+    /// Levels of exit radiance.
+    pub shade: &'a Pyramid,
+    /// Their texels.
+    pub shade_texels: &'a [[f64; 3]],
+    /// Exit radiance of the samples.
+    pub exit: &'a [[f64; 3]],
+    /// Whether the cosine is exact, or three bands of it with four Legendre coefficients a slice.
+    pub receiver: Receiver,
+    /// Azimuths, at the middles of equal parts of the circle.
+    pub azimuths: u32,
+}
+
+/// A march from a sample: whole steps along columns or rows, straight across the other axis.
+struct March {
+    here: [f64; 2],
+    by_x: bool,
+    forward: f64,
+    shear: f64,
+    step_m: f64,
+    reach: i32,
+}
+
+impl March {
+    /// Column and row after so many steps.
+    fn place(&self, steps: i32) -> [f64; 2] {
+        let (along, across) = (self.forward * f64::from(steps), f64::from(steps) * self.shear);
+        let [x, y] = if self.by_x { [along, across] } else { [across, along] };
+        [self.here[0] + x, self.here[1] + y]
+    }
+}
+
+/// What has been seen of a slice.
+struct Cast {
+    slice: Slice,
+    receiver: Receiver,
+    top: f64,
+    thrown: [f64; 3],
+    series: [[f64; 4]; 3],
+}
+
+impl Cast {
+    fn cast(&mut self, angle: f64, radiance: impl Fn() -> [f64; 3]) {
+        if angle <= self.top {
+            return;
+        }
+        let from = radiance();
+        match self.receiver {
+            Receiver::Plane => {
+                let weight = self.slice.light(self.top, angle);
+                self.thrown = [0, 1, 2].map(|c| self.thrown[c] + weight * from[c]);
+            }
+            Receiver::Lobe => {
+                let [low, high] = [self.top, angle].map(|a| occlusion(4, a.sin(), a.cos()));
+                for (series, from) in self.series.iter_mut().zip(from) {
+                    (0..4).for_each(|l| series[l] += from * (high[l] - low[l]));
+                }
+            }
+        }
+        self.top = angle;
+    }
+}
+
+impl BounceGather<'_> {
+    /// Light of one more bounce at a sample, for albedo 1.
+    ///
+    /// # Panics
+    /// Outside the field; when levels lack texels.
+    pub fn light(&self, row: usize, col: usize) -> [f64; 3] {
+        let border = self.heights.border;
+        let place = Place::diffuse(normal(self.field, border, row, col));
+        let (mut sum, mut whole) = ([0.0; 3], 0.0);
+        for k in 0..self.azimuths {
+            let azimuth = TAU * (f64::from(k) + 0.5) / f64::from(self.azimuths);
+            let slice = place.slice(azimuth);
+            let cast = self.cast(slice, &self.march([col, row], azimuth));
+            let thrown = match self.receiver {
+                Receiver::Plane => {
+                    whole += slice.light(-FRAC_PI_2, FRAC_PI_2);
+                    cast.thrown
+                }
+                Receiver::Lobe => {
+                    whole += 0.5;
+                    let weights = three_bands(&slice);
+                    cast.series.map(|s| s.iter().zip(weights).map(|(s, w)| s * w).sum())
+                }
+            };
+            sum = [0, 1, 2].map(|c| sum[c] + thrown[c]);
+        }
+        sum.map(|s| s.max(0.0) / whole)
+    }
+
+    fn march(&self, [col, row]: [usize; 2], azimuth: f64) -> March {
+        let [cell_x, cell_y] = self.heights.cell_m.map(f64::from);
+        let cells = [azimuth.cos() / cell_x, -azimuth.sin() / cell_y];
+        let by_x = cells[0].abs() >= cells[1].abs();
+        let [along, across] = if by_x { cells } else { [cells[1], cells[0]] };
+        let shear = across / along.abs();
+        let of_axis = |x: bool| match x {
+            true => (col as f64, f64::from(self.pyramid.size[0])),
+            false => (row as f64, f64::from(self.pyramid.size[1])),
+        };
+        let room = |(at, n): (f64, f64), onward: bool| if onward { n - 1.0 - at } else { at };
+        let ahead = room(of_axis(by_x), along > 0.0);
+        let beside = room(of_axis(!by_x), shear > 0.0) / shear.abs().max(1e-9) + 1e-3;
+        let reach = match self.pyramid.periodic {
+            true => ahead + f64::from(WARM_UP_PERIODS) * of_axis(by_x).1,
+            false => ahead.min(beside.floor()),
+        };
+        March {
+            here: [col as f64, row as f64],
+            by_x,
+            forward: along.signum(),
+            shear,
+            step_m: 1.0 / along.abs(),
+            reach: reach as i32,
+        }
+    }
+
+    fn cast(&self, slice: Slice, march: &March) -> Cast {
+        let (thrown, series, top) = ([0.0; 3], [[0.0; 4]; 3], slice.low);
+        let mut cast = Cast { slice, receiver: self.receiver, top, thrown, series };
+        if march.reach <= 0 {
+            return cast;
+        }
+        let (fine, levels) = (self.pyramid.fine_samples(), self.pyramid.levels());
+        let (mut back, mut angle) = (1.0_f32, 0.0);
+        let mut angles: Option<[f64; 4]> = None;
+        // What a knot looks at: the place and the level of radiance of its sample.
+        let mut before = ([0.0; 2], 0);
+        let (mut looked, mut at) = (0, 0);
+        let mut take_in = |angle: f64, of: ([f64; 2], u32), cast: &mut Cast| {
+            let four = angles.map_or([angle; 4], |[_, a, b, c]| [a, b, c, angle]);
+            let [x, y, z, w] = four;
+            let knot_of = if angles.is_none() { of } else { before };
+            let (middle, knot) = ((x + w + 23.0 * (y + z)) / 48.0, (y + 4.0 * z + w) / 6.0);
+            // Both radiate alike: the higher opens what both do.
+            cast.cast(middle.max(knot), || self.radiance(march, knot_of));
+            (angles, before) = (Some(four), of);
+        };
+        for next in 0_u32.. {
+            let whole = (back + 0.5) as i32;
+            if whole > looked {
+                at = whole.min(march.reach);
+                let level = (next + 1).saturating_sub(fine).min(levels);
+                let own = self.height(march, level, march.here);
+                let rise = self.height(march, level, march.place(at)) - own;
+                angle = (rise / (f64::from(at) * march.step_m)).atan();
+                looked = whole;
+            }
+            let (to, from) = (self.shade.level_step, self.pyramid.level_step);
+            let shade =
+                ((next * to + from / 2) / from + 1).saturating_sub(self.shade.fine_samples());
+            take_in(angle, (march.place(at), shade.min(self.shade.levels())), &mut cast);
+            back *= self.pyramid.growth();
+            // Those that round to one distance are taken in together.
+            if whole >= march.reach && (back + 0.5) as i32 > whole {
+                let of = (march.place(at), shade.min(self.shade.levels()));
+                take_in(angle, of, &mut cast);
+                take_in(angle, of, &mut cast);
+                break;
+            }
+        }
+        cast
+    }
+
+    /// The two samples on a march step's grid line that a place lies between, and how far between.
+    fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
+        let [cols, rows] = self.pyramid.size.map(|n| n as i32);
+        let inside = |i: i32, n: i32| {
+            if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
+        };
+        let at = |x: i32, y: i32| (inside(y, rows) * cols + inside(x, cols)) as usize;
+        if march.by_x {
+            let (x, low) = (x.round() as i32, y.floor());
+            ([at(x, low as i32), at(x, low as i32 + 1)], y - low)
+        } else {
+            let (y, low) = (y.round() as i32, x.floor());
+            ([at(low as i32, y), at(low as i32 + 1, y)], x - low)
+        }
+    }
+
+    fn height(&self, march: &March, level: u32, place: [f64; 2]) -> f64 {
+        if let (Stored::Levels(texels), 1..) = (self.stored, level) {
+            let of = self.pyramid.level(level);
+            let at = [0, 1].map(|i| place[i] as f32 * of.per_sample[i]);
+            return f64::from(LevelTexels { pyramid: self.pyramid, texels }.spline_at(&of, at));
+        }
+        let samples = self.pyramid.size[0] as usize * self.pyramid.size[1] as usize;
+        let (two, t) = self.beside(march, place);
+        let [low, high] = two.map(|i| match self.stored {
+            Stored::Stack(stack) if level > 0 => stack[(level as usize - 1) * samples + i],
+            _ => self.field.heights_m()[i],
+        });
+        f64::from(low) + t * (f64::from(high) - f64::from(low))
+    }
+
+    fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
+        if level == 0 {
+            let (two, t) = self.beside(march, place);
+            let [low, high] = two.map(|i| self.exit[i]);
+            return [0, 1, 2].map(|c| low[c] + t * (high[c] - low[c]));
+        }
+        let of = self.shade.level(level);
+        let at = [0, 1].map(|i| place[i] as f32 * of.per_sample[i]);
+        let [cols, rows] = of.size;
+        let (x, x_weight) = spline_taps(at[0], cols, self.shade.periodic);
+        let (y, y_weight) = spline_taps(at[1], rows, self.shade.periodic);
+        let mut sum = [0.0; 3];
+        for (row, weight) in y.iter().zip(y_weight) {
+            for (col, across) in x.iter().zip(x_weight) {
+                let from = self.shade_texels[of.first as usize + (row * cols + col) as usize];
+                let weight = f64::from(weight * across);
+                sum = [0, 1, 2].map(|c| sum[c] + weight * from[c]);
+            }
+        }
+        sum
+    }
+}
+
+/// What each of four Legendre coefficients of a slice gives to three bands of the clamped cosine, 1/4 + c/2 +
+/// 5/32 (3c² - 1) with c = N·e, by the rule of midpoints in elevation: the integrands are smooth and vanish
+/// with cos ω at both ends.
+fn three_bands(slice: &Slice) -> [f64; 4] {
+    const STEPS: u32 = 400;
+    let width = PI / f64::from(STEPS);
+    let mut weights = [0.0; 4];
+    for i in 0..STEPS {
+        let elevation = -FRAC_PI_2 + width * (f64::from(i) + 0.5);
+        let (z, s) = elevation.sin_cos();
+        let c = slice.a * s + slice.b * z;
+        let bands = 0.25 + 0.5 * c + 5.0 / 32.0 * (3.0 * c * c - 1.0);
+        let polynomials = nlp(4, z);
+        (0..4).for_each(|l| weights[l] += bands * polynomials[l] * s * width);
+    }
+    weights
+}

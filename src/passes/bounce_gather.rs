@@ -1,0 +1,145 @@
+use super::pyramid_march;
+use super::sphere_shade::MOST_TURNS;
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::pyramid::Pyramid;
+use crate::plan::sweep::WARM_UP_PERIODS;
+use crate::plan::{Bounce, Builder, ResourceId};
+use crate::scene::{HeightField, Levels, Receiver};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BounceGatherPush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    azimuths: i32,
+    first_azimuth: i32,
+    last_azimuth: i32,
+    warm_up: i32,
+    fine_samples: i32,
+    width_shift: i32,
+    growth: f32,
+    shade_fine: i32,
+    shade_shift: i32,
+    step_shade: i32,
+    step_height: i32,
+}
+
+same_layout!(
+    BounceGatherPush,
+    bounce_gather_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    azimuths = AZIMUTHS,
+    first_azimuth = FIRST_AZIMUTH,
+    last_azimuth = LAST_AZIMUTH,
+    warm_up = WARM_UP,
+    fine_samples = FINE_SAMPLES,
+    width_shift = WIDTH_SHIFT,
+    growth = GROWTH,
+    shade_fine = SHADE_FINE,
+    shade_shift = SHADE_SHIFT,
+    step_shade = STEP_SHADE,
+    step_height = STEP_HEIGHT,
+);
+
+/// The levels that a sample looks at, of heights and of exit radiance; images where there are any.
+pub(crate) struct Pyramids {
+    pub heights: Pyramid,
+    pub height_images: Option<pyramid_march::Images>,
+    /// Whether nothing else has filled them.
+    pub fills_heights: bool,
+    pub shade: Pyramid,
+    /// Levels and their table.
+    pub shade_images: Option<[ResourceId; 2]>,
+    pub receiver: Receiver,
+}
+
+/// What every sample sees of the surface by its pyramids, in as many dispatches as its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    of: &Pyramids,
+    azimuths: u32,
+    bounce: &Bounce,
+    [heights, ground]: [ResourceId; 2],
+) {
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(rows);
+    let is_stack = of.heights.stored == Levels::Stack;
+    let mut bound = vec![
+        ("heights", heights),
+        ("ground", ground),
+        ("exit_radiance", bounce.exit),
+        ("bounce_sum", bounce.sum),
+    ];
+    match of.height_images {
+        Some(pyramid_march::Images { stack: Some(stack), .. }) => {
+            bound.push(("height_stack", stack));
+        }
+        Some(pyramid_march::Images { levels, table, stack: None }) => {
+            bound.extend([("height_levels", levels), ("level_table", table)]);
+        }
+        None => {}
+    }
+    if let Some([levels, table]) = of.shade_images {
+        bound.extend([("shade_levels", levels), ("shade_table", table)]);
+    }
+    // The march, and inside it samples that round to one distance.
+    let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);
+    for first in (0..azimuths).step_by(at_once as usize) {
+        let last = azimuths.min(first + at_once);
+        let count = last - first;
+        let part = match count == azimuths {
+            true => bounce.name.clone(),
+            false => format!("{} azimuths {first}..{last}", bounce.name),
+        };
+        // Of each azimuth every sample's height, and of those that are seen, at most all, radiance.
+        let looked_at = u64::from(of.heights.samples()) * u64::from(count);
+        builder.pass(
+            &shaders::BOUNCE_GATHER,
+            &part,
+            format!(
+                "{} along {count} azimuths, {} samples each, {}",
+                bounce.why,
+                of.heights.samples(),
+                match of.receiver {
+                    Receiver::Plane => "the cosine exact",
+                    Receiver::Lobe => "in Legendre coefficients and three bands of the cosine",
+                }
+            ),
+            [cols.div_ceil(8), rows.div_ceil(8), 1],
+            &[
+                (0, u32::from(of.heights.periodic)),
+                (1, u32::from(is_stack)),
+                (2, of.heights.levels()),
+                (3, of.shade.levels()),
+                (4, u32::from(bounce.grey)),
+                (5, u32::from(of.receiver == Receiver::Plane)),
+            ],
+            &BounceGatherPush {
+                cols: cols as i32,
+                rows: rows as i32,
+                cell_x_m: field.cell_m()[0] as f32,
+                cell_y_m: field.cell_m()[1] as f32,
+                azimuths: azimuths as i32,
+                first_azimuth: first as i32,
+                last_azimuth: last as i32,
+                warm_up: if of.heights.periodic { WARM_UP_PERIODS as i32 } else { 0 },
+                fine_samples: of.heights.fine_samples() as i32,
+                width_shift: of.heights.width_shift() as i32,
+                growth: of.heights.growth(),
+                shade_fine: of.shade.fine_samples() as i32,
+                shade_shift: of.shade.width_shift() as i32,
+                step_shade: of.shade.level_step as i32,
+                step_height: of.heights.level_step as i32,
+            },
+            &bound,
+            samples * (2 * 16 + looked_at * (4 + 16)),
+            samples * u64::from(count),
+        );
+    }
+}

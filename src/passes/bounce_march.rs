@@ -1,0 +1,94 @@
+use super::sphere_shade::MOST_TURNS;
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Blocks, Bounce, Builder};
+use crate::scene::Scene;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BounceMarchPush {
+    cols: i32,
+    rows: i32,
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    top_level: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    azimuths: i32,
+    first_azimuth: i32,
+    last_azimuth: i32,
+}
+
+same_layout!(
+    BounceMarchPush,
+    bounce_march_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    azimuths = AZIMUTHS,
+    first_azimuth = FIRST_AZIMUTH,
+    last_azimuth = LAST_AZIMUTH,
+);
+
+/// What every sample sees of the surface, in as many dispatches as its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    azimuths: u32,
+    bounce: &Bounce,
+) {
+    let field = &scene.field;
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let samples = u64::from(cols) * u64::from(rows);
+    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    for first in (0..azimuths).step_by(at_once as usize) {
+        let last = azimuths.min(first + at_once);
+        let count = last - first;
+        let part = match count == azimuths {
+            true => bounce.name.clone(),
+            false => format!("{} azimuths {first}..{last}", bounce.name),
+        };
+        builder.pass(
+            &shaders::BOUNCE_MARCH,
+            &part,
+            format!("{}, every stretch seen along {count} azimuths", bounce.why),
+            [cols.div_ceil(8), rows.div_ceil(8), 1],
+            &[
+                (0, scene.surface.border as u32),
+                (1, u32::from(thin_rows)),
+                (2, u32::from(thin_cols)),
+                (3, blocks.most_steps()),
+                (4, u32::from(bounce.grey)),
+            ],
+            &BounceMarchPush {
+                cols: cols as i32,
+                rows: rows as i32,
+                cells_x: blocks.cells[0] as i32,
+                cells_y: blocks.cells[1] as i32,
+                padded_rows: blocks.padded_rows as i32,
+                top_level: blocks.top_level as i32,
+                cell_x_m: field.cell_m()[0] as f32,
+                cell_y_m: field.cell_m()[1] as f32,
+                azimuths: azimuths as i32,
+                first_azimuth: first as i32,
+                last_azimuth: last as i32,
+            },
+            &[
+                ("cells", blocks.images.cells),
+                ("maxima", blocks.images.maxima),
+                ("ground", blocks.images.ground),
+                ("exit_radiance", bounce.exit),
+                ("bounce_sum", bounce.sum),
+            ],
+            samples * (3 * 16 + if bounce.grey { 4 } else { 16 }),
+            samples * u64::from(count),
+        );
+    }
+}

@@ -1,0 +1,96 @@
+use super::sphere_shade::MOST_TURNS;
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Batch, Bounce, Builder, ResourceId};
+use crate::scene::Border;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BounceWalkPush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    warm_up: i32,
+    first_azimuth: u32,
+    azimuth_count: u32,
+    clears: u32,
+    is_last: u32,
+}
+
+same_layout!(
+    BounceWalkPush,
+    bounce_walk_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    azimuth_count = AZIMUTH_COUNT,
+    clears = CLEARS,
+    is_last = IS_LAST,
+);
+
+/// What a walk reads of the heights and of what a sweep left.
+pub(crate) struct Swept {
+    pub lane_heights: ResourceId,
+    pub azimuths: ResourceId,
+    pub occluders: ResourceId,
+    pub line_shift: u32,
+    /// Whether the circle ends with the batch.
+    pub is_last: bool,
+}
+
+/// What every sample sees of the ground in the azimuths of a batch, in as many dispatches as its turns need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (border, cell_m): (Border, [f64; 2]),
+    (batch, part): (&Batch, &str),
+    swept: &Swept,
+    bounce: &Bounce,
+) {
+    let axis = batch.axis;
+    let [cols, rows] = axis.size();
+    let at_once = (MOST_TURNS / (axis.steps + axis.warm_up + 1)).max(1);
+    let all = batch.azimuths();
+    for first in all.clone().step_by(at_once as usize) {
+        let last = all.end.min(first + at_once);
+        let part = match last - first == batch.count {
+            true => part.to_owned(),
+            false => format!("{part} azimuths {}..{}", first - all.start, last - all.start),
+        };
+        let pass = builder.pass(
+            &shaders::BOUNCE_WALK,
+            &part,
+            format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
+            [axis.steps.div_ceil(8), axis.lanes.div_ceil(8), 1],
+            &[
+                (0, swept.line_shift),
+                (1, border as u32),
+                (2, u32::from(axis.marches_rows)),
+                (3, u32::from(bounce.grey)),
+            ],
+            &BounceWalkPush {
+                cols: cols as i32,
+                rows: rows as i32,
+                cell_x_m: cell_m[0] as f32,
+                cell_y_m: cell_m[1] as f32,
+                warm_up: axis.warm_up as i32,
+                first_azimuth: first,
+                azimuth_count: last - first,
+                clears: u32::from(batch.is_first && first == all.start),
+                is_last: u32::from(swept.is_last && last == all.end),
+            },
+            &[
+                ("lane_heights", swept.lane_heights),
+                ("azimuths", swept.azimuths),
+                ("occluders", swept.occluders),
+                (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
+                ("bounce_sum", bounce.sum),
+            ],
+            axis.samples() * (4 + 32 + u64::from(last - first) * 2),
+            axis.samples() * u64::from(last - first),
+        );
+        pass.azimuths = first..last;
+    }
+}

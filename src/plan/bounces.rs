@@ -1,0 +1,249 @@
+//! Light that the surface throws at itself: which bounces are drawn, and their passes.
+//!
+//! A bounce's engine reads the exit radiance of the one before, and whatever it needs of the heights, and
+//! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
+
+use super::blocks::Blocks;
+use super::pyramid::Pyramid;
+use super::sweeping::{Sweeping, part};
+use super::{Batch, Builder, Format, Owner, ResourceId};
+use crate::passes::{
+    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_reduce,
+};
+use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
+
+/// What an engine's passes are told of one bounce.
+pub(crate) struct Bounce {
+    /// As in labels: "bounce1" is the first.
+    pub name: String,
+    /// What it is, to begin a reason with.
+    pub why: String,
+    /// Exit radiance of all samples, albedo and all, to be thrown on: four channels, or one where `grey`.
+    pub exit: ResourceId,
+    pub grey: bool,
+    /// To be written: exit radiance for albedo 1, R, G, B; the fourth channel is the engine's own.
+    pub sum: ResourceId,
+}
+
+/// The bounces of a picture, and what their passes read and write.
+pub(super) struct Bouncing {
+    azimuths: u32,
+    grey: bool,
+    sum: ResourceId,
+    engine: Engine,
+    /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
+    /// into the picture alone.
+    exits: Vec<Option<ResourceId>>,
+}
+
+/// How what a sample sees is found, with what that needs of its own.
+enum Engine {
+    Brute,
+    Sweep,
+    Pyramid(bounce_gather::Pyramids),
+}
+
+/// How many bounces are worth drawing.
+pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
+    let albedo = f64::from(scene.surface.albedo.largest());
+    let count = quality.bounces.worth_drawing(albedo);
+    if count < quality.bounces.count {
+        notes.push(dropped(&quality.bounces, count, albedo));
+    }
+    count
+}
+
+impl Bouncing {
+    /// So many bounces, 1 or more; `levels` are those that direct light has of heights.
+    pub fn make(
+        builder: &mut Builder,
+        scene: &Scene,
+        quality: &Quality,
+        (count, levels): (u32, Option<pyramid_march::Images>),
+        (grey, layers): (bool, bool),
+    ) -> Self {
+        let bounces = &quality.bounces;
+        let extent = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
+        let colour = if grey { Format::R32Float } else { Format::Rgba32Float };
+        let mut image = |name: &str, owner: Owner, format: Format| {
+            builder.image(name, owner, format, extent, false)
+        };
+        let exits = if layers {
+            let layer = |k| image(&format!("indirect.{k}"), Owner::Output, colour);
+            (1..=count).map(layer).map(Some).collect()
+        } else {
+            let exit = (count > 1).then(|| image("exit_radiance", Owner::Internal, colour));
+            (1..=count).map(|k| exit.filter(|_| k < count)).collect()
+        };
+        let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
+        let engine = match bounces.engine {
+            BounceEngine::Brute => Engine::Brute,
+            BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Pyramid => Engine::Pyramid(pyramids(builder, scene, quality, levels)),
+        };
+        Self { azimuths: bounces.azimuths, grey, sum, engine, exits }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.exits.len()
+    }
+
+    /// The passes before the first bounce; `is_recorded` says that the blocks' are there.
+    pub fn prepare(
+        &self,
+        builder: &mut Builder,
+        scene: &Scene,
+        blocks: Option<&Blocks>,
+        (heights, is_recorded): (ResourceId, bool),
+    ) {
+        let Some(blocks) = blocks else { return };
+        let pyramids = match &self.engine {
+            Engine::Brute if is_recorded => return,
+            Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
+            Engine::Sweep => return,
+            Engine::Pyramid(pyramids) => pyramids,
+        };
+        if !is_recorded {
+            let of = (&scene.field, scene.surface.border);
+            let ids = [heights, blocks.images.cells, blocks.images.ground];
+            height_cells::plan(builder, of, ids, None);
+        }
+        if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
+            pyramids.heights.record(builder, heights, images);
+        }
+    }
+
+    /// The passes of bounce `k`, the first is 1; of `heights` and `direct` light it begins with the latter. Returns
+    /// what arrives, and where its exit radiance belongs.
+    pub fn record(
+        &self,
+        builder: &mut Builder,
+        scene: &Scene,
+        (blocks, swept): (Option<&Blocks>, Option<(&Sweeping, &[Batch])>),
+        k: usize,
+        [heights, direct]: [ResourceId; 2],
+    ) -> (ResourceId, Option<ResourceId>) {
+        let before = k.checked_sub(2).and_then(|i| self.exits[i]);
+        let bounce = Bounce {
+            name: bounce_name(k),
+            why: match k {
+                1 => "direct light off the surface".to_owned(),
+                _ => format!("light of bounce {} off the surface", k - 1),
+            },
+            exit: before.unwrap_or(direct),
+            grey: self.grey,
+            sum: self.sum,
+        };
+        let blocks = || blocks.expect("made for engines that read cells and ground");
+        match &self.engine {
+            Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
+            Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
+            Engine::Pyramid(of) => {
+                for level in 1..=of.shade.levels() {
+                    let images = of.shade_images.expect("made for every level");
+                    shade_reduce::plan(builder, &of.shade, level, &bounce, images);
+                }
+                let ids = [heights, blocks().images.ground];
+                bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
+            }
+        }
+        (self.sum, self.exits[k - 1])
+    }
+
+    /// The settings really used.
+    pub fn used(&self) -> Vec<(String, String)> {
+        let mut used = Vec::new();
+        let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
+        add("bounce_azimuths", self.azimuths.to_string());
+        let engine = match &self.engine {
+            Engine::Brute => BounceEngine::Brute,
+            Engine::Sweep => BounceEngine::Sweep,
+            Engine::Pyramid(of) => {
+                add("bounce_level_step", of.shade.level_step.to_string());
+                add("bounce_level_offset", of.shade.level_offset.to_string());
+                add("level_step", of.heights.level_step.to_string());
+                add("level_offset", of.heights.level_offset.to_string());
+                add("levels", of.heights.stored.name().to_owned());
+                add("receiver", of.receiver.name().to_owned());
+                BounceEngine::Pyramid
+            }
+        };
+        add("bounce_engine", engine.name().to_owned());
+        used
+    }
+}
+
+/// The sweeps that a bounce walks over, and the walks.
+fn walk(
+    builder: &mut Builder,
+    scene: &Scene,
+    k: usize,
+    (sweeping, batches): (&Sweeping, &[Batch]),
+    bounce: &Bounce,
+) {
+    for (i, batch) in batches.iter().enumerate() {
+        let part = part(&bounce.name, batch, batches);
+        let occluders = sweeping.occluders(batch).expect("kept for walks");
+        // A lattice of its own still holds what the first bounce has swept.
+        let is_shared =
+            batches.iter().filter(|b| sweeping.occluders(b) == Some(occluders)).count() > 1;
+        if k == 1 || is_shared {
+            sweeping.record(builder, batch, &part);
+        }
+        let swept = bounce_walk::Swept {
+            lane_heights: sweeping.lane_heights(batch),
+            azimuths: sweeping.azimuths,
+            occluders,
+            line_shift: sweeping.sweep.line_shift(),
+            is_last: i + 1 == batches.len(),
+        };
+        let field = (scene.surface.border, scene.field.cell_m());
+        bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
+    }
+}
+
+/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own; light follows the receiver.
+fn pyramids(
+    builder: &mut Builder,
+    scene: &Scene,
+    quality: &Quality,
+    levels: Option<pyramid_march::Images>,
+) -> bounce_gather::Pyramids {
+    let size = [scene.field.cols() as u32, scene.field.rows() as u32];
+    let heights = Pyramid::new(quality, size, scene.surface.border);
+    let Bounces { level_step, level_offset, .. } = quality.bounces;
+    let shade = Pyramid { level_step, level_offset, stored: Levels::Pyramid, ..heights };
+    let shade_images = (shade.levels() > 0).then(|| {
+        let width = 1 << shade.width_shift();
+        let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
+        let mut image = |name: &str, format: Format, extent: [u32; 3]| {
+            builder.image(name, Owner::Internal, format, extent, false)
+        };
+        let levels = image("shade_levels", Format::Rgba32Float, [width, height, 1]);
+        [levels, image("shade_table", Format::Rgba32Uint, [shade.levels(), 1, 1])]
+    });
+    let fills_heights = levels.is_none();
+    let height_images = levels.or_else(|| heights.images(builder));
+    let receiver = quality.receiver;
+    bounce_gather::Pyramids { heights, height_images, fills_heights, shade, shade_images, receiver }
+}
+
+/// As in labels.
+pub(super) fn bounce_name(k: usize) -> String {
+    format!("bounce{k}")
+}
+
+/// Why bounces are left out.
+fn dropped(bounces: &Bounces, count: u32, albedo: f64) -> String {
+    if albedo == 0.0 {
+        return "no bounces: the surface reflects nothing".into();
+    }
+    let first = count + 1;
+    let all: f64 = (first..=bounces.count).map(|k| albedo.powi(k as i32)).sum();
+    format!(
+        "bounces {first} to {} dropped: of a surface that reflects at most {albedo} they carry at most {all:.3e} of \
+         the direct light, within --bounce-cutoff {}",
+        bounces.count, bounces.cutoff
+    )
+}

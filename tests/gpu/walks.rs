@@ -1,0 +1,149 @@
+//! Bounces by walks over what sweeps have met: against closed forms, the engine that takes every crossing, and what
+//! must be.
+
+use ridgelight::cpu::bounce_walk::bounce_walk;
+use ridgelight::cpu::horizon_sweep::{SweepOptions, horizon_sweep};
+use ridgelight::cpu::lattice::{Lattices, number_layers};
+use ridgelight::cpu::shared::gather::Swept;
+use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::measure::fractal::fractal;
+use ridgelight::measure::tolerance::EPSILON;
+use ridgelight::plan::azimuths::even;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{
+    Albedo, Border, BounceEngine, Bounces, HeightField, Lines, Method, Quality, Scene,
+};
+
+use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
+use crate::{Device, field, random, under_sky};
+
+/// So many bounces in so many azimuths, none dropped, of direct light by sweeps in as many.
+fn swept(count: u32, azimuths: u32, engine: BounceEngine) -> Quality {
+    let bounces = Bounces { count, azimuths, engine, cutoff: 0.0, ..Bounces::default() };
+    Quality { azimuths, bounces, ..Quality::default() }
+}
+
+/// The first channel of the picture, of a scene under a sky alone.
+fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
+    gpu.picture(scene, quality).values.into_iter().map(f64::from).collect()
+}
+
+/// Pits against their closed form, within what the rim's staircase may do.
+#[test]
+fn a_pit_is_lit_as_its_closed_form() {
+    let mut gpu = Device::new();
+    for (alpha, albedo, bounces, _) in PITS {
+        let (rho, count) = (f64::from(albedo), bounces.min(6));
+        let mut scene = under_sky(pit(12.5, alpha), Border::Plane);
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let whole = drawn(&mut gpu, &scene, &swept(count as u32, 32, BounceEngine::Sweep));
+        let expected = pit_radiance(alpha, rho, count);
+        let bounds = pit_bounds(12.5, alpha, rho, count).pop().expect("a bound a bounce");
+        let squares: f64 = bounds.iter().map(|(i, _)| (whole[*i] - expected).powi(2)).sum();
+        for (i, bound) in &bounds {
+            let off = (whole[*i] - expected).abs();
+            assert!(off <= *bound, "{alpha} {albedo} {count} {i}: {off} of {bound}");
+        }
+        let rms = (squares / bounds.len() as f64).sqrt();
+        println!("pit {alpha}, {albedo}, {count} bounces: {:.3} %", 100.0 * rms / expected);
+    }
+}
+
+/// What a sample sees of ground that radiates 1, by the twin.
+fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
+    let mut azimuths = even(count, field.cell_m());
+    number_layers(&mut azimuths);
+    let periods = if border == Border::Periodic { 2 } else { 0 };
+    let warm_up = [field.cols(), field.rows()].map(|n| (n * periods) as i32);
+    let heights = Heights::of(field, border);
+    let mut lattices = Lattices::new(&azimuths, [field.cols(), field.rows()], 15, border);
+    for azimuth in &azimuths {
+        let warm_up = warm_up[usize::from(azimuth.marches_rows())];
+        let options = SweepOptions { warm_up, ..SweepOptions::default() };
+        horizon_sweep(heights, azimuth, &options, lattices.of_mut(azimuth));
+    }
+    let (azimuths, lattices) = (azimuths.as_slice(), &lattices);
+    let swept = Swept { heights, azimuths, lattices, fuse: None, line_shift: 15, warm_up };
+    let white = vec![[1.0; 3]; field.heights_m().len()];
+    swept.per_sample(|col, row| bounce_walk(&swept, &white, col, row).radiance()[0])
+}
+
+/// White ground under a white sky: each bounce adds, and the sum comes up to 1 from below. Sky and ground are found
+/// apart: where a sample's shares s and t make 1 + d, light that is nowhere more than 1 + D stays so if s + t (1 + D)
+/// ≤ 1 + D: D = d / (1 - t), and likewise from below; 16 roundings a bounce.
+#[test]
+fn a_furnace_comes_up_to_one() {
+    const COUNT: u32 = 24;
+    let mut gpu = Device::new();
+    let mut next = random(9);
+    let noise: Vec<f64> = (0..72).map(|_| next()).collect();
+    for border in [Border::Open, Border::Periodic] {
+        let scene = under_sky(field(8, 9, [1.0, 1.5], |r, c| 1.5 * noise[r * 9 + c]), border);
+        let ground = ground_shares(&scene.field, border, 32);
+        let mut before = drawn(&mut gpu, &scene, &swept(0, 32, BounceEngine::Sweep));
+        let (mut above, mut below, mut darkest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for (sky, ground) in before.iter().zip(&ground) {
+            let off = (sky + ground - 1.0) / (1.0 - ground);
+            (above, below) = (above.max(off), below.max(-off));
+            darkest = darkest.max(*ground);
+        }
+        let slack = above + 16.0 * EPSILON * f64::from(COUNT);
+        for count in [1, 2, COUNT] {
+            let now = drawn(&mut gpu, &scene, &swept(count, 32, BounceEngine::Sweep));
+            for (a, b) in before.iter().zip(&now) {
+                assert!(a <= b && *b <= 1.0 + slack, "{border:?} {count}: {a} {b} {slack:e}");
+            }
+            before = now;
+        }
+        let least = before.iter().fold(f64::MAX, |m, v| m.min(*v));
+        println!("{border:?}: {least:.4} to 1 + {slack:.2e}");
+        let left = darkest.powi(COUNT as i32) + below + 16.0 * EPSILON * f64::from(COUNT);
+        assert!(least >= 1.0 - left, "{border:?}: {least} {left}");
+    }
+}
+
+/// Beside the engine that takes every crossing: what a walk steps over of a fractal is small beside a bounce, and
+/// of a smoother land, the same at twice the samples a cell, less. A bounce less is more than that.
+#[test]
+fn walks_are_near_every_crossing() {
+    let mut gpu = Device::new();
+    let land = fractal(12, 3).unwrap();
+    let h = |r: usize, c: usize| f64::from(land.heights_m()[r.min(11) * 12 + c.min(11)]);
+    let fine = field(23, 23, land.cell_m().map(|c| c / 2.0), |r, c| {
+        0.5 * (h(r / 2, c / 2) + h(r.div_ceil(2), c.div_ceil(2)))
+    });
+    let errors = [land.clone(), fine].map(|field| {
+        let mut scene = under_sky(field, Border::Plane);
+        scene.surface.albedo = Albedo::Constant([0.8; 3]);
+        let [none, walked, every] =
+            [(0, BounceEngine::Sweep), (1, BounceEngine::Sweep), (1, BounceEngine::Brute)]
+                .map(|(count, engine)| drawn(&mut gpu, &scene, &swept(count, 48, engine)));
+        let rms = |a: &[f64], b: &[f64]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        rms(&walked, &every) / rms(&every, &none)
+    });
+    println!("off by {:.2} % and {:.2} % of a bounce", 100.0 * errors[0], 100.0 * errors[1]);
+    assert!(errors[0] < 0.1 && errors[1] < errors[0], "{errors:?}");
+}
+
+/// Ways without lines have nothing to walk over, and say so; where nothing is reflected they are not asked.
+#[test]
+fn what_has_no_lines_is_refused() {
+    let mut scene = under_sky(fractal(8, 1).unwrap(), Border::Plane);
+    let of = |scene: &Scene, method, lines| {
+        let quality = Quality { method, lines, ..swept(1, 8, BounceEngine::Sweep) };
+        plan::picture(scene, &quality, &Limits::lavapipe(), Picture::default())
+    };
+    let ways = [
+        (Method::Brute, Lines::Cell, "--method brute"),
+        (Method::Pyramid, Lines::Cell, "--method pyramid"),
+        (Method::Auto, Lines::Exact, "--lines exact"),
+    ];
+    for (method, lines, name) in ways {
+        let said = of(&scene, method, lines).unwrap_err().to_string();
+        assert!(said.contains("--bounce-engine sweep") && said.contains(name), "{said}");
+    }
+    scene.surface.albedo = Albedo::Constant([0.0; 3]);
+    assert!(of(&scene, Method::Brute, Lines::Cell).is_ok());
+}
