@@ -13,10 +13,10 @@ use ridgelight::cpu::sphere::sphere_of;
 use ridgelight::cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::measure::soft_ball::SoftBall;
+use ridgelight::measure::tolerance::BallSeen;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
 
 use crate::spheres::{ball, under, values};
-use crate::twins::light::ball_seen;
 use crate::twins::soft::slope_error;
 use crate::{Device, field, random};
 
@@ -33,7 +33,7 @@ fn soft(sh_order: u32, sun_azimuths: u32) -> Quality {
 /// How far a device may be from the twin at a sample, of radiance 1.
 fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> f64 {
     let (field, light) = (&scene.field, &scene.lights.spheres[0]);
-    let at = ball_seen(field, light, sample);
+    let at = BallSeen::of(field, light, sample);
     let n = normal(field, scene.surface.border, sample / field.cols(), sample % field.cols());
     let slope = slope_error(&at, quality, false);
     SoftBall::new(quality).twin(&at, slope, n, seen)
@@ -178,7 +178,7 @@ fn soft_balls_at_the_extremes_are_their_twins() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = ball_seen(&land, light, i);
+                    let seen = BallSeen::of(&land, light, i);
                     // Whether rounding puts it inside or outside is chance.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
@@ -251,7 +251,7 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
         let light = ball([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let found = values(&gpu.picture(&under(&land, Border::Plane, vec![light]), quality));
         let truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
-        let is_within = |i: usize| ball_seen(&land, &light, i).distance_m < light.radius_m;
+        let is_within = |i: usize| BallSeen::of(&land, &light, i).distance_m < light.radius_m;
         let state = |i: usize| ([found[i], truth(i)], is_within(i));
         let now: Vec<_> = (0..256).step_by(7).map(state).collect();
         for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {

@@ -17,7 +17,7 @@ use ridgelight::measure::tolerance::{
 };
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Environment, HeightField, SphereLight};
+use ridgelight::scene::{Albedo, Environment};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 
@@ -239,7 +239,7 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut balls = std::mem::take(&mut run.balls);
     for (i, (sum, tolerance)) in balls.iter_mut().enumerate() {
-        let seen = ball_seen(&run.scene.field, &ball, i);
+        let seen = BallSeen::of(&run.scene.field, &ball, i);
         if seen.distance_m > reach {
             continue;
         }
@@ -257,28 +257,6 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect();
     run.balls = balls;
     pairs
-}
-
-/// Where a ball stands to a sample.
-pub(crate) fn ball_seen(field: &HeightField, ball: &SphereLight, sample: usize) -> BallSeen {
-    let (cols, heights) = (field.cols(), field.heights_m());
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, z] = ball.position_m;
-    let east = x - (sample % cols) as f64 * cell_x;
-    let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
-    let up = z - field.base_m() - f64::from(heights[sample]);
-    let all = heights.iter().map(|h| f64::from(*h));
-    let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-    let over = z - field.base_m();
-    BallSeen {
-        distance_m: east.hypot(north).hypot(up),
-        away_m: east.hypot(north),
-        radius_m: ball.radius_m,
-        largest_m: low.abs().max(high.abs()).max(over.abs()),
-        relief_m: high - low,
-        cell_m: cell_x.min(cell_y),
-        is_cut: over - ball.radius_m < high,
-    }
 }
 
 pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {

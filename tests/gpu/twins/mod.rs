@@ -4,7 +4,7 @@
 mod bounce;
 mod cases;
 mod edit;
-pub(crate) mod light;
+mod light;
 mod paths;
 mod pyramid;
 mod sh;
