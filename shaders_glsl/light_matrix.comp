@@ -1,7 +1,7 @@
 // Computes: what the environment makes of what is seen: the matrix that takes a series of visibility to
-// exit radiance. First the environment's own series, from the sums of its rows; then the matrix, which is
-// linear in it.
-// Reads: env_turns, constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
+// exit radiance. First the environment's own series, from the sums of its rows, and a uniform sky's beside it;
+// then the matrix, which is linear in it.
+// Reads: env_turns (where there are rows), constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
 // One group is all; one invocation is a coefficient of the series, then some entries.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -13,12 +13,13 @@ layout(binding = 1) uniform textureBuffer constants;
 layout(binding = 2, rgba32f) uniform writeonly image2D light_matrix;
 
 layout(push_constant) uniform LightMatrixPush {
-    int rows;         // of the environment
+    int rows;         // of the environment; 0 where there is none
     int light_order;
     int order;        // of what is seen
     int receivers;    // rows of the matrix
     int row_first;    // in constants: weights of four rows a texel, (l, m) after (l, m), m from 0
     int matrix_first; // in constants: entry after entry, four coefficients a texel
+    vec4 sky;         // radiance of a sky that this matrix lights, too
 };
 
 const int MAX_COUNT = 36;
@@ -57,7 +58,9 @@ void main() {
     int self = int(gl_LocalInvocationIndex);
     int count = light_order * light_order;
     if (self < count) {
-        series[self] = vec4(coefficient(self), 0.0);
+        // A constant has Y_00 alone, sqrt(4 pi) of it.
+        vec3 of_sky = self == 0 ? 3.5449077018110318 * sky.rgb : vec3(0.0);
+        series[self] = vec4(coefficient(self) + of_sky, 0.0);
     }
     barrier();
     int size = order * order;

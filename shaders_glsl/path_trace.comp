@@ -1,9 +1,12 @@
 // Computes: one more batch of 2^SET_BITS light paths from each sample of some rows, and the mean of all batches
 // so far with its standard error, from the spread between batches.
 // Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map. Reads and writes:
-// batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays). Writes:
-// radiance, standard_error (w: rays so far). Adds to lost_rays.
+// batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays), part_sum (of
+// a batch in parts, light so far; w: rays). Writes: radiance, standard_error (w: rays so far). Adds to lost_rays.
 // One invocation is one sample.
+//
+// A batch may come in parts: some of the paths, or some of the lights at each of their vertices. Each part
+// goes the same ways; sky and environment belong to the part of the first light.
 //
 // Of what a scene has not, nothing is compiled: llvmpipe runs every branch for all lanes. Only loops end.
 #version 460
@@ -11,6 +14,7 @@
 
 #include "shared/conventions.glsl"
 #include "shared/random.glsl"
+#include "shared/lobe.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,8 +30,10 @@ layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or b
 layout(constant_id = 11) const bool HAS_KEYS = false;
 layout(constant_id = 8) const bool HAS_BALLS = false;
 layout(constant_id = 9) const bool HAS_BOUNCES = false;
-// More than a ray of this field can ask for; 60,000 at most, as llvmpipe ends any loop after 65,535 turns.
+// More than a ray of this field can ask for; 60,000 at most, as llvmpipe ends all loops of an invocation
+// together after 65,535 turns.
 layout(constant_id = 10) const int MOST_STEPS = 60000;
+layout(constant_id = 12) const bool IN_PARTS = false;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -46,6 +52,7 @@ layout(binding = 8, rgba32f) uniform image2D batch_spread;
 layout(binding = 9, rgba32f) uniform writeonly image2D radiance;
 layout(binding = 10, rgba32f) uniform writeonly image2D standard_error;
 layout(binding = 11) buffer LostRays { uint lost_rays[]; };
+layout(binding = 12, rgba32f) uniform image2D part_sum;
 
 layout(push_constant) uniform PathTracePush {
     int cols;
@@ -68,6 +75,10 @@ layout(push_constant) uniform PathTracePush {
     vec4 sky;
     int first_row;
     int keys;              // after the suns
+    int first_path;        // of the part; the paths' and the lights' ends are not among them
+    int last_path;
+    int first_light;
+    int last_light;
 };
 
 #include "shared/trace.glsl"
@@ -82,19 +93,8 @@ struct Place {
     bool has_lobe;
 };
 
-// The direction about which the lobe lies, and its density there.
+// The direction about which the lobe lies.
 vec3 mirror;
-float lobe_density(vec3 e) {
-    // The built-in power is off by 1e-3 at exponents of 1e4. 1 - cos from the difference keeps its digits
-    // near the mirror direction, and ln(1 - m) = -2 atanh(m / (2 - m)), a series to 1e-7 up to m = 1/2.
-    vec3 apart = e - mirror;
-    float m = 0.5 * dot(apart, apart);
-    float z = m / (2.0 - m);
-    float s = z * z;
-    float series = 1.0 + s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * (1.0 / 9.0 + s * (1.0 / 11.0 + s / 13.0)))));
-    float power = exponent * (m < 0.5 ? -2.0 * z * series : log(max(1.0 - m, 1e-30)));
-    return m < 1.0 ? (exponent + 1.0) / (2.0 * PI) * exp(power) : 0.0;
-}
 
 // First entry above u of n entries of the CDF from `at` on, `step` apart.
 int picked(float u, ivec2 at, ivec2 step, int n) {
@@ -181,7 +181,7 @@ Reflected reflected_from(Place place, vec3 e) {
     float density = facing / PI;
     Reflected of = Reflected(facing, place.albedo * density, density, place.albedo);
     if (HAS_LOBE) {
-        float lobe = lobe_density(e);
+        float lobe = lobe_density(e - mirror, exponent);
         float both = mix(density, lobe, lobe_choice(place.albedo));
         vec3 sum = of.light + lobe_share * lobe;
         of.density = place.has_lobe ? both : of.density;
@@ -218,7 +218,8 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(cols, rows))) : from;
         vec3 centre = vec3(from.x * cell_x_m, (float(rows - 1) - from.y) * cell_y_m, place.own);
         if (HAS_LIGHTS) {
-            for (int r = 0; r < light_count; r++) {
+            int r = first_light;
+            for (; r < last_light; r++) {
                 points_of(index, key, first_ray + uint(r), is_first, u, v);
                 bool is_far = r < suns + keys;
                 vec4 source = texelFetch(lights, ivec2(0, r), 0);
@@ -249,8 +250,11 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 bool in_view = met.what == RAY_FREE || (!is_far && (met.what != RAY_HIT || met.t >= t_end));
                 light += going && in_view ? carried * brought : vec3(0.0);
             }
+            // A loop that was ended before its time.
+            rays.y += r < last_light ? 1u : 0u;
         }
-        if (HAS_ENVIRONMENT) {
+        bool has_sky = first_light == 0;
+        if (HAS_ENVIRONMENT && has_sky) {
             points_of(index, key, first_ray + uint(light_count), is_first, u, v);
             ivec2 texel;
             vec3 e = towards_light(u, v, env_size, texel);
@@ -278,14 +282,15 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
         Met met = trace(ray, 1e30, going);
         rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
-        vec3 seen = sky.rgb;
-        if (HAS_ENVIRONMENT) {
+        vec3 seen = has_sky ? sky.rgb : vec3(0.0);
+        if (HAS_ENVIRONMENT && has_sky) {
             vec4 from_there = texelFetch(environment, texel_towards(e, env_size), 0);
             seen += from_there.rgb * (of.density / max(of.density + from_there.w, 1e-30));
         }
         seen = met.what == RAY_FREE ? seen : vec3(0.0);
         if (HAS_BALLS) {
-            for (int i = suns + keys; i < light_count; i++) {
+            int i = max(suns + keys, first_light);
+            for (; i < last_light; i++) {
                 vec4 ball = texelFetch(lights, ivec2(0, i), 0);
                 vec3 to = ball.xyz - centre;
                 float ahead = dot(to, e);
@@ -294,6 +299,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 bool in_view = inside >= 0.0 && (met.what != RAY_HIT || met.t >= exit_m * ray.scale);
                 seen += in_view ? texelFetch(lights, ivec2(1, i), 0).rgb : vec3(0.0);
             }
+            rays.y += i < last_light ? 1u : 0u;
         }
         light += going ? carried * of.scattered * seen : vec3(0.0);
         if (HAS_BOUNCES) {
@@ -329,8 +335,26 @@ void main() {
     uvec3 key = uvec3(uint(here.y * cols + here.x), uint(before.w), seed);
     uvec2 rays = uvec2(0u);
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < (1u << SET_BITS); i++) {
-        sum += path_light(place, i, key, alive, rays);
+    int i = first_path;
+    for (; i < last_path; i++) {
+        sum += path_light(place, uint(i), key, alive, rays);
+    }
+    rays.y += i < last_path ? 1u : 0u;
+    if (alive && rays.y > 0u) {
+        atomicAdd(lost_rays[0], rays.y);
+    }
+    if (IN_PARTS) {
+        vec4 earlier = imageLoad(part_sum, here);
+        bool begins = first_path == 0 && first_light == 0;
+        vec4 so_far = vec4(sum, float(rays.x)) + (begins ? vec4(0.0) : earlier);
+        if (alive) {
+            imageStore(part_sum, at, so_far);
+        }
+        if (last_path < (1 << SET_BITS) || last_light < light_count) {
+            return;
+        }
+        sum = so_far.rgb;
+        rays.x = uint(so_far.w);
     }
     // Welford 1962, over batches.
     vec3 batch = sum / float(1u << SET_BITS);
@@ -348,8 +372,5 @@ void main() {
         imageStore(batch_spread, at, vec4(spread, rays_so_far));
         imageStore(radiance, at, vec4(mean, 1.0));
         imageStore(standard_error, at, vec4(error, rays_so_far));
-        if (rays.y > 0u) {
-            atomicAdd(lost_rays[0], rays.y);
-        }
     }
 }

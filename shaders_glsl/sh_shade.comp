@@ -1,7 +1,7 @@
 // Computes: the light of an environment at every sample from what it sees, or from what the nodes around it
 // see: a series of visibility times the light's matrix, for the sample's own normal.
-// Reads: lane_heights, visibility, light_matrix, nodes. Writes: env_sum (exit radiance for albedo 1, RGB; in
-// A 1 where a colour was below 0 and is now 0).
+// Reads: lane_heights, visibility, light_matrix, nodes. Writes: env_sum (exit radiance for albedo 1, of a lobe for
+// scale 1, RGB; in A 1 where a colour was below 0 and is now 0).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,8 +11,10 @@ layout(local_size_x = 8, local_size_y = 16) in;
 layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
-// The receiver is N_y, N_z, N_x alone; else the polynomials of bands 0 to 2 (band 1 at order 2).
-layout(constant_id = 3) const bool IS_PLANE = true;
+const uint RECEIVER_COSINE = 0u; // polynomials of N, bands 0 to 2 (band 1 at order 2)
+const uint RECEIVER_PLANE = 1u;  // N_y, N_z, N_x alone
+const uint RECEIVER_GLOSS = 2u;  // Y_lm of the mirror direction of the view from straight above
+layout(constant_id = 3) const uint RECEIVER = 1u;
 // Samples from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
 const int LANE_STRIDE = 1;
@@ -33,6 +35,10 @@ layout(push_constant) uniform ShShadePush {
 
 #include "shared/quad.glsl"
 #include "shared/nodes.glsl"
+
+vec4 harmonics[36];
+
+#include "shared/harmonics.glsl"
 
 // Nodes across that four samples lie between, at two march positions: where they are stored, and what each
 // counts for each of the four.
@@ -128,14 +134,29 @@ void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
     if (column >= ORDER * ORDER) {
         return;
     }
-    int first = IS_PLANE ? 0 : 1;
+    if (RECEIVER == RECEIVER_GLOSS) {
+        vec4 r = vec4(0.0);
+        vec4 g = vec4(0.0);
+        vec4 b = vec4(0.0);
+        for (int row = 0; row < ORDER * ORDER; row++) {
+            vec3 on = texelFetch(light_matrix, ivec2(column, row), 0).rgb;
+            r += on.r * harmonics[row];
+            g += on.g * harmonics[row];
+            b += on.b * harmonics[row];
+        }
+        red += r * seen;
+        green += g * seen;
+        blue += b * seen;
+        return;
+    }
+    int first = RECEIVER == RECEIVER_PLANE ? 0 : 1;
     vec3 on_y = texelFetch(light_matrix, ivec2(column, first), 0).rgb;
     vec3 on_z = texelFetch(light_matrix, ivec2(column, first + 1), 0).rgb;
     vec3 on_x = texelFetch(light_matrix, ivec2(column, first + 2), 0).rgb;
     vec4 r = on_y.r * y + on_z.r * z + on_x.r * x;
     vec4 g = on_y.g * y + on_z.g * z + on_x.g * x;
     vec4 b = on_y.b * y + on_z.b * z + on_x.b * x;
-    if (!IS_PLANE) {
+    if (RECEIVER == RECEIVER_COSINE) {
         vec3 on_one = texelFetch(light_matrix, ivec2(column, 0), 0).rgb;
         r += on_one.r;
         g += on_one.g;
@@ -173,6 +194,9 @@ void main() {
     vec4 z = inversesqrt(1.0 + east * east + north * north);
     vec4 x = -east * z;
     vec4 y = -north * z;
+    if (RECEIVER == RECEIVER_GLOSS) {
+        find_harmonics(2.0 * z * x, 2.0 * z * y, 2.0 * z * z - 1.0);
+    }
     if (NODE_STRIDE > 1) {
         find_nodes(q, lanes, steps, east, north);
     }

@@ -6,6 +6,9 @@
 // Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
 // declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
 // LATTICE_HAS_DISTANCES, LATTICE_STRIDE, LINE_SHIFT, BORDER, MARCHES_ROWS and LANE_STRIDE.
+//
+// Where data decide between two expressions, here and in what is included, `mix` selects: `c ? a + b : a - b`
+// is a branch, and SwiftShader's compiler follows every path through a loop, twice as many with each.
 
 const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample, or a node
 const uint FUSE_NEAREST = 1u;  // the slope that the nearer line found
@@ -46,11 +49,11 @@ uvec4 lattice_at(ivec3 texel) {
 // Value i of the eight in two texels.
 uint value_of_eight(uvec4 a, uvec4 b, int i) {
     if (LATTICE == LATTICE_SLOPES_F32) {
-        uvec4 four = i < 4 ? a : b;
-        uvec2 two = (i & 2) == 0 ? four.xy : four.zw;
-        return (i & 1) == 0 ? two.x : two.y;
+        uvec4 four = mix(a, b, bvec4(i >= 4));
+        uvec2 two = mix(four.xy, four.zw, bvec2((i & 2) != 0));
+        return mix(two.x, two.y, (i & 1) != 0);
     }
-    return lattice_u16(i < 4 ? a.xy : b.xy, i);
+    return lattice_u16(mix(a.xy, b.xy, bvec2(i >= 4)), i);
 }
 
 // What the lattice holds of four lines at a step (occluders: steps back). Where lines follow lanes,
@@ -91,14 +94,19 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     ivec4 lane = q.lane;
-    bool has_ahead = wraps || (flips_march ? q.march < steps - 1 : q.march > 0);
-    bvec4 has_side = flips_lanes ? lessThan(lane, ivec4(wraps ? lanes : lanes - 1)) : greaterThan(lane, ivec4(wraps ? -1 : 0));
+    bool is_before_last = q.march < steps - 1;
+    bool is_after_first = q.march > 0;
+    bool marches_on = flips_march ? is_before_last : is_after_first;
+    bool has_ahead = wraps || marches_on;
+    bvec4 has_above = lessThan(lane, ivec4(wraps ? lanes : lanes - 1));
+    bvec4 has_below = greaterThan(lane, ivec4(wraps ? -1 : 0));
+    bvec4 has_side = mix(has_below, has_above, bvec4(flips_lanes));
     vec4 own = q.here.four;
-    vec4 side = flips_lanes ? q.here.above : q.here.below;
-    vec4 ahead = flips_march ? q.after.four : q.before.four;
-    vec4 ahead_above = flips_march ? q.after.above : q.before.above;
-    vec4 ahead_below = flips_march ? q.after.below : q.before.below;
-    vec4 ahead_side = flips_lanes ? ahead_above : ahead_below;
+    vec4 side = mix(q.here.below, q.here.above, bvec4(flips_lanes));
+    vec4 ahead = mix(q.before.four, q.after.four, bvec4(flips_march));
+    vec4 ahead_above = mix(q.before.above, q.after.above, bvec4(flips_march));
+    vec4 ahead_below = mix(q.before.below, q.after.below, bvec4(flips_march));
+    vec4 ahead_side = mix(ahead_below, ahead_above, bvec4(flips_lanes));
 
     float shear = float(azimuth.shear) * (1.0 / float(CELL));
     float per_m = 1.0 / azimuth.step_m;
@@ -111,9 +119,11 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     split.slope = ((side - own) + u * (ahead - side)) * ((1.0 + shear) * per_m);
     split.steps = vec4(u);
     bool split_crosses = flips_march != flips_lanes;
-    split.slope = mix(vec4(NO_SLOPE), split.slope, split_crosses ? has_side : bvec4(false));
+    bvec4 none = bvec4(false);
+    split.slope = mix(vec4(NO_SLOPE), split.slope, mix(none, has_side, bvec4(split_crosses)));
     Met found = higher(next, split);
-    bvec4 inside = has_ahead ? (azimuth.shear > 0 ? has_side : bvec4(true)) : bvec4(false);
+    bvec4 inside = mix(bvec4(true), has_side, bvec4(azimuth.shear > 0));
+    inside = mix(none, inside, bvec4(has_ahead));
     found.slope = mix(vec4(NO_SLOPE), found.slope, inside);
     return found;
 }
@@ -123,14 +133,15 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
 Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
-    ivec4 place = y + ivec4(back) * (flips_lanes ? azimuth.shear : -azimuth.shear);
+    int shear = mix(-azimuth.shear, azimuth.shear, flips_lanes);
+    ivec4 place = y + ivec4(back) * shear;
     bvec4 stands = notEqual(back, uvec4(0));
     if (BORDER != BORDER_PERIODIC) {
         bvec4 on_field = lessThanEqual(uvec4(place), uvec4((lanes - 1) * CELL));
         stands = bvec4(uvec4(stands) & uvec4(on_field));
         place = mix(y, place, stands);
     }
-    ivec4 march = q.march + (flips_march ? ivec4(back) : -ivec4(back));
+    ivec4 march = q.march + mix(-ivec4(back), ivec4(back), bvec4(flips_march));
     vec4 height;
     for (int k = 0; k < 4; k++) {
         int cell = place[k] >> CELL_SHIFT;
@@ -138,7 +149,7 @@ Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
         int m = march[k];
         if (BORDER == BORDER_PERIODIC) {
             cell = wrapped(cell, lanes);
-            next = cell + 1 == lanes ? 0 : cell + 1;
+            next = mix(cell + 1, 0, cell + 1 == lanes);
             m = wrapped(m, steps);
         } else {
             cell = clamp(cell, 0, lanes - 1);
@@ -241,7 +252,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     int step = march_position(azimuth, q.march, steps);
-    ivec4 lane = flips_lanes ? lanes - 1 - q.lane : q.lane;
+    ivec4 lane = mix(q.lane, lanes - 1 - q.lane, bvec4(flips_lanes));
     Met met;
     if (FUSE == FUSE_DIRECT) {
         for (int k = 0; k < 4; k++) {
@@ -273,7 +284,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         // The nearer one; of two, the one before.
         ivec4 line = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
         bool takes = wraps || first <= last;
-        int lowest = clamp(flips_lanes ? line.w : line.x, first, last);
+        int lowest = clamp(mix(line.x, line.w, flips_lanes), first, last);
         if (wraps) {
             line = ivec4(wrapped(line.x, lines), wrapped(line.y, lines), wrapped(line.z, lines), wrapped(line.w, lines));
         } else {
@@ -281,10 +292,11 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         }
         uvec4 values = lattice_values(azimuth, line, lowest, lines, step);
         if (FUSE == FUSE_NEAREST) {
-            return Met(takes ? slopes_of(values) : vec4(NO_SLOPE), vec4(0.0));
+            return Met(mix(vec4(NO_SLOPE), slopes_of(values), bvec4(takes)), vec4(0.0));
         }
         // A proposal one step back is the first crossing itself.
-        uvec4 back = takes ? mix(uvec4(0), values, greaterThan(values, uvec4(1))) : uvec4(0);
+        uvec4 back = mix(uvec4(0), values, greaterThan(values, uvec4(1)));
+        back = mix(uvec4(0), back, bvec4(takes));
         met = first_crossings(azimuth, q, lanes, steps);
         return higher(met, seen(azimuth, q, q.lane * CELL, back, lanes, steps));
     }
@@ -295,7 +307,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     bvec4 has_before = wraps ? bvec4(true) : greaterThanEqual(before, ivec4(first));
     bvec4 has_after = wraps ? bvec4(true) : lessThan(before, ivec4(last));
     has_after = bvec4(uvec4(has_after) & uvec4(greaterThan(offset, ivec4(0))));
-    int lowest = clamp(flips_lanes ? before.w : before.x, first, last);
+    int lowest = clamp(mix(before.x, before.w, flips_lanes), first, last);
     ivec4 before_line = wraps ? ivec4(wrapped(before.x, lines), wrapped(before.y, lines), wrapped(before.z, lines),
                                       wrapped(before.w, lines)) : clamp(before, first, last);
     ivec4 after_line = wraps ? mix(before_line + 1, ivec4(0), equal(before_line, ivec4(lines - 1)))
@@ -311,13 +323,15 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         met = first_crossings(azimuth, q, lanes, steps);
         met = higher(met, seen(azimuth, q, y, before_far, lanes, steps));
         met = higher(met, seen(azimuth, q, y, after_far, lanes, steps));
-        for (int k = 0; k < (FUSE == FUSE_AIMED_AROUND ? 4 : 0); k++) {
-            if (met.slope[k] < enough[k]) {
-                vec2 best = vec2(met.slope[k], met.steps[k]);
-                ivec2 back = ivec2(before_back[k], after_back[k]);
-                look_around_both(azimuth, lane[k], step - warm_up, q.here.four[k], back, step, lanes, steps, best);
-                met.slope[k] = best.x;
-                met.steps[k] = best.y;
+        if (FUSE == FUSE_AIMED_AROUND) {
+            for (int k = 0; k < 4; k++) {
+                if (met.slope[k] < enough[k]) {
+                    vec2 best = vec2(met.slope[k], met.steps[k]);
+                    ivec2 back = ivec2(before_back[k], after_back[k]);
+                    look_around_both(azimuth, lane[k], step - warm_up, q.here.four[k], back, step, lanes, steps, best);
+                    met.slope[k] = best.x;
+                    met.steps[k] = best.y;
+                }
             }
         }
         return met;
@@ -326,8 +340,8 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     Met a;
     if (FUSE == FUSE_OWN) {
         ivec4 y = q.lane * CELL;
-        b = seen(azimuth, q, y + (flips_lanes ? offset : -offset), before_back, lanes, steps);
-        a = seen(azimuth, q, y + (flips_lanes ? offset - spacing : spacing - offset), after_back, lanes, steps);
+        b = seen(azimuth, q, y + mix(-offset, offset, bvec4(flips_lanes)), before_back, lanes, steps);
+        a = seen(azimuth, q, y + mix(spacing - offset, offset - spacing, bvec4(flips_lanes)), after_back, lanes, steps);
     } else {
         b = Met(mix(vec4(NO_SLOPE), slopes_of(before_values), has_before), vec4(0.0));
         a = Met(mix(vec4(NO_SLOPE), slopes_of(after_values), has_after), vec4(0.0));

@@ -19,6 +19,6 @@ ivec3 lattice_texel(Azimuth azimuth, int line, int step) {
 
 // Halfword `line` & 3 of a texel of four.
 uint lattice_u16(uvec2 texel, int line) {
-    uint word = (line & 2) == 0 ? texel.x : texel.y;
-    return (line & 1) == 0 ? word & 0xffffu : word >> 16;
+    uint word = mix(texel.x, texel.y, (line & 2) != 0);
+    return mix(word & 0xffffu, word >> 16, (line & 1) != 0);
 }

@@ -29,8 +29,8 @@ ivec2 texel_at(int lane, int march) {
 // calls a function to fetch from a texture, but loads from an image in place.
 float height_at(int lane, int march) {
     vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
-    vec2 two = (lane & 2) == 0 ? four.xy : four.zw;
-    return (lane & 1) == 0 ? two.x : two.y;
+    vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
+    return mix(two.x, two.y, (lane & 1) != 0);
 }
 
 // Index of a neighbour along one axis: wrapped where the field repeats, else held at the edge.

@@ -2,9 +2,10 @@
 //! numbers of a slice, and sums of slices.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-use super::legendre::occlusion_polynomials;
+use super::legendre::{associated, occlusion_polynomials};
 use super::product::{orders, triples};
 use super::slice::{Above, Slices, from_nlp, parts};
 use super::{MAX_ORDER, bands, index};
@@ -161,6 +162,44 @@ pub fn glsl_seen() -> String {
         })
         .collect();
     add_parts(&mut text, &kept);
+    text + "}\n"
+}
+
+/// `shaders_glsl/shared/harmonics.glsl`: Y_lm of four directions, for every order that `ORDER` may be.
+pub fn glsl_harmonics() -> String {
+    let mut text = String::from(
+        "// Made by basis::glsl::glsl_harmonics, and held to it by a test.\n//\n\
+         // Y_lm of four unit directions (x, y, z). The including shader declares ORDER and vec4 harmonics[36].\n\
+         void find_harmonics(vec4 x, vec4 y, vec4 z) {\n    vec4 t;\n",
+    );
+    // cos mφ and sin mφ, times sinᵐθ: powers of x + iy.
+    for m in 1..MAX_ORDER {
+        let (c, s) = match m {
+            1 => ("x".to_owned(), "y".to_owned()),
+            _ => (format!("x * c{0} - y * s{0}", m - 1), format!("x * s{0} + y * c{0}", m - 1)),
+        };
+        writeln!(text, "    vec4 c{m} = {c};\n    vec4 s{m} = {s};").unwrap();
+    }
+    for (l, m) in parts(MAX_ORDER) {
+        let indent = if l < 2 { "    " } else { "        " };
+        if m == 0 && l >= 2 {
+            writeln!(text, "    if (ORDER > {l}) {{").unwrap();
+        }
+        let norm = if m == 0 { 0.5 * FRAC_1_PI } else { FRAC_1_PI }.sqrt();
+        let scaled: Vec<f64> = associated(l, m).iter().map(|c| c * norm).collect();
+        let polynomial = horner(&scaled).replace("sin_", "z");
+        if m == 0 {
+            writeln!(text, "{indent}harmonics[{}] = vec4({polynomial});", index(l, 0)).unwrap();
+        } else {
+            let m = m as isize;
+            writeln!(text, "{indent}t = vec4({polynomial});").unwrap();
+            writeln!(text, "{indent}harmonics[{}] = s{m} * t;", index(l, -m)).unwrap();
+            writeln!(text, "{indent}harmonics[{}] = c{m} * t;", index(l, m)).unwrap();
+        }
+        if m == l && l >= 2 {
+            writeln!(text, "    }}").unwrap();
+        }
+    }
     text + "}\n"
 }
 

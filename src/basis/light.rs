@@ -11,7 +11,9 @@
 //! V first, then the matrix: n² products an azimuth and 9 n² (27 n² of a lobe) a sample. Light summed over
 //! azimuths without V would take 9 n(n+1)/2 an azimuth: 90 against 16 at order 4.
 //!
-//! Both are linear in L: one matrix of constants takes its series to the light's matrix.
+//! A Phong lobe beside the diffuse reflection is one more: [`gloss`], all bands that V has.
+//!
+//! All are linear in L: one matrix of constants takes its series to the light's matrix.
 
 use std::f64::consts::PI;
 
@@ -114,6 +116,28 @@ pub fn lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
         .map(|((l, m), row)| {
             // Turned to N, band l has coefficients √(4π/(2l+1)) Y_lm(N); Y's own factors go here.
             let scale = cosine[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * factor(l, m) / PI;
+            row.iter().map(|v| v * scale).collect()
+        })
+        .collect()
+}
+
+/// What a light makes of V for a Phong lobe of unit integral: `[row][k]`, n² rows and columns. Exit radiance
+/// is Σ Y_row(r) M_row,k V_k, r the direction about which the lobe lies: turned to r, band l of a zonal
+/// function has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the lobe's own bands: [`zonal::phong`]).
+///
+/// V, L and the lobe are all cut off, and V L needs bands of V that are not there: the sharper the lobe, the
+/// more is missed.
+///
+/// # Panics
+/// When `light` is not of the `triples`' order.
+pub fn gloss(triples: &[Triple], order: usize, light: &[f64], exponent: f64) -> Vec<Vec<f64>> {
+    assert_eq!(light.len(), order * order, "a light of order {order}");
+    let lobe = zonal::phong(order, exponent);
+    let matrix = light_matrix(triples, light);
+    bands(order)
+        .zip(matrix)
+        .map(|((l, _), row)| {
+            let scale = lobe[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt();
             row.iter().map(|v| v * scale).collect()
         })
         .collect()

@@ -1,7 +1,7 @@
 //! What the environment makes of what is seen: its series, and the matrix from that.
 
-use crate::basis::light::{fit_above_ground, lobe, plane};
-use crate::basis::product::triples;
+use crate::basis::light::{fit_above_ground, gloss, lobe, plane};
+use crate::basis::product::{Triple, triples};
 use crate::basis::slice::{Slices, slice_index};
 use crate::basis::{bands, window};
 use crate::scene::{Border, Quality, Receiver, Window};
@@ -52,11 +52,35 @@ pub fn series(turns: &[Vec<DVec3>], height: usize, order: usize, is_fitted: bool
         .collect()
 }
 
+/// The same of a uniform sky of this radiance.
+pub fn add_sky(series: &mut [DVec3], sky: [f32; 3]) {
+    series[0] += (4.0 * PI).sqrt() * DVec3::from_array(sky.map(f64::from));
+}
+
 /// Exit radiance's matrix `[receiver][coefficient]` from the environment's series.
 ///
 /// # Panics
 /// When the series is not of the receiver's order.
 pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
+    matrix(quality, series, |triples, order, light| match quality.receiver {
+        Receiver::Plane => plane(triples, order, light),
+        Receiver::Lobe => lobe(triples, order, light),
+    })
+}
+
+/// The same of a Phong lobe of scale 1: `[coefficient of its direction][coefficient]`.
+///
+/// # Panics
+/// When the series is not of the quality's order.
+pub fn gloss_matrix(quality: &Quality, series: &[DVec3], exponent: f32) -> Vec<Vec<DVec3>> {
+    matrix(quality, series, |triples, order, light| gloss(triples, order, light, exponent.into()))
+}
+
+fn matrix(
+    quality: &Quality,
+    series: &[DVec3],
+    of: impl Fn(&[Triple], usize, &[f64]) -> Vec<Vec<f64>>,
+) -> Vec<Vec<DVec3>> {
     let order = quality.sh_order as usize;
     let light_order = series.len().isqrt();
     let triples = triples(order);
@@ -68,11 +92,7 @@ pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     };
     let channel = |c: usize| {
         let light: Vec<f64> = series.iter().map(|s| s[c]).collect();
-        let light = window::apply(&factors, &light);
-        match quality.receiver {
-            Receiver::Plane => plane(&triples, order, &light),
-            Receiver::Lobe => lobe(&triples, order, &light),
-        }
+        of(&triples, order, &window::apply(&factors, &light))
     };
     let [red, green, blue] = [channel(0), channel(1), channel(2)];
     let rows = red.iter().zip(&green).zip(&blue);

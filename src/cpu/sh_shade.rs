@@ -2,6 +2,7 @@
 
 use super::shared::field::{field_slope, normal_of};
 use super::shared::sweep::Heights;
+use crate::basis::harmonics::evaluate;
 use crate::basis::light::receiver;
 use crate::plan::Nodes;
 use glam::{DVec2, DVec3};
@@ -59,6 +60,20 @@ pub fn light_at(
 pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let all = receiver(normal.to_array());
     let rows = if matrix.len() == 3 { &all[1..4] } else { &all[..matrix.len()] };
+    times(rows, seen, matrix)
+}
+
+/// What a lobe of scale 1 on a surface of this normal mirrors straight upwards; `matrix` is
+/// [`super::light_matrix::gloss_matrix`]'s.
+///
+/// # Panics
+/// A matrix of no order.
+pub fn gloss_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+    let mirror = 2.0 * normal.z * normal - DVec3::Z;
+    times(&evaluate(matrix.len().isqrt(), mirror), seen, matrix)
+}
+
+fn times(rows: &[f64], seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let share = |row: &[DVec3]| row.iter().zip(seen).map(|(m, v)| *v * *m).sum::<DVec3>();
     rows.iter().zip(matrix).map(|(r, row)| *r * share(row)).sum()
 }

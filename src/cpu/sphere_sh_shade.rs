@@ -119,19 +119,11 @@ impl<'a> SphereSh<'a> {
 
 /// Exit radiance of albedo 1 from a series of what is seen of a ball that stands there.
 pub fn light_of(quality: &Quality, radius_m: f64, to: DVec3, normal: DVec3, seen: &[f64]) -> f64 {
-    let order = light_order(quality);
+    let order = quality.light_order();
     let axis = if to == DVec3::ZERO { DVec3::Z } else { to.normalize() };
     let light = turned(&ball(order, radius_m, to.length()), axis);
     let series: Vec<DVec3> = light.into_iter().map(DVec3::splat).collect();
     light_on(normal, seen, &light_matrix(quality, &series)).x
-}
-
-/// Of a ball's series: with an exact cosine one less than of what is seen.
-pub fn light_order(quality: &Quality) -> usize {
-    match quality.receiver {
-        Receiver::Plane => quality.sh_order as usize - 1,
-        Receiver::Lobe => quality.sh_order as usize,
-    }
 }
 
 /// In [-π, π).

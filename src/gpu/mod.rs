@@ -10,6 +10,7 @@ mod read;
 mod renderer;
 mod requirements;
 pub mod shaders;
+mod specialise;
 mod validation;
 
 pub use frame::{Frame, Pixels};

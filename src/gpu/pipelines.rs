@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ash::vk;
 
 use super::shaders::{BindingKind, Shader};
+use super::specialise::specialised;
 use super::{Host, failed};
 use crate::Result;
 use crate::plan::Pass;
@@ -100,20 +101,9 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
         vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&push);
     let mut made =
         Pipeline { pipeline: vk::Pipeline::null(), layout: vk::PipelineLayout::null(), set_layout };
-    let module_info = vk::ShaderModuleCreateInfo::default().code(shader.words);
-    let data: Vec<u32> = constants.iter().map(|c| c.1).collect();
-    let entries: Vec<_> = constants
-        .iter()
-        .enumerate()
-        .map(|(i, c)| vk::SpecializationMapEntry {
-            constant_id: c.0,
-            offset: 4 * i as u32,
-            size: 4,
-        })
-        .collect();
-    let specialisation =
-        vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
-    // SAFETY: the SPIR-V is glslang's output for this very layout; every constant is one word;
+    let words = specialised(shader.words, constants);
+    let module_info = vk::ShaderModuleCreateInfo::default().code(&words);
+    // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types;
     // handles made on the way are destroyed here when a later step fails.
     let result = unsafe {
         device.create_pipeline_layout(&layout_info, None).and_then(|layout| {
@@ -122,8 +112,7 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
             let stage = vk::PipelineShaderStageCreateInfo::default()
                 .stage(vk::ShaderStageFlags::COMPUTE)
                 .module(module)
-                .name(c"main")
-                .specialization_info(&specialisation);
+                .name(c"main");
             let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
             let pipelines =
                 device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);

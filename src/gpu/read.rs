@@ -106,19 +106,26 @@ impl Headless {
         words.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
     }
 
-    /// Share of the samples, [0..1], where an environment's light by spherical harmonics rang below 0 in a
-    /// colour and was set to 0, in a frame that has been drawn; none without harmonics.
+    /// Share of the samples, [0..1], where light by spherical harmonics rang below 0 in a colour and was set to
+    /// 0, an environment's or what a lobe reflects, in a frame that has been drawn; none without harmonics.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn negative_share(&mut self, frame: &Frame) -> Result<Option<f64>> {
         let plan = frame.plan();
-        let (Some(_), Some(sum)) = (plan.find("visibility"), plan.find("env_sum")) else {
+        if plan.find("visibility").is_none() {
             return Ok(None);
-        };
-        let words = self.read(frame, sum)?;
-        let marks = words.chunks_exact(4).filter(|texel| f32::from_bits(texel[3]) > 0.0);
-        Ok(Some(marks.count() as f64 / (words.len() / 4) as f64))
+        }
+        let sums = ["env_sum", "gloss_sum"].map(|name| plan.find(name));
+        let mut is_negative = Vec::new();
+        for sum in sums.into_iter().flatten() {
+            let words = self.read(frame, sum)?;
+            is_negative.resize(words.len() / 4, false);
+            let marks = words.chunks_exact(4).map(|texel| f32::from_bits(texel[3]) > 0.0);
+            is_negative.iter_mut().zip(marks).for_each(|(is, mark)| *is |= mark);
+        }
+        let count = is_negative.iter().filter(|is| **is).count();
+        Ok(Some(count as f64 / is_negative.len().max(1) as f64))
     }
 
     /// Takes an image from its state `before` to its state `after`, within `commands`, which is being

@@ -11,13 +11,15 @@ use crate::basis::bands;
 use crate::basis::light::receiver;
 use crate::basis::wedge::WedgeTable;
 use crate::cpu::env_turns::env_turns;
-use crate::cpu::light_matrix::{is_fitted, light_matrix, row_weights, series};
+use crate::cpu::light_matrix::{
+    add_sky, gloss_matrix, is_fitted, light_matrix, row_weights, series,
+};
 use crate::cpu::sh_shade::light_on;
 use crate::cpu::sh_visibility::{Series, seen_above};
 use crate::cpu::sh_wedges::sh_wedges;
 use crate::plan::Azimuth;
 use crate::plan::sh::lowest_rad;
-use crate::scene::{Border, Environment, Quality, Receiver, Wedges};
+use crate::scene::{Border, Environment, Quality, Wedges};
 
 /// What a sample sees: coefficients, and how far a device's may be from each.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,10 +63,7 @@ impl Harmonics {
     /// The light's matrix of a quality.
     pub fn new(environment: &Environment, border: Border, quality: &Quality) -> Self {
         let order = quality.sh_order as usize;
-        let light_order = match quality.receiver {
-            Receiver::Plane => order - 1,
-            Receiver::Lobe => order,
-        };
+        let light_order = quality.light_order();
         let (height, fitted) = (environment.height(), is_fitted(quality, border));
         let rows = if fitted { height.div_ceil(2) } else { height };
         let turns = env_turns(environment, rows, light_order);
@@ -76,8 +75,8 @@ impl Harmonics {
             vec![twin_turn(width) * sum / width as f64; 2 * light_order - 1]
         };
         let turned: Vec<Vec<DVec3>> = (0..rows).map(turned).collect();
-        let summed = matrix_magnitudes(quality, border, height, &turns);
-        let turned = matrix_magnitudes(quality, border, height, &turned);
+        let summed = matrix_magnitudes(quality, border, height, &turns, None);
+        let turned = matrix_magnitudes(quality, border, height, &turned, None);
         let rounded = twin_light_matrix(height);
         let entry = |(s, t): (&DVec3, &DVec3)| rounded * *s + *t;
         let row = |(s, t): (&Vec<DVec3>, &Vec<DVec3>)| s.iter().zip(t).map(entry).collect();
@@ -89,7 +88,7 @@ impl Harmonics {
     }
 
     /// What is seen above slopes that err as `error` says, each that of the lowest direction that is free:
-    /// above the horizon, and for [`Receiver::Plane`] above the sample's own plane.
+    /// above the horizon, and for [`Receiver::Plane`](crate::scene::Receiver::Plane) above the sample's own plane.
     pub fn seen(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Seen {
         let Series { order, wedges, .. } = self.series;
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
@@ -119,28 +118,36 @@ impl Harmonics {
     }
 }
 
-/// Entries of the light's matrix, from sums of an environment's rows, with every product that they sum
-/// taken by its magnitude.
+/// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with every
+/// product that they sum taken by its magnitude. `gloss`: of a lobe's exponent, and a sky that it is lit by.
 pub fn matrix_magnitudes(
     quality: &Quality,
     border: Border,
     height: usize,
     turns: &[Vec<DVec3>],
+    gloss: Option<(f32, [f32; 3])>,
 ) -> Vec<Vec<DVec3>> {
-    let light_order = turns[0].len().div_ceil(2);
+    let order = quality.sh_order as usize;
+    let light_order = turns.first().map_or(order, |row| row.len().div_ceil(2));
     let fitted = is_fitted(quality, border);
     let weights = row_weights((height, turns.len()), light_order, fitted);
     let mut all: Vec<Vec<DVec3>> = Vec::new();
     for (i, ((_, m), weights)) in bands(light_order).zip(weights).enumerate() {
         let turn = (light_order - 1).wrapping_add_signed(m);
-        let sum: DVec3 = weights.iter().zip(turns).map(|(w, t)| w.abs() * t[turn].abs()).sum();
+        let mut sum = [weights.iter().zip(turns).map(|(w, t)| w.abs() * t[turn].abs()).sum()];
+        if let Some((_, sky)) = gloss.filter(|_| i == 0) {
+            add_sky(&mut sum, sky);
+        }
         // Light of 1 in this coefficient alone.
         let mut unit = vec![DVec3::ZERO; light_order * light_order];
         unit[i] = DVec3::ONE;
-        let shares = light_matrix(quality, &unit);
+        let shares = match gloss {
+            None => light_matrix(quality, &unit),
+            Some((exponent, _)) => gloss_matrix(quality, &unit, exponent),
+        };
         all.resize(shares.len(), vec![DVec3::ZERO; shares[0].len()]);
         for (row, shares) in all.iter_mut().zip(&shares) {
-            row.iter_mut().zip(shares).for_each(|(entry, s)| *entry += s.abs() * sum);
+            row.iter_mut().zip(shares).for_each(|(entry, s)| *entry += s.abs() * sum[0]);
         }
     }
     all

@@ -8,7 +8,7 @@ use super::tolerance::{ARC_TANGENT, BallSeen, EPSILON, ShadeError};
 use crate::basis::bands;
 use crate::basis::light::receiver;
 use crate::cpu::light_matrix::light_matrix;
-use crate::cpu::sphere_sh_shade::{BEYOND, light_order};
+use crate::cpu::sphere_sh_shade::BEYOND;
 use crate::scene::{Quality, Receiver, Wedges};
 
 /// The shares that coefficients of what is seen and of a ball have in the light, of a quality.
@@ -22,7 +22,7 @@ pub struct SoftBall {
 impl SoftBall {
     /// Of a quality.
     pub fn new(quality: &Quality) -> Self {
-        let count = light_order(quality).pow(2);
+        let count = quality.light_order().pow(2);
         let of_one = |i: usize| {
             let mut unit = vec![DVec3::ZERO; count];
             unit[i] = DVec3::ONE;
@@ -37,7 +37,7 @@ impl SoftBall {
     ///
     /// A coefficient of what is seen errs as [`ShadeError::series`] says, of azimuths across the ball and beyond;
     /// the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
-    /// at both. One of the ball as [`coefficient`] says. Products sum as many terms as there are, each of four
+    /// at both. One of the ball as `coefficient` says. Products sum as many terms as there are, each of four
     /// factors, whose polynomials of the normal are 2 at most and change by 6 a radian.
     pub fn twin(&self, ball: &BallSeen, slope_error: f64, normal: DVec3, seen: &[f64]) -> f64 {
         let order = self.quality.sh_order as usize;
@@ -55,7 +55,7 @@ impl SoftBall {
         let first = usize::from(self.quality.receiver == Receiver::Plane);
         let terms = self.shares.iter().flatten().flatten().filter(|share| **share > 1e-9).count();
         let mut sum = 0.0;
-        for ((l, _), rows) in bands(light_order(&self.quality)).zip(&self.shares) {
+        for ((l, _), rows) in bands(self.quality.light_order()).zip(&self.shares) {
             let [light, off] = coefficient(ball, l);
             for (row, shares) in rows.iter().enumerate() {
                 let polynomial = all[first + row].abs() + 6.0 * error.normal();

@@ -32,7 +32,7 @@ pub(crate) fn plan(
     let texels = (environment.width() * sh.rows) as u64;
     builder.pass(
         &shaders::ENV_TURNS,
-        "",
+        sh.part(),
         format!("the environment around each row, up to {} turns", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],
         &[],

@@ -34,6 +34,10 @@ struct PathTracePush {
     sky: [f32; 4],
     first_row: i32,
     keys: i32,
+    first_path: i32,
+    last_path: i32,
+    first_light: i32,
+    last_light: i32,
 }
 
 same_layout!(
@@ -59,7 +63,50 @@ same_layout!(
     sky = SKY,
     first_row = FIRST_ROW,
     keys = KEYS,
+    first_path = FIRST_PATH,
+    last_path = LAST_PATH,
+    first_light = FIRST_LIGHT,
+    last_light = LAST_LIGHT,
 );
+
+/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+const MOST_TURNS: u32 = 60_000;
+
+/// Lights that a part looks at, where there are as many: the scattered ray of each part is one more.
+const LIGHTS_OF_A_PART: u32 = 16;
+
+/// What one dispatch does of a batch: some of its paths, some of the lights at each vertex.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub paths: Range<u32>,
+    pub lights: Range<u32>,
+}
+
+/// The parts of a batch, one where all of it is within what a device may turn. Few paths go on beyond a
+/// few bounces.
+pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
+    let lights = &scene.lights;
+    let all = (lights.suns.len() + lights.keys.len() + lights.spheres.len()) as u32;
+    let vertices = bounces.min(3) + 1;
+    let of_ray = blocks.usual_steps();
+    let others = 1 + u32::from(lights.environment.is_some());
+    // One turn more a light, and one where the scattered ray looks for a ball.
+    let most_lights = |paths: u32| {
+        (MOST_TURNS / (paths * vertices)).saturating_sub(others * of_ray) / (of_ray + 2)
+    };
+    let halves = (0..=SET_BITS).rev().map(|bits| 1 << bits);
+    let enough = |paths: &u32| most_lights(*paths) >= all.min(LIGHTS_OF_A_PART);
+    let paths = halves.into_iter().find(enough).unwrap_or(1);
+    let at_once = most_lights(paths).max(1);
+    let sets = (0..BATCH_PATHS).step_by(paths as usize).map(|first| first..first + paths);
+    sets.flat_map(|paths| {
+        (0..all.max(1)).step_by(at_once as usize).map(move |first| Part {
+            paths: paths.clone(),
+            lights: first.min(all)..(first + at_once).min(all),
+        })
+    })
+    .collect()
+}
 
 /// One batch of paths from every sample of some rows, counted in eights.
 pub(crate) fn plan(
@@ -67,18 +114,24 @@ pub(crate) fn plan(
     scene: &Scene,
     blocks: &Blocks,
     (bounces, seed): (u32, u32),
-    band: Range<u32>,
+    (band, part): (Range<u32>, Option<&Part>),
     bound: &[(&str, ResourceId)],
 ) {
     let Scene { field, surface, lights } = scene;
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let samples = u64::from(cols) * u64::from(band.end - band.start);
-    let part = match band.end - band.start {
-        all if all == rows => String::new(),
-        _ => format!("rows {}..{}", band.start, band.end),
-    };
+    let mut label = Vec::new();
+    if band.end - band.start < rows {
+        label.push(format!("rows {}..{}", band.start, band.end));
+    }
+    if let Some(Part { paths, lights }) = part {
+        let [path, light] = [paths, lights].map(|of| format!("{}..{}", of.start, of.end));
+        label.push(format!("paths {path} lights {light}"));
+    }
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
+    let whole = Part { paths: 0..BATCH_PATHS, lights: 0..count as u32 };
+    let Part { paths, lights: looked_at } = part.unwrap_or(&whole);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
     let (albedo, is_map) = match surface.albedo {
@@ -90,7 +143,7 @@ pub(crate) fn plan(
     };
     builder.pass(
         &shaders::PATH_TRACE,
-        &part,
+        &label.join(" "),
         format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
         &[
@@ -106,6 +159,7 @@ pub(crate) fn plan(
             (8, u32::from(!lights.spheres.is_empty())),
             (9, u32::from(bounces > 0)),
             (10, blocks.most_steps()),
+            (12, u32::from(part.is_some())),
         ],
         &PathTracePush {
             cols: cols as i32,
@@ -128,6 +182,10 @@ pub(crate) fn plan(
             sky: four(lights.sky.unwrap_or_default()),
             first_row: band.start as i32,
             keys: lights.keys.len() as i32,
+            first_path: paths.start as i32,
+            last_path: paths.end as i32,
+            first_light: looked_at.start as i32,
+            last_light: looked_at.end as i32,
         },
         bound,
         samples * 7 * 16,

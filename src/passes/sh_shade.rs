@@ -1,7 +1,7 @@
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::sh::Sh;
+use crate::plan::sh::{Lit, Sh};
 use crate::plan::{Axis, Builder, ResourceId};
-use crate::scene::{Border, Receiver};
+use crate::scene::Border;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -41,17 +41,21 @@ pub(crate) fn plan(
     let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
         &shaders::SH_SHADE,
-        "env",
-        match sh.receiver {
-            Receiver::Plane => "what is seen times the light's matrix; the cosine is exact",
-            Receiver::Lobe => "what is seen times the light's matrix; a cosine of three bands",
+        match sh.lit {
+            Lit::Plane | Lit::Cosine => "env",
+            Lit::Gloss => "glossy",
+        },
+        match sh.lit {
+            Lit::Plane => "what is seen times the light's matrix; the cosine is exact",
+            Lit::Cosine => "what is seen times the light's matrix; a cosine of three bands",
+            Lit::Gloss => "what is seen times the light's matrix; a Phong lobe of as many bands",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
         &[
             (0, border as u32),
             (1, u32::from(axis.marches_rows)),
             (2, sh.order as u32),
-            (3, u32::from(sh.receiver == Receiver::Plane)),
+            (3, sh.lit as u32),
             (4, sh.nodes.stride),
         ],
         &ShShadePush {

@@ -3,7 +3,7 @@ use crate::gpu::shaders;
 use crate::plan::sh::Sh;
 use crate::plan::sweep::Sweep;
 use crate::plan::{Batch, Builder, Nodes, ResourceId};
-use crate::scene::{Border, Receiver, Wedges};
+use crate::scene::{Border, Wedges};
 
 /// What a batch adds to what is seen.
 pub(crate) struct Images {
@@ -52,7 +52,7 @@ pub(crate) fn plan(
             (4, sh.order as u32),
             (5, u32::from(wedges == Wedges::Nlp)),
             (6, u32::from(axis.marches_rows)),
-            (7, u32::from(sh.receiver == Receiver::Plane)),
+            (7, u32::from(sh.own_plane_hides)),
             (8, sh.nodes.stride),
             (9, lattice_of.stride),
         ],

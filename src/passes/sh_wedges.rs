@@ -1,7 +1,7 @@
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::sh::{Sh, WedgeTexels};
 use crate::plan::{Axis, Builder, ResourceId};
-use crate::scene::{Border, Receiver};
+use crate::scene::Border;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -68,7 +68,7 @@ pub(crate) fn plan(
             (0, border as u32),
             (1, u32::from(axis.marches_rows)),
             (2, sh.order as u32),
-            (3, u32::from(sh.receiver == Receiver::Plane)),
+            (3, u32::from(sh.own_plane_hides)),
             (4, sh.nodes.stride),
         ],
         &ShWedgesPush {

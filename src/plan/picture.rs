@@ -1,4 +1,5 @@
 mod drawing;
+mod gloss;
 mod images;
 
 use super::azimuths::{self, Shape};
@@ -11,7 +12,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
-use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Surface, Wedges};
+use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Wedges};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -39,8 +40,12 @@ pub struct Picture {
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
 /// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
-/// "radiance", then one "direct.*" image a light, "sky_view" and one "indirect.*" image a bounce where asked. All
-/// are images of one channel where every colour is grey, else of four.
+/// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
+/// all, and they without it), "sky_view" and one "indirect.*" image a bounce. All are images of one channel
+/// where every colour is grey, else of four.
+///
+/// A lobe is seen from straight above. It reflects sky and environment by harmonics, whose order limits it as
+/// it does the light, and suns by the lobe towards their middle and the part of them that is seen.
 ///
 /// # Errors
 /// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
@@ -49,10 +54,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     quality.check()?;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
-    refuse_later(surface)?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
+    let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
     let is_walked = quality.bounces.walk_over(surface);
     if is_walked {
@@ -95,25 +100,29 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
     }
     let (mut tables, mut harmonics) = (None, None);
-    match shining.environment.map(|e| (e, surface.border)) {
-        Some(lit) if quality.basis == Basis::Sh => {
-            if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
-                return Err(Error::setting(
-                    "--wedges table with --lines exact",
-                    "wedges of uneven widths",
-                    "--method brute, which is exact in every azimuth",
-                ));
-            }
-            harmonics = Some(Harmonics::make(&mut builder, size, lit, quality, &lists[0]));
+    let exponent = shining.gloss.filter(|_| shining.has_gloss_around()).map(|p| p.exponent);
+    if exponent.is_some() || shining.environment.is_some() && quality.basis == Basis::Sh {
+        if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
+            return Err(Error::setting(
+                "--wedges table with --lines exact",
+                "wedges of uneven widths",
+                "--method brute, which is exact in every azimuth",
+            ));
         }
-        Some(lit) => tables = Some(Tables::make(&mut builder, lit, quality)),
-        None if shining.sky.is_some() => notes.push("no environment: no table".into()),
-        None => {}
+        let (lit, settings) = ((shining.environment, surface.border), (quality, exponent));
+        harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
+    } else if let Some(environment) = shining.environment {
+        let lit = (environment, surface.border);
+        tables = Some(Tables::make(&mut builder, lit, quality));
+    }
+    if shining.environment.is_none() && shining.sky.is_some() {
+        notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
         && images.sphere_sum.is_none()
+        && images.gloss_sum.is_none()
         && bounces == 0;
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
@@ -159,6 +168,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         soft,
         edited: None,
         is_begun: false,
+        gloss_is_begun: false,
     };
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
@@ -196,17 +206,8 @@ fn marched_nodes(
     let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
     // A table is looked up by horizons of all samples.
     let nodes = harmonics.filter(|h| h.wedge_table.is_none() && is_marched && is_alone);
-    let nodes = nodes.map(|h| h.sh.nodes);
+    let nodes = nodes.map(|h| h.sh().nodes);
     nodes.unwrap_or(Nodes { stride: 1 })
-}
-
-/// What only the reference can light so far.
-fn refuse_later(surface: &Surface) -> Result<()> {
-    let expected = "none: it is not yet there for pictures, only for the reference";
-    if surface.phong.is_some() {
-        return Err(Error::setting("phong", "a lobe", expected));
-    }
-    Ok(())
 }
 
 /// The settings really used.
@@ -223,8 +224,9 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    match (shining.environment, quality.basis) {
-        (Some(_), Basis::Sh) => {
+    let is_around = shining.environment.is_some() || shining.has_gloss_around();
+    match quality.basis {
+        Basis::Sh if is_around => {
             add("basis", "sh");
             add("sh_order", &quality.sh_order.to_string());
             add("wedges", quality.wedges.name());
@@ -235,11 +237,11 @@ fn used(
                 add("wedge_side", &quality.wedge_side.to_string());
             }
         }
-        (Some(_), _) => {
+        _ if is_around => {
             add("basis", "table");
             add("table_elevations", &quality.table_elevations.to_string());
         }
-        (None, _) => {}
+        _ => {}
     }
     let has_balls = !shining.spheres.shining.is_empty();
     if has_balls || shining.aimed().any(|light| light.shape != Shape::Point) {

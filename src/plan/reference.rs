@@ -19,7 +19,8 @@ const MOST_BOUNCES: u32 = 64;
 /// Inputs: those of [`reference_inputs`]. Outputs: "radiance", the mean of all batches so far, and
 /// "standard_error", that of the mean, infinite after the first batch; four channels each, the fourth of the
 /// error being the rays that were traced. Running the whole plan begins anew; running its passes
-/// `path_trace` alone, one for each band of rows, adds a batch. The same seed gives the same bits on the
+/// `path_trace` alone, one for each band of rows, adds a batch; under many lights several, in order, each a
+/// part of one. The same seed gives the same bits on the
 /// same device. Buffer "lost_rays" counts rays that were given up: 0 in a right result.
 ///
 /// A batch's paths are one randomised net, batches are independent: the standard error is from the
@@ -84,9 +85,17 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = size[1];
     let band_rows = band_rows(size[0], bounces);
+    let parts = path_trace::parts(scene, &blocks, bounces);
+    if parts.len() > 1 {
+        let sum = builder.image("part_sum", Owner::Internal, rgba, [size[0], rows, 1], false);
+        bound.push(("part_sum", sum));
+    }
     for first in (0..rows).step_by(band_rows as usize) {
         let band = first..rows.min(first + band_rows);
-        path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), band, &bound);
+        for part in &parts {
+            let dispatch = (band.clone(), (parts.len() > 1).then_some(part));
+            path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), dispatch, &bound);
+        }
     }
     let used = vec![
         ("method".to_owned(), "path tracing".to_owned()),

@@ -3,12 +3,23 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Azimuth, Nodes, batch};
-use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::light::{fit_above_ground, gloss, lobe, plane};
 use crate::basis::product::triples;
 use crate::basis::slice::{Slices, parts, slice_index};
 use crate::basis::wedge::WedgeTable;
 use crate::basis::{bands, index, window};
 use crate::scene::{Border, Environment, Quality, Receiver, Window};
+
+/// What turns what is seen into light. Numbered as in `sh_shade.comp`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lit {
+    /// A clamped cosine of three bands.
+    Cosine = 0,
+    /// The cosine of a surface whose plane hides what lies below it.
+    Plane = 1,
+    /// A Phong lobe.
+    Gloss = 2,
+}
 
 /// Sizes, and where things lie in [`Plan::constants`](super::Plan::constants), in texels of four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +28,9 @@ pub(crate) struct Sh {
     pub order: usize,
     /// Of the environment's series.
     pub light_order: usize,
-    pub receiver: Receiver,
+    pub lit: Lit,
+    /// Whether what lies below a sample's own plane is not seen.
+    pub own_plane_hides: bool,
     /// Where what is seen is found.
     pub nodes: Nodes,
     /// Rows of the light's matrix.
@@ -30,44 +43,61 @@ pub(crate) struct Sh {
 }
 
 impl Sh {
-    /// Sizes and the constants for an environment.
+    /// Sizes for an environment, and for a uniform sky where there is none; adds the constants. For the lobe of an
+    /// exponent, else for the diffuse receiver of the quality.
     ///
     /// Where ground hides all below horizontal, a plane's light is fitted to what is above: nothing else
-    /// of its series is ever seen. A window needs a series of all directions.
-    pub fn of(environment: &Environment, border: Border, quality: &Quality) -> (Self, Vec<f32>) {
+    /// of its series is ever seen. A window needs a series of all directions. A lobe takes all bands of what is
+    /// seen, so its light has as many.
+    pub fn of(
+        environment: Option<&Environment>,
+        border: Border,
+        quality: &Quality,
+        exponent: Option<f32>,
+        constants: &mut Vec<f32>,
+    ) -> Self {
         let order = quality.sh_order as usize;
         let is_fitted = quality.receiver == Receiver::Plane
             && quality.window == Window::None
             && border != Border::Open;
-        let light_order = match quality.receiver {
-            Receiver::Plane => order - 1,
-            Receiver::Lobe => order,
+        let lit = match (exponent, quality.receiver) {
+            (Some(_), _) => Lit::Gloss,
+            (None, Receiver::Plane) => Lit::Plane,
+            (None, Receiver::Lobe) => Lit::Cosine,
         };
-        let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
-        let rows = match is_fitted {
-            true => environment.height().div_ceil(2),
-            false => environment.height(),
-        };
-        let mut constants = columns(environment, light_order);
+        let light_order = if lit == Lit::Plane { order - 1 } else { order };
+        let column_first = constants.len() / 4;
+        constants.extend(environment.iter().flat_map(|e| columns(e, light_order)));
         let row_first = constants.len() / 4;
-        let fit = is_fitted.then(|| fit_above_ground(light_order));
-        constants.extend(elevations((environment.height(), rows), light_order, lowest_rad, fit));
+        let mut rows = 0;
+        if let Some(e) = environment {
+            let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
+            rows = if is_fitted { e.height().div_ceil(2) } else { e.height() };
+            let fit = is_fitted.then(|| fit_above_ground(light_order));
+            constants.extend(elevations((e.height(), rows), light_order, lowest_rad, fit));
+        }
         let matrix_first = constants.len() / 4;
-        let entries = matrix(quality, light_order);
+        let entries = matrix(quality, light_order, exponent);
         let receivers = entries.len() / (order * order);
         constants.extend(entries.iter().flat_map(|entry| by_fours(entry)));
-        let sh = Self {
+        let nodes = Nodes { stride: quality.subsample };
+        Self {
             order,
             light_order,
-            receiver: quality.receiver,
-            nodes: Nodes { stride: quality.subsample },
+            lit,
+            own_plane_hides: quality.receiver == Receiver::Plane,
+            nodes,
             receivers,
             rows,
-            column_first: 0,
+            column_first,
             row_first,
             matrix_first,
-        };
-        (sh, constants)
+        }
+    }
+
+    /// What the passes before the shading are of, where there are two of each.
+    pub fn part(&self) -> &'static str {
+        if self.lit == Lit::Gloss { "glossy" } else { "" }
     }
 
     /// Layers of four coefficients.
@@ -166,7 +196,11 @@ fn elevations(
 
 /// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
 /// The light of one coefficient at a time makes a column of it.
-pub(super) fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
+pub(super) fn matrix(
+    quality: &Quality,
+    light_order: usize,
+    exponent: Option<f32>,
+) -> Vec<Vec<f64>> {
     let order = quality.sh_order as usize;
     let triples = triples(order);
     let factors = factors(quality.window, light_order);
@@ -175,9 +209,10 @@ pub(super) fn matrix(quality: &Quality, light_order: usize) -> Vec<Vec<f64>> {
         .map(|(i, (l, _))| {
             let mut light = vec![0.0; light_order * light_order];
             light[i] = factors[l];
-            match quality.receiver {
-                Receiver::Plane => plane(&triples, order, &light).concat(),
-                Receiver::Lobe => lobe(&triples, order, &light).concat(),
+            match (exponent, quality.receiver) {
+                (Some(s), _) => gloss(&triples, order, &light, s.into()).concat(),
+                (None, Receiver::Plane) => plane(&triples, order, &light).concat(),
+                (None, Receiver::Lobe) => lobe(&triples, order, &light).concat(),
             }
         })
         .collect();

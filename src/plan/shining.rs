@@ -3,7 +3,7 @@ use super::azimuths::{self, Azimuth, Shape};
 use super::spheres::Spheres;
 use super::sweep::Sweep;
 use super::sweeping::circle;
-use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Quality, Scene, Sun};
+use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Phong, Quality, Scene, Sun};
 use crate::{Error, Result};
 
 /// The lights that give any light.
@@ -15,6 +15,8 @@ pub(super) struct Shining<'a> {
     /// The same.
     pub keys: Vec<(usize, &'a KeyLight)>,
     pub spheres: Spheres<'a>,
+    /// The surface's lobe, where it reflects anything.
+    pub gloss: Option<Phong>,
     /// Whether what a uniform sky would give is wanted as an image.
     has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
@@ -60,6 +62,10 @@ impl<'a> Shining<'a> {
             notes.push(format!("light {} dropped: its radiance is 0", i + 1));
         }
         let spheres = Spheres::of(field, balls, quality.light_cutoff, notes);
+        let gloss = surface.phong.filter(|p| p.scale > 0.0);
+        if surface.phong.is_some() && gloss.is_none() {
+            notes.push("lobe dropped: its scale is 0".into());
+        }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
             && sky.is_none_or(|c| grey(&c))
@@ -68,7 +74,7 @@ impl<'a> Shining<'a> {
             && spheres.shining.iter().all(|(_, s)| grey(&s.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
         let has_sky_view = wanted.sky_view;
-        Ok(Self { sky, environment, suns, keys, spheres, has_sky_view, is_grey })
+        Ok(Self { sky, environment, suns, keys, spheres, gloss, has_sky_view, is_grey })
     }
 
     /// Whether nothing shines: the picture is black.
@@ -93,6 +99,11 @@ impl<'a> Shining<'a> {
             }
         }
         keys
+    }
+
+    /// Whether some light is from all around, and a lobe reflects it.
+    pub fn has_gloss_around(&self) -> bool {
+        self.gloss.is_some() && (self.sky.is_some() || self.environment.is_some())
     }
 
     /// Suns, then key lights: each is lit through azimuths of its own.

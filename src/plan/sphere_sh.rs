@@ -7,7 +7,6 @@ use super::sh::{by_fours, matrix};
 use super::{Builder, ResourceId};
 use crate::basis::bands;
 use crate::basis::wedge::WedgeTable;
-use crate::cpu::sphere_sh_shade::light_order;
 use crate::passes::pyramid_march;
 use crate::scene::{Border, Method, Quality, Receiver, Wedges};
 
@@ -92,10 +91,10 @@ impl SphereSh {
 /// Row of the receiver's polynomials, place in what is seen, place in the ball's series and what their product
 /// counts for, of all that a ball towards azimuth 0 has a part in: none of m below 0.
 fn entries(quality: &Quality) -> Vec<f32> {
-    let (order, light_order) = (quality.sh_order as usize, light_order(quality));
+    let (order, light_order) = (quality.sh_order as usize, quality.light_order());
     let row_first = if quality.receiver == Receiver::Plane { 1 } else { 0 };
     let mut all = Vec::new();
-    for (at, shares) in matrix(quality, light_order).iter().enumerate() {
+    for (at, shares) in matrix(quality, light_order, None).iter().enumerate() {
         let (row, seen) = (row_first + at / (order * order), at % (order * order));
         for (i, ((_, m), share)) in bands(light_order).zip(shares).enumerate() {
             // What is not 0 is above 1e-4: a product of three harmonics, over π.

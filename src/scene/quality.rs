@@ -47,7 +47,8 @@ pub struct Quality {
     /// What an environment is looked up in.
     pub basis: Basis,
     /// Order n of what samples see as spherical harmonics, [2..6], default 4: n² numbers a sample. Lower:
-    /// faster, less memory, the environment blurred. Only with [`Basis::Sh`], as are those below.
+    /// faster, less memory, the environment blurred. Only with [`Basis::Sh`] or [`LightBasis::Sh`], as are those
+    /// below.
     pub sh_order: u32,
     /// How what is seen along an azimuth becomes harmonics.
     pub wedges: Wedges,
@@ -111,6 +112,14 @@ impl Quality {
 
     /// What [`wedge_side`](Self::wedge_side) may be.
     pub const WEDGE_SIDE: RangeInclusive<u32> = 4..=256;
+
+    /// Order of the lights' own series: with an exact cosine one less than what is seen has.
+    pub fn light_order(&self) -> usize {
+        match self.receiver {
+            Receiver::Plane => self.sh_order as usize - 1,
+            Receiver::Lobe => self.sh_order as usize,
+        }
+    }
 
     /// Checks every range.
     ///

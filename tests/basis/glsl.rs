@@ -1,8 +1,11 @@
 //! The texts are run by a small reader of GLSL's sums and products: what they say, in f64.
 
 use crate::{ORDERS, noise, within};
-use ridgelight::basis::glsl::{Factor, glsl_product, glsl_seen, glsl_slice, glsl_visibility_nlp};
-use ridgelight::basis::harmonics::turned;
+use glam::DVec3;
+use ridgelight::basis::glsl::{
+    Factor, glsl_harmonics, glsl_product, glsl_seen, glsl_slice, glsl_visibility_nlp,
+};
+use ridgelight::basis::harmonics::{evaluate, turned};
 use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::product::{product, triples};
 use ridgelight::basis::slice::Slices;
@@ -184,13 +187,35 @@ fn visibility_is_what_is_not_occluded() {
     }
 }
 
-/// The shaders' copy is the text. `RIDGELIGHT_BLESS=1` writes it anew.
+/// Y_lm to order 6 as the text says them, anywhere on the sphere: sums of seven terms of at most 15 in all, each
+/// off by 2^-24.
 #[test]
-fn the_shaders_sum_is_the_text() {
-    let path =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl/shared/seen.glsl");
-    if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
-        std::fs::write(&path, glsl_seen()).expect("written");
+fn harmonics_are_harmonics() {
+    let text: Vec<String> = glsl_harmonics()
+        .lines()
+        .filter(|l| !l.contains("if (") && !matches!(l.trim(), "}" | "vec4 t;"))
+        .map(|l| l.replace("= vec4(", "= (").replace("    vec4 ", "    "))
+        .collect();
+    for direction in crate::directions(40).chain([DVec3::Z, -DVec3::Z, DVec3::X]) {
+        let mut machine = Machine::default();
+        for (name, value) in [("x", direction.x), ("y", direction.y), ("z", direction.z)] {
+            machine.values.insert(name.to_owned(), value);
+        }
+        machine.run(&text.join("\n"));
+        let expected = evaluate(6, direction);
+        within(&machine.read("harmonics", 36), &expected, 15.0 * 7.0 / f64::from(1 << 24));
     }
-    assert!(std::fs::read_to_string(&path).expect("kept") == glsl_seen(), "RIDGELIGHT_BLESS=1");
+}
+
+/// The shaders' copies are the texts. `RIDGELIGHT_BLESS=1` writes them anew.
+#[test]
+fn the_shaders_copies_are_the_texts() {
+    let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl/shared");
+    for (name, text) in [("seen.glsl", glsl_seen()), ("harmonics.glsl", glsl_harmonics())] {
+        let path = shared.join(name);
+        if std::env::var_os("RIDGELIGHT_BLESS").is_some_and(|v| v == "1") {
+            std::fs::write(&path, &text).expect("written");
+        }
+        assert!(std::fs::read_to_string(&path).expect("kept") == text, "RIDGELIGHT_BLESS=1");
+    }
 }

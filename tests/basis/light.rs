@@ -4,11 +4,11 @@ use crate::{ORDERS, noise, within};
 use glam::DVec3;
 use ridgelight::basis::azimuth::{assemble, circle};
 use ridgelight::basis::harmonics::{evaluate, reconstruct, turned};
-use ridgelight::basis::light::{fit_above_ground, lobe, plane, receiver};
+use ridgelight::basis::light::{fit_above_ground, gloss, lobe, plane, receiver};
 use ridgelight::basis::product::{product, triples};
 use ridgelight::basis::quadrature::points;
 use ridgelight::basis::slice::Slices;
-use ridgelight::basis::zonal::clamped_cosine;
+use ridgelight::basis::zonal::{clamped_cosine, phong};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const AZIMUTHS: usize = 64;
@@ -88,6 +88,25 @@ fn a_lobe_is_the_triple_product() {
             product(&triples, &light, &v).iter().zip(&about).map(|(a, b)| a * b / PI).sum();
         let rows = &receiver(normal.to_array())[..kept * kept];
         within(&[exit(&lobe(&triples, order, &light), rows, &v)], &[want], 1e-12);
+    }
+}
+
+/// So is a gloss, of all bands of a Phong lobe about a direction; it integrates to 1, which is all of a light of
+/// 1 that is seen whole.
+#[test]
+fn a_gloss_is_the_triple_product() {
+    let mirror = DVec3::new(-0.3, 0.7, -0.2).normalize();
+    for (order, exponent) in ORDERS.zip([0.0, 1.0, 5.0, 20.0, 1e3, 1e4]) {
+        let (light, v) = (noise(3, order * order), noise(4, order * order));
+        let triples = triples(order);
+        let about = turned(&phong(order, exponent), mirror);
+        let want: f64 = product(&triples, &light, &v).iter().zip(&about).map(|(a, b)| a * b).sum();
+        let matrix = gloss(&triples, order, &light, exponent);
+        within(&[exit(&matrix, &evaluate(order, mirror), &v)], &[want], 1e-12);
+        let mut one = vec![0.0; order * order];
+        one[0] = (4.0 * PI).sqrt();
+        let matrix = gloss(&triples, order, &one, exponent);
+        within(&[exit(&matrix, &evaluate(order, mirror), &one)], &[1.0], 1e-13);
     }
 }
 

@@ -1,6 +1,9 @@
 //! The spherical pit: a cap of half-angle α of a sphere, sunk into a plain.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use ridgelight::cpu::bounce::Fineness;
+use ridgelight::cpu::light::slice;
 use ridgelight::scene::Border;
 
 use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
@@ -11,6 +14,40 @@ fn the_closed_form_is_the_quadrature() {
     for (alpha, albedo, bounces, radiance) in PITS {
         let off = pit_radiance(alpha, f64::from(albedo), bounces) - radiance;
         assert!(off.abs() < 1e-7, "f32 of 0.9");
+    }
+}
+
+/// The reference's pits to 1e-12, by slices of what places of the sphere see above its rim and below it. Of a
+/// sphere every place sees as much sky, the same radiance comes back from the rest, and so it goes on.
+#[test]
+fn slices_of_a_pit_are_the_reference() {
+    let all: serde_json::Value =
+        serde_json::from_str(include_str!("../basis/reference_numbers.json")).unwrap();
+    for sample in all["spherical_pit"].as_array().unwrap() {
+        let number = |name: &str| sample[name].as_f64().unwrap();
+        let (alpha, albedo) = (number("alpha"), number("albedo"));
+        for from_bottom in [0.0, 0.3 * alpha, 0.9 * alpha] {
+            // On a sphere of radius 1 about the origin; its normal is towards that.
+            let (x, z) = (f64::sin(from_bottom), -f64::cos(from_bottom));
+            let azimuths = 4096;
+            let (mut sky, mut ground) = (0.0, 0.0);
+            for k in 0..azimuths {
+                let cos = (TAU * f64::from(k) / f64::from(azimuths)).cos();
+                let (a, b) = (-x * cos, -z);
+                // To the rim's circle of radius sin α in the plane.
+                let away = ((x * cos).powi(2) + alpha.sin().powi(2) - x * x).sqrt() - x * cos;
+                let rim = (-alpha.cos() - z).atan2(away);
+                sky += 2.0 / f64::from(azimuths) * slice(a, b, rim, FRAC_PI_2);
+                ground += 2.0 / f64::from(azimuths) * slice(a, b, (-a).atan2(b), rim);
+            }
+            let direct = albedo * sky;
+            let bounces = sample["bounces"].as_u64().unwrap();
+            let got = (0..bounces).fold(direct, |light, _| direct + albedo * ground * light);
+            let limit = direct / (1.0 - albedo * ground);
+            for (got, want) in [(got, number("radiance")), (limit, number("limit"))] {
+                assert!((got / want - 1.0).abs() < 1e-12, "{alpha} {from_bottom}: {got} {want}");
+            }
+        }
     }
 }
 

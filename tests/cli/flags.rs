@@ -47,6 +47,8 @@ fn quality() {
             ("--bounces -1", 2, &["--bounces", "'-1'"]),
             ("--bounce-engine magic", 2, &["--bounce-engine", "magic", "brute"]),
             ("--bounce-azimuths 3", 2, &["--bounce-azimuths: found 3", "4 to 1024"]),
+            ("--bounce-level-step 17", 2, &["--bounce-level-step: found 17", "1 to 16"]),
+            ("--bounce-level-offset 5", 2, &["--bounce-level-offset: found 5", "0 to 4"]),
             ("--bounce-cutoff 2", 2, &["--bounce-cutoff: found 2", "0 to 1"]),
             ("--bounce-cutoff nan", 2, &["--bounce-cutoff: found NaN"]),
             ("--method magic", 2, &["--method", "magic", "sweep"]),
@@ -182,13 +184,37 @@ fn everywhere() {
 }
 
 #[test]
+fn lobes() {
+    let folder = Folder::new();
+    each(
+        &[PLAN, RENDER],
+        &folder,
+        &[
+            ("--phong 10", 2, &["--phong", "EXPONENT,SCALE"]),
+            ("--phong -1,0.5 --albedo 0.5", 2, &["--phong exponent: found -1"]),
+            ("--phong 10,0.5", 2, &["--phong scale", "albedo of 1"]),
+            ("--phong 10,0.5 --albedo 0.5 --basis table", 2, &["--phong: found", "--basis sh"]),
+            ("--phong 10,0.5 --albedo 0.5 --key 0,30,9,9,1", 2, &["--phong: found", "key light"]),
+        ],
+    );
+    let both = "--phong 10,0.5 --albedo 0.5";
+    refused(
+        &folder,
+        &[
+            (&format!("trade a.asc -o out {both}"), 2, &["--phong with trade", "a lobe"]),
+            (&format!("{RENDER} {both} --max-error 1"), 2, &["--phong with --max-error"]),
+            ("horizon a.asc -o out.npy --phong 10,0.5", 2, &["--phong"]),
+        ],
+    );
+}
+
+#[test]
 fn not_yet() {
     let folder = Folder::new();
     each(
         &[PLAN, RENDER, HORIZON],
         &folder,
         &[
-            ("--phong 10,0.5", 2, &["--phong", "not yet"]),
             ("--scene s.json", 2, &["--scene", "not yet"]),
             ("--camera 1,2", 2, &["--camera", "not yet"]),
         ],
@@ -303,6 +329,7 @@ fn help_says_units_and_defaults() {
         ("--azimuths", &["4..1024", "[default: 64]"]),
         ("--sun-azimuths", &["1..256", "[default: 8]"]),
         ("--light-cutoff", &["0..1", "faster", "[default: 0.0000152587890625]"]),
+        ("--light-basis", &["[default: exact]", "--sh-order"]),
         ("--lines", &["Cells", "[default: 1]"]),
         ("--fuse", &["[default: aimed-nearest]"]),
         ("--precision", &["[default: f32]"]),
@@ -319,6 +346,8 @@ fn help_says_units_and_defaults() {
         ("--bounce-engine", &["[default: brute]"]),
         ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
+        ("--bounce-level-step", &["1..16", "[default: 4]"]),
+        ("--bounce-level-offset", &["0..4", "[default: 2]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];
@@ -328,6 +357,7 @@ fn help_says_units_and_defaults() {
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0..1", "[default: 1]"]),
+        ("--phong", &["0..10000", "0..1", "--basis sh"]),
     ];
     let render: &[(&str, &[&str])] = &[
         ("--exposure", &["[default: 1]"]),
@@ -365,7 +395,6 @@ fn help_says_units_and_defaults() {
         ("--bounces", &["0..64", "[default: 0]"]),
         ("--until-error", &["0.01 is 1 %", "512 paths"]),
         ("--seed", &["[default: 0]"]),
-        ("--phong", &["0..10000", "0..1"]),
         ("--device", &["Default the first GPU"]),
     ];
     for (command, tables) in [

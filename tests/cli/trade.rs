@@ -288,6 +288,10 @@ fn gpu_trade_against_a_reference() {
             "traced.exr: header: bounces: found 2, expected 0, as --bounces here",
         ),
         ("traced.exr --sky 0.5 --sun 180,20", "traced.exr: header: "),
+        (
+            "traced.exr --sky 0.5 --sun 90,20 --bounces 1",
+            "traced.exr: header: bounces: found 2, expected 1",
+        ),
     ] {
         let args = format!("trade field.npy -o other --budget 1 --reference {args}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());

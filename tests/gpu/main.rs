@@ -10,13 +10,16 @@ mod embedding;
 mod extremes;
 mod flight;
 mod forms;
+mod gloss;
 mod goldens;
 mod harmonics;
 mod keys;
+mod many_lights;
 mod pruned;
 mod pyramid;
 mod real;
 mod reference_edges;
+mod reference_numbers;
 #[expect(dead_code, reason = "of its scenes only the pits are drawn here")]
 #[path = "../reference_page/mod.rs"]
 mod reference_page;

@@ -10,13 +10,13 @@ use ridgelight::basis::zonal::{ball as zonal_ball, clamped_cosine};
 use ridgelight::cpu::light::normal;
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::sphere::sphere_of;
-use ridgelight::cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of, light_order};
+use ridgelight::cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::measure::soft_ball::SoftBall;
+use ridgelight::measure::tolerance::BallSeen;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
 
 use crate::spheres::{ball, under, values};
-use crate::twins::light::ball_seen;
 use crate::twins::soft::slope_error;
 use crate::{Device, field, random};
 
@@ -33,7 +33,7 @@ fn soft(sh_order: u32, sun_azimuths: u32) -> Quality {
 /// How far a device may be from the twin at a sample, of radiance 1.
 fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> f64 {
     let (field, light) = (&scene.field, &scene.lights.spheres[0]);
-    let at = ball_seen(field, light, sample);
+    let at = BallSeen::of(field, light, sample);
     let n = normal(field, scene.surface.border, sample / field.cols(), sample % field.cols());
     let slope = slope_error(&at, quality, false);
     SoftBall::new(quality).twin(&at, slope, n, seen)
@@ -43,8 +43,8 @@ fn twin_bound(scene: &Scene, quality: &Quality, sample: usize, seen: &[f64]) -> 
 /// free level sample gets, over π.
 fn closed_form(quality: &Quality, radius_m: f64, to: glam::DVec3) -> f64 {
     let count = match quality.receiver {
-        Receiver::Plane => light_order(quality),
-        Receiver::Lobe => light_order(quality).min(3),
+        Receiver::Plane => quality.light_order(),
+        Receiver::Lobe => quality.light_order().min(3),
     };
     let light = zonal_ball(count, radius_m, to.length());
     let cosine = clamped_cosine(count);
@@ -178,7 +178,7 @@ fn soft_balls_at_the_extremes_are_their_twins() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = ball_seen(&land, light, i);
+                    let seen = BallSeen::of(&land, light, i);
                     // Whether rounding puts it inside or outside is chance.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
@@ -251,7 +251,7 @@ fn popped(gpu: &mut Device, quality: &Quality, steps: usize) -> f64 {
         let light = ball([-3.0 + 21.0 * t, 11.0 - 6.0 * t, land.base_m() + up], 2.2);
         let found = values(&gpu.picture(&under(&land, Border::Plane, vec![light]), quality));
         let truth = |i: usize| sphere_of(&oracle, i / 16, i % 16, &light, 24);
-        let is_within = |i: usize| ball_seen(&land, &light, i).distance_m < light.radius_m;
+        let is_within = |i: usize| BallSeen::of(&land, &light, i).distance_m < light.radius_m;
         let state = |i: usize| ([found[i], truth(i)], is_within(i));
         let now: Vec<_> = (0..256).step_by(7).map(state).collect();
         for ((a, was_within), (b, is_within)) in before.iter().zip(&now) {
@@ -273,5 +273,35 @@ fn a_moving_ball_by_harmonics_pops_no_more_than_the_truth() {
         let [long, short] = [40, 320].map(|steps| popped(&mut gpu, &quality, steps));
         println!("{long:.4} more than the truth, {short:.4} in steps an eighth as long");
         assert!(short <= 0.5 * long, "{:?}: {long} {short}", quality.wedges);
+    }
+}
+
+/// The comparison is not deaf: light of a ball a hundredth of a metre away, of another radius, of another order or by
+/// the surface of another field is beyond its bound at nearly every sample.
+#[test]
+fn wrong_harmonics_are_not_within_their_bound() {
+    let mut gpu = Device::new();
+    let land = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.4);
+    let (quality, light) = (soft(4, 4), ball([11.0, 8.0, 9.0], 2.0));
+    let scene = under(&land, Border::Plane, vec![light]);
+    let oracle = Oracle::new(&land, Border::Plane);
+    let other = field(9, 11, [2.0, 3.0], |r, c| ((r * 7 + c * 5) % 11) as f64 * 0.41);
+    let moved = ball([11.01, 8.0, 9.0], 2.0);
+    let wrong = [
+        (&oracle, ball([11.0, 8.0, 9.0], 2.005), quality),
+        (&oracle, moved, quality),
+        (&oracle, light, soft(5, 4)),
+        (&Oracle::new(&other, Border::Plane), light, quality),
+    ];
+    let found = values(&gpu.picture(&scene, &quality));
+    for (which, (oracle, light, settings)) in wrong.into_iter().enumerate() {
+        let twin = SphereSh::new(*oracle, None, settings);
+        let right = SphereSh::new(Oracle::new(&land, Border::Plane), None, quality);
+        let seen = found.iter().enumerate().filter(|(i, got)| {
+            let bound = twin_bound(&scene, &quality, *i, &right.at(&light, i / 11, i % 11).seen);
+            (*got - twin.at(&light, i / 11, i % 11).light.max(0.0)).abs() > bound
+        });
+        let seen = seen.count();
+        assert!(seen > 80, "{which}: {seen} of 99");
     }
 }

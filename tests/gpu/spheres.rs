@@ -10,10 +10,10 @@ use ridgelight::cpu::sphere_shade::sphere_at;
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
 use ridgelight::measure::fractal::fractal;
+use ridgelight::measure::tolerance::BallSeen;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, SphereLight, Surface};
 
-use crate::twins::light::ball_seen;
 use crate::{Device, field, random};
 
 pub(crate) fn ball(position_m: [f64; 3], radius_m: f64) -> SphereLight {
@@ -66,7 +66,7 @@ fn a_ball_over_level_ground() {
         let scene = under(&level, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(16)));
         for (i, got) in found.iter().enumerate() {
-            let seen = ball_seen(&level, &light, i);
+            let seen = BallSeen::of(&level, &light, i);
             let up = place[2] - 71.0;
             let want = radius * radius * up / seen.distance_m.powi(3);
             let bound = seen.twin() + 1e-6 * want;
@@ -87,7 +87,7 @@ fn a_ball_half_in_the_ground_and_samples_inside_it() {
     let found = values(&gpu.picture(&scene, &all(64)));
     let mut inside = 0;
     for (i, got) in found.iter().enumerate() {
-        let seen = ball_seen(&level, &light, i);
+        let seen = BallSeen::of(&level, &light, i);
         let a = (light.radius_m / seen.distance_m).min(1.0).asin();
         let is_inside = seen.distance_m < light.radius_m;
         let want = if is_inside { 1.0 } else { (a - a.sin() * a.cos()) / PI };
@@ -113,7 +113,7 @@ fn a_wall_hides_half_of_a_ball() {
         let scene = under(&wall, Border::Plane, vec![light]);
         let found = values(&gpu.picture(&scene, &all(32)));
         let i = 40 * 41 + 10;
-        let seen = ball_seen(&wall, &light, i);
+        let seen = BallSeen::of(&wall, &light, i);
         let a = (radius / seen.distance_m).asin();
         // Up is the sine of the elevation along c, its cosine along n.
         let [sin, cos] = [8.0 / seen.distance_m, 20.0 / seen.distance_m];
@@ -243,7 +243,7 @@ fn balls_at_the_extremes_are_the_oracles() {
                     continue;
                 }
                 for (i, got) in found.iter().enumerate() {
-                    let seen = ball_seen(&field, light, i);
+                    let seen = BallSeen::of(&field, light, i);
                     // Whether rounding puts it inside or outside is chance.
                     if (seen.distance_m / light.radius_m - 1.0).abs() < 1e-6 {
                         continue;
@@ -282,7 +282,7 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
         let found = values(&gpu.picture(&scene, &quality));
         let mut now = Vec::new();
         for i in (0..256).step_by(3) {
-            let seen = ball_seen(&land, &light, i);
+            let seen = BallSeen::of(&land, &light, i);
             let same = sphere_at(&oracle, &light, slices, i / 16, i % 16);
             let truth = sphere_of(&oracle, i / 16, i % 16, &light, 64);
             let bound = seen.twin() + 1e-6 * same;
@@ -327,7 +327,7 @@ fn sixty_four_lights_add_up() {
             let radiance = f64::from(light.radiance[0]);
             want += radiance * sphere_at(&oracle, light, 1, i / 512, i % 512);
             // A rounding of the sum for each light besides.
-            bound += radiance * ball_seen(&land, light, i).twin() + 2_f64.powi(-23) * want;
+            bound += radiance * BallSeen::of(&land, light, i).twin() + 2_f64.powi(-23) * want;
         }
         let less = want - found[i];
         assert!(-bound <= less && less <= lost + bound, "{i}: {} {want} {bound:e}", found[i]);

@@ -50,6 +50,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;
+    setup::check_diffuse(&scene, "bench")?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     idle(args, &plan);

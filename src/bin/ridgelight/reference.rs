@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ridgelight::files::{self, Channels, Layer};
 use ridgelight::gpu::{Frame, Headless, Timing};
 use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
-use ridgelight::scene::{Scene, Surface};
+use ridgelight::scene::Scene;
 use ridgelight::{Error, Result};
 
 use crate::args::ReferenceArgs;
@@ -95,8 +95,7 @@ fn check(args: &ReferenceArgs) -> Result<()> {
 
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
-    let Scene { field, surface, lights } = setup::scene(field, &args.surface, &args.lights)?;
-    Ok(Scene { field, surface: Surface { phong: args.phong, ..surface }, lights })
+    setup::scene(field, &args.surface, &args.lights)
 }
 
 /// What the paths have come to.
@@ -231,9 +230,6 @@ fn write(
         add("until_error", wanted.to_string());
     }
     add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
-    if let Some(phong) = scene.surface.phong {
-        add("phong", format!("{},{}", phong.exponent, phong.scale));
-    }
     let mut layers =
         [("", traced.radiance.clone()), ("standard_error", traced.standard_error.clone())];
     for (_, texels) in &mut layers {
@@ -253,7 +249,7 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ridgelight::scene::HeightField;
+    use ridgelight::scene::{HeightField, Surface};
 
     #[test]
     fn lost_rays_are_an_error() {

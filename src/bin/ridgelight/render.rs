@@ -43,6 +43,9 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let mut quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
+    if goal.is_some() {
+        setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+    }
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);

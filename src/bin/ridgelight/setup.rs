@@ -73,7 +73,7 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         None => None,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), phong: None },
+        surface: Surface { albedo, border: border(&surface.field), phong: surface.phong },
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
@@ -173,6 +173,18 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
     };
     quality.check()?;
     Ok(quality)
+}
+
+/// Refuses a lobe where light is judged by a truth without one.
+pub fn check_diffuse(scene: &Scene, what: &str) -> Result<()> {
+    match scene.surface.phong {
+        None => Ok(()),
+        Some(_) => Err(Error::setting(
+            format!("--phong with {what}"),
+            "a lobe",
+            "none: what it judges light by is diffuse; `reference` and `compare` judge lobes",
+        )),
+    }
 }
 
 /// What is wrong with a request whatever the device: planned for one without limits, so that it is

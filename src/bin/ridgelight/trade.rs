@@ -51,6 +51,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
+    setup::check_diffuse(&scene, "trade")?;
     if args.bounces > 0 && args.reference.is_none() {
         let expected = "--reference, made with as many: no other truth here has bounces";
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));

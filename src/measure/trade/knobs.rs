@@ -4,7 +4,8 @@
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
 use crate::scene::{
-    Basis, BounceEngine, Bounces, Fuse, LightBasis, Lines, Method, Precision, Quality, Scene,
+    Basis, BounceEngine, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision, Quality,
+    Scene,
 };
 use std::ops::RangeInclusive;
 
@@ -60,10 +61,21 @@ fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
 
+/// The lights that give any light: of others no setting changes anything.
+fn shining(lights: &Lights) -> Lights {
+    let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
+    let mut shining = lights.clone();
+    shining.sky = lights.sky.filter(is_lit);
+    shining.suns.retain(|sun| is_lit(&sun.irradiance));
+    shining.keys.retain(|key| is_lit(&key.radiance));
+    shining.spheres.retain(|ball| is_lit(&ball.radiance));
+    shining
+}
+
 /// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
 /// an environment.
 pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
-    let lights = &scene.lights;
+    let lights = &shining(&scene.lights);
     let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
     let mut all = vec![
         Knob {
@@ -123,7 +135,8 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         },
     ];
     // Balls of light look themselves for what hides them.
-    if lights.sky.is_none() && lights.environment.is_none() && lights.suns.is_empty() {
+    let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
+    if lights.sky.is_none() && lights.environment.is_none() && are_none_aimed {
         all.clear();
     }
     if lights.sky.is_some() || lights.environment.is_some() {
@@ -291,7 +304,7 @@ pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{HeightField, Lights, SphereLight, Sun, Surface};
+    use crate::scene::{HeightField, KeyLight, SphereLight, Sun, Surface};
 
     fn scene(lights: Lights) -> Scene {
         let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -322,7 +335,18 @@ mod tests {
             ["sun azimuths", "light basis"]
         );
         let balls_too = with(&["sun azimuths", "light basis"]);
-        assert_eq!(names(Lights { spheres, ..sun(0.0) }), balls_too);
+        assert_eq!(names(Lights { spheres: spheres.clone(), ..sun(0.0) }), balls_too);
+        // A patch of the sky needs horizons as a sun does; a dark sky and a dark sun none.
+        let keys = vec![KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: 1.0,
+            elevations_rad: [0.1, 0.5],
+            radiance: [1.0; 3],
+        }];
+        assert_eq!(names(Lights { keys, ..Lights::default() }), with(&["sun azimuths"]));
+        let mut dark = Lights { sky: Some([0.0; 3]), spheres, ..sun(0.01) };
+        dark.suns[0].irradiance = [0.0; 3];
+        assert_eq!(names(dark), ["sun azimuths", "light basis"]);
     }
 
     /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone

@@ -32,14 +32,17 @@ pub(super) struct Drawing<'a> {
     pub edited: Option<[ResourceId; 2]>,
     /// Whether a light has been resolved into the picture: the first clears it.
     pub is_begun: bool,
+    /// The same of what the lobe reflects.
+    pub gloss_is_begun: bool,
 }
 
 impl Drawing<'_> {
-    fn border(&self) -> Border {
+    pub fn border(&self) -> Border {
         self.scene.surface.border
     }
 
     pub fn fill_tables(&mut self, quality: &Quality) {
+        self.fill_matrices();
         let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
             return;
         };
@@ -53,19 +56,17 @@ impl Drawing<'_> {
             let nodes = quality.table_elevations;
             passes::env_tables::plan(builder, seen, nodes, count, [wedge_rows, tables]);
         }
-        if let Some(Harmonics { sh, constants, env_turns, light_matrix, .. }) = &self.harmonics {
-            passes::env_turns::plan(builder, e, sh, [image, *constants, *env_turns]);
-            passes::light_matrix::plan(builder, sh, [*env_turns, *constants, *light_matrix]);
-        }
     }
 
     /// Passes from the field to the lit picture; of an edit, from its lattices.
     pub fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
+        self.gloss_is_begun = false;
         self.sky_and_environment(lists);
         self.aimed(lists);
         self.spheres(quality);
         self.bounces(lists);
+        self.gloss();
         self.sky_view();
         self.dark()
     }
@@ -110,9 +111,8 @@ impl Drawing<'_> {
                 };
                 passes::sky_shade::plan(builder, sweep, border, cell_m, batch, &part, &images);
             }
-            if let Some(Harmonics { sh, wedges, visibility, nodes, wedge_table, .. }) =
-                &self.harmonics
-            {
+            if let Some(harmonics) = &self.harmonics {
+                let Harmonics { wedges, visibility, nodes, wedge_table, .. } = harmonics;
                 if let Some((angles, _)) = wedge_table {
                     let ids = [lane_heights, azimuths, *angles];
                     let read = (lattice, None);
@@ -127,11 +127,12 @@ impl Drawing<'_> {
                     visibility,
                     nodes,
                 };
+                let sh = harmonics.sh();
                 let (field, seen) = ((border, cell_m), (sh, *wedges, sweeping.nodes));
                 passes::sh_visibility::plan(builder, sweep, field, seen, batch, &part, &images);
             }
         }
-        if let (Some(h), Some(sum), Some(batch)) = (&self.harmonics, env_sum, batches.last()) {
+        if let (Some(h), Some(batch)) = (&self.harmonics, batches.last()) {
             let lane_heights = sweeping.lane_heights(batch);
             if let Some((angles, table)) = h.wedge_table {
                 let (constants, visibility, nodes) = (h.constants, h.visibility, h.nodes);
@@ -143,11 +144,17 @@ impl Drawing<'_> {
                     nodes,
                 };
                 let field = (batch.axis, border, cell_m);
-                passes::sh_wedges::plan(&mut self.builder, field, &h.sh, &table, &images);
+                passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
-            let ids = [lane_heights, h.visibility, h.light_matrix, sum];
             let field = (batch.axis, border, cell_m);
-            passes::sh_shade::plan(&mut self.builder, field, &h.sh, ids, h.nodes);
+            let lit = [(&h.diffuse, env_sum), (&h.gloss, self.images.gloss_sum)];
+            for (seen, sum) in lit {
+                if let (Some(seen), Some(sum)) = (seen, sum) {
+                    let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
+                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes);
+                }
+            }
+            self.gloss_is_begun = h.gloss.is_some();
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -190,6 +197,9 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
+            if let (Some((_, sun)), Some(batch)) = (self.shining.suns.get(i), batches.last()) {
+                self.sun_gloss(&name, sun, batch, sum);
+            }
         }
     }
 
@@ -269,7 +279,7 @@ impl Drawing<'_> {
         self.light_resolve(name, &light);
     }
 
-    fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
+    pub fn light_resolve(&mut self, name: &str, light: &light_resolve::Light) {
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         light_resolve::plan(&mut self.builder, size, name, light);
     }

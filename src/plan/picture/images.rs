@@ -25,6 +25,9 @@ pub(super) struct Images {
     pub env_sum: Option<ResourceId>,
     pub sun_sum: Option<ResourceId>,
     pub sphere_sum: Option<ResourceId>,
+    /// What a lobe reflects of all lights that it is lit by, for scale 1.
+    pub gloss_sum: Option<ResourceId>,
+    pub gloss_layer: Option<ResourceId>,
 }
 
 impl Images {
@@ -56,6 +59,8 @@ impl Images {
         let aimed_layers = shining.aimed().map(|light| layer(true, &light.name)).collect();
         let spheres = &shining.spheres.shining;
         let sphere_layers = spheres.iter().map(|(i, _)| layer(true, &light_name(*i))).collect();
+        let has_gloss = shining.gloss.is_some();
+        let gloss_layer = layer(has_gloss, "glossy");
         let view = wanted.sky_view;
         let sky_view = view.then(|| image("sky_view", Owner::Output, Format::R32Float, flat));
         let mut sum = |needed: bool, name: &str, format: Format| {
@@ -65,6 +70,7 @@ impl Images {
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
         let sun_sum = sum(shining.aimed().next().is_some(), "sun_sum", Format::R32Float);
         let sphere_sum = sum(!spheres.is_empty(), "sphere_sum", Format::Rgba32Float);
+        let gloss_sum = sum(has_gloss, "gloss_sum", Format::Rgba32Float);
         Self {
             heights,
             environment,
@@ -79,6 +85,8 @@ impl Images {
             env_sum,
             sun_sum,
             sphere_sum,
+            gloss_sum,
+            gloss_layer,
         }
     }
 
@@ -110,13 +118,14 @@ impl Tables {
     }
 }
 
-/// The environment and what samples see of it, as spherical harmonics.
+/// What samples see as spherical harmonics, and the lights that are seen so.
 pub(super) struct Harmonics {
-    pub sh: Sh,
+    /// An environment's on diffuse ground.
+    pub diffuse: Option<Seen>,
+    /// An environment's and a uniform sky's in a lobe.
+    pub gloss: Option<Seen>,
     pub wedges: Wedges,
     pub constants: ResourceId,
-    pub env_turns: ResourceId,
-    pub light_matrix: ResourceId,
     pub visibility: ResourceId,
     /// The surface at the nodes, where not every sample is one.
     pub nodes: Option<ResourceId>,
@@ -124,26 +133,45 @@ pub(super) struct Harmonics {
     pub wedge_table: Option<(ResourceId, WedgeTexels)>,
 }
 
+/// A light as harmonics.
+pub(super) struct Seen {
+    pub sh: Sh,
+    /// Of an environment.
+    pub env_turns: Option<ResourceId>,
+    pub light_matrix: ResourceId,
+}
+
+impl Seen {
+    fn make(builder: &mut Builder, sh: Sh, [turns, matrix]: [&str; 2]) -> Self {
+        let count = sh.rows * (2 * sh.light_order - 1);
+        let env_turns = (count > 0).then(|| builder.buffer(turns, count as u64 * 16, false));
+        let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
+        let light_matrix =
+            builder.image(matrix, Owner::Internal, Format::Rgba32Float, extent, false);
+        Self { sh, env_turns, light_matrix }
+    }
+}
+
 impl Harmonics {
+    /// For an environment, for a lobe of an exponent, or for both.
     pub fn make(
         builder: &mut Builder,
         size: [u32; 2],
-        (environment, border): (&Environment, Border),
-        quality: &Quality,
+        (environment, border): (Option<&Environment>, Border),
+        (quality, exponent): (&Quality, Option<f32>),
         circle: &[Azimuth],
     ) -> Self {
-        let (sh, mut constants) = Sh::of(environment, border, quality);
+        let mut constants = Vec::new();
+        let diffuse =
+            environment.map(|_| Sh::of(environment, border, quality, None, &mut constants));
+        let gloss = exponent.map(|s| Sh::of(environment, border, quality, Some(s), &mut constants));
+        let sh = diffuse.or(gloss).expect("an environment or a lobe");
         let by_table = quality.wedges == Wedges::Table;
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
         // The first: they lie where they count from.
         let (constants, _) = builder.constants(&constants);
-        let turns = sh.rows * (2 * sh.light_order - 1);
-        let env_turns = builder.buffer("env_turns", turns as u64 * 16, false);
-        let mut image = |name: &str, extent: [u32; 3], layered: bool| {
-            builder.image(name, Owner::Internal, Format::Rgba32Float, extent, layered)
-        };
-        let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
-        let light_matrix = image("light_matrix", extent, false);
+        let diffuse = diffuse.map(|sh| Seen::make(builder, sh, ["env_turns", "light_matrix"]));
+        let gloss = gloss.map(|sh| Seen::make(builder, sh, ["gloss_turns", "gloss_matrix"]));
         let wedge_table = table.map(|table| {
             let extent = [size[0], size[1], table.azimuths as u32];
             let format = Format::R32Float;
@@ -156,6 +184,12 @@ impl Harmonics {
         let visibility = image("visibility", [cols, rows, sh.layers() as u32], true);
         let nodes = (sh.nodes.stride > 1).then(|| image("nodes", [cols, rows, 1], false));
         let wedges = quality.wedges;
-        Self { sh, wedges, constants, env_turns, light_matrix, visibility, nodes, wedge_table }
+        Self { diffuse, gloss, wedges, constants, visibility, nodes, wedge_table }
+    }
+
+    /// Sizes of what is seen, which all lights see alike.
+    pub fn sh(&self) -> &Sh {
+        let seen = self.diffuse.as_ref().or(self.gloss.as_ref());
+        &seen.expect("an environment or a lobe").sh
     }
 }

@@ -3,7 +3,7 @@
 
 mod suite;
 
-use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality};
+use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Wedges};
 
 use suite::{Asks, Case, Outcome, Row, methods, page};
 
@@ -101,7 +101,7 @@ fn what_is_not_judged_is_known() {
 
 /// What a method is of each kind, by number. A setting, or a variant of one of these enums, that is added does
 /// not compile until it stands here, and a variant fails until [`methods::all`] has a method of it.
-fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
+fn kinds_of(quality: &Quality) -> [(usize, usize); 7] {
     let Quality {
         method,
         lines,
@@ -109,6 +109,7 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         precision,
         hull,
         levels,
+        wedges,
         // Numbers, which are no kinds.
         azimuths: _,
         sun_azimuths: _,
@@ -123,7 +124,6 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         wedge_side: _,
         basis: _,
         sh_order: _,
-        wedges: _,
         receiver: _,
         window: _,
         // What the surface throws at itself: tests of bounces.
@@ -166,12 +166,17 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 6] {
         Hull::Shared => 2,
         Hull::List => 3,
     };
-    [(method, 4), (lines, 6), (fuse, 6), (precision, 3), (hull, 4), (levels, 2)]
+    let wedges = match wedges {
+        Wedges::Slices => 0,
+        Wedges::Nlp => 1,
+        Wedges::Table => 2,
+    };
+    [(method, 4), (lines, 6), (fuse, 6), (precision, 3), (hull, 4), (levels, 2), (wedges, 3)]
 }
 
 #[test]
 fn every_kind_of_method_is_enrolled() {
-    let all: Vec<[(usize, usize); 6]> =
+    let all: Vec<[(usize, usize); 7]> =
         methods::all().iter().map(|m| kinds_of(&m.quality)).collect();
     for (kind, (_, variants)) in all[0].iter().enumerate() {
         for variant in 0..*variants {

@@ -323,6 +323,27 @@ pub(super) fn pictures() -> Vec<Case> {
     let open_wedges = Quality { wedges: Wedges::Table, wedge_side: 9, ..sh(3) };
     let marched = Quality { method: Method::Brute, ..subsampled(4, 4) };
     let smoothed = Quality { method: Method::Pyramid, level_step: 2, ..subsampled(2, 3) };
+    // A lobe under all that it mirrors, and under a sky alone.
+    let mirrored = {
+        let lights = Lights {
+            sky: Some([0.3, 0.5, 0.9]),
+            environment: Some(noisy_environment(41)),
+            suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+            ..Lights::default()
+        };
+        let surface = Surface {
+            border: Border::Plane,
+            albedo: Albedo::Constant([0.5; 3]),
+            phong: Some(Phong { exponent: 20.0, scale: 0.4 }),
+        };
+        Scene { field: rough(14, 11, 42), surface, lights }
+    };
+    let mirrored_sky = {
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let phong = Some(Phong { exponent: 3.0, scale: 1.0 });
+        let surface = Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), phong };
+        Scene { field: rough(9, 14, 43), surface, lights }
+    };
     // Twelve columns: the last is no multiple of 4 from the first; of a field that repeats.
     let repeated = {
         let lights = Lights { environment: Some(noisy_environment(17)), ..Lights::default() };
@@ -371,6 +392,8 @@ pub(super) fn pictures() -> Vec<Case> {
         picture("harmonics of marches from nodes", on_a_plane.clone(), marched, false, false),
         picture("harmonics of a pyramid's nodes", repeated, smoothed, false, false),
         picture("harmonics of order 2", on_a_plane, lobe, false, false),
+        picture("a lobe", mirrored, sh(5), true, false),
+        picture("a lobe at every second sample", mirrored_sky, subsampled(2, 3), false, false),
     ]
 }
 

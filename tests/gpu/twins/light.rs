@@ -4,17 +4,20 @@ use ridgelight::cpu::env_tables::{self as tables_twin, EnvTables, bottom_rad};
 use ridgelight::cpu::env_wedges as wedges_twin;
 use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
 use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::sky_shade as sky_twin;
 use ridgelight::cpu::sphere_shade as sphere_twin;
+use ridgelight::cpu::sun_gloss as gloss_twin;
 use ridgelight::cpu::sun_shade as sun_twin;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{
-    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_table, twin_wedge_row,
+    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_gloss, twin_table,
+    twin_wedge_row,
 };
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Environment, HeightField, SphereLight};
+use ridgelight::scene::{Albedo, Environment};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 
@@ -183,6 +186,41 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     })
 }
 
+/// From the device's own sun, added to what is there.
+pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sun_gloss_push::COLOUR;
+    let exponent = f64::from(run.scene.surface.phong.expect("a lobe").exponent);
+    let number: usize =
+        pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
+    let sun = run.scene.lights.suns[number - 1];
+    let sums = run.floats(pass, "sun_sum").expect("read");
+    let got = run.floats(pass, "gloss_sum").expect("written");
+    let (heights, error) = (run.heights(), run.sample_error());
+    let [cols, _] = run.size();
+    if f32::from_bits(pushed(pass, COLOUR + 12)) > 0.0 {
+        run.gloss = vec![[0.0; 3]; sums.len()];
+    }
+    let towards = {
+        let (sin, cos) = sun.azimuth_rad.sin_cos();
+        let (up, along) = sun.elevation_rad.sin_cos();
+        glam::DVec3::new(cos * along, sin * along, up)
+    };
+    let mut pairs = Vec::new();
+    for (i, got) in got.chunks_exact(4).enumerate() {
+        let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
+        let light = gloss_twin::gloss_on(normal, &sun, exponent, sums[i].into());
+        let tolerance = twin_sun_gloss(exponent, error.normal(), normal.dot(towards));
+        for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
+            let colour = f64::from(sun.irradiance[c]);
+            let want = *sum + colour * light;
+            *sum = f64::from(*got);
+            let tolerance = colour * tolerance + 2.0 * EPSILON * want;
+            pairs.push(Pair { got: *sum, want, tolerance, at: [c, i / cols, i % cols] });
+        }
+    }
+    pairs
+}
+
 /// Slices of one ball, all of them once the last are there.
 pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::sphere_shade_push::{LAST_SLICE, RADIANCE, REACH_M, SLICES_AROUND};
@@ -201,7 +239,7 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut balls = std::mem::take(&mut run.balls);
     for (i, (sum, tolerance)) in balls.iter_mut().enumerate() {
-        let seen = ball_seen(&run.scene.field, &ball, i);
+        let seen = BallSeen::of(&run.scene.field, &ball, i);
         if seen.distance_m > reach {
             continue;
         }
@@ -219,28 +257,6 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         .collect();
     run.balls = balls;
     pairs
-}
-
-/// Where a ball stands to a sample.
-pub(crate) fn ball_seen(field: &HeightField, ball: &SphereLight, sample: usize) -> BallSeen {
-    let (cols, heights) = (field.cols(), field.heights_m());
-    let [cell_x, cell_y] = field.cell_m();
-    let [x, y, z] = ball.position_m;
-    let east = x - (sample % cols) as f64 * cell_x;
-    let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
-    let up = z - field.base_m() - f64::from(heights[sample]);
-    let all = heights.iter().map(|h| f64::from(*h));
-    let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
-    let over = z - field.base_m();
-    BallSeen {
-        distance_m: east.hypot(north).hypot(up),
-        away_m: east.hypot(north),
-        radius_m: ball.radius_m,
-        largest_m: low.abs().max(high.abs()).max(over.abs()),
-        relief_m: high - low,
-        cell_m: cell_x.min(cell_y),
-        is_cut: over - ball.radius_m < high,
-    }
 }
 
 pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {

@@ -4,7 +4,7 @@
 mod bounce;
 mod cases;
 mod edit;
-pub(crate) mod light;
+mod light;
 mod paths;
 mod pyramid;
 mod sh;
@@ -80,6 +80,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("sh_wedges", sh::sh_wedges),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
+    ("sun_gloss", light::sun_gloss),
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
@@ -107,6 +108,8 @@ struct Run<'a> {
     lights: usize,
     /// The sum of the balls of light so far, by the twin, and how far each sample may be off it.
     balls: Vec<([f64; 3], f64)>,
+    /// What the lobe's passes have left so far.
+    gloss: Vec<[f64; 3]>,
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
     edit: Option<edit::Edit>,
@@ -129,6 +132,7 @@ impl<'a> Run<'a> {
             radiance: Vec::new(),
             lights: 0,
             balls: Vec::new(),
+            gloss: Vec::new(),
             lost: 0,
             edit: None,
             plan,

@@ -5,14 +5,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::cpu::light_matrix as matrix_twin;
-use ridgelight::cpu::sh_shade::{light_at, nodes_around};
+use ridgelight::cpu::sh_shade::{gloss_on, light_at, nodes_around};
 use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
 use ridgelight::cpu::sh_wedges::sh_wedges as wedges_twin;
-use ridgelight::cpu::shared::field::field_slope;
+use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::harmonics::{Seen, matrix_magnitudes};
-use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_shade, twin_turn};
+use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
 
@@ -50,18 +50,27 @@ pub(super) fn env_turns(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS};
+    use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS, SKY};
     let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
-    let turns: Vec<Vec<DVec3>> = texels(run, pass, "env_turns")
-        .chunks_exact(2 * light_order - 1)
-        .map(<[_]>::to_vec)
-        .collect();
+    let turns: Vec<Vec<DVec3>> = if rows > 0 {
+        let all = texels(run, pass, "env_turns");
+        all.chunks_exact(2 * light_order - 1).map(<[_]>::to_vec).collect()
+    } else {
+        Vec::new()
+    };
     assert_eq!(turns.len(), rows);
     let (quality, fitted) = (run.quality, matrix_twin::is_fitted(&run.quality, run.border()));
-    let height = environment(run).height();
-    let series = matrix_twin::series(&turns, height, light_order, fitted);
-    let want = matrix_twin::light_matrix(&quality, &series);
-    let summed = matrix_magnitudes(&quality, run.border(), height, &turns);
+    let height = run.scene.lights.environment.as_ref().map_or(1, Environment::height);
+    let mut series = matrix_twin::series(&turns, height, light_order, fitted);
+    let sky = [0, 4, 8].map(|at| f32::from_bits(pushed(pass, SKY + at)));
+    matrix_twin::add_sky(&mut series, sky);
+    let exponent = run.scene.surface.phong.filter(|_| pass.part == "glossy").map(|p| p.exponent);
+    let want = match exponent {
+        None => matrix_twin::light_matrix(&quality, &series),
+        Some(exponent) => matrix_twin::gloss_matrix(&quality, &series, exponent),
+    };
+    let gloss = exponent.map(|e| (e, sky));
+    let summed = matrix_magnitudes(&quality, run.border(), height, &turns, gloss);
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
     let mut pairs = Vec::new();
@@ -185,6 +194,9 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let matrix = texels(run, pass, "light_matrix");
     let matrix: Vec<Vec<DVec3>> = matrix.chunks_exact(order * order).map(<[_]>::to_vec).collect();
     let got = run.floats(pass, "env_sum").expect("written");
+    if constant(pass, 3) == 2 {
+        run.gloss = got.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
+    }
     let [cols, _] = run.size();
     let heights = run.heights();
     let error = run.sample_error();
@@ -206,7 +218,13 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             between = Seen::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
             &between
         };
-        let want = light_at(&heights, &seen.values, &matrix, place);
+        let is_gloss = constant(pass, 3) == 2;
+        let want = if is_gloss {
+            let normal = normal_of(field_slope(&heights, place[0], place[1]));
+            gloss_on(normal, &seen.values, &matrix)
+        } else {
+            light_at(&heights, &seen.values, &matrix, place)
+        };
         // What is summed, whatever its sign, where every polynomial of the normal is 2 at most.
         let summed: DVec3 = matrix
             .iter()
@@ -217,7 +235,8 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             .iter()
             .flat_map(|row| row.iter().zip(&seen.errors).map(|(m, e)| 2.0 * m.abs() * *e))
             .sum();
-        let tolerance = twin_sh_shade(order, error.normal()) * summed + counted;
+        let of_sum = if is_gloss { twin_sh_gloss } else { twin_sh_shade };
+        let tolerance = of_sum(order, error.normal()) * summed + counted;
         pairs.extend(three(rgb(got), want.max(DVec3::ZERO), tolerance, at));
         let is_decided = (0..3).all(|c| want[c].abs() > tolerance[c]);
         let below = f64::from(u8::from(want.min_element() < 0.0));

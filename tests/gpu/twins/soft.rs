@@ -11,7 +11,6 @@ use ridgelight::plan::Pass;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::Quality;
 
-use super::light::ball_seen;
 use super::{Pair, Run, pushed};
 
 /// What slopes err by, of a pyramid's steepest at most.
@@ -54,7 +53,7 @@ pub(super) fn sphere_sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut balls = std::mem::take(&mut run.balls);
     let mut pairs = Vec::new();
     for (i, ((sum, tolerance), got)) in balls.iter_mut().zip(got.chunks_exact(4)).enumerate() {
-        let (seen, row, col) = (ball_seen(&run.scene.field, &ball, i), i / cols, i % cols);
+        let (seen, row, col) = (BallSeen::of(&run.scene.field, &ball, i), i / cols, i % cols);
         if seen.distance_m <= reach {
             let soft = twin.at(&ball, row, col);
             let n = normal(&run.scene.field, border, row, col);

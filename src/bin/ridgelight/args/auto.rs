@@ -5,7 +5,7 @@ use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves: all but where hulls live, and bounces.
 fn chosen() -> impl Iterator<Item = &'static str> {
-    let is_asked = |s: &str| matches!(s, "hull" | "bounces" | "bounce_engine" | "bounce_azimuths");
+    let is_asked = |s: &str| s == "hull" || (s.starts_with("bounce") && s != "bounce_cutoff");
     SETTINGS.into_iter().filter(move |s| !is_asked(s)).chain(["method"])
 }
 

@@ -4,7 +4,6 @@ use clap::Args;
 #[derive(Args)]
 pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    phong: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
     #[arg(long, hide = true, allow_hyphen_values = true)]
@@ -14,11 +13,7 @@ pub struct LaterArgs {
 impl LaterArgs {
     /// Refuses them.
     pub fn check(&self) -> ridgelight::Result<()> {
-        let given = [
-            ("--phong", self.phong.as_ref()),
-            ("--scene", self.scene.as_ref()),
-            ("--camera", self.camera.as_ref()),
-        ];
+        let given = [("--scene", self.scene.as_ref()), ("--camera", self.camera.as_ref())];
         match given.into_iter().find_map(|(name, value)| Some((name, value?))) {
             Some((name, value)) => Err(ridgelight::Error::setting(
                 name,

@@ -82,16 +82,16 @@ pub struct QualityArgs {
     /// What an environment's light is looked up in
     #[arg(long, default_value = "auto")]
     pub basis: BasisName,
-    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh
+    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh or --light-basis sh
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
     pub sh_order: u32,
-    /// How what is seen along an azimuth becomes harmonics; with --basis sh
+    /// How what is seen along an azimuth becomes harmonics; with --basis sh or --light-basis sh
     #[arg(long, default_value = "slices")]
     pub wedges: WedgesName,
-    /// How a surface turns what it sees into light; with --basis sh
+    /// How a surface turns what it sees into light; with --basis sh or --light-basis sh
     #[arg(long, default_value = "plane")]
     pub receiver: ReceiverName,
-    /// What tames the ringing of an environment's series; with --basis sh
+    /// What tames the ringing of a light's series; with --basis sh or --light-basis sh
     #[arg(long, default_value = "none")]
     pub window: WindowName,
     /// What is seen is found at every so many samples, light at all of them; with --basis sh

@@ -1,9 +1,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ridgelight::scene::Phong;
 
-use super::values::{numbers, whole};
+use super::values::whole;
 use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
 
 #[derive(Args)]
@@ -32,22 +31,6 @@ pub struct ReferenceArgs {
     pub lights: LightArgs,
     #[command(flatten)]
     pub surface: SurfaceArgs,
-    /// A lobe about the mirror direction of the view from above: exponent 0..10000, and its share 0..1
-    #[arg(
-        long,
-        value_name = "EXPONENT,SCALE",
-        value_parser = phong,
-        allow_hyphen_values = true,
-        help_heading = "Surface"
-    )]
-    pub phong: Option<Phong>,
     #[command(flatten)]
     pub global: GlobalArgs,
-}
-
-fn phong(text: &str) -> Result<Phong, String> {
-    match numbers(text)?.as_slice() {
-        [exponent, scale] => Ok(Phong { exponent: *exponent as f32, scale: *scale as f32 }),
-        other => Err(format!("{} numbers, expected EXPONENT,SCALE", other.len())),
-    }
 }

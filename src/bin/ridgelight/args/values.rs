@@ -23,6 +23,15 @@ pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
     colour(text).ok()
 }
 
+pub fn phong(text: &str) -> Result<ridgelight::scene::Phong, String> {
+    match numbers(text)?.as_slice() {
+        [exponent, scale] => {
+            Ok(ridgelight::scene::Phong { exponent: *exponent as f32, scale: *scale as f32 })
+        }
+        other => Err(format!("{} numbers, expected EXPONENT,SCALE", other.len())),
+    }
+}
+
 pub fn cell(text: &str) -> Result<[f64; 2], String> {
     match numbers(text)?.as_slice() {
         [both] => Ok([*both; 2]),

@@ -9,8 +9,8 @@ use ridgelight::cpu::{key, light};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, Lights, Method, Precision, Quality, Scene,
-    SphereLight, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
+    Quality, Scene, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -148,6 +148,13 @@ impl Verifier {
         quality: &Quality,
         limits: &Limits,
     ) -> Result<String> {
+        if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
+            return Err(Error::setting(
+                "--light-basis",
+                "sh",
+                "exact: what is timed is held against the oracle's light, from which harmonics are far",
+            ));
+        }
         if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {
             return harmonics::check(self, gpu, quality, limits);
         }

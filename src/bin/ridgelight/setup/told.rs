@@ -53,6 +53,9 @@ pub fn asked(
     }
     let Some((args, surface, scene)) = lit else { return all };
     all.push(("albedo".to_owned(), surface.albedo.clone()));
+    if let Some(phong) = scene.surface.phong {
+        all.push(("phong".to_owned(), format!("{},{}", phong.exponent, phong.scale)));
+    }
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
     }

@@ -44,9 +44,9 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
     Ok(())
 }
 
-const NO_SETTINGS: &str = "no settings of `render` give such light";
+const NO_SETTINGS: &str = "no settings that are walked give such light";
 
-/// Light that `reference` alone has.
+/// Light that no settings that are walked give where the scene has none.
 fn gives_none(name: &str) -> bool {
     matches!(name, "bounces" | "phong") || is_numbered(name, "light")
 }

@@ -138,14 +138,15 @@ fn series_above(
     [light.x, off.x]
 }
 
-/// What a constant environment errs by on level ground: [`environment_error`] and what lies between nodes, of
-/// its radiance; of a series, of the light itself.
-fn constant_error(found: &Found, radiance: f64) -> f64 {
-    if found.method.is_soft() {
-        series(found, [0.0; 2], 0.0)[1]
-    } else {
-        radiance * (environment_error(found) + at_level(found))
+/// What level ground gives back of a constant environment, and what that errs by: all of its radiance, by
+/// [`environment_error`] and what lies between nodes; of a series, by that; where wedges round it off, what the
+/// series keeps.
+fn constant(found: &Found, radiance: f64) -> [f64; 2] {
+    if !found.method.is_soft() {
+        return [radiance, radiance * (environment_error(found) + at_level(found))];
     }
+    let [light, bound] = series(found, [0.0; 2], 0.0);
+    [if found.method.rounds_wedges() { light } else { radiance }, bound]
 }
 
 pub fn probe(found: f64, expected: f64, bound: f64, at: [usize; 3]) -> Probe {
@@ -163,10 +164,11 @@ fn albedo(albedo: f32) -> Case {
         (level(), Border::Plane, around(uniform(1.0))),
         move |found| {
             let albedo = f64::from(albedo);
-            let bound = albedo * (sky_error(found) + constant_error(found, 1.0) + 4.0 * EPSILON);
-            let at = |[r, c]: [usize; 2]| {
-                probe(found.light("radiance", r, c), 2.0 * albedo, bound, [0, r, c])
-            };
+            let [light, error] = constant(found, 1.0);
+            let bound = albedo * (sky_error(found) + error + 4.0 * EPSILON);
+            let right = albedo * (1.0 + light);
+            let at =
+                |[r, c]: [usize; 2]| probe(found.light("radiance", r, c), right, bound, [0, r, c]);
             PLACES.map(at).into()
         },
     );
@@ -182,11 +184,11 @@ fn uniform_environment(value: f32, border: Border) -> Case {
     let bound = "sky: (8 + 2 m) ε; environment: (3 m + 64 / m + 92) ε of its radiance; open: 80 ε and 3 Δ² / 2 of nodes Δ apart more; harmonics: the series'";
     light(name, (expected, bound), (level(), border, around(uniform(value))), move |found| {
         let value = f64::from(value);
-        let bound = constant_error(found, value);
+        let [right, bound] = constant(found, value);
         let at = |[r, c]: [usize; 2]| {
             [
                 probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
-                probe(found.light("direct.env", r, c), value, bound, [1, r, c]),
+                probe(found.light("direct.env", r, c), right, bound, [1, r, c]),
             ]
         };
         PLACES.map(at).as_flattened().to_vec()
@@ -256,24 +258,28 @@ fn slope_under_the_sky(slope: f64, [rows, cols]: [usize; 2], border: Border) -> 
         let angle = found.method.angle_error(slope, (largest, 1.0), ties, &found.azimuths[0]);
         let wedge = (PI / found.count()).powi(2) * slope.atan().sin();
         let sky = wedge + 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = match found.method.is_soft() {
-            true => sky + (TAU / found.count()).powi(2) / 24.0 + series(found, uphill, angle)[1],
-            false => sky + between_nodes(found) + environment_error(found),
+        let [light, environment] = match found.method.is_soft() {
+            true if found.method.rounds_wedges() => series(found, uphill, angle),
+            true => {
+                let error = series(found, uphill, angle)[1];
+                [right, sky + (TAU / found.count()).powi(2) / 24.0 + error]
+            }
+            false => [right, sky + between_nodes(found) + environment_error(found)],
         };
         vec![
             probe(found.light("direct.sky", row, col), right, sky, [0, row, col]),
-            probe(found.light("direct.env", row, col), right, environment, [1, row, col]),
+            probe(found.light("direct.env", row, col), light, environment, [1, row, col]),
         ]
     })
 }
 
 /// Level ground of any size gives back what shines all around.
 fn level_probes(found: &Found, places: &[[usize; 2]]) -> Vec<Probe> {
-    let environment = constant_error(found, 1.0);
+    let [right, bound] = constant(found, 1.0);
     let at = |&[r, c]: &[usize; 2]| {
         [
             probe(found.light("direct.sky", r, c), 1.0, sky_error(found), [0, r, c]),
-            probe(found.light("direct.env", r, c), 1.0, environment, [1, r, c]),
+            probe(found.light("direct.env", r, c), right, bound, [1, r, c]),
         ]
     };
     places.iter().flat_map(at).collect()
@@ -293,16 +299,18 @@ fn level_of([rows, cols]: [usize; 2], border: Border) -> Case {
     })
 }
 
-/// Voids are filled from their rim, which is level here; what they hold is never looked at.
-fn voids(border: Border) -> Case {
+/// Level ground with voids, which are filled from their rim; what they hold is never looked at.
+pub fn filled_voids() -> HeightField {
     let is_void = |r: usize, c: usize| (28..=36).contains(&r) && (4..20).contains(&c) || r < 5;
     let marks: Vec<bool> = (0..SIDE * SIDE).map(|i| is_void(i / SIDE, i % SIDE)).collect();
     let height = |i: usize| if marks[i] { [f64::NAN, f64::INFINITY][i % 2] } else { 3.0 };
     let heights: Vec<f64> = (0..SIDE * SIDE).map(height).collect();
-    let ground =
-        HeightField::new(SIDE, SIDE, &heights, [1.0, 1.0], Some(marks)).expect("a good field");
+    HeightField::new(SIDE, SIDE, &heights, [1.0, 1.0], Some(marks)).expect("a good field")
+}
+
+fn voids(border: Border) -> Case {
     let name = "light beside voids of NaN and infinities";
-    light(name, LEVEL, (ground, border, around(uniform(1.0))), |found| {
+    light(name, LEVEL, (filled_voids(), border, around(uniform(1.0))), |found| {
         level_probes(found, &[[5, 0], [32, 3], [32, 20], [27, 12], [64, 64]])
     })
 }
@@ -339,7 +347,16 @@ fn trench(border: Border) -> Case {
             0.0,
             &found.azimuths[0],
         );
-        let (mut right, mut lowest) = ([0.0; 2], Vec::new());
+        // The slope of the edge in an azimuth, so far away.
+        let slope = |azimuth: &Azimuth, away: f64| {
+            let (sin, cos) = azimuth.swept_rad([1.0, 1.0]).sin_cos();
+            // 32 rows north, 31 south.
+            let is_inside = cos < -1e-9 && AWAY * (sin / cos).abs() < 31.0;
+            let meets = if periodic { cos.abs() > 1e-9 } else { is_inside };
+            if meets { HEIGHT * cos.abs() / away } else { 0.0 }
+        };
+        let ends = [AWAY - aside, AWAY + aside];
+        let mut right = [0.0; 2];
         for azimuth in &found.azimuths {
             let share = f64::from(azimuth.wedge_rad) / TAU;
             if let Some((elevation, error)) = found.twin_elevation(azimuth, row, col) {
@@ -347,28 +364,33 @@ fn trench(border: Border) -> Case {
                 right.iter_mut().for_each(|sum| *sum += share * elevation.cos().powi(2));
                 continue;
             }
-            let (sin, cos) = azimuth.swept_rad([1.0, 1.0]).sin_cos();
-            // 32 rows north, 31 south.
-            let is_inside = cos < -1e-9 && AWAY * (sin / cos).abs() < 31.0;
-            let meets = if periodic { cos.abs() > 1e-9 } else { is_inside };
-            lowest.push((*azimuth, if meets { HEIGHT * cos.abs() / AWAY } else { 0.0 }));
-            for (sum, away) in right.iter_mut().zip([AWAY - aside, AWAY + aside]) {
-                let slope = if meets { HEIGHT * cos.abs() / away } else { 0.0 };
-                *sum += share / (1.0 + slope * slope);
+            for (sum, away) in right.iter_mut().zip(ends) {
+                *sum += share / (1.0 + slope(azimuth, away).powi(2));
             }
         }
         let sky = 2.0 * (angle + ARC_TANGENT) + sky_error(found);
-        let environment = sky
-            + match found.method.is_soft() {
-                true => series_above(found, DVec3::Z, &lowest, angle)[1],
-                false => between_nodes(found) + environment_error(found),
-            };
-        let of = |layer: &str, bound, at| Probe {
+        let series = |away: f64| {
+            let lowest: Vec<_> = found.azimuths.iter().map(|a| (*a, slope(a, away))).collect();
+            series_above(found, DVec3::Z, &lowest, angle)
+        };
+        let (light, environment) = match found.method.is_soft() {
+            // The nearer the edge the less is seen.
+            true if found.method.rounds_wedges() => {
+                let [near, far] = ends.map(series);
+                ([near[0], far[0]], near[1].max(far[1]))
+            }
+            true => (right, sky + series(AWAY)[1]),
+            false => (right, sky + between_nodes(found) + environment_error(found)),
+        };
+        let of = |layer: &str, expected, bound, at| Probe {
             found: found.light(layer, row, col),
-            expected: right,
+            expected,
             bound,
             at,
         };
-        vec![of("direct.sky", sky, [0, row, col]), of("direct.env", environment, [1, row, col])]
+        vec![
+            of("direct.sky", right, sky, [0, row, col]),
+            of("direct.env", light, environment, [1, row, col]),
+        ]
     })
 }

@@ -7,7 +7,7 @@ use ridgelight::measure::tolerance::{
 };
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
-use ridgelight::scene::{self, Basis, Fuse, Hull, Levels, Lines, Precision, Quality};
+use ridgelight::scene::{self, Basis, Fuse, Hull, Levels, Lines, Precision, Quality, Wedges};
 
 /// A way to find horizons, as the page names it.
 pub struct Method {
@@ -47,6 +47,8 @@ pub fn all() -> Vec<Method> {
         ),
         ("harmonics, 4", soft(4, 1)),
         ("harmonics, 6, every 4th", soft(6, 4)),
+        ("harmonics, 4, nlp", Quality { wedges: Wedges::Nlp, ..soft(4, 1) }),
+        ("harmonics, 4, table", Quality { wedges: Wedges::Table, ..soft(4, 1) }),
     ]
     .map(|(name, quality)| Method { name, quality })
     .into()
@@ -69,6 +71,12 @@ impl Method {
     /// Whether an environment is lit by spherical harmonics.
     pub fn is_soft(&self) -> bool {
         self.quality.basis == Basis::Sh
+    }
+
+    /// Whether the series of what is seen is rounded off by its wedges, whatever the horizons: to Legendre
+    /// coefficients, or between a table's nodes.
+    pub fn rounds_wedges(&self) -> bool {
+        self.is_soft() && self.quality.wedges != Wedges::Slices
     }
 
     fn has_lines(&self) -> bool {

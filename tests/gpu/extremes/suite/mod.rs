@@ -1,6 +1,7 @@
 //! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
 //! it on the driver at hand; `examples/extremes.rs` prints it for several as `docs/extremes.md`.
 
+mod balls;
 mod horizons;
 pub mod inputs;
 mod lights;
@@ -169,9 +170,9 @@ pub struct Row {
     pub outcome: Outcome,
 }
 
-/// Every case. A new one is enrolled by an entry in one of the two lists.
+/// Every case. A new one is enrolled by an entry in one of the lists.
 pub fn cases() -> Vec<Case> {
-    horizons::cases().into_iter().chain(lights::cases()).collect()
+    horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases()).collect()
 }
 
 /// The probes of a case under a method on a device, or the sentence of the refusal.

@@ -1,0 +1,138 @@
+//! What a Phong lobe by spherical harmonics is off light paths by, for exponents and orders.
+//!
+//! `cargo run --release --example lobe -- [SIDE]` lights the middle SIDE² (64) samples of the bundled mountain by
+//! the bundled sky in a lobe alone, without a sun, whose texels are cut at 20 times the mean: of so small a light
+//! harmonics keep next to nothing, and suns belong in suns.
+
+use std::path::Path;
+
+use ridgelight::files::{self, HeightOptions};
+use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
+use ridgelight::scene::{
+    Albedo, Basis, Border, Environment, HeightField, Lights, Phong, Quality, Receiver, Scene,
+    Surface,
+};
+use ridgelight::{Error, Result};
+
+const BATCHES: usize = 48;
+
+fn main() {
+    if let Err(error) = run() {
+        eprintln!("{error}");
+        std::process::exit(1);
+    }
+}
+
+fn run() -> Result<()> {
+    let side = std::env::args().nth(1).map_or(Ok(64), |text| text.parse());
+    let side: usize = side
+        .ok()
+        .filter(|side| (2..=256).contains(side))
+        .ok_or_else(|| Error::setting("SIDE", "no such number", "2 to 256"))?;
+    let mut gpu = Headless::new(&HeadlessOptions::default())?;
+    let (field, sky) = (middle(side)?, sky()?);
+    let device = gpu.report();
+    println!(
+        "Middle {side}² of mt_washington_256 under sky_512x256, cut at 20 times its mean; a lobe alone, {} light \
+         paths a sample; {}, {}\n",
+        BATCHES * REFERENCE_BATCH as usize,
+        device.name,
+        device.driver
+    );
+    println!(
+        "| exponent | receiver | order | RMSE % | ± | paths' noise % | mean shift % | set to 0 % |\n|---|---|---|---|---|---|---|---|"
+    );
+    for exponent in [1.0, 5.0, 20.0] {
+        let scene = Scene {
+            field: field.clone(),
+            surface: Surface {
+                albedo: Albedo::Constant([0.0; 3]),
+                border: Border::Plane,
+                phong: Some(Phong { exponent, scale: 1.0 }),
+            },
+            lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
+        };
+        let truth = traced(&mut gpu, &scene)?;
+        for receiver in [Receiver::Plane, Receiver::Lobe] {
+            for sh_order in 2..=6 {
+                let quality =
+                    Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };
+                let (light, negative) = drawn(&mut gpu, &scene, &quality)?;
+                let [rmse, error, noise, shift] = off(&light, &truth).map(|v| 100.0 * v);
+                println!(
+                    "| {exponent} | {} | {sh_order} | {rmse:.2} | {error:.4} | {noise:.3} | {shift:+.2} | {:.2} |",
+                    receiver.name(),
+                    100.0 * negative
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn middle(side: usize) -> Result<HeightField> {
+    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
+    let whole = files::read_heights(Path::new("assets/mt_washington_256.png"), &options)?;
+    let first = (256 - side) / 2;
+    let height = |i: usize| whole.heights_m()[(first + i / side) * 256 + first + i % side];
+    let heights: Vec<f64> = (0..side * side).map(|i| f64::from(height(i))).collect();
+    HeightField::new(side, side, &heights, whole.cell_m(), None)
+}
+
+fn sky() -> Result<Environment> {
+    let sky = files::read_environment(Path::new("assets/sky_512x256.hdr"), 0.0)?;
+    let texels = sky.texels();
+    let most = 20.0 * texels.as_flattened().iter().sum::<f32>() / (3 * texels.len()) as f32;
+    let cut = texels.iter().map(|t| t.map(|v| v.min(most))).collect();
+    Environment::new(sky.width(), sky.height(), cut, 0.0)
+}
+
+/// Radiance by light paths, and its standard error.
+fn traced(gpu: &mut Headless, scene: &Scene) -> Result<[Vec<f32>; 2]> {
+    let plan = plan::reference(scene, 0, 1, &gpu.report().limits)?;
+    let paths: Vec<usize> =
+        (0..plan.passes.len()).filter(|p| plan.passes[*p].name() == "path_trace").collect();
+    let contents = plan::reference_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        for _ in 1..BATCHES {
+            gpu.draw_passes(frame, &paths)?;
+        }
+        Ok([gpu.pixels(frame, 0)?.values, gpu.pixels(frame, 1)?.values])
+    })
+}
+
+/// Radiance, and the share of samples where some was below 0.
+fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<(Vec<f32>, f64)> {
+    let plan = plan::picture(scene, quality, &gpu.report().limits, Picture::default())?;
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        let negative = gpu.negative_share(frame)?.unwrap_or(0.0);
+        Ok((gpu.pixels(frame, 0)?.values, negative))
+    })
+}
+
+/// RMSE over all channels, the paths' noise taken off, its standard error, that noise, and the shift of the mean;
+/// shares of the mean. A square d² of a difference with noise σ wavers by √(4 d²σ² + 2 σ⁴).
+fn off(light: &[f32], [truth, error]: &[Vec<f32>; 2]) -> [f64; 4] {
+    let (mut mean, mut shift, mut count) = (0.0, 0.0, 0.0);
+    let (mut squares, mut noises, mut spread) = (0.0, 0.0, 0.0);
+    for (i, ((got, want), sigma)) in light.iter().zip(truth).zip(error).enumerate() {
+        if i % 4 < 3 {
+            let [off, noise] = [f64::from(got - want), f64::from(*sigma)].map(|v| v * v);
+            mean += f64::from(*want);
+            shift += f64::from(got - want);
+            squares += off - noise;
+            noises += noise;
+            spread += 4.0 * off * noise + 2.0 * noise * noise;
+            count += 1.0;
+        }
+    }
+    let rmse = (squares.max(0.0_f64) / count).sqrt();
+    let of_rmse = spread.sqrt() / count / (2.0 * rmse).max(f64::MIN_POSITIVE);
+    [rmse, of_rmse, f64::sqrt(noises / count), shift / count].map(|v| v * count / mean)
+}

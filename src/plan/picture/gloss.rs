@@ -1,0 +1,180 @@
+//! What a lobe beside the diffuse reflection adds to a picture.
+
+use super::super::Batch;
+use super::super::ResourceId;
+use super::super::shining::Shining;
+use super::drawing::Drawing;
+use crate::passes::{self, light_resolve};
+use crate::scene::{Basis, Quality, Sun};
+use crate::{Error, Result};
+
+/// The quality that a scene with a lobe is lit by.
+///
+/// # Errors
+/// A light or a basis that gives a lobe nothing.
+pub(super) fn quality(
+    quality: &Quality,
+    shining: &Shining<'_>,
+    notes: &mut Vec<String>,
+) -> Result<Quality> {
+    if shining.gloss.is_none() {
+        return Ok(*quality);
+    }
+    let refuse = |found: &str, expected: &str| Err(Error::setting("phong", found, expected));
+    let alone = "sky, environment and suns alone: it is for the reference to mirror others";
+    if !shining.keys.is_empty() {
+        return refuse("a lobe under a key light", alone);
+    }
+    if !shining.spheres.shining.is_empty() {
+        return refuse("a lobe under a ball of light", alone);
+    }
+    if quality.bounces.count > 0 {
+        return refuse("a lobe with --bounces", "--bounces 0: a lobe mirrors direct light alone");
+    }
+    match quality.basis {
+        _ if !shining.has_gloss_around() => Ok(*quality),
+        Basis::Sh => Ok(*quality),
+        Basis::Auto => {
+            notes.push("basis sh: a lobe is lit by harmonics alone".into());
+            Ok(Quality { basis: Basis::Sh, ..*quality })
+        }
+        Basis::Table => {
+            refuse("a lobe by --basis table, whose tables are of diffuse ground", "--basis sh")
+        }
+    }
+}
+
+impl Drawing<'_> {
+    /// What each light makes of what is seen as harmonics.
+    pub(super) fn fill_matrices(&mut self) {
+        let Some(h) = &self.harmonics else { return };
+        let builder = &mut self.builder;
+        let lit = [(&h.diffuse, None), (&h.gloss, self.shining.sky)];
+        for (seen, sky) in lit {
+            let Some(seen) = seen else { continue };
+            let environment = self.shining.environment.zip(self.images.environment);
+            if let (Some((e, image)), Some(turns)) = (environment, seen.env_turns) {
+                passes::env_turns::plan(builder, e, &seen.sh, [image, h.constants, turns]);
+            }
+            let ids = [h.constants, seen.light_matrix];
+            passes::light_matrix::plan(builder, &seen.sh, sky, seen.env_turns, ids);
+        }
+    }
+
+    /// A sun in the lobe, from what it gives to diffuse ground.
+    pub(super) fn sun_gloss(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
+        let (Some(phong), Some(gloss)) = (self.shining.gloss, self.images.gloss_sum) else {
+            return;
+        };
+        let (border, cell_m) = (self.border(), self.scene.field.cell_m());
+        let Some(sweeping) = &self.sweeping else { return };
+        let ids = [sweeping.lane_heights(batch), sum, gloss];
+        let begins = !std::mem::replace(&mut self.gloss_is_begun, true);
+        let field = (batch.axis, border, cell_m);
+        passes::sun_gloss::plan(&mut self.builder, field, name, (sun, phong.exponent), ids, begins);
+    }
+
+    /// The lobe's share of the picture.
+    pub(super) fn gloss(&mut self) {
+        let (Some(phong), Some(sum)) = (self.shining.gloss, self.images.gloss_sum) else { return };
+        if !self.gloss_is_begun {
+            return;
+        }
+        let is_first = !std::mem::replace(&mut self.is_begun, true);
+        let light = light_resolve::Light {
+            sum,
+            has_colour: true,
+            colour: [phong.scale; 3],
+            albedo_map: None,
+            radiance: Some((self.images.radiance, is_first)),
+            layer: self.images.gloss_layer,
+            grey: self.shining.is_grey,
+            edited: self.edited,
+        };
+        self.light_resolve("glossy", &light);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Result;
+    use crate::measure::fractal::fractal;
+    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::{
+        Albedo, Basis, Border, Environment, KeyLight, Lights, Phong, Quality, Scene, SphereLight,
+        Sun, Surface,
+    };
+
+    fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
+        let surface = Surface {
+            albedo: Albedo::Constant([0.5; 3]),
+            border: Border::Plane,
+            phong: Some(Phong { exponent: 9.0, scale }),
+        };
+        let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
+        let quality = Quality { azimuths: 8, basis, ..Quality::default() };
+        let wanted = Picture { light_layers: true, keeps_horizons: true, ..Picture::default() };
+        plan::picture(&scene, &quality, &Limits::lavapipe(), wanted)
+    }
+
+    fn sky() -> Lights {
+        Lights { sky: Some([1.0; 3]), ..Lights::default() }
+    }
+
+    fn sun() -> Lights {
+        let sun =
+            Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.01, irradiance: [1.0; 3] };
+        Lights { suns: vec![sun], ..Lights::default() }
+    }
+
+    fn names(plan: &Plan) -> Vec<String> {
+        plan.passes.iter().map(crate::plan::Pass::label).collect()
+    }
+
+    #[test]
+    fn what_a_lobe_is_not_lit_by_is_said() {
+        let said = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
+        let key = KeyLight {
+            azimuth_rad: 0.0,
+            width_rad: 1.0,
+            elevations_rad: [0.1, 0.5],
+            radiance: [1.0; 3],
+        };
+        let under_key = said(Lights { keys: vec![key], ..sky() }, Basis::Sh);
+        assert!(under_key.contains("a lobe under a key light"), "{under_key}");
+        let ball = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+        let under_ball = said(Lights { spheres: vec![ball], ..sky() }, Basis::Sh);
+        assert!(under_ball.contains("the reference"), "{under_ball}");
+        let by_table = said(sky(), Basis::Table);
+        assert!(by_table.ends_with("--basis sh"), "{by_table}");
+        // Dark ones, and no lobe, are no reason.
+        let dark = KeyLight { radiance: [0.0; 3], ..key };
+        assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
+        assert!(plan(Lights { keys: vec![key], ..sky() }, Basis::Table, 0.0).is_ok());
+        assert!(plan(sun(), Basis::Table, 0.5).is_ok());
+    }
+
+    /// The planner takes harmonics where there is something all around; suns need none, and a lobe of nothing
+    /// nothing. No edits: what is seen of a sky is not kept by sample.
+    #[test]
+    fn harmonics_are_for_what_is_all_around() {
+        let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
+        assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
+        assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
+        assert!(of_sky.find("env_turns").is_none() && of_sky.find("gloss_turns").is_none());
+        assert!(names(&of_sky).contains(&"sh_shade glossy".to_owned()), "{:?}", names(&of_sky));
+        let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
+        let lit = Lights { environment: Some(environment), ..sun() };
+        let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
+        let all = names(&of_all);
+        for name in ["env_turns", "env_turns glossy", "sh_shade env", "sun_gloss sun1"] {
+            assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
+        }
+        assert!(of_all.find("direct.glossy").is_some() && of_all.edit_passes.is_empty());
+        let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
+        assert!(of_sun.find("visibility").is_none() && of_sun.find("gloss_sum").is_some());
+        let none = plan(sky(), Basis::Auto, 0.0).unwrap();
+        assert!(none.notes.iter().any(|n| n.starts_with("lobe dropped")), "{:?}", none.notes);
+        assert!(none.find("gloss_sum").is_none() && none.find("visibility").is_none());
+    }
+}
