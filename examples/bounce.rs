@@ -222,7 +222,7 @@ fn real(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let (fields, environments) = inputs(asked.folder.as_deref(), asked.side)?;
     let (side, paths) = (asked.side, asked.paths);
     println!(
-        "The middle {side}² samples, {paths} paths: RMSE over the mean, %; noise is the paths' own\n"
+        "The middle {side}² samples, {paths} paths: RMSE over the mean, %; noise: the paths' own, at most, as those without bounces begin alike\n"
     );
     println!(
         "| field | light | albedo | bounces | engine | bounced | noise | whole | noise | ms | over brute's |"
