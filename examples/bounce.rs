@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release --example bounce -- [FOLDER] [--side N] [--spp N] [--rim N]`
 //!
-//! First spherical pits, their rim N (60) cells from the middle, beside their closed form: RMSE over the radiance, at
+//! First spherical pits, their rim N (30) cells from the middle, beside their closed form: RMSE over the radiance, at
 //! samples up to half of the rim's distance. Then the middle N² (64) samples of real fields under environments, for
 //! two albedos, one and three bounces, beside N (1024) light paths a sample: what is bounced alone, and the whole.
 //! FOLDER has `height/` and `env/`; without it, the bundled mountain and sky. Milliseconds are those of the passes
@@ -30,7 +30,7 @@ struct Asked {
 }
 
 fn asked() -> Result<Asked> {
-    let mut asked = Asked { folder: None, side: 64, paths: 1024, rim: 60 };
+    let mut asked = Asked { folder: None, side: 64, paths: 1024, rim: 30 };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut whole = || {
@@ -222,7 +222,7 @@ fn real(gpu: &mut Headless, asked: &Asked) -> Result<()> {
     let (fields, environments) = inputs(asked.folder.as_deref(), asked.side)?;
     let (side, paths) = (asked.side, asked.paths);
     println!(
-        "The middle {side}² samples, {paths} paths: RMSE over the mean, %; noise is the paths' own\n"
+        "The middle {side}² samples, {paths} paths: RMSE over the mean, %; noise: the paths' own, at most, as those without bounces begin alike\n"
     );
     println!(
         "| field | light | albedo | bounces | engine | bounced | noise | whole | noise | ms | over brute's |"

@@ -78,20 +78,33 @@ Place place_at(int back) {
     return Place(first, second, march_position(azimuth, on, steps), t);
 }
 
+// As quad.glsl's, chosen without branches.
+float height_of(int lane, int march) {
+    vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
+    vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
+    return mix(two.x, two.y, (lane & 1) != 0);
+}
+
 float slope_at(int back) {
     Place p = place_at(back);
-    float h = height_at(p.lane, p.march);
-    precise float rise = p.t * (height_at(p.next, p.march) - h);
+    float h = height_of(p.lane, p.march);
+    precise float rise = p.t * (height_of(p.next, p.march) - h);
     precise float above = (h + rise) - own_height;
     return above / (float(back) * azimuth.step_m);
 }
 
 vec3 leaving(int lane, int march) {
-    ivec2 at = texel_at(lane, march);
+    ivec2 by_row = ivec2(lane, march);
+    ivec2 by_col = ivec2(march, lane);
+    ivec2 at = MARCHES_ROWS ? by_row : by_col;
+    // Not left early: that makes loops of functions, which SwiftShader's compiler takes gigabytes over.
+    vec3 colour;
     if (GREY) {
-        return imageLoad(exit_grey, at).xxx;
+        colour = imageLoad(exit_grey, at).xxx;
+    } else {
+        colour = imageLoad(exit_radiance, at).rgb;
     }
-    return imageLoad(exit_radiance, at).rgb;
+    return colour;
 }
 
 vec3 light_at(int back) {
@@ -119,8 +132,12 @@ int occluder_at(int back) {
     int line_round = wrapped(nearest, lines);
     int line_held = clamp(nearest, max(first, 0), max(last, 0));
     int line = wraps ? line_round : line_held;
-    uint found = lattice_u16(imageLoad(occluders, lattice_texel(azimuth, line, on)).xy, line & 3);
-    return stands ? int(found) : 0;
+    uvec2 texel = imageLoad(occluders, lattice_texel(azimuth, line, on)).xy;
+    uint word = mix(texel.x, texel.y, (line & 2) != 0);
+    uint low = word & 0xffffu;
+    uint high = word >> 16;
+    int found = int(mix(low, high, (line & 1) != 0));
+    return stands ? found : 0;
 }
 
 // Whether the own line crosses the diagonal of the sample's cell within its first step: (1, 0) to (0, 1), by
@@ -182,8 +199,8 @@ vec4 walked(vec3 normal, float plane) {
     bool split = crosses_split();
     ivec4 ends = split_ends();
     float u = 1.0 / (1.0 + float(azimuth.shear) * (1.0 / float(CELL)));
-    float side = height_at(ends.x, ends.y);
-    precise float rise = (side - own_height) + u * (height_at(ends.z, ends.w) - side);
+    float side = height_of(ends.x, ends.y);
+    precise float rise = (side - own_height) + u * (height_of(ends.z, ends.w) - side);
     precise float split_slope = rise / (u * azimuth.step_m);
     vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
     vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
@@ -256,7 +273,7 @@ void main() {
     float east = easts[lane & 3];
     float north = norths[lane & 3];
     vec3 normal = vec3(-east, -north, 1.0) * inversesqrt(1.0 + east * east + north * north);
-    own_height = height_at(lane, march);
+    own_height = height_of(lane, march);
     ivec2 to = texel_at(lane, march);
     vec4 sum = vec4(0.0);
     if (clears == 0u) {

@@ -60,7 +60,9 @@ fn long_lines_take_more_dispatches() {
     let plan = drawn(&scene, walked(1, 64), false);
     let walks: Vec<_> = plan.passes.iter().filter(|p| p.name() == "bounce_walk").collect();
     let counts: Vec<usize> = walks.iter().map(|p| p.azimuths.len()).collect();
-    assert!(counts.iter().all(|n| *n <= 14) && counts.iter().sum::<usize>() == 64, "{counts:?}");
+    assert_eq!(counts.iter().sum::<usize>(), 64);
+    let along_cols = walks.iter().filter(|p| p.groups[0] == 512).map(|p| p.azimuths.len());
+    assert_eq!(along_cols.collect::<Vec<_>>(), [14, 14, 4]);
     let word = |i: usize, at: usize| {
         let push = &walks[i].push;
         u32::from_ne_bytes(push[4 * at..4 * at + 4].try_into().unwrap())
