@@ -41,7 +41,7 @@ fn run() -> Result<()> {
         device.driver
     );
     println!(
-        "| exponent | receiver | order | RMSE % | ± | mean shift % | set to 0 % |\n|---|---|---|---|---|---|---|"
+        "| exponent | receiver | order | RMSE % | ± | paths' noise % | mean shift % | set to 0 % |\n|---|---|---|---|---|---|---|---|"
     );
     for exponent in [1.0, 5.0, 20.0] {
         let scene = Scene {
@@ -59,9 +59,9 @@ fn run() -> Result<()> {
                 let quality =
                     Quality { basis: Basis::Sh, receiver, sh_order, ..Quality::default() };
                 let (light, negative) = drawn(&mut gpu, &scene, &quality)?;
-                let [rmse, error, shift] = off(&light, &truth).map(|v| 100.0 * v);
+                let [rmse, error, noise, shift] = off(&light, &truth).map(|v| 100.0 * v);
                 println!(
-                    "| {exponent} | {} | {sh_order} | {rmse:.2} | {error:.2} | {shift:+.2} | {:.2} |",
+                    "| {exponent} | {} | {sh_order} | {rmse:.2} | {error:.4} | {noise:.3} | {shift:+.2} | {:.2} |",
                     receiver.name(),
                     100.0 * negative
                 );
@@ -116,21 +116,23 @@ fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<(Vec<f3
     })
 }
 
-/// RMSE over all channels, the paths' noise taken off, its standard error, and the shift of the mean; shares of
-/// the mean. A square d² of a difference with noise σ wavers by √(4 d²σ² + 2 σ⁴).
-fn off(light: &[f32], [truth, error]: &[Vec<f32>; 2]) -> [f64; 3] {
-    let (mut mean, mut shift, mut squares, mut spread, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
+/// RMSE over all channels, the paths' noise taken off, its standard error, that noise, and the shift of the mean;
+/// shares of the mean. A square d² of a difference with noise σ wavers by √(4 d²σ² + 2 σ⁴).
+fn off(light: &[f32], [truth, error]: &[Vec<f32>; 2]) -> [f64; 4] {
+    let (mut mean, mut shift, mut count) = (0.0, 0.0, 0.0);
+    let (mut squares, mut noises, mut spread) = (0.0, 0.0, 0.0);
     for (i, ((got, want), sigma)) in light.iter().zip(truth).zip(error).enumerate() {
         if i % 4 < 3 {
             let [off, noise] = [f64::from(got - want), f64::from(*sigma)].map(|v| v * v);
             mean += f64::from(*want);
             shift += f64::from(got - want);
             squares += off - noise;
+            noises += noise;
             spread += 4.0 * off * noise + 2.0 * noise * noise;
             count += 1.0;
         }
     }
-    let rmse = (squares.max(0.0) / count).sqrt();
+    let rmse = (squares.max(0.0_f64) / count).sqrt();
     let of_rmse = spread.sqrt() / count / (2.0 * rmse).max(f64::MIN_POSITIVE);
-    [rmse, of_rmse, shift / count].map(|v| v * count / mean)
+    [rmse, of_rmse, f64::sqrt(noises / count), shift / count].map(|v| v * count / mean)
 }

@@ -2,7 +2,8 @@
 // one sample a level, at distances that grow by 2^(1/k) and are rounded to whole march steps. Each knot and
 // midpoint of the B-spline over their elevations that is above all before it casts its radiance over the
 // elevations that it opens (Nowrouzezahrai & Snyder 2009, eq. 6-17).
-// Reads: heights, height_levels or height_stack, level_table, ground, exit_radiance, shade_levels, shade_table.
+// Reads: heights, height_levels or height_stack, level_table, ground, exit_radiance, shade_levels or shade_stack,
+// shade_table.
 // Reads and writes: bounce_sum (exit radiance for albedo 1; until the last azimuths not yet divided by its A,
 // what whole hemispheres would have given).
 // One invocation is one sample.
@@ -12,7 +13,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
-// Height levels are there at every sample, else at their own texels.
+// Levels are there at every sample, else at their own texels.
 layout(constant_id = 1) const bool STACK = false;
 // Levels beside the field itself; may be none.
 layout(constant_id = 2) const int LEVELS = 0;
@@ -31,6 +32,7 @@ layout(binding = 5) uniform texture2D exit_radiance;
 layout(binding = 6) uniform texture2D shade_levels;
 layout(binding = 7) uniform utexture2D shade_table;
 layout(binding = 8, rgba32f) uniform image2D bounce_sum;
+layout(binding = 9) uniform texture2DArray shade_stack;
 
 layout(push_constant) uniform BounceGatherPush {
     int cols;
@@ -53,6 +55,7 @@ layout(push_constant) uniform BounceGatherPush {
 #include "shared/angle.glsl"
 #include "shared/cosine.glsl"
 #include "shared/spline.glsl"
+#include "shared/shade.glsl"
 
 // The march: whole steps along columns or rows, straight across the other axis.
 ivec2 here;
@@ -118,28 +121,24 @@ float height_at(int level, vec2 place) {
 
 // Radiance of a level at a place: what radiates is not below 0.
 vec3 radiance_at(int level, vec2 place) {
-    if (level > 0) {
+    if (level > 0 && !STACK) {
         Level of = level_of(texelFetch(shade_table, ivec2(level - 1, 0), 0));
         precise vec2 at = place * of.per_sample;
-        Taps x = spline_taps(at.x, of.cols);
-        Taps y = spline_taps(at.y, of.rows);
-        vec3 sum = vec3(0.0);
-        for (int r = 0; r < 4; r++) {
-            int row = of.first + y.at[r] * of.cols;
-            vec3 along = vec3(0.0);
-            for (int c = 0; c < 4; c++) {
-                along += x.weight[c] * texelFetch(shade_levels, level_texel(row + x.at[c], shade_shift), 0).rgb;
-            }
-            sum += y.weight[r] * along;
-        }
-        return sum;
+        return shade_at(of, at, shade_shift);
     }
     ivec2 low;
     ivec2 high;
     float t;
     beside(place, low, high, t);
-    vec4 a = texelFetch(exit_radiance, low, 0);
-    vec4 b = texelFetch(exit_radiance, high, 0);
+    vec4 a;
+    vec4 b;
+    if (level > 0) {
+        a = texelFetch(shade_stack, ivec3(low, level - 1), 0);
+        b = texelFetch(shade_stack, ivec3(high, level - 1), 0);
+    } else {
+        a = texelFetch(exit_radiance, low, 0);
+        b = texelFetch(exit_radiance, high, 0);
+    }
     vec4 mean = a + t * (b - a);
     return GREY ? mean.xxx : mean.rgb;
 }

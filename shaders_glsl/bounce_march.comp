@@ -90,7 +90,8 @@ void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     float weight_after = max(facing_of(facing, after), 0.0) * after.x;
     float both = max(weight_before + weight_after, 1e-30);
     float share = (weight_before * share_at(begin, end, before) + weight_after * share_at(begin, end, after)) / both;
-    vec3 radiance = radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0));
+    // No rounding makes it less than nothing.
+    vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
     float counts = rises ? weight : 0.0;
     thrown += counts * radiance;
     last_radiance = rises ? radiance : last_radiance;

@@ -4,7 +4,8 @@
 
 use super::light::{Receiver as Place, Slice, normal};
 use super::pyramid_march::Stored;
-use super::shared::levels::{LevelTexels, spline_taps};
+use super::shade_expand::shade_at;
+use super::shared::levels::LevelTexels;
 use super::shared::sweep::{Heights, wrapped};
 use crate::basis::legendre::{nlp, occlusion};
 use crate::plan::pyramid::Pyramid;
@@ -19,7 +20,7 @@ pub struct BounceGather<'a> {
     pub field: &'a HeightField,
     /// Its heights.
     pub heights: Heights<'a>,
-    /// Levels of heights.
+    /// Levels of heights; those of radiance are stored alike.
     pub pyramid: &'a Pyramid,
     /// As they are stored.
     pub stored: Stored<'a>,
@@ -220,25 +221,19 @@ impl BounceGather<'_> {
     }
 
     fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
-        if level == 0 {
-            let (two, t) = self.beside(march, place);
-            let [low, high] = two.map(|i| self.exit[i]);
-            return [0, 1, 2].map(|c| low[c] + t * (high[c] - low[c]));
+        if let (Stored::Levels(_), 1..) = (self.stored, level) {
+            return shade_at(self.shade, self.shade_texels, level, place);
         }
-        let of = self.shade.level(level);
-        let at = [0, 1].map(|i| place[i] as f32 * of.per_sample[i]);
-        let [cols, rows] = of.size;
-        let (x, x_weight) = spline_taps(at[0], cols, self.shade.periodic);
-        let (y, y_weight) = spline_taps(at[1], rows, self.shade.periodic);
-        let mut sum = [0.0; 3];
-        for (row, weight) in y.iter().zip(y_weight) {
-            for (col, across) in x.iter().zip(x_weight) {
-                let from = self.shade_texels[of.first as usize + (row * cols + col) as usize];
-                let weight = f64::from(weight * across);
-                sum = [0, 1, 2].map(|c| sum[c] + weight * from[c]);
+        let (two, t) = self.beside(march, place);
+        let cols = self.pyramid.size[0] as usize;
+        let [low, high] = two.map(|i| match level {
+            0 => self.exit[i],
+            _ => {
+                let at = [(i % cols) as f64, (i / cols) as f64];
+                shade_at(self.shade, self.shade_texels, level, at)
             }
-        }
-        sum
+        });
+        [0, 1, 2].map(|c| low[c] + t * (high[c] - low[c]))
     }
 }
 

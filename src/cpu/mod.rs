@@ -34,6 +34,7 @@ pub mod pyramid_march;
 pub mod sh_shade;
 pub mod sh_visibility;
 pub mod sh_wedges;
+pub mod shade_expand;
 pub mod shade_reduce;
 pub mod shared;
 pub mod sky_shade;

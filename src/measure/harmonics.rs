@@ -88,7 +88,7 @@ impl Harmonics {
     }
 
     /// What is seen above slopes that err as `error` says, each that of the lowest direction that is free:
-    /// above the horizon, and for [`Receiver::Plane`] above the sample's own plane.
+    /// above the horizon, and for [`Receiver::Plane`](crate::scene::Receiver::Plane) above the sample's own plane.
     pub fn seen(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Seen {
         let Series { order, wedges, .. } = self.series;
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();

@@ -37,7 +37,7 @@ impl SoftBall {
     ///
     /// A coefficient of what is seen errs as [`ShadeError::series`] says, of azimuths across the ball and beyond;
     /// the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
-    /// at both. One of the ball as [`coefficient`] says. Products sum as many terms as there are, each of four
+    /// at both. One of the ball as `coefficient` says. Products sum as many terms as there are, each of four
     /// factors, whose polynomials of the normal are 2 at most and change by 6 a radian.
     pub fn twin(&self, ball: &BallSeen, slope_error: f64, normal: DVec3, seen: &[f64]) -> f64 {
         let order = self.quality.sh_order as usize;

@@ -46,6 +46,14 @@ same_layout!(
     step_height = STEP_HEIGHT,
 );
 
+/// Levels of exit radiance.
+#[derive(Clone, Copy)]
+pub(crate) struct ShadeImages {
+    pub levels: ResourceId,
+    pub table: ResourceId,
+    pub stack: Option<ResourceId>,
+}
+
 /// The levels that a sample looks at, of heights and of exit radiance; images where there are any.
 pub(crate) struct Pyramids {
     pub heights: Pyramid,
@@ -53,8 +61,7 @@ pub(crate) struct Pyramids {
     /// Whether nothing else has filled them.
     pub fills_heights: bool,
     pub shade: Pyramid,
-    /// Levels and their table.
-    pub shade_images: Option<[ResourceId; 2]>,
+    pub shade_images: Option<ShadeImages>,
     pub receiver: Receiver,
 }
 
@@ -85,8 +92,12 @@ pub(crate) fn plan(
         }
         None => {}
     }
-    if let Some([levels, table]) = of.shade_images {
-        bound.extend([("shade_levels", levels), ("shade_table", table)]);
+    match of.shade_images {
+        Some(ShadeImages { stack: Some(stack), .. }) => bound.push(("shade_stack", stack)),
+        Some(ShadeImages { levels, table, stack: None }) => {
+            bound.extend([("shade_levels", levels), ("shade_table", table)]);
+        }
+        None => {}
     }
     // The march, and inside it samples that round to one distance.
     let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);

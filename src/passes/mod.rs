@@ -23,6 +23,7 @@ pub(crate) mod pyramid_march;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
+pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh_shade;

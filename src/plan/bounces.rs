@@ -8,7 +8,8 @@ use super::pyramid::Pyramid;
 use super::sweeping::{Sweeping, part};
 use super::{Batch, Builder, Format, Owner, ResourceId};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_reduce,
+    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_expand,
+    shade_reduce,
 };
 use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
 
@@ -79,7 +80,9 @@ impl Bouncing {
         let engine = match bounces.engine {
             BounceEngine::Brute => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
-            BounceEngine::Pyramid => Engine::Pyramid(pyramids(builder, scene, quality, levels)),
+            BounceEngine::Pyramid => {
+                Engine::Pyramid(pyramids(builder, (scene, grey), quality, levels))
+            }
         };
         Self { azimuths: bounces.azimuths, grey, sum, engine, exits }
     }
@@ -140,9 +143,13 @@ impl Bouncing {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
             Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
             Engine::Pyramid(of) => {
-                for level in 1..=of.shade.levels() {
-                    let images = of.shade_images.expect("made for every level");
-                    shade_reduce::plan(builder, &of.shade, level, &bounce, images);
+                if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
+                    for level in 1..=of.shade.levels() {
+                        shade_reduce::plan(builder, &of.shade, level, &bounce, [levels, table]);
+                    }
+                    if let Some(stack) = stack {
+                        shade_expand::plan(builder, &of.shade, &bounce, [levels, table, stack]);
+                    }
                 }
                 let ids = [heights, blocks().images.ground];
                 bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
@@ -206,22 +213,28 @@ fn walk(
 /// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own; light follows the receiver.
 fn pyramids(
     builder: &mut Builder,
-    scene: &Scene,
+    (scene, grey): (&Scene, bool),
     quality: &Quality,
     levels: Option<pyramid_march::Images>,
 ) -> bounce_gather::Pyramids {
     let size = [scene.field.cols() as u32, scene.field.rows() as u32];
     let heights = Pyramid::new(quality, size, scene.surface.border);
     let Bounces { level_step, level_offset, .. } = quality.bounces;
-    let shade = Pyramid { level_step, level_offset, stored: Levels::Pyramid, ..heights };
+    let shade = Pyramid { level_step, level_offset, ..heights };
     let shade_images = (shade.levels() > 0).then(|| {
         let width = 1 << shade.width_shift();
         let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
-        let mut image = |name: &str, format: Format, extent: [u32; 3]| {
-            builder.image(name, Owner::Internal, format, extent, false)
+        let count = shade.levels();
+        let mut image = |name: &str, format: Format, extent: [u32; 3], layered: bool| {
+            builder.image(name, Owner::Internal, format, extent, layered)
         };
-        let levels = image("shade_levels", Format::Rgba32Float, [width, height, 1]);
-        [levels, image("shade_table", Format::Rgba32Uint, [shade.levels(), 1, 1])]
+        let colour = if grey { Format::R32Float } else { Format::Rgba32Float };
+        bounce_gather::ShadeImages {
+            levels: image("shade_levels", Format::Rgba32Float, [width, height, 1], false),
+            table: image("shade_table", Format::Rgba32Uint, [count, 1, 1], false),
+            stack: (shade.stored == Levels::Stack)
+                .then(|| image("shade_stack", colour, [size[0], size[1], count], true)),
+        }
     });
     let fills_heights = levels.is_none();
     let height_images = levels.or_else(|| heights.images(builder));

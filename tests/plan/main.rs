@@ -2,6 +2,7 @@
 
 mod reference;
 mod sizes;
+mod walks;
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{

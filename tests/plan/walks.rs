@@ -1,0 +1,72 @@
+//! Bounces by walks over what sweeps have met.
+
+use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
+use ridgelight::scene::{BounceEngine, Bounces, Fuse, Lights, Quality, Scene};
+
+use crate::{flat, under_sky};
+
+fn drawn(scene: &Scene, quality: Quality, keeps_horizons: bool) -> Plan {
+    let wanted = Picture { keeps_horizons, ..Picture::default() };
+    plan::picture(scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+}
+
+fn walked(count: u32, azimuths: u32) -> Quality {
+    let engine = BounceEngine::Sweep;
+    let bounces = Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
+    Quality { azimuths: 8, bounces, ..Quality::default() }
+}
+
+fn labels(plan: &Plan) -> Vec<String> {
+    plan.passes.iter().map(plan::Pass::label).filter(|l| l.contains("bounce")).collect()
+}
+
+/// A batch an axis, each swept and walked over. A second bounce sweeps again what shares a lattice, and only walks
+/// where each batch keeps its own. Rays' blocks are not made.
+#[test]
+fn sweeps_and_walks() {
+    let mut scene = under_sky(flat(9, 14));
+    let once = ["horizon_sweep bounce1 8+4", "bounce_walk bounce1 8+4"];
+    let of = |plan: &Plan, name: &str| {
+        plan.passes.iter().filter(|p| p.name() == name && p.part.contains("bounce")).count()
+    };
+    let one = drawn(&scene, walked(1, 8), false);
+    assert!(labels(&one).starts_with(&once.map(String::from)), "{:?}", labels(&one));
+    assert_eq!([of(&one, "horizon_sweep"), of(&one, "bounce_walk")], [2, 2]);
+    assert_eq!(one.azimuths.len(), 16);
+    assert!(one.find("ground").is_none() && one.edit_passes.is_empty());
+    let [shared, kept] = [false, true].map(|keeps| drawn(&scene, walked(3, 8), keeps));
+    assert_eq!([of(&shared, "horizon_sweep"), of(&shared, "bounce_walk")], [6, 6]);
+    assert_eq!([of(&kept, "horizon_sweep"), of(&kept, "bounce_walk")], [2, 6]);
+    for plan in [&one, &shared, &kept] {
+        assert_eq!(missing_barriers(&plan.passes), vec![]);
+    }
+    // Slopes alone would not do.
+    let slopes = drawn(&scene, Quality { fuse: Fuse::Slopes, ..walked(1, 8) }, false);
+    assert!(slopes.find("lattice_occluders").is_some());
+    // A change of light alone sweeps nothing, and walks again.
+    let before = kept.clone();
+    scene.lights = Lights { sky: Some([2.0; 3]), ..Lights::default() };
+    let after = drawn(&scene, walked(3, 8), true);
+    let again = after.passes_after(&before, &[]);
+    let names: Vec<&str> = again.iter().map(|i| after.passes[*i].name()).collect();
+    assert!(!names.contains(&"horizon_sweep") && names.contains(&"bounce_walk"), "{names:?}");
+}
+
+/// llvmpipe ends all loops of an invocation after 65,535 turns: lines of 4096 steps are walked in 14 azimuths a
+/// dispatch, at most one turn a step and one an azimuth; the first clears and the last divides.
+#[test]
+fn long_lines_take_more_dispatches() {
+    let scene = under_sky(flat(2, 4096));
+    let plan = drawn(&scene, walked(1, 64), false);
+    let walks: Vec<_> = plan.passes.iter().filter(|p| p.name() == "bounce_walk").collect();
+    let counts: Vec<usize> = walks.iter().map(|p| p.azimuths.len()).collect();
+    assert!(counts.iter().all(|n| *n <= 14) && counts.iter().sum::<usize>() == 64, "{counts:?}");
+    let word = |i: usize, at: usize| {
+        let push = &walks[i].push;
+        u32::from_ne_bytes(push[4 * at..4 * at + 4].try_into().unwrap())
+    };
+    for i in 0..walks.len() {
+        assert_eq!(word(i, 7), u32::from(i == 0));
+        assert_eq!(word(i, 8), u32::from(i + 1 == walks.len()));
+    }
+}
