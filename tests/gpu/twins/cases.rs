@@ -456,6 +456,37 @@ pub(super) fn walks() -> Vec<Case> {
     ]
 }
 
+/// `bounce_march`, and the passes of pyramids of radiance: colours and grey, every border and either storage.
+pub(super) fn throws() -> Vec<Case> {
+    let case = |name, (rows, cols), border, engine, levels| {
+        let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
+        let albedo = match border {
+            Border::Plane => Albedo::Constant([0.8; 3]),
+            _ => Albedo::Map(map),
+        };
+        let bounces = Bounces { count: 2, engine, azimuths: 5, cutoff: 0.0, ..Bounces::default() };
+        Case {
+            name,
+            scene: Scene {
+                field: rough(rows, cols, 36),
+                surface: Surface { border, albedo, phong: None },
+                lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+            },
+            quality: Quality { azimuths: 8, bounces, levels, ..Quality::default() },
+            wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
+            loses_lines: false,
+        }
+    };
+    use BounceEngine::{Brute, Pyramid};
+    vec![
+        case("every stretch, grey", (7, 9), Border::Plane, Brute, Levels::Stack),
+        case("every stretch, colours", (6, 5), Border::Open, Brute, Levels::Stack),
+        case("radiance by a stack, grey", (11, 13), Border::Plane, Pyramid, Levels::Stack),
+        case("radiance by a stack", (9, 12), Border::Open, Pyramid, Levels::Stack),
+        case("radiance by levels", (10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
+    ]
+}
+
 /// Light paths: every kind of light, a lobe and a map; and a field that repeats, with two levels of blocks.
 pub(super) fn references() -> Vec<Case> {
     let sun = |diameter_rad| Sun {

@@ -84,7 +84,11 @@ const TWINS: &[(&str, Twin)] = &[
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
+    ("bounce_gather", bounce::bounce_gather),
+    ("bounce_march", bounce::bounce_march),
     ("bounce_walk", bounce::bounce_walk),
+    ("shade_expand", bounce::shade_expand),
+    ("shade_reduce", bounce::shade_reduce),
 ];
 
 fn twin_of(pass: &Pass) -> Twin {
@@ -302,6 +306,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pictures(),
         cases::references(),
         cases::walks(),
+        cases::throws(),
     ]
     .into_iter()
     .flatten()
@@ -356,6 +361,14 @@ fn pictures_are_their_twins_pass_by_pass() {
 fn walks_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
     for case in cases::walks() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn throws_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::throws() {
         check(&mut device, &case);
     }
 }
