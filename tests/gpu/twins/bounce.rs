@@ -127,7 +127,11 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (shade, receiver) = (run.shade(), run.quality.receiver);
     let pyramid = Pyramid::new(&run.quality, run.plan.size, run.border());
     let exit = run.exit(pass);
-    let texels = colours(&run.floats(pass, "shade_levels").unwrap_or_default());
+    let texels = match run.floats(pass, "shade_levels") {
+        Some(texels) => colours(&texels),
+        // The device reads what `shade_expand` made of them.
+        None => reduce_twin::shade_levels(&exit, &shade),
+    };
     let stack = run.floats(pass, "height_stack");
     let levels = run.floats(pass, "height_levels").unwrap_or_default();
     let stored = stack.as_ref().map_or(Stored::Levels(&levels), |s| Stored::Stack(s));

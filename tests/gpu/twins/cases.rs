@@ -464,7 +464,8 @@ pub(super) fn throws() -> Vec<Case> {
             Border::Plane => Albedo::Constant([0.8; 3]),
             _ => Albedo::Map(map),
         };
-        let bounces = Bounces { count: 2, engine, azimuths: 5, cutoff: 0.0, ..Bounces::default() };
+        // None along the field's edge, where a rounding decides whether a ray leaves it.
+        let bounces = Bounces { count: 2, engine, azimuths: 4, cutoff: 0.0, ..Bounces::default() };
         Case {
             name,
             scene: Scene {
