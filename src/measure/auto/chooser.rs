@@ -18,6 +18,8 @@ const FUSES: [Fuse; 3] = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 /// Frames that are tried at most, and exact ones beyond them.
 const TRIALS: usize = 16;
 const RESORTS: usize = 2;
+/// Where estimates turned out too low twice: how far within the error others must be.
+const MARGIN: f64 = 1.5;
 /// One time of a frame may be so many times another of the same settings.
 const WAVER: f64 = 1.25;
 /// What a further frame must be expected to save of the cost or to take off the error, in ln.
@@ -200,11 +202,21 @@ impl<'a> Chooser<'a> {
             .copied()
     }
 
-    /// Of what was drawn and reaches the goal that of the least error, of exact horizons if any is.
+    /// Of what was drawn the cheapest that is well within an error, else that of the least.
     pub fn surest(&self) -> Option<&Trial> {
-        let reached = || self.trials.iter().filter(|t| self.goal.is_reached(t));
-        let exact = reached().filter(|t| is_exact(&t.quality));
-        exact.min_by(by_error).or_else(|| reached().min_by(by_error))
+        let Goal::MaxError(most) = self.goal else { return self.best() };
+        let well = self.trials.iter().filter(|t| MARGIN * t.measured.at_most <= most);
+        well.min_by(|a, b| a.ns.total_cmp(&b.ns)).or_else(|| self.reached().min_by(by_error))
+    }
+
+    /// Of what was drawn and reaches the goal the most accurate of exact horizons, else of all.
+    pub fn exact(&self) -> Option<&Trial> {
+        let exact = self.reached().filter(|t| is_exact(&t.quality));
+        exact.min_by(by_error).or_else(|| self.reached().min_by(by_error))
+    }
+
+    fn reached(&self) -> impl Iterator<Item = &Trial> {
+        self.trials.iter().filter(|t| self.goal.is_reached(t))
     }
 
     fn learn(&mut self, trial: &Trial) {
@@ -240,10 +252,9 @@ impl<'a> Chooser<'a> {
 
     /// Of what was drawn, that which reaches the goal best; none where nothing reaches it.
     pub fn best(&self) -> Option<&Trial> {
-        let reached = self.trials.iter().filter(|t| self.goal.is_reached(t));
         match self.goal {
-            Goal::MaxError(_) => reached.min_by(|a, b| a.ns.total_cmp(&b.ns)),
-            Goal::MaxCost(_) => reached.min_by(by_error),
+            Goal::MaxError(_) => self.reached().min_by(|a, b| a.ns.total_cmp(&b.ns)),
+            Goal::MaxCost(_) => self.reached().min_by(by_error),
         }
     }
 

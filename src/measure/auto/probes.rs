@@ -56,9 +56,9 @@ impl Probes {
     /// Deviations of the normal distribution that 5 % lie beyond: of a bound that is looked at once.
     pub const ONE_LOOK: f64 = 1.645;
 
-    /// That 5 %/3 lie beyond: three bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
+    /// That 5 %/4 lie beyond: four bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
     /// (Bonferroni).
-    pub const THREE_LOOKS: f64 = 2.128;
+    pub const FOUR_LOOKS: f64 = 2.241;
 
     /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
     /// all cores.

@@ -67,10 +67,10 @@ const COARSE: Quality = Quality {
 const MOST_PROBES: usize = 4;
 
 /// What is chosen is judged once more by probes that had no part in choosing it, so many times the first:
-/// its bound is theirs. Where it does not hold, others are chosen, so many times in all; the last are the
-/// surest.
+/// its bound is theirs. Where it does not hold, others are chosen, so many times in all: twice the cheapest,
+/// then what holds by a margin, then exact horizons.
 const CONFIRMING_PROBES: usize = 3;
-const CONFIRMATIONS: u64 = 3;
+const CONFIRMATIONS: u64 = 4;
 
 /// Probes, and the pictures that may still be asked for, in the order of what was drawn.
 struct Judge<'a> {
@@ -201,13 +201,17 @@ pub fn choose(
                 drawn => judge.take(&mut chooser, &quality, drawn?)?,
             }
         }
-        let best = if is_last { chooser.surest() } else { chooser.best() };
+        let best = match CONFIRMATIONS - look {
+            0 => chooser.exact(),
+            1 => chooser.surest(),
+            _ => chooser.best(),
+        };
         let Some(best) = best else { break };
         let quality = best.quality;
         let Drawn { planes, passes } = draw(&quality)?;
         let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
         let ns = passes.iter().map(|p| p.1).sum();
-        let measured = fresh.error(&planes, judge.control(), Probes::THREE_LOOKS);
+        let measured = fresh.error(&planes, judge.control(), Probes::FOUR_LOOKS);
         let trial = chooser.confirmed(&quality, measured, ns).copied();
         if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
             return Ok(Chosen {

@@ -27,7 +27,7 @@ fn covered(
         let (places, factors) = picks(unsure, probes, seed);
         let light = vec![[1.0; 3]; places.len()];
         let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
-        let seen = probes.error(&picture, control.as_deref(), Probes::THREE_LOOKS);
+        let seen = probes.error(&picture, control.as_deref(), Probes::FOUR_LOOKS);
         sums[0] += f64::from(u8::from(seen.at_most >= square.sqrt()));
         sums[1] += f64::from(u8::from(seen.error >= square.sqrt()));
         sums[2] += seen.error.powi(2) / square;
@@ -35,10 +35,10 @@ fn covered(
     sums.map(|s| s / SEEDS as f64)
 }
 
-/// The share of seeds whose bound must hold: that of one of three looks, less three standard deviations
+/// The share of seeds whose bound must hold: that of one of four looks, less three standard deviations
 /// of so many seeds.
 fn promised() -> f64 {
-    let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 3.0;
+    let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 4.0;
     confidence - 3.0 * (confidence * (1.0 - confidence) / SEEDS as f64).sqrt()
 }
 
@@ -97,7 +97,7 @@ fn a_better_picture_than_its_control_has_an_error() {
         let (places, factors) = picks(&vec![0.0; count], 200, seed);
         let light = vec![[1.0; 3]; places.len()];
         let probes = Probes { is_whole: false, places, factors, light, off: 0.0 };
-        let seen = probes.error(&fine, Some(&rough), Probes::THREE_LOOKS);
+        let seen = probes.error(&fine, Some(&rough), Probes::FOUR_LOOKS);
         assert!((seen.error / truth - 1.0).abs() < 0.3 && seen.at_most < 1.5 * truth);
     }
 }
