@@ -4,6 +4,9 @@
 //! the bundled sky in a lobe alone, without a sun, whose texels are cut at 20 times the mean: of so small a light
 //! harmonics keep next to nothing, and suns belong in suns.
 
+#[path = "shared/traced.rs"]
+mod traced;
+
 use std::path::Path;
 
 use ridgelight::files::{self, HeightOptions};
@@ -14,8 +17,9 @@ use ridgelight::scene::{
     Surface,
 };
 use ridgelight::{Error, Result};
+use traced::traced;
 
-const BATCHES: usize = 48;
+const BATCHES: u32 = 48;
 
 fn main() {
     if let Err(error) = run() {
@@ -36,7 +40,7 @@ fn run() -> Result<()> {
     println!(
         "Middle {side}² of mt_washington_256 under sky_512x256, cut at 20 times its mean; a lobe alone, {} light \
          paths a sample; {}, {}\n",
-        BATCHES * REFERENCE_BATCH as usize,
+        BATCHES * REFERENCE_BATCH,
         device.name,
         device.driver
     );
@@ -53,7 +57,7 @@ fn run() -> Result<()> {
             },
             lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
         };
-        let truth = traced(&mut gpu, &scene)?;
+        let truth = traced(&mut gpu, &scene, BATCHES)?;
         for receiver in [Receiver::Plane, Receiver::Lobe] {
             for sh_order in 2..=6 {
                 let quality =
@@ -86,22 +90,6 @@ fn sky() -> Result<Environment> {
     let most = 20.0 * texels.as_flattened().iter().sum::<f32>() / (3 * texels.len()) as f32;
     let cut = texels.iter().map(|t| t.map(|v| v.min(most))).collect();
     Environment::new(sky.width(), sky.height(), cut, 0.0)
-}
-
-/// Radiance by light paths, and its standard error.
-fn traced(gpu: &mut Headless, scene: &Scene) -> Result<[Vec<f32>; 2]> {
-    let plan = plan::reference(scene, 0, 1, &gpu.report().limits)?;
-    let paths: Vec<usize> =
-        (0..plan.passes.len()).filter(|p| plan.passes[*p].name() == "path_trace").collect();
-    let contents = plan::reference_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        for _ in 1..BATCHES {
-            gpu.draw_passes(frame, &paths)?;
-        }
-        Ok([gpu.pixels(frame, 0)?.values, gpu.pixels(frame, 1)?.values])
-    })
 }
 
 /// Radiance, and the share of samples where some was below 0.

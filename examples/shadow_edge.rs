@@ -8,6 +8,9 @@
 //! azimuths from end to end, blended B-splines of normalised Legendre coefficients, harmonics of order 4,
 //! a clamped cosine. The reference: light paths. All as shares of the light of free ground.
 
+#[path = "shared/traced.rs"]
+mod traced;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -20,6 +23,7 @@ use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{Border, HeightField, KeyLight, Lights, Quality, Scene, Surface};
 use ridgelight::{Result, files};
 use std::f64::consts::PI;
+use traced::traced;
 
 /// Samples of the field, one metre apart; where its wall stands, and how high it is.
 const ROWS: usize = 61;
@@ -87,24 +91,8 @@ fn profile(gpu: &mut Headless, key: KeyLight) -> Result<Profile> {
         let seen = key.visible_nlp(ORDER, Blend::BSpline, &horizons);
         seen.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI / free
     };
-    let [reference, error] = traced(gpu, &scene)?.map(|light| middle(&light, 4));
+    let [reference, error] = traced(gpu, &scene, BATCHES)?.map(|light| middle(&light, 4));
     Ok(Profile { three, eight, harmonics: columns().map(by_harmonics).collect(), reference, error })
-}
-
-/// Radiance by light paths, and its standard error.
-fn traced(gpu: &mut Headless, scene: &Scene) -> Result<[Vec<f32>; 2]> {
-    let plan = plan::reference(scene, 0, 1, &gpu.report().limits)?;
-    let paths: Vec<usize> =
-        (0..plan.passes.len()).filter(|p| plan.passes[*p].name() == "path_trace").collect();
-    let contents = plan::reference_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        for _ in 1..BATCHES {
-            gpu.draw_passes(frame, &paths)?;
-        }
-        Ok([gpu.pixels(frame, 0)?.values, gpu.pixels(frame, 1)?.values])
-    })
 }
 
 /// Behind the wall, in its heights.

@@ -1,3 +1,4 @@
+use super::LandPush;
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Bounce, Builder};
@@ -6,14 +7,7 @@ use crate::scene::Scene;
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct BounceMarchPush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
+    land: LandPush,
     azimuths: i32,
     first_azimuth: i32,
     last_azimuth: i32,
@@ -22,14 +16,7 @@ struct BounceMarchPush {
 same_layout!(
     BounceMarchPush,
     bounce_march_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
+    land = COLS,
     azimuths = AZIMUTHS,
     first_azimuth = FIRST_AZIMUTH,
     last_azimuth = LAST_AZIMUTH,
@@ -68,14 +55,7 @@ pub(crate) fn plan(
                 (4, u32::from(bounce.grey)),
             ],
             &BounceMarchPush {
-                cols: cols as i32,
-                rows: rows as i32,
-                cells_x: blocks.cells[0] as i32,
-                cells_y: blocks.cells[1] as i32,
-                padded_rows: blocks.padded_rows as i32,
-                top_level: blocks.top_level as i32,
-                cell_x_m: field.cell_m()[0] as f32,
-                cell_y_m: field.cell_m()[1] as f32,
+                land: LandPush::of(field, blocks),
                 azimuths: azimuths as i32,
                 first_azimuth: first as i32,
                 last_azimuth: last as i32,

@@ -1,32 +1,7 @@
-use crate::gpu::shaders::{self, same_layout};
+use super::ReducePush;
+use crate::gpu::shaders;
 use crate::plan::pyramid::Pyramid;
 use crate::plan::{Builder, ResourceId};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct HeightReducePush {
-    size: [i32; 2],
-    first: i32,
-    source_size: [i32; 2],
-    source_first: i32,
-    ratio: [f32; 2],
-    per_sample: [f32; 2],
-    level: i32,
-    width_shift: i32,
-}
-
-same_layout!(
-    HeightReducePush,
-    height_reduce_push,
-    size = COLS,
-    first = FIRST,
-    source_size = SOURCE_COLS,
-    source_first = SOURCE_FIRST,
-    ratio = RATIO_X,
-    per_sample = PER_SAMPLE_X,
-    level = LEVEL,
-    width_shift = WIDTH_SHIFT,
-);
 
 /// One level from the one an octave finer.
 pub(crate) fn plan(
@@ -46,16 +21,7 @@ pub(crate) fn plan(
         format!("every {apart:.1} samples, for marches {away:.0} steps away"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
         &[(0, u32::from(pyramid.periodic)), (1, u32::from(from == 0))],
-        &HeightReducePush {
-            size: level.size.map(|n| n as i32),
-            first: level.first as i32,
-            source_size: source.size.map(|n| n as i32),
-            source_first: source.first as i32,
-            ratio: pyramid.ratio(number),
-            per_sample: level.per_sample,
-            level: number as i32,
-            width_shift: pyramid.width_shift() as i32,
-        },
+        &ReducePush::of(pyramid, number),
         &[("heights", heights), ("height_levels", levels), ("level_table", table)],
         4 * (level.texels() + source.texels()),
         level.texels(),

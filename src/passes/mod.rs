@@ -34,7 +34,9 @@ pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
 
 use crate::gpu::shaders::same_layout;
-use crate::plan::Batch;
+use crate::plan::pyramid::Pyramid;
+use crate::plan::{Batch, Blocks};
+use crate::scene::HeightField;
 
 /// Of the passes that add light through a batch's horizons.
 #[repr(C)]
@@ -106,6 +108,128 @@ impl MarchPush {
             steps: axis.steps as i32,
             warm_up: axis.warm_up as i32,
             first_azimuth: batch.first,
+        }
+    }
+}
+
+/// Of the passes whose rays look at cells by blocks, before all else: what `walk.glsl` reads.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LandPush {
+    cols: i32,
+    rows: i32,
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    top_level: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+}
+
+same_layout!(
+    LandPush,
+    sphere_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+same_layout!(
+    LandPush,
+    sphere_sh_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+same_layout!(
+    LandPush,
+    bounce_march_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+
+impl LandPush {
+    pub fn of(field: &HeightField, blocks: &Blocks) -> Self {
+        let [cell_x, cell_y] = field.cell_m();
+        Self {
+            cols: field.cols() as i32,
+            rows: field.rows() as i32,
+            cells_x: blocks.cells[0] as i32,
+            cells_y: blocks.cells[1] as i32,
+            padded_rows: blocks.padded_rows as i32,
+            top_level: blocks.top_level as i32,
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+        }
+    }
+}
+
+/// Of the passes that make a level of a pyramid of a finer one.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ReducePush {
+    size: [i32; 2],
+    first: i32,
+    source_size: [i32; 2],
+    source_first: i32,
+    ratio: [f32; 2],
+    per_sample: [f32; 2],
+    level: i32,
+    width_shift: i32,
+}
+
+same_layout!(
+    ReducePush,
+    height_reduce_push,
+    size = COLS,
+    first = FIRST,
+    source_size = SOURCE_COLS,
+    source_first = SOURCE_FIRST,
+    ratio = RATIO_X,
+    per_sample = PER_SAMPLE_X,
+    level = LEVEL,
+    width_shift = WIDTH_SHIFT,
+);
+same_layout!(
+    ReducePush,
+    shade_reduce_push,
+    size = COLS,
+    first = FIRST,
+    source_size = SOURCE_COLS,
+    source_first = SOURCE_FIRST,
+    ratio = RATIO_X,
+    per_sample = PER_SAMPLE_X,
+    level = LEVEL,
+    width_shift = WIDTH_SHIFT,
+);
+
+impl ReducePush {
+    pub fn of(pyramid: &Pyramid, number: u32) -> Self {
+        let (level, source) = (pyramid.level(number), pyramid.level(pyramid.source(number)));
+        Self {
+            size: level.size.map(|n| n as i32),
+            first: level.first as i32,
+            source_size: source.size.map(|n| n as i32),
+            source_first: source.first as i32,
+            ratio: pyramid.ratio(number),
+            per_sample: level.per_sample,
+            level: number as i32,
+            width_shift: pyramid.width_shift() as i32,
         }
     }
 }

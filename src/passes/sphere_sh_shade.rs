@@ -4,19 +4,13 @@ use crate::plan::{Blocks, Builder, Rectangle, ResourceId};
 use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};
 use crate::{Error, Result};
 
+use super::LandPush;
 use super::sphere_shade::{Look, MOST_TURNS, place_of};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct SphereShShadePush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
+    land: LandPush,
     first: [i32; 2],
     base: [i32; 2],
     offset: [f32; 2],
@@ -40,14 +34,7 @@ struct SphereShShadePush {
 same_layout!(
     SphereShShadePush,
     sphere_sh_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
+    land = COLS,
     first = FIRST,
     base = BASE,
     offset = OFFSET,
@@ -137,7 +124,6 @@ fn dispatch(
     sum: ResourceId,
 ) {
     let field = &scene.field;
-    let [cell_x, cell_y] = field.cell_m();
     let (base, offset) = place_of(field, ball);
     let Rectangle { col, row, cols, rows } = look.rectangle;
     let samples = u64::from(cols) * u64::from(rows);
@@ -186,14 +172,7 @@ fn dispatch(
             (9, levels.map_or(0, |p| p.levels())),
         ],
         &SphereShShadePush {
-            cols: field.cols() as i32,
-            rows: field.rows() as i32,
-            cells_x: blocks.cells[0] as i32,
-            cells_y: blocks.cells[1] as i32,
-            padded_rows: blocks.padded_rows as i32,
-            top_level: blocks.top_level as i32,
-            cell_x_m: cell_x as f32,
-            cell_y_m: cell_y as f32,
+            land: LandPush::of(field, blocks),
             first: [col as i32, row as i32],
             base,
             offset,

@@ -1,6 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 
+use super::LandPush;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Builder, Rectangle, ResourceId, samples_within};
 use crate::scene::{HeightField, Scene, SphereLight};
@@ -8,14 +9,7 @@ use crate::scene::{HeightField, Scene, SphereLight};
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct SphereShadePush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
+    land: LandPush,
     first: [i32; 2],
     base: [i32; 2],
     offset: [f32; 2],
@@ -33,14 +27,7 @@ struct SphereShadePush {
 same_layout!(
     SphereShadePush,
     sphere_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
+    land = COLS,
     first = FIRST,
     base = BASE,
     offset = OFFSET,
@@ -136,7 +123,6 @@ fn dispatch(
     sum: ResourceId,
 ) {
     let field = &scene.field;
-    let [cell_x, cell_y] = field.cell_m();
     let [narrow, around] = ball.slices(look.slices, field.cell_m());
     let (base, offset) = place_of(field, ball);
     let Rectangle { col, row, cols, rows } = look.rectangle;
@@ -156,14 +142,7 @@ fn dispatch(
             (3, blocks.most_steps()),
         ],
         &SphereShadePush {
-            cols: field.cols() as i32,
-            rows: field.rows() as i32,
-            cells_x: blocks.cells[0] as i32,
-            cells_y: blocks.cells[1] as i32,
-            padded_rows: blocks.padded_rows as i32,
-            top_level: blocks.top_level as i32,
-            cell_x_m: cell_x as f32,
-            cell_y_m: cell_y as f32,
+            land: LandPush::of(field, blocks),
             first: [col as i32, row as i32],
             base,
             offset,

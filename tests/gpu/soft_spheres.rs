@@ -16,6 +16,7 @@ use ridgelight::measure::soft_ball::SoftBall;
 use ridgelight::measure::tolerance::BallSeen;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
 
+use crate::spheres::awkward;
 use crate::spheres::{ball, under, values};
 use crate::twins::soft::slope_error;
 use crate::{Device, field, random};
@@ -156,18 +157,7 @@ fn soft_balls_at_the_extremes_are_their_twins() {
         let height = f64::from(land.heights_m()[(rows / 2) * cols + cols / 2]);
         let [x, y, z] =
             [(cols / 2) as f64 * 2.0, (rows - 1 - rows / 2) as f64 * 3.0, land.base_m() + height];
-        let balls = [
-            ("at a sample", ball([x, y, z], 2.5)),
-            ("touching a sample", ball([x, y, z + 1.0], 1.0)),
-            ("in the ground", ball([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
-            ("over the ground", ball([x, y, 500.0 + relief + 9.0], 3.0)),
-            ("tiny", ball([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
-            ("far", ball([2e6, -1e6, 3e5], 1e5)),
-            ("far and small", ball([-3e6, 2e6, 4e6], 3.0)),
-            ("all around", ball([x, y, z], 3e6)),
-            ("beyond the edge and below", ball([-40.0, y, 480.0], 8.0)),
-            ("as far as may be", ball([1e15, 1e15, 1e15], 1e15)),
-        ];
+        let balls = awkward([x, y, z], relief);
         for border in [Border::Plane, Border::Periodic] {
             let twin = SphereSh::new(Oracle::new(&land, border), None, quality);
             for (name, light) in &balls {

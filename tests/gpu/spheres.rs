@@ -55,6 +55,22 @@ fn relative_rmse(pixels: &Pixels, scene: &Scene, samples: usize) -> f64 {
     (squares / samples as f64).sqrt() / (sum / samples as f64)
 }
 
+/// Balls where numbers are hardest, about a sample of rough ground of a relief over 500 m.
+pub(crate) fn awkward([x, y, z]: [f64; 3], relief: f64) -> [(&'static str, SphereLight); 10] {
+    [
+        ("at a sample", ball([x, y, z], 2.5)),
+        ("touching a sample", ball([x, y, z + 1.0], 1.0)),
+        ("in the ground", ball([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
+        ("over the ground", ball([x, y, 500.0 + relief + 9.0], 3.0)),
+        ("tiny", ball([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
+        ("far", ball([2e6, -1e6, 3e5], 1e5)),
+        ("far and small", ball([-3e6, 2e6, 4e6], 3.0)),
+        ("all around", ball([x, y, z], 3e6)),
+        ("beyond the edge and below", ball([-40.0, y, 480.0], 8.0)),
+        ("as far as may be", ball([1e15, 1e15, 1e15], 1e15)),
+    ]
+}
+
 /// A whole ball over level ground: irradiance π r² h / d³ (as that of its middle, facing it π r² / d²). The
 /// slices' midpoint rule errs by (r/away)^(2 slices) or less; there are 16.
 #[test]
@@ -221,18 +237,7 @@ fn balls_at_the_extremes_are_the_oracles() {
             [c as f64 * 2.0, (rows - 1 - r) as f64 * 3.0, height]
         };
         let [x, y, z] = at(rows / 2, cols / 2);
-        let balls = [
-            ("at a sample", ball([x, y, z], 2.5)),
-            ("touching a sample", ball([x, y, z + 1.0], 1.0)),
-            ("in the ground", ball([x + 0.3, y - 0.4, 500.0 - 20.0], 4.0)),
-            ("over the ground", ball([x, y, 500.0 + relief + 9.0], 3.0)),
-            ("tiny", ball([x + 0.7, y + 0.2, z + 0.5], 1e-5)),
-            ("far", ball([2e6, -1e6, 3e5], 1e5)),
-            ("far and small", ball([-3e6, 2e6, 4e6], 3.0)),
-            ("all around", ball([x, y, z], 3e6)),
-            ("beyond the edge and below", ball([-40.0, y, 480.0], 8.0)),
-            ("as far as may be", ball([1e15, 1e15, 1e15], 1e15)),
-        ];
+        let balls = awkward([x, y, z], relief);
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let oracle = Oracle::new(&field, border);
             for (name, light) in &balls {
