@@ -2,6 +2,7 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod bounce_edges;
 mod bounces;
 mod change;
 mod contract;
@@ -15,6 +16,7 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+mod pits;
 mod pruned;
 mod pyramid;
 mod real;
