@@ -2,6 +2,8 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod ash_host;
+mod borrowed;
 mod bounce_edges;
 mod bounces;
 mod change;
