@@ -172,24 +172,25 @@ impl ThrownError {
 /// A direction is turned by 40 ε: a quotient of 5 ε and its difference from a half, times π, as halves of turns, and
 /// sines of 6e-8. Its components err by 23 ε besides: products and three quotients. A crossing t cells away stands
 /// 65 ε t beside its place, a cell's diagonal by 1 / a of that, a being how fast the ray comes nearer to it, and the
-/// land there differs by twice that times the steepest slope: 130 (1 + 1/a) ε of that slope. A rise costs 8 roundings
-/// of the relief; distance and quotient 20 ε of the slope, a direction ε. d atan(s) = ds / (1 + s²).
+/// land there differs by twice that times its steepest slope: 130 (1 + 1/a) ε of that slope. A rise costs 8 roundings
+/// of the largest around; distance and quotient 20 ε of the slope, a direction ε. d atan(s) = ds / (1 + s²).
 ///
 /// Weights: two products whose difference is a sine, 2 ε; that of the width itself, of squares, a
 /// root, a quotient and an arc tangent, and the length of a direction, 5 ε: 24 ε of the width. Radiance between three
 /// corners 8 ε, and their spread times 65 ε t.
-pub fn march_error(land: &Land, cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
+pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
     let (sin, cos) = along.azimuth_rad.sin_cos();
     let [x, y] = [cos.abs() / cell_m[0], sin.abs() / cell_m[1]];
     let nearer = if cos * sin < 0.0 { (x - y).abs() } else { x + y } / x.max(y);
     let slope = cast.high_rad.tan();
     let place = 65.0 * (1.0 + 1.0 / nearer.max(1e-3));
-    let rise = 8.0 * land.relief_m / cast.distance.max(0.5 * land.cell_m);
-    let of_slope = rise + 2.0 * place * land.steepest + 20.0 * slope.abs();
+    let cell = cell_m[0].min(cell_m[1]);
+    let rise = 8.0 * cast.rise_m / cast.distance.max(0.5 * cell);
+    let of_slope = rise + 2.0 * place * cast.steepest + 20.0 * slope.abs();
     let width = cast.high_rad - cast.low_rad;
     let brightest = cast.radiance.iter().fold(0.0_f64, |m, l| m.max(l.abs()));
     let spread = cast.spread.iter().fold(0.0_f64, |m, l| m.max(*l));
-    let cells = cast.distance / land.cell_m;
+    let cells = cast.distance / cell;
     CastError {
         elevation_rad: EPSILON * (of_slope / (1.0 + slope * slope) + 1.0),
         end: 0.0,

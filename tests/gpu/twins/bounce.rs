@@ -78,11 +78,11 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
-    let ([cols, _], land, brightest) = (run.size(), run.land(), brightest(&exit));
+    let ([cols, _], brightest) = (run.size(), brightest(&exit));
     let cell_m = run.scene.field.cell_m();
     let of = |i: usize| {
         let all = stretches_along(&oracle, &exit, azimuths, [i / cols, i % cols]);
-        let error = |along: &_, cast: &_| march_error(&land, cell_m, along, cast);
+        let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
         (radiance(&all), ThrownError::of(&all, error, &run.slices(i, 1.0, brightest)).light)
     };
     each(&got, of, [0, cols])
