@@ -10,6 +10,8 @@ mod light;
 
 use std::f64::consts::PI;
 
+use crate::cpu::bounce_shade::LEAST_SHARE;
+
 pub use light::{BallSeen, ShadeError};
 
 /// The largest relative error of one rounding to f32.
@@ -153,6 +155,14 @@ pub fn twin_gathered(
     let angle = twin_pyramid_angle(largest_m, relief_m, step_m) + placed + 24.0 * EPSILON;
     let cast = 2.0 * 4.0 / PI * f64::from(samples + 2) * angle;
     2.0 * (cast + 400.0 * EPSILON) * brightest
+}
+
+/// `bounce_shade` from given shares and light, of the light's own magnitude.
+///
+/// What nodes are counted for errs as in `sh_shade`, above and below; a share by 2 ε of 1, of which it is
+/// [`LEAST_SHARE`] or more, twice; sums of four and a quotient, 16 ε.
+pub fn twin_bounce_shade(error: &ShadeError) -> f64 {
+    2.0 * error.node_weight() + (2.0 * 2.0 / LEAST_SHARE + 16.0) * EPSILON
 }
 
 /// Level of a height pyramid that `height_reduce` makes of a given one.

@@ -2,6 +2,7 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;

@@ -8,11 +8,12 @@ use ridgelight::cpu::pyramid_march::Stored;
 use ridgelight::cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{twin_gathered, twin_level, twin_spline, twin_thrown};
-use ridgelight::plan::Pass;
 use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::Fuse;
 
 use super::light::rgb;
+use super::nodes::{casts, places};
 use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
@@ -24,7 +25,7 @@ impl Run<'_> {
     }
 
     /// What every sample throws.
-    fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
+    pub(super) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
         let samples = self.scene.field.heights_m().len();
         match texels.len() / samples {
@@ -34,11 +35,11 @@ impl Run<'_> {
     }
 }
 
-fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
+pub(super) fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
     texels.chunks_exact(4).map(|t| [0, 1, 2].map(|c| t[c].into())).collect()
 }
 
-fn brightest(exit: &[[f64; 3]]) -> f64 {
+pub(super) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
@@ -65,9 +66,10 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
-    let [cols, _] = run.size();
-    let of = |i: usize| march_twin(&oracle, &exit, azimuths, i / cols, i % cols);
-    let want: Vec<[f64; 3]> = (0..got.len()).map(of).collect();
+    let nodes = Nodes { stride: constant(pass, 5) };
+    let [cols, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let of = |[row, col]: [usize; 2]| march_twin(&oracle, &exit, azimuths, row, col);
+    let want: Vec<[f64; 3]> = places(run, nodes).into_iter().map(of).collect();
     let ([_, relief], [x, y]) = (run.relief(), run.scene.field.cell_m());
     // No more than there are cells' edges on the way.
     let stretches = 3 * (run.size()[0] + run.size()[1]);
@@ -148,8 +150,10 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver,
         azimuths,
     };
-    let [cols, _] = run.size();
-    let want: Vec<[f64; 3]> = (0..got.len()).map(|i| twin.light(i / cols, i % cols)).collect();
+    let nodes = Nodes { stride: constant(pass, 6) };
+    let [cols, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let of = |[row, col]: [usize; 2]| twin.light(row, col);
+    let want: Vec<[f64; 3]> = places(run, nodes).into_iter().map(of).collect();
     let ([largest, relief], [x, y]) = (run.relief(), field.cell_m());
     let tolerance = twin_gathered(largest, relief, x.min(y), pyramid.samples(), brightest(&exit));
     paired(&got, &want, tolerance, (0, cols))
@@ -175,14 +179,16 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
     let is_last = word(IS_LAST) == 1;
     let ([_, relief], [x, y]) = (run.relief(), run.scene.field.cell_m());
-    let [cols, _] = run.size();
+    let nodes = Nodes { stride: constant(pass, 4) };
+    let places = places(run, nodes);
     let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
-    let walked = run.swept(range.clone(), settings, |swept| {
-        swept.per_sample(|col, row| walk_twin(swept, &exit, col, row))
+    let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
+        let of = |[row, col]: &[usize; 2]| walk_twin(swept, &exit, *col as i32, *row as i32);
+        places.iter().map(of).collect()
     });
     let mut pairs = Vec::new();
-    for (i, (got, want)) in got.chunks_exact(4).zip(&walked).enumerate() {
-        let at = [range.len(), i / cols, i % cols];
+    for (([row, col], got), want) in places.iter().zip(got.chunks_exact(4)).zip(&walked) {
+        let at = [range.len(), *row, *col];
         let seen = (want.stretches as usize).div_ceil(range.len()) + 1;
         // Of a part of the circle, weights: a whole hemisphere's is π.
         let whole = if is_last { 1.0 } else { std::f64::consts::PI };
@@ -190,5 +196,6 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let want = if is_last { want.radiance().into() } else { want.light };
         pairs.extend((0..3).map(|c| Pair { got: rgb(got)[c], want: want[c], tolerance, at }));
     }
+    pairs.extend(casts(run, pass, first..range.end, &places));
     pairs
 }
