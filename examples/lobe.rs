@@ -57,7 +57,7 @@ fn run() -> Result<()> {
             },
             lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
         };
-        let truth = traced(&mut gpu, &scene, BATCHES)?;
+        let truth = traced(&mut gpu, &scene, 0, BATCHES)?;
         for receiver in [Receiver::Plane, Receiver::Lobe] {
             for sh_order in 2..=6 {
                 let quality =

@@ -169,6 +169,7 @@ void main() {
     ivec2 here = min(at, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
+    bool is_line = THIN_ROWS || THIN_COLS;
     vec4 sum = vec4(0.0);
     for (int k = first_azimuth; k < last_azimuth; k++) {
         // Half a turn counted from west, in halves: the sines' range.
@@ -176,13 +177,15 @@ void main() {
         vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
         vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
                        2.0 * half_direction.x * half_direction.y);
+        // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+        e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
         // The sample's own plane rises towards the azimuth with the field's slope.
         float own_slope = own.y * e.x + own.z * e.y;
         facing = Facing(-own_slope * up, up);
         reached = own_slope;
         thrown = vec3(0.0);
         last_radiance = vec3(0.0);
-        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists);
+        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
         if (BORDER == BORDER_PERIODIC) {
             // What has met nothing up to horizontal goes on over the same land for ever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);

@@ -4,6 +4,7 @@
 mod analytic;
 mod ash_host;
 mod borrowed;
+mod bounce_edges;
 mod bounces;
 mod change;
 mod contract;
@@ -17,6 +18,7 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+mod pits;
 mod pruned;
 mod pyramid;
 mod real;
