@@ -235,7 +235,7 @@ pub fn lit() -> Any<Vec<f32>> {
     lit
 }
 
-pub fn main() -> Any<()> {
+fn main() -> Any<()> {
     let lit = lit()?;
     println!("{} samples, the first is lit by {}", lit.len(), lit[0]);
     Ok(())
