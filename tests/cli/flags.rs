@@ -336,7 +336,7 @@ fn help_says_units_and_defaults() {
         ("--subsample", &["samples", "[default: 1]"]),
         ("--wedge-side", &["4..256", "[default: 64]"]),
         ("--bounces", &["0..64", "[default: 0]"]),
-        ("--bounce-engine", &["[default: brute]"]),
+        ("--bounce-engine", &["[default: auto]"]),
         ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
         ("--bounce-level-step", &["1..16", "[default: 4]"]),

@@ -5,6 +5,7 @@ mod analytic;
 mod ash_host;
 mod borrowed;
 mod bounce_edges;
+mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;

@@ -25,7 +25,7 @@ fn bounced(gpu: &mut Device, scene: &Scene, bounces: Bounces) -> Vec<Vec<f64>> {
     let Bounces { level_step, level_offset, .. } = bounces;
     let method = match bounces.engine {
         BounceEngine::Brute => Method::Brute,
-        BounceEngine::Sweep | BounceEngine::Pyramid => Method::Sweep,
+        _ => Method::Sweep,
     };
     let azimuths = bounces.azimuths;
     let quality =

@@ -114,13 +114,13 @@ pub struct ThrownError {
 impl ThrownError {
     /// From all that a twin has seen, each cast with what an engine errs by there.
     ///
-    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that is off
-    /// by δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the
-    /// light itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without
-    /// weight, up to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is
-    /// 0; a normal that turns by ν changes a slice's weight by ν ∫ cos ω dω. Where on a piece a mean is taken errs by
-    /// what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε), times the spread. Sums round
-    /// once a cast.
+    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that is off by
+    /// δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the light
+    /// itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without weight, up
+    /// to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is 0 and F
+    /// itself errs as at other ends; a normal that turns by ν changes a slice's weight by ν ∫ cos ω dω. Where on a
+    /// piece a mean is taken errs by what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε),
+    /// times the spread. Sums round once a cast.
     pub fn of(all: &[Along], error: impl Fn(&Along, &Cast) -> CastError, of: &Slices) -> Self {
         let (sum, whole) = thrown(all);
         let normal = of.normal * of.wedge;
@@ -135,6 +135,7 @@ impl ThrownError {
                 let mean = if width > 0.0 { cast.weight.abs() / width } else { 0.0 };
                 let ends = before.elevation_rad.max(delta);
                 let turned = normal * (cast.high_rad.sin() - cast.low_rad.sin());
+                let first = if i == 0 { here.end } else { 0.0 };
                 let moved = (cast.facing + 2.0 * delta * of.wedge) * delta + here.end;
                 for c in 0..3 {
                     let radiance = cast.radiance[c].abs();
@@ -145,7 +146,7 @@ impl ThrownError {
                     off[c] += moved * step
                         + mean * (2.0 * ends + 16.0 * EPSILON) * cast.spread[c]
                         + cast.weight.abs() * here.radiance
-                        + (turned + here.weight) * radiance;
+                        + (turned + here.weight + first) * radiance;
                 }
                 before = here;
             }

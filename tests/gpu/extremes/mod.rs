@@ -160,7 +160,8 @@ fn kinds_of(quality: &Quality) -> [(usize, usize); 10] {
         Receiver::Lobe => 1,
     };
     let engine = match bounces.engine {
-        // A method without.
+        // A method without; what the planner would take is here by its own name.
+        BounceEngine::Auto => usize::MAX,
         _ if bounces.count == 0 => usize::MAX,
         BounceEngine::Brute => 0,
         BounceEngine::Sweep => 1,

@@ -177,7 +177,7 @@ fn faint(case: Case) -> Case {
                 at: [0, row, col],
             }
         };
-        (0..SIDE * SIDE).step_by(SIDE * SIDE / PLACES | 1).map(at).collect()
+        (0..SIDE * SIDE).step_by((SIDE * SIDE / PLACES) | 1).map(at).collect()
     };
     Case { expected, bound, probes: Box::new(probes), ..case }
 }
@@ -311,7 +311,7 @@ impl<'a> Ground<'a> {
                 let error = ThrownError::of(&all, error, &slices(1.0, 1.0));
                 (all, error.times(self.ends[1]))
             }
-            BounceEngine::Sweep => {
+            BounceEngine::Auto | BounceEngine::Sweep => {
                 let all = self.along_the_grid([row, col]);
                 let wedge = TAU / f64::from(bounces.azimuths);
                 // A rise from the truth, rounded once, instead of the twin's.
