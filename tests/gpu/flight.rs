@@ -189,7 +189,6 @@ fn a_frame_is_recorded_on_another_thread_while_one_is_in_flight() {
         let recording = scope.spawn(move || {
             let second = Recorded::new(host, |commands| {
                 renderer.record(commands, 1, &args[1].0, &args[1].1).expect("recorded");
-                assert_eq!(renderer.timings(0), None, "in flight");
             });
             (renderer, second)
         });
