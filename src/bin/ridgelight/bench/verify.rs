@@ -3,6 +3,7 @@
 mod balls;
 mod bounces;
 mod harmonics;
+mod sweeps;
 
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::sphere::sphere_of;
@@ -181,7 +182,10 @@ impl Verifier {
             gpu.pixels(frame, 0)
         })?;
         let (error, bound) = self.judge(self.truth.error(&picture), quality)?;
-        Ok(format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound)))
+        let of_oracle =
+            format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound));
+        let of_twin = sweeps::check(&self.scene, &self.truth.places, gpu, quality, limits)?;
+        Ok(of_twin.map_or(of_oracle.clone(), |found| format!("{found}; {of_oracle}")))
     }
 
     /// A relative error and its bound, where it is within.
