@@ -91,7 +91,7 @@ fn profile(gpu: &mut Headless, key: KeyLight) -> Result<Profile> {
         let seen = key.visible_nlp(ORDER, Blend::BSpline, &horizons);
         seen.iter().zip(&cosine).map(|(a, b)| a * b).sum::<f64>() / PI / free
     };
-    let [reference, error] = traced(gpu, &scene, BATCHES)?.map(|light| middle(&light, 4));
+    let [reference, error] = traced(gpu, &scene, 0, BATCHES)?.map(|light| middle(&light, 4));
     Ok(Profile { three, eight, harmonics: columns().map(by_harmonics).collect(), reference, error })
 }
 

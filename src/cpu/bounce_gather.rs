@@ -37,7 +37,7 @@ pub struct BounceGather<'a> {
 }
 
 /// A march from a sample: whole steps along columns or rows, straight across the other axis.
-struct March {
+pub(super) struct March {
     here: [f64; 2],
     by_x: bool,
     forward: f64,
@@ -115,7 +115,7 @@ impl BounceGather<'_> {
         sum.map(|s| s.max(0.0) / whole)
     }
 
-    fn march(&self, [col, row]: [usize; 2], azimuth: f64) -> March {
+    pub(super) fn march(&self, [col, row]: [usize; 2], azimuth: f64) -> March {
         let [cell_x, cell_y] = self.heights.cell_m.map(f64::from);
         let cells = [azimuth.cos() / cell_x, -azimuth.sin() / cell_y];
         let by_x = cells[0].abs() >= cells[1].abs();
@@ -145,8 +145,14 @@ impl BounceGather<'_> {
     fn cast(&self, slice: Slice, march: &March) -> Cast {
         let (thrown, series, top) = ([0.0; 3], [[0.0; 4]; 3], slice.low);
         let mut cast = Cast { slice, receiver: self.receiver, top, thrown, series };
+        self.looks(march, |angle, of| cast.cast(angle, || self.radiance(march, of)));
+        cast
+    }
+
+    /// Elevations on the spline, in order, each with the place and the level of radiance that it looks at.
+    pub(super) fn looks(&self, march: &March, mut look: impl FnMut(f64, ([f64; 2], u32))) {
         if march.reach <= 0 {
-            return cast;
+            return;
         }
         let (fine, levels) = (self.pyramid.fine_samples(), self.pyramid.levels());
         let (mut back, mut angle) = (1.0_f32, 0.0);
@@ -154,13 +160,13 @@ impl BounceGather<'_> {
         // What a knot looks at: the place and the level of radiance of its sample.
         let mut before = ([0.0; 2], 0);
         let (mut looked, mut at) = (0, 0);
-        let mut take_in = |angle: f64, of: ([f64; 2], u32), cast: &mut Cast| {
+        let mut take_in = |angle: f64, of: ([f64; 2], u32)| {
             let four = angles.map_or([angle; 4], |[_, a, b, c]| [a, b, c, angle]);
             let [x, y, z, w] = four;
             let knot_of = if angles.is_none() { of } else { before };
             let (middle, knot) = ((x + w + 23.0 * (y + z)) / 48.0, (y + 4.0 * z + w) / 6.0);
             // Both radiate alike: the higher opens what both do.
-            cast.cast(middle.max(knot), || self.radiance(march, knot_of));
+            look(middle.max(knot), knot_of);
             (angles, before) = (Some(four), of);
         };
         for next in 0_u32.. {
@@ -176,21 +182,20 @@ impl BounceGather<'_> {
             let (to, from) = (self.shade.level_step, self.pyramid.level_step);
             let shade =
                 ((next * to + from / 2) / from + 1).saturating_sub(self.shade.fine_samples());
-            take_in(angle, (march.place(at), shade.min(self.shade.levels())), &mut cast);
+            take_in(angle, (march.place(at), shade.min(self.shade.levels())));
             back *= self.pyramid.growth();
             // Those that round to one distance are taken in together.
             if whole >= march.reach && (back + 0.5) as i32 > whole {
                 let of = (march.place(at), shade.min(self.shade.levels()));
-                take_in(angle, of, &mut cast);
-                take_in(angle, of, &mut cast);
+                take_in(angle, of);
+                take_in(angle, of);
                 break;
             }
         }
-        cast
     }
 
     /// The two samples on a march step's grid line that a place lies between, and how far between.
-    fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
+    pub(super) fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
         let [cols, rows] = self.pyramid.size.map(|n| n as i32);
         let inside = |i: i32, n: i32| {
             if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
@@ -220,7 +225,7 @@ impl BounceGather<'_> {
         f64::from(low) + t * (f64::from(high) - f64::from(low))
     }
 
-    fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
+    pub(super) fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
         if let (Stored::Levels(_), 1..) = (self.stored, level) {
             return shade_at(self.shade, self.shade_texels, level, place);
         }

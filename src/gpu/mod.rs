@@ -44,6 +44,7 @@ impl Format {
     pub fn vk(self) -> vk::Format {
         match self {
             Format::R32Float => vk::Format::R32_SFLOAT,
+            Format::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             Format::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
             Format::R32Uint => vk::Format::R32_UINT,
             Format::Rg32Uint => vk::Format::R32G32_UINT,

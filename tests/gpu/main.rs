@@ -11,10 +11,13 @@ mod extremes;
 mod flight;
 mod forms;
 mod gloss;
+mod glossy;
 mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+#[path = "../naive/mod.rs"]
+mod naive;
 mod pruned;
 mod pyramid;
 mod real;

@@ -17,14 +17,14 @@ use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
     /// The pyramid of exit radiance.
-    fn shade(&self) -> Pyramid {
+    pub(super) fn shade(&self) -> Pyramid {
         let bounces = self.quality.bounces;
         let heights = Pyramid::new(&self.quality, self.plan.size, self.border());
         Pyramid { level_step: bounces.level_step, level_offset: bounces.level_offset, ..heights }
     }
 
     /// What every sample throws.
-    fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
+    pub(super) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
         let samples = self.scene.field.heights_m().len();
         match texels.len() / samples {
@@ -34,11 +34,11 @@ impl Run<'_> {
     }
 }
 
-fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
+pub(super) fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
     texels.chunks_exact(4).map(|t| [0, 1, 2].map(|c| t[c].into())).collect()
 }
 
-fn brightest(exit: &[[f64; 3]]) -> f64 {
+pub(super) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
