@@ -1,5 +1,6 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
+mod gloss;
 mod reference;
 mod sizes;
 mod walks;

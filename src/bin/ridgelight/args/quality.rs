@@ -5,7 +5,7 @@ use super::bounces::BounceArgs;
 use super::values::whole;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 25] = [
+pub const SETTINGS: [&str; 26] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
@@ -31,6 +31,7 @@ pub const SETTINGS: [&str; 25] = [
     "bounce_cutoff",
     "bounce_level_step",
     "bounce_level_offset",
+    "bounce_gloss",
 ];
 
 #[derive(Args)]
