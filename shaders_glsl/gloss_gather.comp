@@ -22,6 +22,8 @@ layout(constant_id = 3) const int SHADE_LEVELS = 0;
 layout(constant_id = 4) const bool GREY = false;
 layout(constant_id = 5) const bool VECTORS = true;
 layout(constant_id = 6) const int ORDER = 4;
+// Knots of a march, at most.
+layout(constant_id = 7) const int MOST_KNOTS = 64;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform texture2D height_levels;
@@ -173,23 +175,41 @@ void add_arriving(vec3 more) {
     }
 }
 
-// Seen where it is above all before: between that and itself its radiance arrives, in place of the last one's.
+// What is seen along the azimuth: elevation, place, level. Kept first and looked at after: lanes see their next
+// at different steps of a march.
+vec4 knots[MOST_KNOTS];
+int knot_count;
+
+// Seen where it is above all before.
 void cast_light(float angle, vec2 place, int level, bool on) {
-    bool rises = on && angle > top;
-    if (!subgroupAny(rises)) {
-        return;
+    if (on && angle > top) {
+        knots[knot_count] = vec4(angle, place, float(level));
+        knot_count++;
+        top = angle;
     }
-    vec2 direction = vec2(cosine(angle), sine(angle));
-    vec3 radiance = radiance_towards(direction, level, place);
-    float weight = max(light_between(facing, reached, direction), 0.0);
-    float counts = rises ? weight : 0.0;
-    thrown += counts * radiance;
-    vec3 change = radiance - last;
-    vec3 more = rises ? change : vec3(0.0);
-    add_arriving(more);
-    last += more;
-    reached = rises ? direction : reached;
-    top = rises ? angle : top;
+}
+
+// Of each knot the radiance arrives between the knot before and itself, in place of the last one's.
+void add_knots() {
+    for (int i = 0; i < MOST_KNOTS; i++) {
+        bool on = i < knot_count;
+        if (!subgroupAny(on)) {
+            break;
+        }
+        vec4 knot = knots[on ? i : 0];
+        vec2 direction = vec2(cosine(knot.x), sine(knot.x));
+        vec3 radiance = radiance_towards(direction, int(knot.w), knot.yz);
+        float weight = max(light_between(facing, reached, direction), 0.0);
+        float counts = on ? weight : 0.0;
+        thrown += counts * radiance;
+        vec3 change = radiance - last;
+        vec3 more = on ? change : vec3(0.0);
+        add_arriving(more);
+        last += more;
+        reached = on ? direction : reached;
+        top = on ? knot.x : top;
+    }
+    add_arriving(-last);
 }
 
 void main() {
@@ -217,8 +237,13 @@ void main() {
         thrown = vec3(0.0);
         last = vec3(0.0);
         float whole = light_between(facing, reached, vec2(0.0, 1.0));
+        float own_top = top;
+        knot_count = 0;
+        // What a lane without a knot looks at.
+        knots[0] = vec4(0.0, vec2(here), 0.0);
         march(exists);
-        add_arriving(-last);
+        top = own_top;
+        add_knots();
         sum += vec4(thrown, whole);
     }
     if (!exists) {

@@ -95,9 +95,11 @@ pub(crate) fn plan(
     // The march, and inside it samples that round to one distance; then for each sample that is seen, and for the
     // end, the sums over its coefficients.
     let looked_at = of.heights.samples();
+    // Beyond the last distance less than an octave more rounds to it, and two knots end the spline.
+    let knots = looked_at + of.heights.level_step + 2;
     let layers = glossy.layers();
     let of_each = glossy.order * glossy.order + if has_vectors { layers + layers } else { 0 };
-    let turns = 2 * looked_at + 3 + (looked_at + 3) * of_each;
+    let turns = 2 * knots + 1 + (knots + 1) * of_each;
     let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
@@ -129,6 +131,7 @@ pub(crate) fn plan(
                 (4, u32::from(bounce.grey)),
                 (5, u32::from(has_vectors)),
                 (6, glossy.order),
+                (7, knots),
             ],
             &GlossGatherPush {
                 cols: cols as i32,

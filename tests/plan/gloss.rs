@@ -20,7 +20,8 @@ fn planned(gloss: BounceGloss, sh_order: u32) -> Plan {
     let scene = Scene { field: fractal(SIDE, 1).expect("a field"), surface, lights };
     let engine = BounceEngine::Pyramid;
     let bounces = Bounces { count: 2, engine, cutoff: 0.0, gloss, ..Bounces::default() };
-    let quality = Quality { azimuths: 8, basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
+    let quality =
+        Quality { azimuths: 8, basis: Basis::Sh, sh_order, bounces, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
     plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
 }
@@ -37,16 +38,19 @@ fn each_bounce_is_thrown_once() {
     for gloss in [BounceGloss::Vector, BounceGloss::VectorF16, BounceGloss::Scalar] {
         let plan = planned(gloss, 4);
         let is_vector = gloss != BounceGloss::Scalar;
-        for label in
-            ["gloss_exit direct", "gloss_exit bounce1", "gloss_exit bounce2", "light_resolve bounces glossy"]
-        {
+        for label in [
+            "gloss_exit direct",
+            "gloss_exit bounce1",
+            "gloss_exit bounce2",
+            "light_resolve bounces glossy",
+        ] {
             assert!(has(&plan, label), "{label}");
         }
         assert_eq!(has(&plan, "gloss_seen"), is_vector);
         assert_eq!(has(&plan, "vector_reduce bounce1 level 1"), is_vector);
         assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
         assert!(!has(&plan, "bounce_gather bounce1"));
-        assert_eq!(missing_barriers(&plan.passes), Vec::<String>::new());
+        assert_eq!(missing_barriers(&plan.passes), vec![]);
         assert!(plan.settings.contains(&("bounce_gloss".into(), gloss.name().into())));
         let outputs: Vec<&str> = plan.outputs().map(|(_, r)| r.name.as_str()).collect();
         assert_eq!(outputs[outputs.len() - 3..], ["indirect.1", "indirect.2", "glossy"]);
