@@ -99,7 +99,7 @@ pub(crate) fn plan(
     let knots = looked_at + of.heights.level_step + 2;
     let layers = glossy.layers();
     let of_each = glossy.order * glossy.order + if has_vectors { layers + layers } else { 0 };
-    let turns = 2 * knots + 1 + (knots + 1) * of_each;
+    let turns = 3 * knots + 1 + (knots + 1) * of_each;
     let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
