@@ -29,7 +29,7 @@ mod wedges;
 use std::path::{Path, PathBuf};
 
 use ridgelight::files;
-use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
+use ridgelight::gpu::{Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Environment, HeightField, Lights, Method, Quality, Scene, Surface};
@@ -111,8 +111,11 @@ fn drawn(
         let times = (1..draws).map(|_| gpu.draw(frame)).collect::<Result<Vec<_>>>()?;
         Ok((gpu.pixels(frame, 0)?, times))
     })?;
-    let colours = pixels.values.chunks_exact(pixels.channels).flat_map(|t| t[..3].to_vec());
-    Ok((colours.collect(), kept, times))
+    Ok((colours(&pixels), kept, times))
+}
+
+fn colours(pixels: &Pixels) -> Vec<f32> {
+    pixels.values.chunks_exact(pixels.channels).flat_map(|t| t[..3].to_vec()).collect()
 }
 
 /// Every crossing in 256 azimuths, by tables of 1024 elevations.

@@ -128,6 +128,8 @@ vec2 turn_march(int k, int azimuths, vec2 cell_m) {
     vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
     vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
                    2.0 * half_direction.x * half_direction.y);
+    // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+    e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
     vec2 cells = vec2(e.x / cell_m.x, -e.y / cell_m.y);
     by_x = abs(cells.x) >= abs(cells.y);
     float along = by_x ? cells.x : cells.y;
@@ -149,8 +151,9 @@ void march(bool exists) {
     int side = by_x ? size.y : size.x;
     int at_side = by_x ? here.y : here.x;
     float room = shear > 0.0 ? float(side - 1 - at_side) : float(at_side);
-    // Beyond any step where it runs along the march; a hair more, so that rounding decides no last step.
-    float across = min(room / max(abs(shear), 1e-9) + 1e-3, 1e6);
+    // A hair more, so that rounding decides no last step; beyond any step where it runs along the grid.
+    float beside_it = min(room / max(abs(shear), 1e-9) + 1e-3, 1e6);
+    float across = mix(beside_it, 1e6, shear == 0.0);
     int length_of = by_x ? size.x : size.y;
     int far = reach + warm_up * length_of;
     int bounded = min(reach, int(across));

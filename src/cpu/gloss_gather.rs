@@ -2,14 +2,14 @@
 //! cosine finds it, and as a series of spherical harmonics for the sample's lobe.
 
 use super::bounce_gather::{BounceGather, March};
-use super::light::{Receiver as Place, normal};
 use super::shared::sweep::wrapped;
+use super::shared::thrown::{Along, radiance};
 use crate::basis::azimuth::around;
 use crate::basis::bands;
 use crate::basis::harmonics::evaluate;
 use crate::basis::slice::{Slices, slice_index};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// Coefficients of a series, R, G, B.
 pub type Series = Vec<[f64; 3]>;
@@ -39,39 +39,36 @@ impl GlossGather<'_> {
     ///
     /// # Panics
     /// Outside the field; when levels lack texels.
-    pub fn arriving(&self, row: usize, col: usize) -> Arriving {
+    pub fn arriving(&self, place: [usize; 2]) -> Arriving {
+        self.of(&self.casts_along(place))
+    }
+
+    /// What it is made of, azimuth by azimuth, as [`BounceGather::casts_along`].
+    ///
+    /// # Panics
+    /// As [`Self::arriving`].
+    pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
+        self.gather.casts_of(place, |march, e, of| self.radiance(march, -e, of))
+    }
+
+    /// From what is cast.
+    pub fn of(&self, all: &[Along]) -> Arriving {
         let Self { gather, order, .. } = self;
-        let place = Place::diffuse(normal(gather.field, gather.heights.border, row, col));
         let slices = Slices::new(*order);
-        let (mut sum, mut whole) = ([0.0; 3], 0.0);
-        let mut series = vec![[0.0; 3]; order * order];
         let width = TAU / f64::from(gather.azimuths);
-        for k in 0..gather.azimuths {
-            let azimuth = width * (f64::from(k) + 0.5);
-            let slice = place.slice(azimuth);
-            let march = gather.march([col, row], azimuth);
-            let turns = around(*order, azimuth);
-            let mut top = slice.low;
-            gather.looks(&march, |angle, of| {
-                if angle <= top {
-                    return;
-                }
-                let (sin, cos) = angle.sin_cos();
-                let e = DVec3::new(cos * azimuth.cos(), cos * azimuth.sin(), sin);
-                let radiance = self.radiance(&march, -e, of);
-                let weight = slice.light(top, angle);
-                sum = [0, 1, 2].map(|c| sum[c] + weight * radiance[c]);
-                let between = slices.between(top, angle);
+        let mut series = vec![[0.0; 3]; order * order];
+        for along in all {
+            let turns = around(*order, along.azimuth_rad);
+            for cast in &along.casts {
+                let between = slices.between(cast.low_rad, cast.high_rad);
                 for ((l, m), coefficient) in bands(*order).zip(&mut series) {
                     let turn = turns[(order - 1).wrapping_add_signed(m)];
                     let share = width * turn * between[slice_index(l, m.unsigned_abs())];
-                    *coefficient = [0, 1, 2].map(|c| coefficient[c] + share * radiance[c]);
+                    *coefficient = [0, 1, 2].map(|c| coefficient[c] + share * cast.radiance[c]);
                 }
-                top = angle;
-            });
-            whole += slice.light(-FRAC_PI_2, FRAC_PI_2);
+            }
         }
-        Arriving { diffuse: sum.map(|s| s.max(0.0) / whole), series }
+        Arriving { diffuse: radiance(all), series }
     }
 
     /// Radiance that leaves a place in a direction; what is below 0 is 0.

@@ -4,15 +4,17 @@
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
 use super::blocks::Blocks;
+use super::bounce_nodes::BounceNodes;
 use super::glossy::{Glossy, Thrown, Vectors};
 use super::pyramid::Pyramid;
+use super::sweep::Sweep;
 use super::sweeping::{Sweeping, part};
-use super::{Batch, Builder, Format, Owner, ResourceId};
+use super::{Batch, Builder, Format, Nodes, Owner, ResourceId};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_walk, gloss_gather, height_cells, pyramid_march,
-    shade_expand, shade_reduce, vector_reduce,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, gloss_gather,
+    height_cells, pyramid_march, shade_expand, shade_reduce, sky_shade, vector_reduce,
 };
-use crate::scene::{BounceEngine, Bounces, HeightField, Levels, Quality, Scene};
+use crate::scene::{BounceEngine, Bounces, HeightField, Levels, Quality, Scene, Surface};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -25,6 +27,18 @@ pub(crate) struct Bounce {
     pub grey: bool,
     /// To be written: exit radiance for albedo 1, R, G, B; the fourth channel is the engine's own.
     pub sum: ResourceId,
+    /// Where the engine finds what arrives, in place of every sample.
+    pub at_nodes: Option<BounceNodes>,
+}
+
+impl Bounce {
+    /// Where an engine finds what arrives, and what it writes there.
+    pub fn found_at(&self) -> (Nodes, ResourceId) {
+        match &self.at_nodes {
+            Some(at) => (at.nodes, at.sum),
+            None => (Nodes { stride: 1 }, self.sum),
+        }
+    }
 }
 
 /// The bounces of a picture, and what their passes read and write.
@@ -32,6 +46,7 @@ pub(super) struct Bouncing {
     azimuths: u32,
     grey: bool,
     sum: ResourceId,
+    at_nodes: Option<BounceNodes>,
     engine: Engine,
     /// What lobes throw on, where there are any.
     pub glossy: Option<Glossy>,
@@ -47,6 +62,28 @@ enum Engine {
     Pyramid(bounce_gather::Pyramids),
 }
 
+/// The settings with the engine that the planner takes where it is to choose.
+pub(super) fn settled(
+    quality: &Quality,
+    surface: &Surface,
+    sweep: &Sweep,
+    notes: &mut Vec<String>,
+) -> Quality {
+    let albedo = surface.most_reflected();
+    if quality.bounces.engine != BounceEngine::Auto || quality.bounces.worth_drawing(albedo) == 0 {
+        return *quality;
+    }
+    let (engine, why) = match sweep.why_no_lines() {
+        None => (
+            BounceEngine::Sweep,
+            "the sweep's lines lead to what is seen, in a fraction of brute's time".to_owned(),
+        ),
+        Some(way) => (BounceEngine::Brute, format!("{way} has no lines to walk over")),
+    };
+    notes.push(format!("bounce engine {}: {why}", engine.name()));
+    Quality { bounces: Bounces { engine, ..quality.bounces }, ..*quality }
+}
+
 /// How many bounces are worth drawing.
 pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
     let albedo = scene.surface.most_reflected();
@@ -58,12 +95,12 @@ pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<St
 }
 
 impl Bouncing {
-    /// So many bounces, 1 or more; `levels` are those that direct light has of heights.
+    /// So many bounces, 1 or more, at nodes or at every sample; `levels` are those that direct light has of heights.
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
         quality: &Quality,
-        (count, levels): (u32, Option<pyramid_march::Images>),
+        (count, at_nodes, levels): (u32, Option<BounceNodes>, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
         gloss: Option<&mut Vec<String>>,
     ) -> Self {
@@ -88,12 +125,13 @@ impl Bouncing {
         let engine = match bounces.engine {
             BounceEngine::Brute => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
                 let has_numbers = glossy.is_none_or(|g| matches!(g.thrown, Thrown::Seen(_)));
                 Engine::Pyramid(pyramids(builder, (shade, grey), quality, levels, has_numbers))
             }
         };
-        Self { azimuths: bounces.azimuths, grey, sum, engine, glossy, exits }
+        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, glossy, exits }
     }
 
     /// How many there are.
@@ -113,14 +151,16 @@ impl Bouncing {
         let pyramids = match &self.engine {
             Engine::Brute if is_recorded => return,
             Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
-            Engine::Sweep => return,
-            Engine::Pyramid(pyramids) => pyramids,
+            Engine::Sweep if self.at_nodes.is_none() => return,
+            Engine::Sweep => None,
+            Engine::Pyramid(pyramids) => Some(pyramids),
         };
         if !is_recorded {
             let of = (&scene.field, scene.surface.border);
             let ids = [heights, blocks.images.cells, blocks.images.ground];
             height_cells::plan(builder, of, ids, None);
         }
+        let Some(pyramids) = pyramids else { return };
         if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
             pyramids.heights.record(builder, heights, images);
         }
@@ -143,19 +183,35 @@ impl Bouncing {
                 1 => "direct light off the surface".to_owned(),
                 _ => format!("light of bounce {} off the surface", k - 1),
             },
-            exit: before.unwrap_or(direct),
+            exit: match self.glossy.map(|glossy| glossy.thrown) {
+                Some(Thrown::Seen(exit)) => exit,
+                _ => before.unwrap_or(direct),
+            },
             grey: self.grey,
             sum: self.sum,
+            at_nodes: self.at_nodes,
         };
+        let size = [scene.field.cols() as u32, scene.field.rows() as u32];
         let blocks = || blocks.expect("made for engines that read cells and ground");
         match &self.engine {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
-            Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
+            Engine::Sweep => {
+                let (sweeping, batches) = swept.expect("swept for walks");
+                match self.at_nodes.and_then(|at| Some((at, at.casts?))) {
+                    Some((at, casts)) if k > 1 => {
+                        cast_gather::plan(builder, size, self.azimuths, (&at, casts), &bounce);
+                    }
+                    _ => walk(builder, scene, k, (sweeping, batches), &bounce),
+                }
+            }
             Engine::Pyramid(of) => {
                 let ids = [heights, blocks().images.ground];
                 let how = (of, self.glossy.as_ref(), self.azimuths);
-                gather(builder, &scene.field, how, bounce, ids);
+                gather(builder, &scene.field, how, &bounce, ids);
             }
+        }
+        if let Some(at) = &self.at_nodes {
+            bounce_shade::plan(builder, &scene.field, at, &bounce, blocks().images.ground);
         }
         (self.sum, self.exits[k - 1])
     }
@@ -173,6 +229,7 @@ impl Bouncing {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());
+        add("subsample", self.at_nodes.map_or(1, |at| at.nodes.stride).to_string());
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::Brute,
             Engine::Sweep => BounceEngine::Sweep,
@@ -212,14 +269,27 @@ fn walk(
         if k == 1 || is_shared {
             sweeping.record(builder, batch, &part);
         }
+        let field = (scene.surface.border, scene.field.cell_m());
+        if let Some(at) = bounce.at_nodes.filter(|at| at.finds_share && k == 1) {
+            let images = sky_shade::Images {
+                lane_heights: sweeping.lane_heights(batch),
+                lattice: sweeping.lattice(batch),
+                azimuths: sweeping.azimuths,
+                sky_sum: Some(at.sky_share),
+                environment: None,
+                edited: None,
+            };
+            let (border, cell_m) = field;
+            sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, &part, &images);
+        }
         let swept = bounce_walk::Swept {
             lane_heights: sweeping.lane_heights(batch),
             azimuths: sweeping.azimuths,
             occluders,
             line_shift: sweeping.sweep.line_shift(),
+            begin: batches[0].first,
             is_last: i + 1 == batches.len(),
         };
-        let field = (scene.surface.border, scene.field.cell_m());
         bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
 }
@@ -229,30 +299,28 @@ fn gather(
     builder: &mut Builder,
     field: &HeightField,
     (of, glossy, azimuths): (&bounce_gather::Pyramids, Option<&Glossy>, u32),
-    mut bounce: Bounce,
+    bounce: &Bounce,
     ids: [ResourceId; 2],
 ) {
-    match glossy.map(|glossy| (glossy, glossy.thrown)) {
-        Some((_, Thrown::Seen(exit))) => bounce.exit = exit,
-        Some((glossy, Thrown::Vectors(Vectors { exit, levels: Some([levels, table]), .. }))) => {
-            for level in 1..=of.shade.levels() {
-                let (of, ids) = ((&of.shade, level), [exit, levels, table]);
-                vector_reduce::plan(builder, of, glossy, &bounce.name, ids);
-            }
+    if let Some(glossy) = glossy
+        && let Thrown::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) = glossy.thrown
+    {
+        for level in 1..=of.shade.levels() {
+            let (of, ids) = ((&of.shade, level), [exit, levels, table]);
+            vector_reduce::plan(builder, of, glossy, &bounce.name, ids);
         }
-        _ => {}
     }
     if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
         for level in 1..=of.shade.levels() {
-            shade_reduce::plan(builder, &of.shade, level, &bounce, [levels, table]);
+            shade_reduce::plan(builder, &of.shade, level, bounce, [levels, table]);
         }
         if let Some(stack) = stack {
-            shade_expand::plan(builder, &of.shade, &bounce, [levels, table, stack]);
+            shade_expand::plan(builder, &of.shade, bounce, [levels, table, stack]);
         }
     }
     match glossy {
-        Some(glossy) => gloss_gather::plan(builder, field, (of, glossy), azimuths, &bounce, ids),
-        None => bounce_gather::plan(builder, field, of, azimuths, &bounce, ids),
+        Some(glossy) => gloss_gather::plan(builder, field, (of, glossy), azimuths, bounce, ids),
+        None => bounce_gather::plan(builder, field, of, azimuths, bounce, ids),
     }
 }
 

@@ -59,6 +59,12 @@ pub enum Lobe {
 }
 
 impl Lobe {
+    /// A map of `samples` texels that only the device knows, none of whose scales is above `scale`: planned as that.
+    /// Beside [`Albedo::unknown`], which is planned as reflecting all, `f32::EPSILON` will do.
+    pub fn unknown(samples: usize, scale: f32) -> Self {
+        Lobe::Map(vec![Phong { exponent: 0.0, scale }; samples])
+    }
+
     /// That of a sample.
     pub fn at(&self, sample: usize) -> Phong {
         match self {
@@ -132,6 +138,11 @@ pub enum Albedo {
 }
 
 impl Albedo {
+    /// A map of `samples` texels that only the device knows: planned as white, so that no bounce is left out.
+    pub fn unknown(samples: usize) -> Self {
+        Albedo::Map(vec![[1.0; 3]; samples])
+    }
+
     /// Checks range and size against a field of `samples` samples.
     ///
     /// # Errors
@@ -221,5 +232,13 @@ mod tests {
         let said = lobes(&[0.9, 0.11]).unwrap_err().to_string();
         assert!(said.starts_with("phong scale, texel 1: found 0.11 beside"), "{said}");
         assert!(lobes(&[0.9]).unwrap_err().to_string().starts_with("phong map"));
+        // What only the device knows reflects something, and no more than all.
+        let unknown = Surface {
+            albedo: Albedo::unknown(2),
+            phong: Some(Lobe::unknown(2, f32::EPSILON)),
+            border: Border::Plane,
+        };
+        assert!(unknown.check(2).is_ok() && unknown.most_reflected() == 1.0);
+        assert!(unknown.phong.is_some_and(|lobe| lobe.largest().scale > 0.0));
     }
 }

@@ -195,7 +195,11 @@ fn lobes() {
             ("--phong 10,0.5", 2, &["--phong scale", "albedo of 1"]),
             ("--phong 10,0.5 --albedo 0.5 --basis table", 2, &["--phong: found", "--basis sh"]),
             ("--phong 10,0.5 --albedo 0.5 --key 0,30,9,9,1", 2, &["--phong: found", "key light"]),
-            ("--phong 10,0.5 --albedo 0.5 --bounces 1", 2, &["--bounce-engine", "pyramid"]),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
+                2,
+                &["--bounce-engine", "found sweep, expected pyramid"],
+            ),
             (
                 "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
                 2,
@@ -223,14 +227,7 @@ fn lobes() {
 #[test]
 fn not_yet() {
     let folder = Folder::new();
-    each(
-        &[PLAN, RENDER, HORIZON],
-        &folder,
-        &[
-            ("--scene s.json", 2, &["--scene", "not yet"]),
-            ("--camera 1,2", 2, &["--camera", "not yet"]),
-        ],
-    );
+    each(&[PLAN, RENDER, HORIZON], &folder, &[("--camera 1,2", 2, &["--camera", "not yet"])]);
     refused(
         &folder,
         &[
@@ -355,7 +352,7 @@ fn help_says_units_and_defaults() {
         ("--subsample", &["samples", "[default: 1]"]),
         ("--wedge-side", &["4..256", "[default: 64]"]),
         ("--bounces", &["0..64", "[default: 0]"]),
-        ("--bounce-engine", &["[default: brute]"]),
+        ("--bounce-engine", &["[default: auto]"]),
         ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
         ("--bounce-level-step", &["1..16", "[default: 4]"]),

@@ -45,6 +45,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+        auto::check_direct(&quality.bounces)?;
     }
     let wanted = setup::wanted(&args.layers);
     let picture =
@@ -62,7 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             (quality.hull, wanted),
             &progress,
         )?;
-        quality = Quality { bounces: auto::bounces(goal, quality.bounces), ..found.trial.quality };
+        quality = found.trial.quality;
         chosen = Some((goal, found));
         progress.set_message("lighting");
     }
@@ -126,9 +127,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         );
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
-        }
-        if chosen.is_some() && quality.bounces.count > 0 {
-            crate::say!("that is direct light's error and time: bounces are as asked");
         }
     }
     Ok(Outcome::Done)

@@ -204,15 +204,19 @@ impl<'a> Chooser<'a> {
 
     /// Of what was drawn the cheapest that is well within an error, else that of the least.
     pub fn surest(&self) -> Option<&Trial> {
-        let Goal::MaxError(most) = self.goal else { return self.best() };
-        let well = self.trials.iter().filter(|t| MARGIN * t.measured.at_most <= most);
-        well.min_by(|a, b| a.ns.total_cmp(&b.ns)).or_else(|| self.reached().min_by(by_error))
+        self.surest_of(|_| true)
     }
 
-    /// Of what was drawn and reaches the goal the most accurate of exact horizons, else of all.
+    /// The same of exact horizons alone, where any reach the goal.
     pub fn exact(&self) -> Option<&Trial> {
-        let exact = self.reached().filter(|t| is_exact(&t.quality));
-        exact.min_by(by_error).or_else(|| self.reached().min_by(by_error))
+        self.surest_of(|t| is_exact(&t.quality)).or_else(|| self.surest())
+    }
+
+    fn surest_of(&self, is_asked: impl Fn(&Trial) -> bool) -> Option<&Trial> {
+        let Goal::MaxError(most) = self.goal else { return self.best() };
+        let all = || self.reached().filter(|t| is_asked(t));
+        let well = all().filter(|t| MARGIN * t.measured.at_most <= most);
+        well.min_by(|a, b| a.ns.total_cmp(&b.ns)).or_else(|| all().min_by(by_error))
     }
 
     fn reached(&self) -> impl Iterator<Item = &Trial> {

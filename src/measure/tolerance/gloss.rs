@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{EPSILON, twin_pyramid_angle, twin_sh_gloss};
+use super::{CastError, EPSILON, Slices, twin_sh_gloss};
+use crate::cpu::shared::thrown::{Along, Cast};
 
 /// A coefficient of `gloss_seen`, of the magnitudes of all products that it sums: one rounding each and one a sum.
 pub fn twin_gloss_seen(order: usize) -> f64 {
@@ -24,22 +25,29 @@ pub fn twin_gloss_exit(order: usize, normal_error: f64) -> f64 {
     (4.0 * PI).sqrt() * (twin_sh_gloss(order, normal_error) + (directions + 4.0) * EPSILON)
 }
 
-/// A coefficient of what arrives by `gloss_gather`, from `samples` an azimuth, of surface whose radiance by direction has
-/// coefficients that sum to `brightest` at most, by magnitude.
+/// A coefficient of what arrives by `gloss_gather`, from all that a twin has seen, each cast with what it errs by there, of
+/// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
 ///
-/// Elevations err as in [`twin_gathered`](super::twin_gathered). One that is seen ends what one place throws and begins
-/// what the next does: twice its error times `brightest`, with Y_lm 1 at most, over all azimuths. Radiance changes by n
-/// a radian of direction, and errs by roundings as there, of series 100 ε besides; slices, of polynomials whose coefficients sum
-/// to 15, by 100 ε. The twin errs by less.
+/// An end ends what one place throws and begins what the next does: twice its error times `brightest`, with Y_lm 1 at
+/// most; the first is the own plane, which turns with the normal. Radiance errs by itself, changes by n a radian of
+/// direction, and its series sum with 100 ε; slices are polynomials whose coefficients sum to 15, 100 ε an end.
 pub fn twin_arriving(
-    [largest_m, relief_m, step_m]: [f64; 3],
-    (samples, order): (u32, usize),
-    brightest: f64,
+    all: &[Along],
+    error: impl Fn(&Cast) -> CastError,
+    order: usize,
+    of: &Slices,
 ) -> f64 {
-    let placed = 4.0 * EPSILON * relief_m / step_m;
-    let angle = twin_pyramid_angle(largest_m, relief_m, step_m) + placed + 24.0 * EPSILON;
-    let ends = 2.0 * f64::from(samples + 2) * (angle + 100.0 * EPSILON);
-    2.0 * PI * (ends + PI * (order as f64 * angle + 600.0 * EPSILON)) * brightest
+    let brightest = of.brightest;
+    let cast_off = |cast: &Cast| {
+        let here = error(cast);
+        let end = 2.0 * (here.elevation_rad + 100.0 * EPSILON) * brightest;
+        let turned = order as f64 * here.elevation_rad + 100.0 * EPSILON;
+        end + (cast.high_rad - cast.low_rad) * (here.radiance + turned * brightest)
+    };
+    let slice_off = |along: &Along| {
+        (of.normal + 100.0 * EPSILON) * brightest + along.casts.iter().map(cast_off).sum::<f64>()
+    };
+    2.0 * PI / all.len() as f64 * all.iter().map(slice_off).sum::<f64>()
 }
 
 /// What is stored as f16: rounded either way by a device and to nearest by the twin, 2^-10 of it, or of the smallest

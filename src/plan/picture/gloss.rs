@@ -30,15 +30,13 @@ pub(super) fn quality(
     if !shining.spheres.shining.is_empty() {
         return refuse("a lobe under a ball of light", alone);
     }
-    if quality.bounces.count > 0 {
-        bounced(quality, shining)?;
-    }
+    let quality = bounced(*quality, notes)?;
     match quality.basis {
-        _ if !shining.has_gloss_around() => Ok(*quality),
-        Basis::Sh => Ok(*quality),
+        _ if !shining.has_gloss_around() => Ok(quality),
+        Basis::Sh => Ok(quality),
         Basis::Auto => {
             notes.push("basis sh: a lobe is lit by harmonics alone".into());
-            Ok(Quality { basis: Basis::Sh, ..*quality })
+            Ok(Quality { basis: Basis::Sh, ..quality })
         }
         Basis::Table => {
             refuse("a lobe by --basis table, whose tables are of diffuse ground", "--basis sh")
@@ -46,11 +44,21 @@ pub(super) fn quality(
     }
 }
 
-/// Whether light can be thrown on by lobes.
-fn bounced(quality: &Quality, shining: &Shining<'_>) -> Result<()> {
+/// The same with the engine that throws light on by lobes.
+///
+/// # Errors
+/// Settings by which none does.
+fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
+    if quality.bounces.count == 0 {
+        return Ok(quality);
+    }
     let refuse = |name: &str, found: &str, expected: &str| {
         Err(Error::setting(format!("{name} with --bounces and a lobe"), found, expected))
     };
+    if quality.bounces.engine == BounceEngine::Auto {
+        notes.push("bounce engine pyramid: it knows where light leaves to, as lobes need".into());
+        quality.bounces.engine = BounceEngine::Pyramid;
+    }
     if quality.bounces.engine != BounceEngine::Pyramid {
         let found = quality.bounces.engine.name();
         return refuse("--bounce-engine", found, "pyramid, which knows where light leaves to");
@@ -58,11 +66,11 @@ fn bounced(quality: &Quality, shining: &Shining<'_>) -> Result<()> {
     if quality.receiver != Receiver::Plane {
         return refuse("--receiver", quality.receiver.name(), "plane");
     }
-    if quality.subsample != 1 && shining.has_gloss_around() {
+    if quality.subsample != 1 {
         let found = quality.subsample.to_string();
         return refuse("--subsample", &found, "1: what arrives is a series of every sample's");
     }
-    Ok(())
+    Ok(quality)
 }
 
 impl Drawing<'_> {

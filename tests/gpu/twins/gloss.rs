@@ -6,14 +6,16 @@ use ridgelight::cpu::gloss_exit::{mirrored, thrown};
 use ridgelight::cpu::gloss_gather::{GlossGather, Series};
 use ridgelight::cpu::pyramid_march::Stored;
 use ridgelight::cpu::shared::field::{field_slope, normal_of};
+use ridgelight::cpu::shared::thrown::Cast;
 use ridgelight::cpu::{gloss_seen as seen_twin, vector_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{
-    EPSILON, stored_f16, twin_arriving, twin_gathered, twin_gloss_exit, twin_gloss_seen,
-    twin_level, twin_sh_gloss,
+    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_gloss_exit,
+    twin_gloss_seen, twin_level, twin_sh_gloss,
 };
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Format, Kind, Pass};
+use ridgelight::scene::{Levels, Receiver};
 
 use super::bounce::{brightest, colours};
 use super::sh::device_series;
@@ -219,7 +221,7 @@ pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         shade: &shade,
         shade_texels: &texels,
         exit: &exit,
-        receiver: ridgelight::scene::Receiver::Plane,
+        receiver: Receiver::Plane,
         azimuths,
     };
     let of_vectors = vectors.as_ref().map(|[exit, levels]| [&exit[..], &levels[..]]);
@@ -228,21 +230,35 @@ pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         Some([exit, _]) => exit.iter().map(magnitude).fold(0.0, f64::max),
         None => brightest(&exit),
     };
-    let ([largest, relief], [x, y], [cols, _]) = (run.relief(), field.cell_m(), run.size());
-    let step = x.min(y);
-    let samples = pyramid.samples();
-    let of_series = twin_arriving([largest, relief, step], (samples, order), bright);
+    let ([x, y], [cols, _]) = (field.cell_m(), run.size());
+    let gathered = Gathered {
+        land: run.land(),
+        step_m: x.min(y),
+        is_stack: pyramid.stored == Levels::Stack,
+        own_levels: false,
+        receiver: Receiver::Plane,
+        brightest: bright,
+        spread: 2.0 * bright,
+    };
     // Radiance changes by n a radian of direction, whose error is an elevation's.
-    let of_sum = (1.0 + order as f64) * twin_gathered(largest, relief, step, samples, bright);
+    let error = |cast: &Cast| {
+        let here = gathered.error(cast);
+        let turned = order as f64 * here.elevation_rad * bright;
+        CastError { radiance: here.radiance + turned, ..here }
+    };
     let mut pairs = Vec::new();
     for (i, (got, series)) in got.iter().zip(&series).enumerate() {
-        let want = twin.arriving(i / cols, i % cols);
         let at = [i / cols, i % cols];
+        let all = twin.casts_along(at);
+        let want = twin.of(&all);
+        let slices = run.slices(at, 1.0, bright);
+        let of_series = twin_arriving(&all, |cast| gathered.error(cast), order, &slices);
+        let off = ThrownError::of(&all, |_, cast| error(cast), &slices).light;
         pairs.extend(paired((series, &want.series), |_| of_series, at));
         pairs.extend([0, 1, 2].map(|c| Pair {
             got: got[c],
             want: want.diffuse[c],
-            tolerance: of_sum,
+            tolerance: off[c],
             at: [c, at[0], at[1]],
         }));
     }

@@ -6,6 +6,7 @@ mod cases;
 mod edit;
 mod gloss;
 mod light;
+mod nodes;
 mod paths;
 mod pyramid;
 mod sh;
@@ -92,7 +93,9 @@ const TWINS: &[(&str, Twin)] = &[
     ("gloss_seen", gloss::gloss_seen),
     ("vector_reduce", gloss::vector_reduce),
     ("bounce_march", bounce::bounce_march),
+    ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", bounce::bounce_walk),
+    ("cast_gather", nodes::cast_gather),
     ("shade_expand", bounce::shade_expand),
     ("shade_reduce", bounce::shade_reduce),
 ];
@@ -321,6 +324,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::walks(),
         cases::throws(),
         cases::glosses(),
+        cases::nodes(),
     ]
     .into_iter()
     .flatten()
@@ -391,6 +395,14 @@ fn throws_are_their_twins() {
 fn lobes_throw_as_their_twins() {
     let mut device = Device::new();
     for case in cases::glosses() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn bounces_at_nodes_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::nodes() {
         check(&mut device, &case);
     }
 }
