@@ -75,7 +75,10 @@ fn make_device(
 ) -> Result<(ash::Device, u32)> {
     // SAFETY: the physical device is the instance's.
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical_device) };
-    let family = families.iter().position(|f| f.queue_flags.contains(vk::QueueFlags::COMPUTE));
+    let with = |flags| families.iter().position(|f| f.queue_flags.contains(flags));
+    // Graphics for views, where there are any.
+    let family = with(vk::QueueFlags::COMPUTE | vk::QueueFlags::GRAPHICS);
+    let family = family.or_else(|| with(vk::QueueFlags::COMPUTE));
     let queue_family = family.expect("the report found one") as u32;
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
@@ -84,7 +87,10 @@ fn make_device(
         .shader_storage_image_write_without_format(true)
         .shader_storage_image_extended_formats(true);
     let mut features12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
-    let mut features13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+    // Dynamic rendering, for views: every device of Vulkan 1.3 has it.
+    let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
+        .synchronization2(true)
+        .dynamic_rendering(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_features(&core)

@@ -1,3 +1,5 @@
+mod attachment;
+
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{
@@ -7,6 +9,8 @@ use gpu_allocator::vulkan::{
 use super::{Host, failed};
 use crate::plan::{Format, Kind};
 use crate::{Error, Result};
+
+pub(crate) use attachment::{DEPTH, whole_attachment};
 
 /// Memory is taken from the device in blocks of this size, and what is larger alone: the least that the
 /// allocator offers, so that what is held is near what a plan says.

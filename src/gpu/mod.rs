@@ -4,6 +4,7 @@ mod copy;
 mod frame;
 mod headless;
 mod instance;
+mod look;
 mod memory;
 mod pipelines;
 mod read;
@@ -12,12 +13,15 @@ mod requirements;
 pub mod shaders;
 mod specialise;
 mod validation;
+mod view;
 
 pub use frame::{Frame, Pixels};
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
+pub use look::Seen;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, limits, missing};
+pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;
 

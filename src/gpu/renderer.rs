@@ -14,6 +14,7 @@ use super::shaders::BindingKind;
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
 use crate::{Error, Result};
 
+pub(super) use images::transition;
 pub use images::{ImageArg, ImageState};
 
 /// GPU time of one pass.

@@ -30,6 +30,7 @@ mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
+mod view;
 mod walks;
 
 use std::sync::{Mutex, MutexGuard};
