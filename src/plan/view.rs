@@ -87,7 +87,8 @@ impl View {
         limits: &Limits,
     ) -> Result<Self> {
         camera.check()?;
-        options.check(limits)?;
+        options.check()?;
+        options.check_within(limits)?;
         let Scene { field, surface, lights } = scene;
         if field.rows() < 2 || field.cols() < 2 {
             let found = format!("{} × {} samples", field.cols(), field.rows());
@@ -154,19 +155,18 @@ impl View {
 }
 
 impl ViewOptions {
-    fn check(&self, limits: &Limits) -> Result<()> {
+    /// Width over height.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+
+    /// # Errors
+    /// What is out of range whatever the device, by name.
+    pub fn check(&self) -> Result<()> {
         let Self { size, samples, mesh_step, background } = self;
         if size.contains(&0) {
             let found = format!("{} × {}", size[0], size[1]);
             return Err(Error::setting("picture size", found, "1 × 1 or more"));
-        }
-        let longest = size[0].max(size[1]);
-        if longest > limits.image_side {
-            return Err(Error::Limit {
-                what: format!("a picture of {} × {}", size[0], size[1]),
-                needs: format!("images {longest} pixels long"),
-                limit: format!("{} on this device", limits.image_side),
-            });
         }
         if ![1, 2, 4, 8].contains(samples) {
             return Err(Error::setting("samples a pixel", samples.to_string(), "1, 2, 4 or 8"));
@@ -179,6 +179,19 @@ impl ViewOptions {
             return Err(Error::setting("background", found, "finite numbers, 0 or more"));
         }
         Ok(())
+    }
+
+    fn check_within(&self, limits: &Limits) -> Result<()> {
+        let [width, height] = self.size;
+        let longest = width.max(height);
+        if longest <= limits.image_side {
+            return Ok(());
+        }
+        Err(Error::Limit {
+            what: format!("a picture of {width} × {height}"),
+            needs: format!("images {longest} pixels long"),
+            limit: format!("{} on this device", limits.image_side),
+        })
     }
 }
 
@@ -256,13 +269,6 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
     }
 }
 
-impl ViewOptions {
-    /// Width over height.
-    pub fn aspect(&self) -> f64 {
-        f64::from(self.size[0]) / f64::from(self.size[1])
-    }
-}
-
 fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, border: Border) -> SkyDrawPush {
     let [right, up, back] = camera.axes();
     let half_m = match camera.lens {
@@ -289,10 +295,11 @@ fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, border: Border) ->
 
 fn settings(camera: &Camera, options: &ViewOptions) -> Vec<(String, String)> {
     let [x, y, z] = camera.target_m;
-    let compass = (90.0 - camera.azimuth_rad.to_degrees()).rem_euclid(360.0);
-    let elevation = camera.elevation_rad.to_degrees();
+    // As the flags take them, less the rounding of turning degrees to radians and back.
+    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
+    let (compass, elevation) = (90.0 - degrees(camera.azimuth_rad), degrees(camera.elevation_rad));
     let lens = match camera.lens {
-        Lens::Perspective { fov_rad } => format!("perspective {}", fov_rad.to_degrees()),
+        Lens::Perspective { fov_rad } => format!("perspective {}", degrees(fov_rad)),
         Lens::Orthographic { height_m } => format!("orthographic {height_m}"),
     };
     [

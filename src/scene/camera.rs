@@ -43,16 +43,17 @@ pub enum Lens {
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-9..=1e15;
 
 impl Camera {
-    /// A camera that looks at the middle of a field from an azimuth and an elevation, so near that all of the field
-    /// is just in a picture `aspect` times as wide as high. An orthographic lens's height is set to fit, too.
+    /// A camera that looks at a place, or the middle of a field, from an azimuth and an elevation, so near that all
+    /// of the field is just in a picture `aspect` times as wide as high. An orthographic lens's height is set to fit.
     pub fn around(
         field: &HeightField,
+        target_m: Option<[f64; 3]>,
         [azimuth_rad, elevation_rad]: [f64; 2],
         lens: Lens,
         aspect: f64,
     ) -> Self {
         let corners = corners(field);
-        let target = (corners[0] + corners[7]) / 2.0;
+        let target = target_m.map_or((corners[0] + corners[7]) / 2.0, DVec3::from);
         let mut camera =
             Self { target_m: target.to_array(), azimuth_rad, elevation_rad, distance_m: 1.0, lens };
         let [right, up, back] = camera.axes();
@@ -105,15 +106,15 @@ impl Camera {
             let found = format!("{}°", self.elevation_rad.to_degrees());
             return bad("elevation", found, "-90° to 90°");
         }
-        if !LENGTHS.contains(&self.distance_m) {
-            return bad("distance", self.distance_m.to_string(), "a length from 1e-9 to 1e15");
-        }
         match self.lens {
             Lens::Perspective { fov_rad } if !(0.001..=3.0).contains(&fov_rad) => {
                 bad("field of view", format!("{}°", fov_rad.to_degrees()), "0.06° to 171°")
             }
             Lens::Orthographic { height_m } if !LENGTHS.contains(&height_m) => {
                 bad("height of the picture", height_m.to_string(), "a length from 1e-9 to 1e15")
+            }
+            _ if !LENGTHS.contains(&self.distance_m) => {
+                bad("distance", self.distance_m.to_string(), "a length from 1e-9 to 1e15")
             }
             _ => Ok(()),
         }
@@ -162,11 +163,12 @@ mod tests {
         let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
         let above = [-FRAC_PI_2, FRAC_PI_2];
         let lens = Lens::Perspective { fov_rad: FRAC_PI_2 };
-        let camera = Camera::around(&field, above, lens, 1.0);
+        let camera = Camera::around(&field, None, above, lens, 1.0);
         assert_eq!(camera.target_m, [1.0, 1.0, 7.0]);
         assert!((camera.distance_m - 1.0).abs() < 1e-14, "{}", camera.distance_m);
         let lens = Lens::Orthographic { height_m: 1.0 };
-        let Lens::Orthographic { height_m } = Camera::around(&field, above, lens, 0.5).lens else {
+        let Lens::Orthographic { height_m } = Camera::around(&field, None, above, lens, 0.5).lens
+        else {
             panic!("another lens")
         };
         assert!((height_m - 4.0).abs() < 1e-14, "{height_m}");

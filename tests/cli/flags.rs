@@ -211,14 +211,7 @@ fn lobes() {
 #[test]
 fn not_yet() {
     let folder = Folder::new();
-    each(
-        &[PLAN, RENDER, HORIZON],
-        &folder,
-        &[
-            ("--scene s.json", 2, &["--scene", "not yet"]),
-            ("--camera 1,2", 2, &["--camera", "not yet"]),
-        ],
-    );
+    each(&[PLAN, RENDER, HORIZON], &folder, &[("--scene s.json", 2, &["--scene", "not yet"])]);
     refused(
         &folder,
         &[

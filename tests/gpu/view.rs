@@ -151,7 +151,7 @@ fn around(
     options: &ViewOptions,
 ) -> Camera {
     let angles = [(90.0 - compass).to_radians(), elevation.to_radians()];
-    Camera::around(&scene.field, angles, lens, options.aspect())
+    Camera::around(&scene.field, None, angles, lens, options.aspect())
 }
 
 const LENSES: [Lens; 2] =

@@ -2,6 +2,7 @@
 
 mod auto;
 mod bounces;
+mod camera;
 mod compare;
 mod later;
 mod quality;
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 pub use auto::AutoArgs;
+pub use camera::CameraArgs;
 pub use compare::CompareArgs;
 pub use later::LaterArgs;
 pub use quality::{
@@ -58,7 +60,7 @@ impl Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Light a field: one pixel a sample, seen from above
+    /// Light a field: one pixel a sample, seen from above, or from a camera
     Render(RenderArgs),
     /// Horizons of every sample: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
@@ -103,7 +105,10 @@ pub struct RenderArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub auto: AutoArgs,
-    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation)
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation); with --camera depth
+    /// (Z, the distance along the view)
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,
     /// Factor before the picture curve of a .png, which clips at 1 and is sRGB
@@ -264,6 +269,7 @@ pub enum Layer {
     Lights,
     SkyView,
     Horizon,
+    Depth,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

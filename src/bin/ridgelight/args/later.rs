@@ -4,22 +4,16 @@ use clap::Args;
 #[derive(Args)]
 pub struct LaterArgs {
     #[arg(long, hide = true, allow_hyphen_values = true)]
-    #[arg(long, hide = true, allow_hyphen_values = true)]
     scene: Option<String>,
-    #[arg(long, hide = true, allow_hyphen_values = true)]
-    camera: Option<String>,
 }
 
 impl LaterArgs {
     /// Refuses them.
     pub fn check(&self) -> ridgelight::Result<()> {
-        let given = [("--scene", self.scene.as_ref()), ("--camera", self.camera.as_ref())];
-        match given.into_iter().find_map(|(name, value)| Some((name, value?))) {
-            Some((name, value)) => Err(ridgelight::Error::setting(
-                name,
-                value.as_str(),
-                "nothing: it is not yet there",
-            )),
+        match self.scene.as_deref() {
+            Some(value) => {
+                Err(ridgelight::Error::setting("--scene", value, "nothing: it is not yet there"))
+            }
             None => Ok(()),
         }
     }
