@@ -3,24 +3,25 @@
 //!
 //! `cargo run --release --example terrain -- -o PICTURE.png --json FIGURES.json`
 //!
-//! The ground is coloured by its height: forest, above the tree line (1400 m) what grows there, and rock where it is
-//! steep. Heights are as they are.
+//! The ground is coloured by its height: forest, what grows above the tree line at 1400 m, and rock. Heights are as they
+//! are.
 
 use std::path::Path;
 
-use ridgelight::cpu::light::normal;
 use ridgelight::files::{self, HeightOptions, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{
-    Albedo, Border, Bounces, Camera, HeightField, Lens, Lights, Quality, Scene, Sun, Surface,
+    Albedo, BounceEngine, Bounces, Camera, HeightField, Lens, Lights, Quality, Scene, Sun, Surface,
 };
 use ridgelight::{Error, Result};
 
 const SIZE: [u32; 2] = [1200, 520];
-const EXPOSURE: f32 = 0.55;
-/// Of the sky's own sun, and of ours: from the left, behind the camera.
-const SUN: [f64; 2] = [255.0, 14.0];
+const EXPOSURE: f32 = 0.8;
+/// Compass azimuth and elevation: from the left.
+const SUN: [f64; 2] = [185.0, 11.0];
+/// Degrees counter-clockwise: its bright half, and its own sun behind clouds, before the camera.
+const SKY_TURNED: f64 = -110.0;
 /// Frames after the first, which compiles; times are their medians.
 const FRAMES: usize = 9;
 
@@ -31,23 +32,19 @@ fn flag<'a>(args: &'a [String], name: &str) -> Result<&'a str> {
     value.map(String::as_str).ok_or_else(|| Error::setting(name, "nothing", "a value"))
 }
 
-/// What grows where.
+/// What grows at which height, and rock above it.
 fn albedo(field: &HeightField) -> Vec<[f32; 3]> {
-    let (rows, cols) = (field.rows(), field.cols());
     let mix = |a: [f32; 3], b: [f32; 3], t: f32| [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]));
     let smooth = |low: f64, high: f64, v: f64| {
         let t = ((v - low) / (high - low)).clamp(0.0, 1.0);
         (t * t * (3.0 - 2.0 * t)) as f32
     };
-    let (forest, heath, rock) = ([0.10, 0.16, 0.06], [0.36, 0.31, 0.19], [0.38, 0.36, 0.34]);
-    (0..rows * cols)
-        .map(|i| {
-            let height = field.base_m() + f64::from(field.heights_m()[i]);
-            let up = normal(field, Border::Plane, i / cols, i % cols).z;
-            let grown = mix(forest, heath, smooth(1150.0, 1450.0, height));
-            mix(rock, grown, smooth(0.75, 0.88, up))
-        })
-        .collect()
+    let (forest, heath, rock) = ([0.06, 0.09, 0.035], [0.19, 0.16, 0.085], [0.24, 0.22, 0.20]);
+    let colour = |height: f64| {
+        let grown = mix(forest, heath, smooth(1000.0, 1400.0, height));
+        mix(grown, rock, smooth(1350.0, 1750.0, height))
+    };
+    field.heights_m().iter().map(|h| colour(field.base_m() + f64::from(*h))).collect()
 }
 
 fn scene() -> Result<Scene> {
@@ -57,7 +54,7 @@ fn scene() -> Result<Scene> {
         azimuth_rad: (90.0 - SUN[0]).to_radians(),
         elevation_rad: SUN[1].to_radians(),
         diameter_rad: 0.53_f64.to_radians(),
-        irradiance: [14.0, 10.0, 6.0],
+        irradiance: [26.0, 19.0, 12.0],
     };
     let map = albedo(&field);
     Ok(Scene {
@@ -66,7 +63,7 @@ fn scene() -> Result<Scene> {
         lights: Lights {
             environment: Some(files::read_environment(
                 Path::new("assets/sky_512x256.hdr"),
-                turned(),
+                SKY_TURNED.to_radians(),
             )?),
             suns: vec![sun],
             ..Lights::default()
@@ -74,25 +71,14 @@ fn scene() -> Result<Scene> {
     })
 }
 
-/// How far the sky is turned.
-fn turned() -> f64 {
-    std::env::var("TURN").ok().and_then(|v| v.parse::<f64>().ok()).unwrap_or(0.0).to_radians()
-}
-
+/// From the east, above the ravines.
 fn camera() -> Camera {
-    let env: Vec<f64> = std::env::var("CAM")
-        .unwrap_or_default()
-        .split(',')
-        .filter_map(|v| v.parse().ok())
-        .collect();
-    let [az, el, dist, x, y, z, fov] =
-        env.try_into().unwrap_or([150.0, 9.0, 11000.0, 8000.0, 13000.0, 1100.0, 34.0]);
     Camera {
-        target_m: [x, y, z],
-        azimuth_rad: (90.0_f64 - az).to_radians(),
-        elevation_rad: el.to_radians(),
-        distance_m: dist,
-        lens: Lens::Perspective { fov_rad: fov.to_radians() },
+        target_m: [8500.0, 12300.0, 1100.0],
+        azimuth_rad: (90.0_f64 - 80.0).to_radians(),
+        elevation_rad: 12_f64.to_radians(),
+        distance_m: 9500.0,
+        lens: Lens::Perspective { fov_rad: 34_f64.to_radians() },
     }
 }
 
@@ -102,7 +88,7 @@ fn main() -> Result<()> {
     let quality = Quality {
         azimuths: 64,
         sun_azimuths: 8,
-        bounces: Bounces { count: 1, ..Bounces::default() },
+        bounces: Bounces { count: 1, engine: BounceEngine::Sweep, ..Bounces::default() },
         ..Quality::default()
     };
     let mut gpu = Headless::new(&HeadlessOptions::default())?;

@@ -41,6 +41,7 @@ pub fn asked(args: &CameraArgs, scene: &Scene) -> Result<Option<Shot>> {
         mesh_step: args.mesh_step,
         background: args.background,
     };
+    options.check()?;
     let azimuth_rad = (90.0 - at.azimuth).to_radians();
     let lens = if args.ortho {
         Lens::Orthographic { height_m: at.distance_m.unwrap_or(1.0) }
@@ -60,7 +61,6 @@ pub fn asked(args: &CameraArgs, scene: &Scene) -> Result<Option<Shot>> {
         }
     }
     camera.check()?;
-    options.check()?;
     Ok(Some(Shot { camera, options }))
 }
 
