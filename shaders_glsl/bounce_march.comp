@@ -3,7 +3,7 @@
 // and its radiance where the weighted mean of its distances lies.
 // Reads: cells, maxima, ground, exit_radiance. Reads and writes: bounce_sum (exit radiance for albedo 1; until
 // the last azimuths not yet divided by its A, what whole hemispheres would have given).
-// One invocation is one sample.
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -20,6 +20,8 @@ layout(constant_id = 2) const bool THIN_COLS = false;
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 // Radiance of one channel.
 layout(constant_id = 4) const bool GREY = false;
+// Samples from node to node: 1, 2 or 4.
+layout(constant_id = 5) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -42,6 +44,7 @@ layout(push_constant) uniform BounceMarchPush {
 };
 
 #include "shared/walk.glsl"
+#include "shared/nodes.glsl"
 
 // The slice.
 Facing facing;
@@ -165,10 +168,12 @@ void march(Ray ray, bool going) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    bool exists = at.x < cols && at.y < rows;
-    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
+    bool exists = at.x < nodes.x && at.y < nodes.y;
+    ivec2 here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
+    bool is_line = THIN_ROWS || THIN_COLS;
     vec4 sum = vec4(0.0);
     for (int k = first_azimuth; k < last_azimuth; k++) {
         // Half a turn counted from west, in halves: the sines' range.
@@ -176,13 +181,15 @@ void main() {
         vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
         vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
                        2.0 * half_direction.x * half_direction.y);
+        // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+        e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
         // The sample's own plane rises towards the azimuth with the field's slope.
         float own_slope = own.y * e.x + own.z * e.y;
         facing = Facing(-own_slope * up, up);
         reached = own_slope;
         thrown = vec3(0.0);
         last_radiance = vec3(0.0);
-        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists);
+        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
         if (BORDER == BORDER_PERIODIC) {
             // What has met nothing up to horizontal goes on over the same land for ever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);

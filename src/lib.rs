@@ -7,6 +7,7 @@ pub mod basis;
 pub mod cpu;
 mod error;
 pub mod files;
+pub mod golden;
 pub mod gpu;
 pub mod measure;
 mod passes;

@@ -3,10 +3,12 @@
 //! its radiance over the elevations that it opens (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 
 use super::light::{Receiver as Place, Slice, normal};
+use super::oracle::grid_direction;
 use super::pyramid_march::Stored;
 use super::shade_expand::shade_at;
 use super::shared::levels::LevelTexels;
 use super::shared::sweep::{Heights, wrapped};
+use super::shared::thrown::{Along, Cast, NEARLY_RAD, radiance};
 use crate::basis::legendre::{nlp, occlusion};
 use crate::plan::pyramid::Pyramid;
 use crate::plan::sweep::WARM_UP_PERIODS;
@@ -56,33 +58,40 @@ impl March {
 }
 
 /// What has been seen of a slice.
-struct Cast {
+struct Seen {
     slice: Slice,
-    receiver: Receiver,
+    /// What Legendre coefficients give to the bands of a [`Receiver::Lobe`].
+    bands: Option<[f64; 4]>,
     top: f64,
-    thrown: [f64; 3],
-    series: [[f64; 4]; 3],
+    casts: Vec<Cast>,
 }
 
-impl Cast {
-    fn cast(&mut self, angle: f64, radiance: impl Fn() -> [f64; 3]) {
-        if angle <= self.top {
+impl Seen {
+    /// Weight of the elevations up to one, but for what is the same for all.
+    fn weight_of(bands: &[f64; 4], angle: f64) -> f64 {
+        occlusion(4, angle.sin(), angle.cos()).iter().zip(bands).map(|(o, b)| o * b).sum()
+    }
+
+    fn cast(&mut self, angle: f64, distance: f64, radiance: impl Fn() -> [f64; 3]) {
+        if angle <= self.top - NEARLY_RAD {
             return;
         }
-        let from = radiance();
-        match self.receiver {
-            Receiver::Plane => {
-                let weight = self.slice.light(self.top, angle);
-                self.thrown = [0, 1, 2].map(|c| self.thrown[c] + weight * from[c]);
+        let (low_rad, high_rad) = (self.top, angle.max(self.top));
+        let (sin, cos) = high_rad.sin_cos();
+        let (weight, facing) = match &self.bands {
+            None => (self.slice.light(low_rad, high_rad), self.slice.at(high_rad) * cos),
+            Some(bands) => {
+                let polynomials = nlp(4, sin);
+                let facing: f64 = bands.iter().zip(polynomials).map(|(b, p)| b * p).sum();
+                let [low, high] = [low_rad, high_rad].map(|a| Self::weight_of(bands, a));
+                (high - low, facing.abs() * cos)
             }
-            Receiver::Lobe => {
-                let [low, high] = [self.top, angle].map(|a| occlusion(4, a.sin(), a.cos()));
-                for (series, from) in self.series.iter_mut().zip(from) {
-                    (0..4).for_each(|l| series[l] += from * (high[l] - low[l]));
-                }
-            }
-        }
-        self.top = angle;
+        };
+        let radiance = radiance();
+        let seen =
+            Cast { low_rad, high_rad, weight, facing, radiance, distance, ..Cast::default() };
+        self.casts.push(seen);
+        self.top = high_rad;
     }
 }
 
@@ -92,32 +101,33 @@ impl BounceGather<'_> {
     /// # Panics
     /// Outside the field; when levels lack texels.
     pub fn light(&self, row: usize, col: usize) -> [f64; 3] {
+        radiance(&self.casts_along([row, col]))
+    }
+
+    /// What it is made of, azimuth by azimuth; distances are the steps to the nearest sample that an elevation is
+    /// made of.
+    ///
+    /// # Panics
+    /// As [`Self::light`].
+    pub fn casts_along(&self, [row, col]: [usize; 2]) -> Vec<Along> {
         let border = self.heights.border;
         let place = Place::diffuse(normal(self.field, border, row, col));
-        let (mut sum, mut whole) = ([0.0; 3], 0.0);
-        for k in 0..self.azimuths {
-            let azimuth = TAU * (f64::from(k) + 0.5) / f64::from(self.azimuths);
-            let slice = place.slice(azimuth);
-            let cast = self.cast(slice, &self.march([col, row], azimuth));
-            let thrown = match self.receiver {
-                Receiver::Plane => {
-                    whole += slice.light(-FRAC_PI_2, FRAC_PI_2);
-                    cast.thrown
-                }
-                Receiver::Lobe => {
-                    whole += 0.5;
-                    let weights = three_bands(&slice);
-                    cast.series.map(|s| s.iter().zip(weights).map(|(s, w)| s * w).sum())
-                }
+        let along = |k: u32| {
+            let azimuth_rad = TAU * (f64::from(k) + 0.5) / f64::from(self.azimuths);
+            let slice = place.slice(azimuth_rad);
+            let (bands, whole) = match self.receiver {
+                Receiver::Plane => (None, slice.light(-FRAC_PI_2, FRAC_PI_2)),
+                Receiver::Lobe => (Some(three_bands(&slice)), 0.5),
             };
-            sum = [0, 1, 2].map(|c| sum[c] + thrown[c]);
-        }
-        sum.map(|s| s.max(0.0) / whole)
+            let mut seen = Seen { slice, bands, top: slice.low, casts: Vec::new() };
+            self.cast(&mut seen, &self.march([col, row], azimuth_rad));
+            Along { azimuth_rad, low_rad: slice.low, whole, casts: seen.casts }
+        };
+        (0..self.azimuths).map(along).collect()
     }
 
     fn march(&self, [col, row]: [usize; 2], azimuth: f64) -> March {
-        let [cell_x, cell_y] = self.heights.cell_m.map(f64::from);
-        let cells = [azimuth.cos() / cell_x, -azimuth.sin() / cell_y];
+        let cells = grid_direction(self.field, azimuth);
         let by_x = cells[0].abs() >= cells[1].abs();
         let [along, across] = if by_x { cells } else { [cells[1], cells[0]] };
         let shear = across / along.abs();
@@ -130,6 +140,8 @@ impl BounceGather<'_> {
         let beside = room(of_axis(!by_x), shear > 0.0) / shear.abs().max(1e-9) + 1e-3;
         let reach = match self.pyramid.periodic {
             true => ahead + f64::from(WARM_UP_PERIODS) * of_axis(by_x).1,
+            // Along the grid, along the field's edge too.
+            false if shear == 0.0 => ahead,
             false => ahead.min(beside.floor()),
         };
         March {
@@ -142,25 +154,25 @@ impl BounceGather<'_> {
         }
     }
 
-    fn cast(&self, slice: Slice, march: &March) -> Cast {
-        let (thrown, series, top) = ([0.0; 3], [[0.0; 4]; 3], slice.low);
-        let mut cast = Cast { slice, receiver: self.receiver, top, thrown, series };
+    fn cast(&self, seen: &mut Seen, march: &March) {
         if march.reach <= 0 {
-            return cast;
+            return;
         }
         let (fine, levels) = (self.pyramid.fine_samples(), self.pyramid.levels());
         let (mut back, mut angle) = (1.0_f32, 0.0);
-        let mut angles: Option<[f64; 4]> = None;
+        // Elevations, and how far away each is found.
+        let mut angles: Option<[(f64, i32); 4]> = None;
         // What a knot looks at: the place and the level of radiance of its sample.
         let mut before = ([0.0; 2], 0);
         let (mut looked, mut at) = (0, 0);
-        let mut take_in = |angle: f64, of: ([f64; 2], u32), cast: &mut Cast| {
-            let four = angles.map_or([angle; 4], |[_, a, b, c]| [a, b, c, angle]);
-            let [x, y, z, w] = four;
+        let mut take_in = |newest: (f64, i32), of: ([f64; 2], u32), seen: &mut Seen| {
+            let four = angles.map_or([newest; 4], |[_, a, b, c]| [a, b, c, newest]);
+            let [x, y, z, w] = four.map(|(angle, _)| angle);
             let knot_of = if angles.is_none() { of } else { before };
             let (middle, knot) = ((x + w + 23.0 * (y + z)) / 48.0, (y + 4.0 * z + w) / 6.0);
             // Both radiate alike: the higher opens what both do.
-            cast.cast(middle.max(knot), || self.radiance(march, knot_of));
+            let nearest = f64::from(four[0].1);
+            seen.cast(middle.max(knot), nearest, || self.radiance(march, knot_of));
             (angles, before) = (Some(four), of);
         };
         for next in 0_u32.. {
@@ -176,17 +188,16 @@ impl BounceGather<'_> {
             let (to, from) = (self.shade.level_step, self.pyramid.level_step);
             let shade =
                 ((next * to + from / 2) / from + 1).saturating_sub(self.shade.fine_samples());
-            take_in(angle, (march.place(at), shade.min(self.shade.levels())), &mut cast);
+            let of = (march.place(at), shade.min(self.shade.levels()));
+            take_in((angle, at), of, seen);
             back *= self.pyramid.growth();
             // Those that round to one distance are taken in together.
             if whole >= march.reach && (back + 0.5) as i32 > whole {
-                let of = (march.place(at), shade.min(self.shade.levels()));
-                take_in(angle, of, &mut cast);
-                take_in(angle, of, &mut cast);
+                take_in((angle, at), of, seen);
+                take_in((angle, at), of, seen);
                 break;
             }
         }
-        cast
     }
 
     /// The two samples on a march step's grid line that a place lies between, and how far between.
@@ -238,19 +249,23 @@ impl BounceGather<'_> {
 }
 
 /// What each of four Legendre coefficients of a slice gives to three bands of the clamped cosine, 1/4 + c/2 +
-/// 5/32 (3c² - 1) with c = N·e, by the rule of midpoints in elevation: the integrands are smooth and vanish
-/// with cos ω at both ends.
+/// 5/32 (3c² - 1) with c = N·e, by Simpson's rule in elevation: its fourth order leaves 1e-8.
 fn three_bands(slice: &Slice) -> [f64; 4] {
-    const STEPS: u32 = 400;
+    const STEPS: u32 = 200;
     let width = PI / f64::from(STEPS);
     let mut weights = [0.0; 4];
-    for i in 0..STEPS {
-        let elevation = -FRAC_PI_2 + width * (f64::from(i) + 0.5);
+    for i in 0..=STEPS {
+        let elevation = -FRAC_PI_2 + width * f64::from(i);
         let (z, s) = elevation.sin_cos();
         let c = slice.a * s + slice.b * z;
         let bands = 0.25 + 0.5 * c + 5.0 / 32.0 * (3.0 * c * c - 1.0);
         let polynomials = nlp(4, z);
-        (0..4).for_each(|l| weights[l] += bands * polynomials[l] * s * width);
+        let share = match i {
+            0 | STEPS => 1.0,
+            _ if i % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        (0..4).for_each(|l| weights[l] += bands * polynomials[l] * s * share * width / 3.0);
     }
     weights
 }

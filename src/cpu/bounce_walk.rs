@@ -10,6 +10,7 @@ use super::shared::field::{field_slope, normal_of};
 use super::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
 use super::shared::gather::{Swept, elevation_moments};
 use super::shared::sweep::{CELL_SHIFT, March, NO_SLOPE, PER_CELL, wrapped};
+use super::shared::thrown::{Along, Cast, NEARLY_RAD, thrown};
 use crate::plan::azimuths::{Azimuth, CELL};
 use glam::{DVec2, DVec3};
 
@@ -39,15 +40,26 @@ impl Walked {
 /// # Panics
 /// Outside the field, or where `exit` is not one colour a sample.
 pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
-    let mut sum = Walked::default();
-    for azimuth in swept.azimuths {
-        let one = Walk::new(swept, exit, azimuth, col, row).walked();
-        sum.light += one.light;
-        sum.whole += one.whole;
-        sum.turns += one.turns;
-        sum.stretches += one.stretches;
-    }
-    sum
+    let (all, turns) = walked_along(swept, exit, col, row);
+    let (light, whole) = thrown(&all);
+    let is_seen = |cast: &&Cast| cast.high_rad > cast.low_rad;
+    let stretches = all.iter().map(|along| along.casts.iter().filter(is_seen).count() as u32).sum();
+    Walked { light: DVec3::from_array(light), whole, turns, stretches }
+}
+
+/// The stretches that it is made of, azimuth by azimuth, distances in march steps; and places that were gone to.
+///
+/// # Panics
+/// As [`bounce_walk`].
+pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Vec<Along>, u32) {
+    let mut turns = 0;
+    let along = |azimuth| {
+        let seen = Walk::new(swept, exit, azimuth, col, row).walked();
+        turns += seen.turns;
+        seen.along
+    };
+    let all = swept.azimuths.iter().map(along).collect();
+    (all, turns)
 }
 
 /// A sample's own line in one azimuth.
@@ -66,7 +78,8 @@ struct Walk<'a> {
 
 /// How far a walk has come: what is reached is seen up to `reached`, the slope of its last place that rose.
 struct Seen {
-    walked: Walked,
+    along: Along,
+    turns: u32,
     /// Weights of the two moments.
     faces: [f64; 2],
     passed: [f64; 2],
@@ -82,23 +95,39 @@ struct Place {
 }
 
 impl Seen {
-    /// The piece between two places, of which the far one is seen: from where it comes up over what is before
+    /// The piece between two places, of which the far one may be seen: from where it comes up over what is before
     /// it radiance is linear in the distance.
     fn see(&mut self, near: Place, far: Place) {
         let under = (self.reached - near.slope).max(0.0) * near.steps;
         let over = (far.slope - self.reached) * far.steps;
         let begins = near.light.lerp(far.light, f64::from(under / (under + over)));
-        self.add(far.slope, 0.5 * (begins + far.light));
+        let mean = if over > 0.0 { 0.5 * (begins + far.light) } else { far.light };
+        self.add(far.slope, far.steps, [mean, far.light - near.light]);
     }
 
-    fn add(&mut self, slope: f32, light: DVec3) {
-        let here = elevation_moments(f64::from(slope));
-        let share =
+    /// Surface up to a slope, so many steps away; nothing where it is hidden.
+    fn add(&mut self, slope: f32, steps: f32, [light, spread]: [DVec3; 2]) {
+        let low_rad = f64::from(self.reached).atan();
+        let high_rad = f64::from(slope).atan().max(low_rad);
+        if f64::from(slope).atan() <= low_rad - NEARLY_RAD {
+            return;
+        }
+        let reached = slope.max(self.reached);
+        let here = elevation_moments(f64::from(reached));
+        let weight =
             self.faces[0] * (self.passed[0] - here[0]) + self.faces[1] * (self.passed[1] - here[1]);
-        self.walked.light += share * light;
-        self.walked.stretches += 1;
-        self.passed = here;
-        self.reached = slope;
+        let (sin, cos) = high_rad.sin_cos();
+        self.along.casts.push(Cast {
+            low_rad,
+            high_rad,
+            weight,
+            facing: (self.faces[0] * cos + self.faces[1] * sin).abs() * cos,
+            radiance: light.to_array(),
+            spread: spread.abs().to_array(),
+            distance: f64::from(steps),
+            ..Cast::default()
+        });
+        (self.passed, self.reached) = (here, reached);
     }
 }
 
@@ -162,15 +191,20 @@ impl<'a> Walk<'a> {
             .map_or(0, |texel| i32::from(self.lattice.occluders[texel]))
     }
 
-    fn walked(&self) -> Walked {
+    fn walked(&self) -> Seen {
         let azimuth = &self.march.azimuth;
         let flat = DVec2::new(azimuth.wedge_cos.into(), azimuth.wedge_sin.into());
         let faces =
             [self.normal.truncate().dot(flat), self.normal.z * f64::from(azimuth.wedge_rad)];
         let passed = elevation_moments(f64::from(self.plane));
         let whole = faces[0] * passed[0] + faces[1] * passed[1];
-        let walked = Walked { whole, ..Walked::default() };
-        let mut seen = Seen { walked, faces, passed, reached: self.plane };
+        let along = Along {
+            azimuth_rad: f64::from(azimuth.sin_phi).atan2(azimuth.cos_phi.into()),
+            low_rad: f64::from(self.plane).atan(),
+            whole,
+            casts: Vec::new(),
+        };
+        let mut seen = Seen { along, turns: 0, faces, passed, reached: self.plane };
 
         let mut reach = self.step + self.settings.1;
         if !self.march.periodic() && azimuth.shear > 0 {
@@ -179,25 +213,23 @@ impl<'a> Walk<'a> {
         // Behind what the nearest line meets nothing rises.
         let limit = self.occluder_at(0).max(1).min(reach);
         if limit < 1 {
-            return walked;
+            return seen;
         }
         // The triangle that holds the sample: what leads into it meets it at once.
         let next = Place { steps: 1.0, slope: self.slope_at(1), light: self.light_at(1) };
-        let split = split_crossing(&self.march, (self.lane, self.step), self.own);
-        let first = split.map_or(next.slope, |split| split.slope);
-        if first > seen.reached {
-            seen.add(first, self.leaving(self.lane, self.step));
-        }
-        if let Some(split) = split
-            && next.slope > seen.reached
-        {
-            let side = self.leaving(self.lane - 1, self.step);
-            let light = side.lerp(self.leaving(self.lane, self.step - 1), split.steps.into());
-            seen.see(Place { steps: split.steps, slope: split.slope, light }, next);
+        let own = self.leaving(self.lane, self.step);
+        match split_crossing(&self.march, (self.lane, self.step), self.own) {
+            None => seen.add(next.slope, 1.0, [own, DVec3::ZERO]),
+            Some(split) => {
+                seen.add(split.slope, split.steps, [own, DVec3::ZERO]);
+                let side = self.leaving(self.lane - 1, self.step);
+                let light = side.lerp(self.leaving(self.lane, self.step - 1), split.steps.into());
+                seen.see(Place { steps: split.steps, slope: split.slope, light }, next);
+            }
         }
         let (mut at, mut near) = (1, next);
         while at < limit {
-            seen.walked.turns += 1;
+            seen.turns += 1;
             let back = self.occluder_at(at);
             if back == 0 {
                 break;
@@ -208,13 +240,10 @@ impl<'a> Walk<'a> {
                 to = at + 1;
                 slope = self.slope_at(to);
             }
-            // What nothing is seen of needs no radiance, but where the next piece begins.
             let far = Place { steps: to as f32, slope, light: self.light_at(to) };
-            if slope > seen.reached {
-                seen.see(near, far);
-            }
+            seen.see(near, far);
             (at, near) = (to, far);
         }
-        seen.walked
+        seen
     }
 }

@@ -8,7 +8,9 @@
 pub mod bounce;
 pub mod bounce_gather;
 pub mod bounce_march;
+pub mod bounce_shade;
 pub mod bounce_walk;
+pub mod cast_gather;
 pub mod dirty_list;
 pub mod dirty_mark;
 pub mod env_tables;

@@ -40,6 +40,11 @@ impl Stretch {
         if distance.is_finite() { distance.clamp(near, far) } else { near }
     }
 
+    /// Horizontal distance at which the piece ends, metres.
+    pub fn end_m(&self) -> f64 {
+        self.span_m[1]
+    }
+
     /// Weights of the triangle's corners at a horizontal distance; they sum to 1.
     pub fn corner_weights(&self, distance_m: f64) -> [f64; 3] {
         let [at_0, per_m] = self.weights;
@@ -75,6 +80,21 @@ impl Oracle<'_> {
     /// # Panics
     /// When `row` or `col` lies outside the field.
     pub fn stretches(&self, row: usize, col: usize, azimuth_rad: f64, seen: &mut Vec<Stretch>) {
+        self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
+    }
+
+    /// The same with all that is hidden by less than `nearly_rad`, seen between two equal elevations.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn nearly_seen(
+        &self,
+        row: usize,
+        col: usize,
+        azimuth_rad: f64,
+        nearly_rad: f64,
+        seen: &mut Vec<Stretch>,
+    ) {
         seen.clear();
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
@@ -90,7 +110,8 @@ impl Oracle<'_> {
         let mut lines = [1.0; 3];
         let (mut near, mut reached) = (0.0, -FRAC_PI_2);
         loop {
-            let nothing_higher = near > 0.0 && above_m / near <= reached.tan();
+            let lowest = f64::max(reached - nearly_rad, -FRAC_PI_2);
+            let nothing_higher = near > 0.0 && above_m / near <= lowest.tan();
             if nothing_higher || (periodic && near > cap_m) {
                 break;
             }
@@ -106,9 +127,10 @@ impl Oracle<'_> {
                 break;
             };
             // The surface is continuous: no piece begins above the largest slope before it.
-            if piece.high_rad > reached {
-                seen.push(Stretch { low_rad: reached, ..piece });
-                reached = piece.high_rad;
+            if piece.high_rad > lowest {
+                let high_rad = piece.high_rad.max(reached);
+                seen.push(Stretch { low_rad: reached, high_rad, ..piece });
+                reached = high_rad;
             }
             near = far;
         }
@@ -140,11 +162,17 @@ impl Oracle<'_> {
     fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<Stretch> {
         let [near, far] = span_m;
         let middle = 0.5 * (near + far);
-        let cell = [0, 1].map(|i| (here[i] + per_m[i] * middle).floor());
-        let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
-        let lower = down > right;
         let samples = [self.field().rows(), self.field().cols()];
         let cells = self.cells();
+        // Along the last row or column lies the last cell.
+        let is_last = [0, 1].map(|i| {
+            let is_edge = self.border() != Border::Periodic && here[i] == cells[i] as f64;
+            is_edge && per_m[i] == 0.0
+        });
+        let cell =
+            [0, 1].map(|i| (here[i] + per_m[i] * middle).floor() - f64::from(u8::from(is_last[i])));
+        let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
+        let lower = down > right;
         let at = match self.border() {
             Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(samples[i] as i64)),
             Border::Plane | Border::Open => [0, 1].map(|i| cell[i] as i64),

@@ -1,7 +1,7 @@
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
 use super::Headless;
+use super::allocator::MemoryUse;
 use super::frame::Owned;
 use super::memory::{Backed, whole};
 use crate::{Error, Result};
@@ -39,9 +39,9 @@ impl Headless {
         } else {
             vk::BufferUsageFlags::TRANSFER_DST
         };
-        let location = if to_image { MemoryLocation::CpuToGpu } else { MemoryLocation::GpuToCpu };
+        let used_by = if to_image { MemoryUse::Upload } else { MemoryUse::Readback };
         let mut staging =
-            self.memory.buffer("staging", row_bytes * u64::from(rows), usage, location)?;
+            self.memory.buffer("staging", row_bytes * u64::from(rows), usage, used_by)?;
         let mut done = 0;
         let mut copied = Ok(());
         'all: for layer in 0..layers {
@@ -74,7 +74,7 @@ impl Headless {
         each: &mut dyn FnMut(&mut [u8]) -> Result<()>,
     ) -> Result<()> {
         let mut touch = |staging: &mut Backed| {
-            let mapped = staging.allocation.as_mut().and_then(|a| a.mapped_slice_mut());
+            let mapped = staging.mapped();
             each(mapped.expect("host-visible memory is mapped"))
         };
         if to_image {

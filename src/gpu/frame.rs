@@ -1,3 +1,4 @@
+use super::allocator::Blocks;
 use super::memory::Backed;
 use super::{Headless, ImageArg, ImageState, Renderer, Timing};
 use crate::plan::{Format, Kind, Plan, Rectangle, Resource};
@@ -68,8 +69,10 @@ impl Headless {
     pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
         let inputs: Vec<Resource> = plan.inputs().map(|(_, r)| r.clone()).collect();
         let outputs: Vec<Resource> = plan.outputs().map(|(_, r)| r.clone()).collect();
+        let (host, pipelines) = (self.host(), self.pipelines.clone());
+        let blocks = Box::new(Blocks::new(host)?);
         let mut frame = Frame {
-            renderer: Some(Renderer::sharing(self.host(), plan, 1, self.pipelines.clone())?),
+            renderer: Some(Renderer::sharing(host, plan, 1, pipelines, blocks)?),
             inputs: Vec::new(),
             outputs: Vec::new(),
         };

@@ -1,10 +1,11 @@
 use ash::{ext, vk};
 
+use super::allocator::Blocks;
 use super::instance::{chosen, instance, load};
 use super::memory::Memory;
 use super::pipelines::Pipelines;
 use super::validation::{self, Listener, Messages};
-use super::{DeviceReport, Host, failed};
+use super::{DeviceReport, Host, failed, requirements};
 use crate::Result;
 
 /// How a device of our own is made.
@@ -83,19 +84,14 @@ fn make_device(
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
-    let core = vk::PhysicalDeviceFeatures::default()
-        .shader_storage_image_write_without_format(true)
-        .shader_storage_image_extended_formats(true);
-    let mut features12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
-    // Dynamic rendering, for views: every device of Vulkan 1.3 has it.
-    let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
-        .synchronization2(true)
-        .dynamic_rendering(true);
+    let mut needed = requirements();
+    // For views; every device of Vulkan 1.3 has it.
+    needed.features13 = needed.features13.dynamic_rendering(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
-        .enabled_features(&core)
-        .push_next(&mut features12)
-        .push_next(&mut features13);
+        .enabled_features(&needed.features)
+        .push_next(&mut needed.features12)
+        .push_next(&mut needed.features13);
     // SAFETY: the features were reported as present, the family as existing.
     let device = unsafe { instance.create_device(physical_device, &info, None) }
         .map_err(failed(format!("making a device on {name}")))?;
@@ -115,11 +111,14 @@ impl Headless {
         let (device, queue_family) = make_device(&instance, physical_device, &report.name)?;
         let names = || ext::debug_utils::Device::new(&instance, &device);
         let debug_utils = started.listener.is_some().then(names);
-        let host = Host { instance, physical_device, device, queue_family, debug_utils };
+        let pipeline_cache = vk::PipelineCache::null();
+        let host =
+            Host { instance, physical_device, device, queue_family, pipeline_cache, debug_utils };
         let pool_info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(queue_family)
             .flags(vk::CommandPoolCreateFlags::TRANSIENT);
-        let made = Memory::new(&host).and_then(|memory| {
+        let made = Blocks::new(&host).and_then(|blocks| {
+            let memory = Memory::new(&host, Box::new(blocks));
             // SAFETY: the device was made above with one queue of this family.
             let pool = unsafe { host.device.create_command_pool(&pool_info, None) };
             Ok((memory, pool.map_err(failed("making a command pool"))?))

@@ -1,6 +1,6 @@
 use ash::{ext, vk};
 
-use super::requirements::report;
+use super::requirements::{report, requirements};
 use super::{DeviceReport, failed, validation};
 use crate::{Error, Result};
 
@@ -28,7 +28,7 @@ pub(super) fn instance(
 ) -> Result<ash::Instance> {
     let app = vk::ApplicationInfo::default()
         .application_name(c"ridgelight")
-        .api_version(vk::API_VERSION_1_3);
+        .api_version(requirements().api_version);
     let settings = validation::settings();
     let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
     let layers = [validation::LAYER.as_ptr()];

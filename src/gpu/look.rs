@@ -1,8 +1,8 @@
 //! Pictures of a frame before a camera, on a device of our own.
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
+use super::allocator::MemoryUse;
 use super::failed;
 use super::frame::Owned;
 use super::memory::{Backed, DEPTH, whole_attachment};
@@ -110,8 +110,7 @@ impl Headless {
         }
         for bytes in sizes {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
-            let location = MemoryLocation::GpuToCpu;
-            made.push(self.memory.buffer("staging", bytes as u64, usage, location)?);
+            made.push(self.memory.buffer("staging", bytes as u64, usage, MemoryUse::Readback)?);
         }
         let [picture, depth] = [(0, format), (1, DEPTH)].map(|(i, format)| ImageArg {
             image: made[i].image,
@@ -132,14 +131,13 @@ impl Headless {
             }
             Ok(())
         })?;
-        let bytes = |backed: &Backed, count: usize| {
-            let mapped = backed.allocation.as_ref().and_then(|a| a.mapped_slice());
-            let bytes = mapped.map(|m| m[..count].to_vec());
+        let bytes = |backed: &mut Backed, count: usize| {
+            let bytes = backed.mapped().map(|m| m[..count].to_vec());
             bytes.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
         };
         Ok(Drawn {
-            picture: bytes(&made[2], sizes[0])?,
-            depths: bytemuck::pod_collect_to_vec(&bytes(&made[3], sizes[1])?),
+            picture: bytes(&mut made[2], sizes[0])?,
+            depths: bytemuck::pod_collect_to_vec(&bytes(&mut made[3], sizes[1])?),
             timings: renderer.timings(0).unwrap_or_default(),
         })
     }

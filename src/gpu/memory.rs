@@ -1,20 +1,13 @@
 mod attachment;
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{
-    Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
-};
 
+use super::allocator::{Allocation, Allocator, MemoryRequest, MemoryUse};
 use super::{Host, failed};
 use crate::plan::{Format, Kind};
 use crate::{Error, Result};
 
 pub(crate) use attachment::{DEPTH, whole_attachment};
-
-/// Memory is taken from the device in blocks of this size, and what is larger alone: the least that the
-/// allocator offers, so that what is held is near what a plan says.
-const BLOCK_BYTES: u64 = 4 << 20;
 
 /// An image or a buffer with its memory.
 pub(crate) struct Backed {
@@ -22,62 +15,65 @@ pub(crate) struct Backed {
     pub view: vk::ImageView,
     pub buffer: vk::Buffer,
     pub texels: vk::BufferView,
-    pub allocation: Option<Allocation>,
+    allocation: Option<Allocation>,
+    /// Of the buffer.
+    bytes: u64,
     pub layers: u32,
+}
+
+impl Backed {
+    /// A buffer's bytes, where the host sees them.
+    pub fn mapped(&mut self) -> Option<&mut [u8]> {
+        let begin = self.allocation.as_ref()?.mapped?;
+        // SAFETY: the allocator's word: mapped while it is allocated, at least as large as the buffer, and
+        // nobody else's. That the device is not at work on it is the caller's, as with any mapped memory.
+        Some(unsafe { std::slice::from_raw_parts_mut(begin.as_ptr(), self.bytes as usize) })
+    }
 }
 
 /// Makes images and buffers on a host's device and frees them again.
 pub(crate) struct Memory {
-    allocator: Option<Allocator>,
+    allocator: Option<Box<dyn Allocator>>,
     host: Host,
 }
 
 impl Memory {
-    pub fn new(host: &Host) -> Result<Self> {
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: host.instance.clone(),
-            device: host.device.clone(),
-            physical_device: host.physical_device,
-            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::new(BLOCK_BYTES, BLOCK_BYTES),
-        })
-        .map_err(|e| Error::Device {
-            doing: "starting the allocator".into(),
-            reason: e.to_string(),
-        })?;
-        Ok(Self { allocator: Some(allocator), host: host.clone() })
+    pub fn new(host: &Host, allocator: Box<dyn Allocator>) -> Self {
+        Self { allocator: Some(allocator), host: host.clone() }
     }
 
     fn take(
         &mut self,
         name: &str,
         requirements: vk::MemoryRequirements,
-        location: MemoryLocation,
-        linear: bool,
+        used_by: MemoryUse,
+        is_linear: bool,
     ) -> Result<Allocation> {
         let allocator = self.allocator.as_mut().expect("alive until destroy");
-        allocator
-            .allocate(&AllocationCreateDesc {
-                name,
-                requirements,
-                location,
-                linear,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|e| Error::Device {
-                doing: format!("allocating {} bytes for {name}", requirements.size),
-                reason: e.to_string(),
-            })
+        let got = allocator.allocate(&MemoryRequest { name, requirements, used_by, is_linear })?;
+        let wrong = if got.memory == vk::DeviceMemory::null() {
+            "no memory"
+        } else if !got.offset.is_multiple_of(requirements.alignment.max(1)) {
+            "an offset that is not aligned"
+        } else if used_by != MemoryUse::Device && got.mapped.is_none() {
+            "memory that is not mapped"
+        } else {
+            return Ok(got);
+        };
+        allocator.free(got);
+        Err(Error::Device {
+            doing: format!("allocating {} bytes for {name}", requirements.size),
+            reason: format!("the allocator gave {wrong}"),
+        })
     }
 
     /// Bytes taken from the device.
     pub fn bytes(&self) -> u64 {
-        self.allocator.as_ref().map_or(0, Allocator::capacity)
+        self.allocator.as_ref().map_or(0, |a| a.bytes())
     }
 
     /// An image or buffer of a plan; buffers in memory of that kind, images in the device's.
-    pub fn make(&mut self, name: &str, kind: Kind, location: MemoryLocation) -> Result<Backed> {
+    pub fn make(&mut self, name: &str, kind: Kind, used_by: MemoryUse) -> Result<Backed> {
         match kind {
             Kind::Image { format, width, height, layers, layered } => {
                 self.image(name, format, [width, height, layers], layered)
@@ -89,7 +85,7 @@ impl Memory {
                     vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER
                 };
                 let usage = usage | vk::BufferUsageFlags::TRANSFER_SRC;
-                let mut backed = self.buffer(name, bytes.max(16), usage, location)?;
+                let mut backed = self.buffer(name, bytes.max(16), usage, used_by)?;
                 if texels {
                     let info = vk::BufferViewCreateInfo::default()
                         .buffer(backed.buffer)
@@ -98,7 +94,10 @@ impl Memory {
                     // SAFETY: the buffer was made above for this use.
                     let view = unsafe { self.host.device.create_buffer_view(&info, None) };
                     match view {
-                        Ok(view) => backed.texels = view,
+                        Ok(view) => {
+                            self.host.name(view, name);
+                            backed.texels = view;
+                        }
                         Err(result) => {
                             self.free(&mut backed);
                             return Err(failed(format!("viewing buffer {name}"))(result));
@@ -110,30 +109,54 @@ impl Memory {
         }
     }
 
+    /// An image of a plan's.
     pub fn image(
         &mut self,
         name: &str,
         format: Format,
-        [width, height, layers]: [u32; 3],
+        extent: [u32; 3],
         layered: bool,
     ) -> Result<Backed> {
         let usage = vk::ImageUsageFlags::STORAGE
             | vk::ImageUsageFlags::SAMPLED
             | vk::ImageUsageFlags::TRANSFER_SRC
             | vk::ImageUsageFlags::TRANSFER_DST;
+        self.image_for(name, (format.vk(), usage), extent, layered)
+    }
+
+    /// An image of any colour format, for one use.
+    pub fn image_for(
+        &mut self,
+        name: &str,
+        (format, usage): (vk::Format, vk::ImageUsageFlags),
+        [width, height, layers]: [u32; 3],
+        layered: bool,
+    ) -> Result<Backed> {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
-            .format(format.vk())
+            .format(format)
             .extent(vk::Extent3D { width, height, depth: 1 })
             .mip_levels(1)
             .array_layers(layers)
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
+        let view_type =
+            if layered { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        self.image_of(name, &info, (view_type, whole(layers)))
+    }
+
+    /// An image, its memory and a view of it.
+    fn image_of(
+        &mut self,
+        name: &str,
+        info: &vk::ImageCreateInfo<'_>,
+        (view_type, range): (vk::ImageViewType, vk::ImageSubresourceRange),
+    ) -> Result<Backed> {
         let device = self.host.device.clone();
         // SAFETY: the device is alive (the caller of Renderer::new and Headless vouch for it), `info`
         // is a plain 2D image within the plan's limits.
-        let image = unsafe { device.create_image(&info, None) }
+        let image = unsafe { device.create_image(info, None) }
             .map_err(failed(format!("making image {name}")))?;
         let mut backed = Backed {
             image,
@@ -141,35 +164,32 @@ impl Memory {
             buffer: vk::Buffer::null(),
             texels: vk::BufferView::null(),
             allocation: None,
-            layers,
+            bytes: 0,
+            layers: info.array_layers,
         };
         // SAFETY: `image` was made above on this device.
         let requirements = unsafe { device.get_image_memory_requirements(image) };
-        let made =
-            self.take(name, requirements, MemoryLocation::GpuOnly, false).and_then(|allocation| {
-                let view_info = vk::ImageViewCreateInfo::default()
-                    .image(image)
-                    .view_type(if layered {
-                        vk::ImageViewType::TYPE_2D_ARRAY
-                    } else {
-                        vk::ImageViewType::TYPE_2D
-                    })
-                    .format(format.vk())
-                    .subresource_range(whole(layers));
-                // SAFETY: the allocation is at least as large as the image requires and bound once; the
-                // view is of the image's own format and layers.
-                let view = unsafe {
-                    device
-                        .bind_image_memory(image, allocation.memory(), allocation.offset())
-                        .and_then(|()| device.create_image_view(&view_info, None))
-                };
-                backed.allocation = Some(allocation);
-                backed.view = view.map_err(failed(format!("making image {name}")))?;
-                Ok(())
-            });
+        let made = self.take(name, requirements, MemoryUse::Device, false).and_then(|allocation| {
+            let view_info = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(view_type)
+                .format(info.format)
+                .subresource_range(range);
+            // SAFETY: the allocation is at least as large as the image requires and bound once; the
+            // view is of the image's own format and layers.
+            let view = unsafe {
+                device
+                    .bind_image_memory(image, allocation.memory, allocation.offset)
+                    .and_then(|()| device.create_image_view(&view_info, None))
+            };
+            backed.allocation = Some(allocation);
+            backed.view = view.map_err(failed(format!("making image {name}")))?;
+            Ok(())
+        });
         match made {
             Ok(()) => {
-                self.label(image, name);
+                self.host.name(image, name);
+                self.host.name(backed.view, name);
                 Ok(backed)
             }
             Err(error) => {
@@ -184,7 +204,7 @@ impl Memory {
         name: &str,
         bytes: u64,
         usage: vk::BufferUsageFlags,
-        location: MemoryLocation,
+        used_by: MemoryUse,
     ) -> Result<Backed> {
         let info = vk::BufferCreateInfo::default().size(bytes).usage(usage);
         let device = self.host.device.clone();
@@ -197,21 +217,21 @@ impl Memory {
             buffer,
             texels: vk::BufferView::null(),
             allocation: None,
+            bytes,
             layers: 0,
         };
         // SAFETY: `buffer` was made above on this device.
         let requirements = unsafe { device.get_buffer_memory_requirements(buffer) };
-        let made = self.take(name, requirements, location, true).and_then(|allocation| {
+        let made = self.take(name, requirements, used_by, true).and_then(|allocation| {
             // SAFETY: the allocation is at least as large as the buffer requires and bound once.
-            let bound = unsafe {
-                device.bind_buffer_memory(buffer, allocation.memory(), allocation.offset())
-            };
+            let bound =
+                unsafe { device.bind_buffer_memory(buffer, allocation.memory, allocation.offset) };
             backed.allocation = Some(allocation);
             bound.map_err(failed(format!("binding buffer {name}")))
         });
         match made {
             Ok(()) => {
-                self.label(buffer, name);
+                self.host.name(buffer, name);
                 Ok(backed)
             }
             Err(error) => {
@@ -221,18 +241,7 @@ impl Memory {
         }
     }
 
-    fn label(&self, handle: impl vk::Handle, name: &str) {
-        let (Some(debug), Ok(name)) = (&self.host.debug_utils, std::ffi::CString::new(name)) else {
-            return;
-        };
-        let info =
-            vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
-        // A name that could not be set is no reason to fail.
-        // SAFETY: the handle was made on this device and is alive.
-        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
-    }
-
-    /// Gives all memory blocks back to the device; everything must have been freed.
+    /// Lets go of the allocator; everything must have been freed.
     pub fn end(&mut self) {
         self.allocator = None;
     }
@@ -258,9 +267,7 @@ impl Memory {
         if let (Some(allocation), Some(allocator)) =
             (backed.allocation.take(), self.allocator.as_mut())
         {
-            // Freeing an allocation of this allocator cannot fail; if it did, memory is lost until
-            // the device goes.
-            let _ = allocator.free(allocation);
+            allocator.free(allocation);
         }
     }
 }

@@ -104,6 +104,7 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
     let words = specialised(shader.words, constants);
     let module_info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types;
+    // the cache is null or the host's;
     // handles made on the way are destroyed here when a later step fails.
     let result = unsafe {
         device.create_pipeline_layout(&layout_info, None).and_then(|layout| {
@@ -114,8 +115,7 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
                 .module(module)
                 .name(c"main");
             let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
-            let pipelines =
-                device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);
+            let pipelines = device.create_compute_pipelines(host.pipeline_cache, &[info], None);
             device.destroy_shader_module(module, None);
             pipelines.map_err(|(_, result)| result)
         })
@@ -123,6 +123,9 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
     match result {
         Ok(pipelines) => {
             made.pipeline = pipelines[0];
+            host.name(made.pipeline, shader.name);
+            host.name(made.layout, shader.name);
+            host.name(made.set_layout, shader.name);
             Ok(made)
         }
         Err(result) => {

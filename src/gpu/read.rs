@@ -2,8 +2,8 @@
 //! and tests that look inside.
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
+use super::allocator::MemoryUse;
 use super::frame::Owned;
 use super::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
 use crate::plan::{Kind, Owner, ResourceId};
@@ -59,7 +59,7 @@ impl Headless {
         let (bytes, kind) = (resource.bytes(), resource.kind);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let mut staging =
-            self.memory.buffer("staging", bytes.max(4), usage, MemoryLocation::GpuToCpu)?;
+            self.memory.buffer("staging", bytes.max(4), usage, MemoryUse::Readback)?;
         let to = staging.buffer;
         let device = &self.host().device;
         let done = self.run(|commands| {
@@ -96,7 +96,7 @@ impl Headless {
             }
             Ok(())
         });
-        let mapped = staging.allocation.as_ref().and_then(|a| a.mapped_slice());
+        let mapped = staging.mapped();
         let words = mapped.map(|m| {
             let texels = m[..bytes as usize].as_chunks::<4>().0;
             texels.iter().map(|word| u32::from_ne_bytes(*word)).collect()

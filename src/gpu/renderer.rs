@@ -7,10 +7,11 @@ mod resources;
 
 use ash::vk;
 
-use super::Host;
+use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
 use super::shaders::BindingKind;
+use super::{Host, requirements};
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
 use crate::{Error, Result};
 
@@ -50,6 +51,8 @@ pub struct Renderer {
     pending: Vec<bool>,
     /// Nanoseconds of a tick and a mask of the bits that count, where the host's queue has timestamps.
     timestamps: Option<(f64, u64)>,
+    /// Formats that inputs may have on this device, beside those of their plan.
+    readable: Vec<vk::Format>,
     destroyed: bool,
 }
 
@@ -69,27 +72,42 @@ impl Renderer {
     /// # Errors
     /// A device that lacks something (named), or is out of memory.
     pub fn new(host: &Host, plan: Plan, slots: usize) -> Result<Self> {
-        Self::sharing(host, plan, slots, Pipelines::default())
+        Self::with_memory(host, plan, slots, Box::new(Blocks::new(host)?))
     }
 
-    /// [`new`](Self::new) with pipelines that other renderers of the same device share.
+    /// [`new`](Self::new) with memory from an engine's own allocator, dropped after all has been freed.
+    ///
+    /// # Errors
+    /// As there, and the allocator's own.
+    pub fn with_memory(
+        host: &Host,
+        plan: Plan,
+        slots: usize,
+        allocator: Box<dyn Allocator>,
+    ) -> Result<Self> {
+        Self::sharing(host, plan, slots, Pipelines::default(), allocator)
+    }
+
+    /// The same with pipelines that other renderers of the same device share.
     pub(super) fn sharing(
         host: &Host,
         plan: Plan,
         slots: usize,
         pipelines: Pipelines,
+        allocator: Box<dyn Allocator>,
     ) -> Result<Self> {
-        let report = super::requirements::report(&host.instance, host.physical_device);
+        let report = requirements::report(&host.instance, host.physical_device);
         if !report.missing.is_empty() {
             return Err(Error::Device {
                 doing: format!("making a renderer on {}", report.name),
                 reason: format!("the device lacks {}", report.missing.join(", ")),
             });
         }
-        let timestamps = super::requirements::timestamps(host);
+        let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
-            memory: Memory::new(host)?,
+            memory: Memory::new(host, allocator),
+            readable: requirements::readable(host),
             resources: Vec::new(),
             unused: Vec::new(),
             pipelines,

@@ -3,7 +3,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::shaders::{self, BindingKind, Shader};
-use crate::plan::Limits;
+use crate::plan::{Format, Limits};
 
 /// What one device offers.
 #[derive(Clone, Debug)]
@@ -26,12 +26,39 @@ pub struct DeviceReport {
     pub missing: Vec<String>,
 }
 
-/// What a device lacks: the features that its maker must enable are those named here.
-///
-/// Vulkan 1.3 with `synchronization2` (1.3 features) and `hostQueryReset` (1.2 features);
-/// `shaderStorageImageWriteWithoutFormat` and `shaderStorageImageExtendedFormats` (core features);
-/// subgroup votes in compute shaders; as many storage images in a shader as one has; a queue family
-/// with compute.
+/// What a device must be made with: known before there is one. No extension, of instance or device.
+#[derive(Clone, Copy, Debug)]
+pub struct Requirements {
+    /// Vulkan version that instance and device must have, and that the instance must be made for.
+    pub api_version: u32,
+    /// Core features to enable.
+    pub features: vk::PhysicalDeviceFeatures,
+    /// Features of Vulkan 1.2 to enable.
+    pub features12: vk::PhysicalDeviceVulkan12Features<'static>,
+    /// Features of Vulkan 1.3 to enable.
+    pub features13: vk::PhysicalDeviceVulkan13Features<'static>,
+    /// What the family of the queue that commands go to must offer.
+    pub queue_flags: vk::QueueFlags,
+}
+
+/// What an engine enables when it makes its device, beside what it wants itself: Vulkan 1.3 with
+/// `synchronization2` and `hostQueryReset`, `shaderStorageImageWriteWithoutFormat`,
+/// `shaderStorageImageExtendedFormats`, and a queue with compute. Whether a device has it, and subgroup votes
+/// in compute shaders, [`missing`] says.
+pub fn requirements() -> Requirements {
+    Requirements {
+        api_version: vk::API_VERSION_1_3,
+        features: vk::PhysicalDeviceFeatures::default()
+            .shader_storage_image_write_without_format(true)
+            .shader_storage_image_extended_formats(true),
+        features12: vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true),
+        features13: vk::PhysicalDeviceVulkan13Features::default().synchronization2(true),
+        queue_flags: vk::QueueFlags::COMPUTE,
+    }
+}
+
+/// What a device lacks, by name: of [`requirements`], subgroup votes in compute shaders, and as many storage
+/// images in a shader as one has. Empty where Ridgelight will run.
 pub fn missing(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Vec<String> {
     report(instance, physical_device).missing
 }
@@ -53,6 +80,19 @@ pub(crate) fn timestamps(host: &super::Host) -> Option<(f64, u32)> {
     };
     let bits = families.get(host.queue_family as usize)?.timestamp_valid_bits;
     (bits > 0).then(|| (f64::from(properties.limits.timestamp_period), bits))
+}
+
+/// Of the formats that inputs may have, those that the device fetches from.
+pub(crate) fn readable(host: &super::Host) -> Vec<vk::Format> {
+    let is_readable = |format: &vk::Format| {
+        // SAFETY: the physical device is the instance's.
+        let properties = unsafe {
+            host.instance.get_physical_device_format_properties(host.physical_device, *format)
+        };
+        properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE)
+    };
+    let all = [Format::R32Float, Format::Rgba32Float].into_iter().flat_map(Format::vk_read);
+    all.copied().filter(is_readable).collect()
 }
 
 pub(crate) fn report(

@@ -8,6 +8,7 @@ mod resources;
 
 use ash::vk;
 
+use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::renderer::{ImageArg, Timing};
 use super::{Host, requirements};
@@ -18,7 +19,8 @@ use pipelines::Drawing;
 
 /// Images that a [`ViewRenderer`] reads, in any state; they are left as they came.
 ///
-/// Of the plan that lit the field: its input "heights", its output "radiance", its input "environment".
+/// Of the plan that lit the field: its input "heights", its output "radiance", its input "environment"; also in
+/// another of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewInputs {
     /// Heights above the field's base, one texel a sample.
@@ -27,7 +29,7 @@ pub struct ViewInputs {
     pub radiance: ImageArg,
     /// The environment behind the field, where the view has one.
     pub environment: Option<ImageArg>,
-    /// R32_SFLOAT, one texel a sample, where the view has voids: 0 where there is ground, 1 where there is none.
+    /// One channel, one texel a sample, where the view has voids: 0 where there is ground, 1 where there is none.
     pub voids: Option<ImageArg>,
 }
 
@@ -55,6 +57,8 @@ pub struct ViewRenderer {
     shape: View,
     format: vk::Format,
     memory: Memory,
+    /// Formats that inputs may have.
+    readable: Vec<vk::Format>,
     samples: vk::SampleCountFlags,
     /// Of several samples a pixel.
     many: Option<Backed>,
@@ -128,13 +132,27 @@ impl ViewRenderer {
     /// # Errors
     /// A device that lacks something (named): samples a pixel, graphics; or is out of memory.
     pub fn new(host: &Host, view: &View, format: vk::Format, slots: usize) -> Result<Self> {
+        Self::with_memory(host, (view, format), slots, Box::new(Blocks::new(host)?))
+    }
+
+    /// [`new`](Self::new) with memory from an engine's own allocator, dropped after all has been freed.
+    ///
+    /// # Errors
+    /// As there, and the allocator's own.
+    pub fn with_memory(
+        host: &Host,
+        (view, format): (&View, vk::Format),
+        slots: usize,
+        allocator: Box<dyn Allocator>,
+    ) -> Result<Self> {
         let curve = checks::check_device(host, view, format)?;
         let timestamps = requirements::timestamps(host);
         let mut renderer = Self {
             host: host.clone(),
             shape: view.clone(),
             format,
-            memory: Memory::new(host)?,
+            memory: Memory::new(host, allocator),
+            readable: requirements::readable(host),
             samples: vk::SampleCountFlags::from_raw(view.samples),
             many: None,
             depth: None,

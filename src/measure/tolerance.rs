@@ -6,10 +6,13 @@
 //! diagonal at 1/(1 + shear) of the first. Slopes err the most there, by the error of the rise over
 //! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
 
+mod bounce;
 mod light;
 
 use std::f64::consts::PI;
 
+use crate::cpu::bounce_shade::LEAST_SHARE;
+pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use light::{BallSeen, ShadeError};
 
 /// The largest relative error of one rounding to f32.
@@ -120,39 +123,12 @@ pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
     128.0 * EPSILON * largest_m / step_m
 }
 
-/// What `bounce_march` throws at a sample, for albedo 1, against its twin: of surface that radiates `brightest`
-/// at most, seen from `near_m` on, in `stretches` an azimuth at most.
+/// `bounce_shade` from given shares and light, of the light's own magnitude.
 ///
-/// The slopes that bound a stretch err as a march's first crossing, seen half a step away: 2 `near_m` is the step.
-/// A bound that is off moves its angle's weight, at most 1, from one stretch to the next, whose radiance differs
-/// by `brightest` at most; a direction, an arc tangent and a moment besides by 24 ε. As much again where the
-/// mean distance of a stretch is off: what it is off by, in shares of the stretch, times the stretch's
-/// weight is what its bounds are off by. The mean over azimuths over that of whole hemispheres, π/4 or
-/// more, is 4/π of one.
-pub fn twin_thrown(relief_m: f64, near_m: f64, stretches: usize, brightest: f64) -> f64 {
-    let bound = twin_march_slope(relief_m, 2.0 * near_m) + ARC_TANGENT + 24.0 * EPSILON;
-    2.0 * 4.0 / PI * stretches as f64 * bound * brightest
-}
-
-/// What `bounce_gather` throws at a sample, for albedo 1, against its twins from the same heights, in `samples` an
-/// azimuth: of surface that radiates `brightest` at most.
-///
-/// An elevation errs as in [`twin_pyramid_angle`], and by its place: a direction errs by 4 ε, of which a march of any
-/// length makes 4 ε of its length, over which the land rises at R / s. The spline's values, one a sample, cast as
-/// stretches do ([`twin_thrown`]); radiance is a sum of positive weights, 40 ε a level ([`twin_spline`]) for a few
-/// levels, and where it is looked for errs by the same place. Legendre coefficients of a slice, up to √2, times
-/// three bands' weights, up to 1: as much as an angle's weight, twice.
-pub fn twin_gathered(
-    largest_m: f64,
-    relief_m: f64,
-    step_m: f64,
-    samples: u32,
-    brightest: f64,
-) -> f64 {
-    let placed = 4.0 * EPSILON * relief_m / step_m;
-    let angle = twin_pyramid_angle(largest_m, relief_m, step_m) + placed + 24.0 * EPSILON;
-    let cast = 2.0 * 4.0 / PI * f64::from(samples + 2) * angle;
-    2.0 * (cast + 400.0 * EPSILON) * brightest
+/// What nodes are counted for errs as in `sh_shade`, above and below; a share by 2 ε of 1, of which it is
+/// [`LEAST_SHARE`] or more, twice; sums of four and a quotient, 16 ε.
+pub fn twin_bounce_shade(error: &ShadeError) -> f64 {
+    2.0 * error.node_weight() + (2.0 * 2.0 / LEAST_SHARE + 16.0) * EPSILON
 }
 
 /// Level of a height pyramid that `height_reduce` makes of a given one.

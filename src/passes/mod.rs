@@ -2,7 +2,9 @@
 
 pub(crate) mod bounce_gather;
 pub(crate) mod bounce_march;
+pub(crate) mod bounce_shade;
 pub(crate) mod bounce_walk;
+pub(crate) mod cast_gather;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;

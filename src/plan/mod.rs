@@ -4,6 +4,7 @@
 pub mod azimuths;
 mod batch;
 mod blocks;
+mod bounce_nodes;
 mod bounces;
 mod builder;
 mod change;
@@ -29,6 +30,7 @@ mod view;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use blocks::Blocks;
+pub(crate) use bounce_nodes::{BounceNodes, CAST_SLOTS};
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};

@@ -42,7 +42,8 @@ impl Default for ViewOptions {
 /// with a void corner is a hole. A field that repeats is drawn once. Between samples the exit radiance is bilinear:
 /// a lobe is that of the view from straight above, as in the lit field. Behind it are the uniform sky and the
 /// environment by direction, radiance bilinear between the middles of its texels; suns, key lights and balls of light
-/// themselves are not drawn.
+/// themselves are not drawn. Before an orthographic lens ground is seen as far above and below the scene's own heights as
+/// the picture spans, and as these reach along the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Columns and rows of the picture.
@@ -258,8 +259,8 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
                 .iter()
                 .map(|c| (eye - *c).dot(back))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(d), f.max(d)));
-            // No ground at 0 or beyond 1 by rounding, and level ground seen from above has depth.
-            let margin = 1e-3 * (far - near) + 1e-3 * height_m;
+            // Level ground seen from above has depth; and heights that an engine changes have some room.
+            let margin = far - near + height_m;
             let (near_m, far_m) = (near - margin, far + margin);
             let [x, y] = [height_m * aspect / 2.0, height_m / 2.0];
             // Near and far exchanged.

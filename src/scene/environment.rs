@@ -51,6 +51,14 @@ impl Environment {
         Ok(Self { width, height, texels, rotation_rad })
     }
 
+    /// One whose texels only the device knows: planned as the same from everywhere, so that azimuths are even.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn unknown(width: usize, height: usize, rotation_rad: f64) -> Result<Self> {
+        Self::new(width, height, vec![[1.0; 3]; width.saturating_mul(height)], rotation_rad)
+    }
+
     /// Texels around the full circle.
     pub fn width(&self) -> usize {
         self.width

@@ -86,6 +86,18 @@ impl HeightField {
         Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids })
     }
 
+    /// A field whose heights only the device knows: planned as level ground at height 0, so that what an
+    /// engine hands in are heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
+    ///
+    /// Not for what looks at heights beforehand: precision `packed`, [`plan::reference`](crate::plan::reference).
+    /// Balls of light are looked for as far as level ground would see them: a `light_cutoff` of 0 looks at all.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn unknown(rows: usize, cols: usize, cell_m: [f64; 2]) -> Result<Self> {
+        Self::new(rows, cols, &vec![0.0; rows.saturating_mul(cols)], cell_m, None)
+    }
+
     /// Number of rows (south to north extent).
     pub fn rows(&self) -> usize {
         self.rows

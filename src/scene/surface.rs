@@ -76,6 +76,11 @@ pub enum Albedo {
 }
 
 impl Albedo {
+    /// A map of `samples` texels that only the device knows: planned as white, so that no bounce is left out.
+    pub fn unknown(samples: usize) -> Self {
+        Albedo::Map(vec![[1.0; 3]; samples])
+    }
+
     /// Checks range and size against a field of `samples` samples.
     ///
     /// # Errors

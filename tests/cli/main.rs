@@ -13,6 +13,7 @@ mod light;
 mod needs_vulkan;
 mod plan;
 mod reference;
+mod scene_file;
 mod signals;
 mod trade;
 mod unlike;

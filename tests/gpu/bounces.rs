@@ -1,11 +1,10 @@
 //! Light that the surface throws at itself: against twins, closed forms, the f64 quadrature and what must be.
 
-use std::f64::consts::TAU;
 use std::path::Path;
 
 use ridgelight::cpu::bounce::{self, Fineness};
 use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::bounce_march::bounce_march;
+use ridgelight::cpu::bounce_march::{bounce_march, stretches_along};
 use ridgelight::cpu::height_expand::height_expand;
 use ridgelight::cpu::height_reduce::height_levels;
 use ridgelight::cpu::oracle::Oracle;
@@ -13,10 +12,11 @@ use ridgelight::cpu::pyramid_march::Stored;
 use ridgelight::cpu::shade_reduce::shade_levels;
 use ridgelight::cpu::shared::levels::LevelTexels;
 use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::cpu::shared::thrown::{Along, radiance};
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
 use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{EPSILON, twin_gathered, twin_thrown};
+use ridgelight::measure::tolerance::{EPSILON, Gathered, Land, Slices, ThrownError, march_error};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
@@ -24,7 +24,6 @@ use ridgelight::scene::{
     Scene, Sun, Surface,
 };
 
-use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
 use crate::reference_truth::traced;
 use crate::{Device, field, random, under_sky};
 
@@ -67,9 +66,8 @@ fn albedo_of(scene: &Scene, at: usize) -> [f64; 3] {
     }
 }
 
-fn relief(field: &HeightField) -> f64 {
-    let all = || field.heights_m().iter().map(|h| f64::from(*h));
-    all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
+fn brightest(light: &[[f64; 3]]) -> f64 {
+    light.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
 /// Fields of every shape, under a sky and a sun of other colours, with an albedo each.
@@ -101,23 +99,31 @@ fn scenes(border: Border) -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Most stretches that a sample sees along an azimuth, of every seventh sample.
-fn most_stretches(oracle: &Oracle, azimuths: u32) -> usize {
-    let (mut seen, mut most) = (Vec::new(), 1);
-    let cols = oracle.field().cols();
-    for (i, k) in (0..oracle.field().rows() * cols).step_by(7).zip((0..azimuths).cycle()) {
-        let azimuth = TAU * (f64::from(k) + 0.5) / f64::from(azimuths);
-        oracle.stretches(i / cols, i % cols, azimuth, &mut seen);
-        most = most.max(seen.len());
+/// A bounce beside its twin: the largest share that it is off of what it may be.
+fn beside(
+    layer: &[[f64; 3]],
+    scene: &Scene,
+    twin: impl Fn(usize) -> (Vec<Along>, ThrownError),
+) -> f64 {
+    let mut largest = 0.0_f64;
+    for (i, got) in layer.iter().enumerate() {
+        let (all, error) = twin(i);
+        let (want, albedo) = (radiance(&all), albedo_of(scene, i));
+        for c in 0..3 {
+            let (want, off) = (albedo[c] * want[c], albedo[c] * error.light[c]);
+            let bound = off + 4.0 * EPSILON * want;
+            let ratio = if got[c] == want { 0.0 } else { (got[c] - want).abs() / bound };
+            assert!(ratio <= 1.0, "{i} {c}: {got:?} for {want}, {ratio} of {bound:e}");
+            largest = largest.max(ratio);
+        }
     }
-    most
+    largest
 }
 
 /// Each bounce is the twin's of what the device made of the one before.
 #[test]
 fn every_stretch_is_the_twins() {
     let mut gpu = Device::new();
-    let mut largest = 0.0_f64;
     for (border, azimuths) in [(Border::Plane, 8), (Border::Open, 4), (Border::Periodic, 4)] {
         // Each is a pipeline of its own, and rays over repetitions go on for long.
         let is_drawn = |(name, _): &(&str, Scene)| match border {
@@ -131,43 +137,28 @@ fn every_stretch_is_the_twins() {
             let oracle = Oracle::new(&scene.field, border);
             let (cols, cell) = (scene.field.cols(), scene.field.cell_m());
             let mut from = direct;
-            for (k, layer) in all[1..].iter().enumerate() {
-                let brightest = from.as_flattened().iter().fold(0.0_f64, |m, v| m.max(*v));
-                let near = 0.5 * cell[0].min(cell[1]);
-                let bound = twin_thrown(
-                    relief(&scene.field),
-                    near,
-                    most_stretches(&oracle, azimuths),
-                    brightest,
-                );
-                for (i, got) in layer.iter().enumerate() {
-                    let want = bounce_march(&oracle, &from, azimuths, i / cols, i % cols);
-                    let albedo = albedo_of(&scene, i);
-                    for c in 0..3 {
-                        let off = (got[c] - albedo[c] * want[c]).abs();
-                        assert!(
-                            off <= bound,
-                            "{border:?} {name} {k} {i} {c}: {got:?} {want:?} {bound:e}"
-                        );
-                        largest = largest.max(off / bound);
-                    }
-                }
+            for layer in &all[1..] {
+                let brightest = brightest(&from);
+                let ratio = beside(layer, &scene, |i| {
+                    let at = [i / cols, i % cols];
+                    let all = stretches_along(&oracle, &from, azimuths, at);
+                    let normal = Land::normal_at(&scene.field, border, at);
+                    let slices = Slices { normal, wedge: 1.0, brightest };
+                    let error = |along: &Along, cast: &_| march_error(cell, along, cast);
+                    let error = ThrownError::of(&all, error, &slices);
+                    (all, error)
+                });
+                println!("{border:?} {name}: {ratio:.3} of the bound");
                 from.clone_from(layer);
             }
         }
     }
-    println!("{largest:.2e} of the bound");
 }
 
-/// The same by pyramids, of either storage and receiver.
-///
-/// A knot's elevation errs as a pyramid's angle against its twin, all levels' own errors in it; a slope's
-/// place by the roundings of its direction, 4 ε of the whole way, and the land along with it, seen from there. At each
-/// of its knots and midpoints the light of an angle's weight may be another's, as of stretches.
+/// The same by pyramids, of either storage and receiver; their levels are the twins', too.
 #[test]
 fn pyramids_are_the_twins() {
     let mut gpu = Device::new();
-    let mut largest = 0.0_f64;
     for (border, levels, receiver, azimuths) in [
         (Border::Plane, Levels::Stack, Receiver::Plane, 8),
         (Border::Open, Levels::Pyramid, Receiver::Lobe, 5),
@@ -207,8 +198,9 @@ fn pyramids_are_the_twins() {
                 Levels::Stack => Stored::Stack(&stack),
                 Levels::Pyramid => Stored::Levels(&texels),
             };
-            for (k, layer) in all[1..].iter().enumerate() {
-                let brightest = from.as_flattened().iter().fold(0.0_f64, |m, v| m.max(*v));
+            let land = Land::of(field, border);
+            for layer in &all[1..] {
+                let brightest = brightest(&from);
                 let shade_texels = &shade_levels(&from, &shade);
                 let (shade, pyramid, exit) = (&shade, &pyramid, &from[..]);
                 let twin = BounceGather {
@@ -222,61 +214,27 @@ fn pyramids_are_the_twins() {
                     receiver,
                     azimuths,
                 };
-                let cell = field.cell_m()[0].min(field.cell_m()[1]);
-                let relief = relief(field);
-                let bound = twin_gathered(
-                    largest_height(field),
-                    relief,
-                    cell,
-                    pyramid.samples(),
+                let gathered = Gathered {
+                    land,
+                    step_m: land.cell_m,
+                    is_stack: levels == Levels::Stack,
+                    own_levels: true,
+                    receiver,
                     brightest,
-                );
-                for (i, got) in layer.iter().enumerate() {
-                    let want = twin.light(i / field.cols(), i % field.cols());
-                    let albedo = albedo_of(&scene, i);
-                    for c in 0..3 {
-                        let off = (got[c] - albedo[c] * want[c]).abs();
-                        assert!(
-                            off <= bound,
-                            "{border:?} {levels:?} {receiver:?} {name} {k} {i} {c}: {got:?} {want:?} {bound:e}"
-                        );
-                        largest = largest.max(off / bound);
-                    }
-                }
+                    spread: brightest,
+                };
+                let ratio = beside(layer, &scene, |i| {
+                    let at = [i / field.cols(), i % field.cols()];
+                    let all = twin.casts_along(at);
+                    let normal = Land::normal_at(field, border, at);
+                    let slices = Slices { normal, wedge: 1.0, brightest };
+                    let error = ThrownError::of(&all, |_, cast| gathered.error(cast), &slices);
+                    (all, error)
+                });
+                println!("{border:?} {levels:?} {receiver:?} {name}: {ratio:.3} of the bound");
                 from.clone_from(layer);
             }
         }
-    }
-    println!("{largest:.2e} of the bound");
-}
-
-fn largest_height(field: &HeightField) -> f64 {
-    field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m))
-}
-
-/// Pits against their closed form, within what the rim's staircase may do.
-#[test]
-fn a_pit_is_lit_as_its_closed_form() {
-    let mut gpu = Device::new();
-    for (alpha, albedo, bounces, _) in PITS {
-        let (rho, count) = (f64::from(albedo), bounces.min(12));
-        let mut scene = under_sky(pit(12.5, alpha), Border::Plane);
-        scene.surface.albedo = Albedo::Constant([albedo; 3]);
-        let whole = drawn(&mut gpu, &scene, &brute(count as u32, 32)).swap_remove(0);
-        let expected = pit_radiance(alpha, rho, count);
-        let bounds = pit_bounds(12.5, alpha, rho, count).pop().expect("a bound a bounce");
-        let (mut squares, mut worst) = (0.0, 0.0_f64);
-        for (i, bound) in &bounds {
-            let off = (whole[*i][0] - expected).abs();
-            assert!(off <= *bound, "{alpha} {albedo} {count} {i}: {off} of {bound}");
-            squares += off * off;
-            worst = worst.max(off / bound);
-        }
-        let rms = (squares / bounds.len() as f64).sqrt();
-        println!(
-            "pit {alpha}, {albedo}, {count} bounces: {:.3} %, {worst:.2}",
-            100.0 * rms / expected
-        );
     }
 }
 
@@ -293,7 +251,7 @@ fn a_furnace_comes_up_to_one() {
     let mut next = random(9);
     let noise: Vec<f64> = (0..72).map(|_| next()).collect();
     // Rays over repetitions go on for long.
-    for (border, count) in [(Border::Open, 12), (Border::Periodic, 4)] {
+    for (border, count) in [(Border::Open, 64), (Border::Periodic, 4)] {
         let scene = under_sky(field(8, 9, [1.0, 1.5], |r, c| 1.5 * noise[r * 9 + c]), border);
         let all = drawn(&mut gpu, &scene, &brute(count, AZIMUTHS));
         let direct = drawn(&mut gpu, &scene, &brute(0, AZIMUTHS)).swap_remove(0);

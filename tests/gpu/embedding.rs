@@ -247,6 +247,19 @@ fn refused(
     }
     refuse("layout", 0, &with(inputs, NO_CONTENTS, NO_CONTENTS), outputs, None);
     refuse("layout after", 0, inputs, &with(outputs, NO_CONTENTS, NO_CONTENTS), None);
+    let of_depth =
+        ImageState { layout: vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL, ..ImageState::ANY_USE };
+    refuse("heights: layout before", 0, &with(inputs, of_depth, NO_CONTENTS), outputs, None);
+    refuse("radiance: layout before", 0, inputs, &with(outputs, of_depth, SAMPLED), None);
+    refuse("radiance: layout after", 0, inputs, &with(outputs, SAMPLED, of_depth), None);
+    let nowhere = ImageState { stage: vk::PipelineStageFlags2::NONE, ..SAMPLED };
+    refuse("heights: stage before", 0, &with(inputs, nowhere, NO_CONTENTS), outputs, None);
+    refuse("radiance: stage after", 0, inputs, &with(outputs, SAMPLED, nowhere), None);
+    // The last output as the first again.
+    let mut twice = outputs.to_vec();
+    let last = twice.len() - 1;
+    twice[last].image = twice[0].image;
+    refuse("the image of radiance", 0, inputs, &twice, None);
 }
 
 #[test]

@@ -2,6 +2,10 @@
 //! validation with synchronisation validation; alone, it runs on whatever driver is first.
 
 mod analytic;
+mod ash_host;
+mod borrowed;
+mod bounce_edges;
+mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;
@@ -15,6 +19,7 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+mod pits;
 mod pruned;
 mod pyramid;
 mod real;

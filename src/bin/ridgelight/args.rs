@@ -4,20 +4,20 @@ mod auto;
 mod bounces;
 mod camera;
 mod compare;
-mod later;
 mod quality;
 mod reference;
 mod scene;
 mod values;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use later::LaterArgs;
 pub use quality::{
     BasisName, FuseName, HullName, LevelsName, LightBasisName, LinesName, MethodName,
     PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
@@ -33,18 +33,45 @@ use values::bytes;
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
+    /// What `--scene` gave.
+    #[arg(skip)]
+    pub scene: SceneFile,
+}
+
+/// Why a command line cannot be taken.
+pub enum Refused {
+    /// By the parser; help and version too.
+    Parser(clap::Error),
+    /// By a scene file.
+    Scene(ridgelight::Error),
 }
 
 impl Cli {
-    /// What the user wrote.
+    /// What the user wrote, and what a scene file adds to it.
     ///
     /// # Errors
-    /// Clap's sentence on what cannot be read; help and version too.
-    pub fn read() -> Result<Self, clap::Error> {
+    /// Clap's sentence on what cannot be read; the scene file's line and key.
+    pub fn read() -> Result<Self, Refused> {
         let mut parser = Self::command();
-        let matches = parser.try_get_matches_from_mut(std::env::args_os())?;
-        let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
-        let quality = match &mut cli.command {
+        let mut words: Vec<OsString> = std::env::args_os().collect();
+        let scene = SceneFile::add_to(&parser, &mut words).map_err(Refused::Scene)?;
+        let parsed = parser.try_get_matches_from_mut(words);
+        let cli = parsed.and_then(|matches| {
+            let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
+            cli.remember(&matches, &scene);
+            Ok(cli)
+        });
+        match cli {
+            Ok(cli) => Ok(Self { scene, ..cli }),
+            Err(error) => Err(match scene.explain(&error) {
+                Some(error) => Refused::Scene(error),
+                None => Refused::Parser(error),
+            }),
+        }
+    }
+
+    fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
+        let quality = match &mut self.command {
             Command::Render(args) => Some(&mut args.quality),
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
@@ -52,9 +79,8 @@ impl Cli {
             _ => None,
         };
         if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
-            quality.remember(matches);
+            quality.remember(matches, scene);
         }
-        Ok(cli)
     }
 }
 
@@ -116,8 +142,6 @@ pub struct RenderArgs {
     pub exposure: f32,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -136,8 +160,6 @@ pub struct HorizonArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -155,8 +177,6 @@ pub struct PlanArgs {
     pub format: PlanFormat,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -193,8 +213,6 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -262,6 +280,10 @@ pub struct GlobalArgs {
     /// Prints nothing but errors
     #[arg(long)]
     pub quiet: bool,
+    /// Field, surface, lights and quality from a file (docs/scene.schema.json), as far as the command takes them;
+    /// flags that are written out go before
+    #[arg(long, value_name = "FILE.json")]
+    pub scene: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -34,6 +34,7 @@ mod idle;
 mod plan;
 mod reference;
 mod render;
+mod scene_file;
 mod setup;
 mod trade;
 
@@ -59,9 +60,10 @@ fn end_cleanly_on_signals() {
 }
 
 fn main() -> ExitCode {
-    let command = match args::Cli::read() {
-        Ok(cli) => cli.command,
-        Err(error) => {
+    let (command, scene) = match args::Cli::read() {
+        Ok(cli) => (cli.command, cli.scene),
+        Err(args::Refused::Scene(error)) => return fail(&error),
+        Err(args::Refused::Parser(error)) => {
             // Help and version are not errors; clap's own exit status for wrong usage is 2.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
@@ -84,14 +86,16 @@ fn main() -> ExitCode {
         Ok(setup::Outcome::Done) => ExitCode::SUCCESS,
         Ok(setup::Outcome::Beyond) => ExitCode::from(1),
         Ok(setup::Outcome::Interrupted) => ExitCode::from(INTERRUPTED),
-        Err(error) => {
-            let error = setup::in_flags(error);
-            // One line whatever a file is called or a driver says; a closed stderr is no panic.
-            let line = error.to_string().replace(char::is_control, " ");
-            let _ = writeln!(std::io::stderr(), "ridgelight: {line}");
-            ExitCode::from(if matches!(error, ridgelight::Error::Setting { .. }) { 2 } else { 1 })
-        }
+        Err(error) => fail(&scene.place(setup::in_flags(error))),
     }
+}
+
+/// Says what went wrong; the exit status that goes with it.
+fn fail(error: &ridgelight::Error) -> ExitCode {
+    // One line whatever a file is called or a driver says; a closed stderr is no panic.
+    let line = error.to_string().replace(char::is_control, " ");
+    let _ = writeln!(std::io::stderr(), "ridgelight: {line}");
+    ExitCode::from(if matches!(error, ridgelight::Error::Setting { .. }) { 2 } else { 1 })
 }
 
 fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {

@@ -14,7 +14,6 @@ use crate::setup::{self, Outcome};
 const NEARLY_WHITE: f32 = 0.87;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    args.later.check()?;
     setup::check_output("-o", &args.output, &["exr", "png"])?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
@@ -47,6 +46,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+        auto::check_direct(&quality.bounces)?;
     }
     let shot = camera::asked(&args.camera, &scene)?;
     let wanted = setup::wanted(&args.layers);
@@ -65,7 +65,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             (quality.hull, wanted),
             &progress,
         )?;
-        quality = Quality { bounces: auto::bounces(goal, quality.bounces), ..found.trial.quality };
+        quality = found.trial.quality;
         chosen = Some((goal, found));
         progress.set_message("lighting");
     }
@@ -142,9 +142,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         }
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
-        }
-        if chosen.is_some() && quality.bounces.count > 0 {
-            crate::say!("that is direct light's error and time: bounces are as asked");
         }
     }
     Ok(Outcome::Done)

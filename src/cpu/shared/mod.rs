@@ -7,3 +7,4 @@ pub mod levels;
 pub mod segment;
 pub mod surface;
 pub mod sweep;
+pub mod thrown;

@@ -1,7 +1,5 @@
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
-use super::super::failed;
 use super::{Backed, Memory};
 use crate::Result;
 
@@ -44,47 +42,7 @@ impl Memory {
             .samples(samples)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
-        let device = self.host.device.clone();
-        // SAFETY: the device is alive; size and samples are within its limits (`ViewRenderer::new`).
-        let image = unsafe { device.create_image(&info, None) }
-            .map_err(failed(format!("making image {name}")))?;
-        let mut backed = Backed {
-            image,
-            view: vk::ImageView::null(),
-            buffer: vk::Buffer::null(),
-            texels: vk::BufferView::null(),
-            allocation: None,
-            layers: 1,
-        };
-        // SAFETY: `image` was made above on this device.
-        let requirements = unsafe { device.get_image_memory_requirements(image) };
-        let made =
-            self.take(name, requirements, MemoryLocation::GpuOnly, false).and_then(|allocation| {
-                let view = vk::ImageViewCreateInfo::default()
-                    .image(image)
-                    .view_type(vk::ImageViewType::TYPE_2D)
-                    .format(format)
-                    .subresource_range(whole_attachment(format));
-                // SAFETY: the allocation is as large as the image requires and bound once; the view is of the
-                // image's own format.
-                let view = unsafe {
-                    device
-                        .bind_image_memory(image, allocation.memory(), allocation.offset())
-                        .and_then(|()| device.create_image_view(&view, None))
-                };
-                backed.allocation = Some(allocation);
-                backed.view = view.map_err(failed(format!("making image {name}")))?;
-                Ok(())
-            });
-        match made {
-            Ok(()) => {
-                self.label(image, name);
-                Ok(backed)
-            }
-            Err(error) => {
-                self.free(&mut backed);
-                Err(error)
-            }
-        }
+        let range = whole_attachment(format);
+        self.image_of(name, &info, (vk::ImageViewType::TYPE_2D, range))
     }
 }

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-use super::{ImageArg, Renderer};
+use super::{ImageArg, ImageState, Renderer};
 use crate::plan::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
 
@@ -30,10 +30,38 @@ impl Renderer {
                     format!("{}: {}", names.len(), names.join(", ")),
                 ));
             }
-            args.iter().zip(wanted).try_for_each(|(arg, (_, resource))| check_image(arg, resource))
+            args.iter().zip(wanted).try_for_each(|(arg, (_, resource))| {
+                check_image(arg, resource, &self.formats(resource))
+            })
         };
         check_all("inputs", inputs, self.plan.inputs().collect())?;
-        check_all("outputs", outputs, self.plan.outputs().collect())
+        check_all("outputs", outputs, self.plan.outputs().collect())?;
+        self.check_apart(inputs, outputs)
+    }
+
+    /// Formats that the caller's image may have. What a [`plan::reference`](crate::plan::reference) works
+    /// out besides light, such as how densely it looks at an environment, is f32's to hold.
+    fn formats(&self, resource: &Resource) -> Vec<vk::Format> {
+        let Kind::Image { format, .. } = resource.kind else { return Vec::new() };
+        let is_light = matches!(resource.name.as_str(), "heights" | "environment" | "albedo")
+            && self.plan.find("environment_cdf").is_none();
+        let may_differ = is_light && resource.owner == Owner::Input;
+        let all = format.vk_read().iter().copied();
+        all.filter(|f| *f == format.vk() || may_differ && self.readable.contains(f)).collect()
+    }
+
+    /// No image is handed in twice: it could not be in two states.
+    fn check_apart(&self, inputs: &[ImageArg], outputs: &[ImageArg]) -> Result<()> {
+        let names = || self.plan.inputs().chain(self.plan.outputs()).map(|(_, r)| &r.name);
+        let all: Vec<_> = names().zip(inputs.iter().chain(outputs)).collect();
+        for (later, (name, arg)) in all.iter().enumerate() {
+            let same = all[..later].iter().find(|(_, earlier)| earlier.image == arg.image);
+            if let Some((earlier, _)) = same {
+                let found = format!("the image of {earlier}");
+                return Err(Error::setting(*name, found, "an image of its own"));
+            }
+        }
+        Ok(())
     }
 
     /// In the plan's order, each once; so that as many as there are, are all. Fewer only after all: the
@@ -91,17 +119,18 @@ fn is_without_contents(layout: vk::ImageLayout) -> bool {
     matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED)
 }
 
-fn check_image(arg: &ImageArg, resource: &Resource) -> Result<()> {
-    let Kind::Image { format, width, height, layers, .. } = resource.kind else { return Ok(()) };
+fn check_image(arg: &ImageArg, resource: &Resource, formats: &[vk::Format]) -> Result<()> {
+    let Kind::Image { width, height, layers, .. } = resource.kind else { return Ok(()) };
     let name = &resource.name;
     if arg.image == vk::Image::null() || arg.view == vk::ImageView::null() {
         return Err(Error::setting(name, "a null image or view", "an image"));
     }
-    if arg.format != format.vk() {
+    if !formats.contains(&arg.format) {
+        let names: Vec<_> = formats.iter().map(|f| format!("{f:?}")).collect();
         return Err(Error::setting(
             format!("{name}: format"),
             format!("{:?}", arg.format),
-            format!("{:?}", format.vk()),
+            names.join(" or "),
         ));
     }
     if arg.extent != [width, height, layers] {
@@ -123,6 +152,37 @@ fn check_image(arg: &ImageArg, resource: &Resource) -> Result<()> {
             format!("{name}: layout after"),
             format!("{:?}", arg.after.layout),
             "a layout to be left in",
+        ));
+    }
+    check_state(name, "before", arg.before)?;
+    if resource.owner == Owner::Output { check_state(name, "after", arg.after) } else { Ok(()) }
+}
+
+/// What no image of colours can be in, or no barrier can name.
+fn check_state(name: &str, when: &str, state: ImageState) -> Result<()> {
+    let ImageState { stage, access, layout } = state;
+    if stage == vk::PipelineStageFlags2::NONE && access != vk::AccessFlags2::NONE {
+        return Err(Error::setting(
+            format!("{name}: stage {when}"),
+            format!("NONE, with access {access:?}"),
+            "the stages that use it so",
+        ));
+    }
+    let of_depth = [
+        vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+        vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+        vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+        vk::ImageLayout::DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL,
+        vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL,
+        vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL,
+        vk::ImageLayout::STENCIL_ATTACHMENT_OPTIMAL,
+        vk::ImageLayout::STENCIL_READ_ONLY_OPTIMAL,
+    ];
+    if of_depth.contains(&layout) {
+        return Err(Error::setting(
+            format!("{name}: layout {when}"),
+            format!("{layout:?}"),
+            "a layout of a colour image",
         ));
     }
     Ok(())

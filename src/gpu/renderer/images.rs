@@ -37,11 +37,13 @@ impl ImageState {
 /// An image of the caller's, handed in for one recording.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageArg {
-    /// The image.
+    /// The image, of mip level 0 and array layers from 0: no others are looked at, nor change state. Inputs
+    /// are made with usage SAMPLED, outputs with STORAGE.
     pub image: vk::Image,
     /// A view of its colour: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,
-    /// Its format; must be the plan's.
+    /// Its format: the plan's; of inputs that only hold heights, an environment or an albedo also another
+    /// of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
     pub format: vk::Format,
     /// Columns, rows and layers; must be the plan's.
     pub extent: [u32; 3],

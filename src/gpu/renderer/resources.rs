@@ -1,8 +1,8 @@
 //! What a renderer makes on the device when it is made, and gives back at its end.
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
+use super::super::allocator::MemoryUse;
 use super::super::failed;
 use super::super::memory::Backed;
 use super::super::pipelines::descriptor_type;
@@ -17,14 +17,14 @@ impl Renderer {
         let tables = ["azimuths", "constants"].map(|name| self.plan.find(name));
         for (i, resource) in self.plan.resources.iter().enumerate() {
             // Those that the host writes.
-            let location = if tables.contains(&Some(ResourceId(i))) {
-                MemoryLocation::CpuToGpu
+            let used_by = if tables.contains(&Some(ResourceId(i))) {
+                MemoryUse::Upload
             } else {
-                MemoryLocation::GpuOnly
+                MemoryUse::Device
             };
             let backed = match resource.owner {
                 Owner::Internal => {
-                    Some(self.memory.make(&resource.name, resource.kind, location)?)
+                    Some(self.memory.make(&resource.name, resource.kind, used_by)?)
                 }
                 Owner::Input | Owner::Output => None,
             };
@@ -40,7 +40,7 @@ impl Renderer {
                     |u: &(BindingKind, Option<usize>, Backed)| u.0 == binding.kind && u.1 == writer;
                 if id.is_none() && !self.unused.iter().any(known) {
                     let kind = smallest(binding.kind);
-                    let backed = self.memory.make("unused", kind, MemoryLocation::GpuOnly)?;
+                    let backed = self.memory.make("unused", kind, MemoryUse::Device)?;
                     self.unused.push((binding.kind, writer, backed));
                 }
             }
@@ -55,7 +55,7 @@ impl Renderer {
         for (name, bytes) in [("azimuths", azimuths), ("constants", constants)] {
             let Some(id) = self.plan.find(name) else { continue };
             let backed = self.resources[id.0].as_mut();
-            let mapped = backed.and_then(|b| b.allocation.as_mut()?.mapped_slice_mut());
+            let mapped = backed.and_then(Backed::mapped);
             let mapped = mapped.ok_or_else(|| Error::Device {
                 doing: format!("writing the {name}"),
                 reason: "the device has no memory that the host can write".into(),
@@ -82,7 +82,8 @@ impl Renderer {
         // SAFETY: the device is alive; a plan has at least one pass, a pass at least one binding.
         self.descriptor_pool = unsafe { device.create_descriptor_pool(&info, None) }
             .map_err(failed("making the descriptor pool"))?;
-        for _ in 0..slots {
+        self.host.name(self.descriptor_pool, "ridgelight");
+        for number in 0..slots {
             let layouts: Vec<_> = self.pipeline_of_pass.iter().map(|p| p.set_layout).collect();
             let sets_info = vk::DescriptorSetAllocateInfo::default()
                 .descriptor_pool(self.descriptor_pool)
@@ -100,7 +101,14 @@ impl Renderer {
                     Ok(Slot { sets, queries, recorded: Vec::new() })
                 })
             };
-            self.slots.push(slot.map_err(failed("making a frame's descriptors"))?);
+            let slot = slot.map_err(failed("making a frame's descriptors"))?;
+            for (pass, set) in self.plan.every_pass().zip(&slot.sets) {
+                self.host.name(*set, &format!("{}, slot {number}", pass.label()));
+            }
+            if slot.queries != vk::QueryPool::null() {
+                self.host.name(slot.queries, &format!("ridgelight, slot {number}"));
+            }
+            self.slots.push(slot);
         }
         Ok(())
     }

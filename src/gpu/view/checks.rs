@@ -79,30 +79,63 @@ impl ViewRenderer {
         if self.tone.is_some() && !(exposure.is_finite() && exposure >= 0.0) {
             return wrong("exposure", exposure.to_string(), "a number, 0 or more");
         }
-        let f32 = Format::R32Float.vk();
-        check_image("heights", &inputs.heights, f32, view.field)?;
-        check_image("radiance", &inputs.radiance, view.radiance.vk(), view.field)?;
-        let environment = view.environment.map(|size| (Format::Rgba32Float.vk(), size));
-        let voids = view.has_voids.then_some((f32, view.field));
+        let single = Format::R32Float.vk_read();
+        let light = view.radiance.vk_read();
+        self.check_read("heights", &inputs.heights, single, view.field)?;
+        self.check_read("radiance", &inputs.radiance, light, view.field)?;
+        let environment = view.environment.map(|size| (Format::Rgba32Float.vk_read(), size));
+        let voids = view.has_voids.then_some((single, view.field));
         for (name, arg, wanted) in
             [("environment", &inputs.environment, environment), ("voids", &inputs.voids, voids)]
         {
             match (arg, wanted) {
-                (Some(arg), Some((format, size))) => check_image(name, arg, format, size)?,
+                (Some(arg), Some((formats, size))) => self.check_read(name, arg, formats, size)?,
                 (None, Some(_)) => return wrong(name, "no image", "one"),
                 (_, None) => {}
             }
         }
-        let read = [Some(&inputs.heights), Some(&inputs.radiance)];
-        let read = read.into_iter().chain([inputs.environment.as_ref(), inputs.voids.as_ref()]);
-        for (name, arg) in read.flatten().map(|arg| ("an input", arg)) {
-            check_contents(name, arg)?;
-        }
-        check_image("picture", &outputs.picture, self.format, view.size)?;
+        check_image("picture", &outputs.picture, &[self.format], view.size)?;
         check_left("picture", &outputs.picture)?;
         if let Some(depth) = &outputs.depth {
-            check_image("depth", depth, DEPTH, view.size)?;
+            check_image("depth", depth, &[DEPTH], view.size)?;
             check_left("depth", depth)?;
+        }
+        self.check_apart(inputs, outputs)
+    }
+
+    /// An image that is fetched from.
+    fn check_read(
+        &self,
+        name: &str,
+        arg: &ImageArg,
+        formats: &[vk::Format],
+        size: [u32; 2],
+    ) -> Result<()> {
+        let is_readable = |format: &vk::Format| self.readable.contains(format);
+        let formats: Vec<_> = formats.iter().copied().filter(is_readable).collect();
+        check_image(name, arg, &formats, size)?;
+        if is_without_contents(arg.before.layout) {
+            let name = format!("{name}: layout before");
+            return wrong(&name, format!("{:?}", arg.before.layout), "a layout with contents");
+        }
+        Ok(())
+    }
+
+    /// No image is handed in twice: it could not be in two states.
+    fn check_apart(&self, inputs: &ViewInputs, outputs: &ViewOutputs) -> Result<()> {
+        let all = [
+            ("heights", Some(&inputs.heights)),
+            ("radiance", Some(&inputs.radiance)),
+            ("environment", inputs.environment.as_ref()),
+            ("voids", inputs.voids.as_ref()),
+            ("picture", Some(&outputs.picture)),
+            ("depth", outputs.depth.as_ref()),
+        ];
+        let all: Vec<_> = all.iter().filter_map(|(name, arg)| Some((*name, (*arg)?))).collect();
+        for (later, (name, arg)) in all.iter().enumerate() {
+            if let Some((earlier, _)) = all[..later].iter().find(|(_, e)| e.image == arg.image) {
+                return wrong(name, format!("the image of {earlier}"), "an image of its own");
+            }
         }
         Ok(())
     }
@@ -115,29 +148,22 @@ fn is_without_contents(layout: vk::ImageLayout) -> bool {
 fn check_image(
     name: &str,
     arg: &ImageArg,
-    format: vk::Format,
+    formats: &[vk::Format],
     [width, height]: [u32; 2],
 ) -> Result<()> {
     if arg.image == vk::Image::null() || arg.view == vk::ImageView::null() {
         return wrong(name, "a null image or view", "an image");
     }
-    if arg.format != format {
+    if !formats.contains(&arg.format) {
         let name = format!("{name}: format");
-        return wrong(&name, format!("{:?}", arg.format), format!("{format:?}"));
+        let names: Vec<_> = formats.iter().map(|f| format!("{f:?}")).collect();
+        return wrong(&name, format!("{:?}", arg.format), names.join(" or "));
     }
     let extent = [width, height, 1];
     if arg.extent != extent {
         let name = format!("{name}: extent");
         let expected = format!("{extent:?} (columns, rows, layers)");
         return wrong(&name, format!("{:?}", arg.extent), expected);
-    }
-    Ok(())
-}
-
-fn check_contents(name: &str, arg: &ImageArg) -> Result<()> {
-    if is_without_contents(arg.before.layout) {
-        let name = format!("{name}: layout before");
-        return wrong(&name, format!("{:?}", arg.before.layout), "a layout with contents");
     }
     Ok(())
 }

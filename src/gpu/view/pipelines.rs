@@ -71,11 +71,14 @@ impl Drawing {
         // destroyed once, whatever came of it.
         let made = unsafe {
             let made = recipe.modules(device, &mut modules);
-            let made = made.and_then(|()| recipe.pipeline(device, self.layout, modules));
+            let made = made.and_then(|()| recipe.pipeline(host, self.layout, modules));
             modules.into_iter().for_each(|module| device.destroy_shader_module(module, None));
             made
         };
         self.pipeline = made.map_err(failed(doing()))?;
+        host.name(self.pipeline, recipe.shaders[1].name);
+        host.name(self.layout, recipe.shaders[1].name);
+        host.name(self.set_layout, recipe.shaders[1].name);
         Ok(())
     }
 
@@ -114,7 +117,7 @@ impl Recipe<'_> {
     /// Device, layout and modules are alive.
     unsafe fn pipeline(
         &self,
-        device: &ash::Device,
+        host: &Host,
         layout: vk::PipelineLayout,
         modules: [vk::ShaderModule; 2],
     ) -> std::result::Result<vk::Pipeline, vk::Result> {
@@ -167,7 +170,7 @@ impl Recipe<'_> {
             .push_next(&mut rendering);
         // SAFETY: as the caller says; what the info points to lives across the call.
         let made =
-            unsafe { device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
+            unsafe { host.device.create_graphics_pipelines(host.pipeline_cache, &[info], None) };
         made.map(|all| all[0]).map_err(|(_, result)| result)
     }
 }

@@ -1,8 +1,8 @@
 //! What a renderer of views makes on the device, and gives back.
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 
+use super::super::allocator::MemoryUse;
 use super::super::memory::DEPTH;
 use super::super::{failed, shaders};
 use super::pipelines::{Drawing, Recipe};
@@ -66,10 +66,9 @@ impl ViewRenderer {
         let indices = tile_indices();
         let bytes: &[u8] = bytemuck::cast_slice(&indices);
         let usage = vk::BufferUsageFlags::INDEX_BUFFER;
-        let location = MemoryLocation::CpuToGpu;
-        let buffer = self.memory.buffer("tile_indices", bytes.len() as u64, usage, location)?;
-        let buffer = self.indices.insert(buffer);
-        let mapped = buffer.allocation.as_mut().and_then(|a| a.mapped_slice_mut());
+        let size = bytes.len() as u64;
+        let buffer = self.memory.buffer("tile_indices", size, usage, MemoryUse::Upload)?;
+        let mapped = self.indices.insert(buffer).mapped();
         let mapped = mapped.ok_or_else(|| Error::Device {
             doing: "writing the indices of a tile".into(),
             reason: "the device has no memory that the host can write".into(),
@@ -93,7 +92,8 @@ impl ViewRenderer {
         // SAFETY: the device is alive.
         self.descriptor_pool = unsafe { device.create_descriptor_pool(&info, None) }
             .map_err(failed("making the descriptor pool"))?;
-        for _ in 0..slots {
+        self.host.name(self.descriptor_pool, "ridgelight views");
+        for number in 0..slots {
             let sets_info = vk::DescriptorSetAllocateInfo::default()
                 .descriptor_pool(self.descriptor_pool)
                 .set_layouts(&layouts);
@@ -111,7 +111,14 @@ impl ViewRenderer {
                     Ok(Slot { sets, queries, is_recorded: false })
                 })
             };
-            self.slots.push(slot.map_err(failed("making a frame's descriptors"))?);
+            let slot = slot.map_err(failed("making a frame's descriptors"))?;
+            for (label, set) in LABELS.iter().zip(&slot.sets).take(layouts.len()) {
+                self.host.name(*set, &format!("{label}, slot {number}"));
+            }
+            if slot.queries != vk::QueryPool::null() {
+                self.host.name(slot.queries, &format!("ridgelight views, slot {number}"));
+            }
+            self.slots.push(slot);
         }
         Ok(())
     }

@@ -1,18 +1,21 @@
 //! The passes that throw light from ground to ground.
 
 use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::bounce_march::bounce_march as march_twin;
-use ridgelight::cpu::bounce_walk::bounce_walk as walk_twin;
+use ridgelight::cpu::bounce_march::stretches_along;
+use ridgelight::cpu::bounce_walk::walked_along;
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::pyramid_march::Stored;
+use ridgelight::cpu::shared::thrown::{radiance, thrown};
 use ridgelight::cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{twin_gathered, twin_level, twin_spline, twin_thrown};
-use ridgelight::plan::Pass;
+use ridgelight::measure::tolerance::{
+    Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
+};
 use ridgelight::plan::pyramid::Pyramid;
-use ridgelight::scene::Fuse;
+use ridgelight::plan::{Nodes, Pass};
+use ridgelight::scene::{Fuse, Levels};
 
-use super::light::rgb;
+use super::nodes::{casts, places};
 use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
@@ -24,7 +27,7 @@ impl Run<'_> {
     }
 
     /// What every sample throws.
-    fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
+    pub(super) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
         let samples = self.scene.field.heights_m().len();
         match texels.len() / samples {
@@ -32,29 +35,39 @@ impl Run<'_> {
             _ => colours(&texels),
         }
     }
+
+    fn land(&self) -> Land {
+        Land::of(&self.scene.field, self.border())
+    }
+
+    pub(super) fn slices(&self, place: [usize; 2], wedge: f64, brightest: f64) -> Slices {
+        let normal = Land::normal_at(&self.scene.field, self.border(), place);
+        Slices { normal, wedge, brightest }
+    }
 }
 
-fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
+pub(super) fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
     texels.chunks_exact(4).map(|t| [0, 1, 2].map(|c| t[c].into())).collect()
 }
 
-fn brightest(exit: &[[f64; 3]]) -> f64 {
+pub(super) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
-/// Colours beside a twin's, from a first one on.
-fn paired(
-    got: &[[f64; 3]],
-    want: &[[f64; 3]],
-    tolerance: f64,
-    (number, cols): (usize, usize),
-) -> Vec<Pair> {
-    let all = got.iter().zip(want).enumerate();
-    all.flat_map(|(i, (got, want))| {
+/// Colours beside a twin's, each with its own tolerance.
+fn each(got: &[[f64; 3]], of: impl Fn(usize) -> ([f64; 3], [f64; 3]), at: [usize; 2]) -> Vec<Pair> {
+    let [number, cols] = at;
+    let pairs = |(i, got): (usize, &[f64; 3])| {
+        let (want, off) = of(i);
         let at = [number, i / cols, i % cols];
-        [0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance, at })
-    })
-    .collect()
+        [0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance: off[c], at })
+    };
+    got.iter().enumerate().flat_map(pairs).collect()
+}
+
+/// The same with one tolerance for all.
+fn paired(got: &[[f64; 3]], want: &[[f64; 3]], tolerance: f64, at: [usize; 2]) -> Vec<Pair> {
+    each(&got[..want.len()], |i| (want[i], [tolerance; 3]), at)
 }
 
 /// Every stretch along every azimuth, in one dispatch.
@@ -65,14 +78,16 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
-    let [cols, _] = run.size();
-    let of = |i: usize| march_twin(&oracle, &exit, azimuths, i / cols, i % cols);
-    let want: Vec<[f64; 3]> = (0..got.len()).map(of).collect();
-    let ([_, relief], [x, y]) = (run.relief(), run.scene.field.cell_m());
-    // No more than there are cells' edges on the way.
-    let stretches = 3 * (run.size()[0] + run.size()[1]);
-    let tolerance = twin_thrown(relief, 0.5 * x.min(y), stretches, brightest(&exit));
-    paired(&got, &want, tolerance, (0, cols))
+    let nodes = Nodes { stride: constant(pass, 5) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let (places, brightest) = (places(run, nodes), brightest(&exit));
+    let cell_m = run.scene.field.cell_m();
+    let of = |i: usize| {
+        let all = stretches_along(&oracle, &exit, azimuths, places[i]);
+        let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
+        (radiance(&all), ThrownError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
+    };
+    each(&got, of, [0, across])
 }
 
 /// A level, and what the table says of it.
@@ -85,7 +100,7 @@ pub(super) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let table = run.words(pass, "shade_table").expect("written");
     let want = reduce_twin::shade_reduce(&exit, &shade, number, &texels);
     let tolerance = twin_level(brightest(&exit));
-    let at = (number as usize, level.size[0] as usize);
+    let at = [number as usize, level.size[0] as usize];
     let mut pairs = paired(&texels[level.first as usize..], &want, tolerance, at);
     let [x, y] = level.per_sample.map(f32::to_bits);
     let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
@@ -114,7 +129,7 @@ pub(super) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let of = |number: u32| {
         let want = expand_twin::shade_expand(&shade, &texels, number);
         let layer = &stack[(number as usize - 1) * samples..];
-        paired(layer, &want, tolerance, (number as usize, cols))
+        paired(layer, &want, tolerance, [number as usize, cols])
     };
     (1..=shade.levels()).flat_map(of).collect()
 }
@@ -148,11 +163,27 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver,
         azimuths,
     };
-    let [cols, _] = run.size();
-    let want: Vec<[f64; 3]> = (0..got.len()).map(|i| twin.light(i / cols, i % cols)).collect();
-    let ([largest, relief], [x, y]) = (run.relief(), field.cell_m());
-    let tolerance = twin_gathered(largest, relief, x.min(y), pyramid.samples(), brightest(&exit));
-    paired(&got, &want, tolerance, (0, cols))
+    let nodes = Nodes { stride: constant(pass, 6) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let places = places(run, nodes);
+    let [x, y] = field.cell_m();
+    let (land, brightest) = (run.land(), brightest(&exit));
+    let gathered = Gathered {
+        land,
+        step_m: x.min(y),
+        is_stack: pyramid.stored == Levels::Stack,
+        own_levels: false,
+        receiver,
+        brightest,
+        spread: brightest - exit.as_flattened().iter().fold(brightest, |m, v| v.min(m)),
+    };
+    let of = |i: usize| {
+        let all = twin.casts_along(places[i]);
+        let slices = run.slices(places[i], 1.0, brightest);
+        let off = ThrownError::of(&all, |_, cast| gathered.error(cast), &slices);
+        (radiance(&all), off.light)
+    };
+    each(&got, of, [0, across])
 }
 
 /// The sum so far; what is thrown, once the last azimuths are there.
@@ -172,23 +203,27 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
     };
     let got = run.floats(pass, "bounce_sum").expect("written");
+    let got = colours(&got);
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
     let is_last = word(IS_LAST) == 1;
-    let ([_, relief], [x, y]) = (run.relief(), run.scene.field.cell_m());
-    let [cols, _] = run.size();
+    let nodes = Nodes { stride: constant(pass, 4) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let places = places(run, nodes);
+    let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
     let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
-    let walked = run.swept(range.clone(), settings, |swept| {
-        swept.per_sample(|col, row| walk_twin(swept, &exit, col, row))
+    let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
+        let of = |[row, col]: &[usize; 2]| walked_along(swept, &exit, *col as i32, *row as i32).0;
+        places.iter().map(of).collect()
     });
-    let mut pairs = Vec::new();
-    for (i, (got, want)) in got.chunks_exact(4).zip(&walked).enumerate() {
-        let at = [range.len(), i / cols, i % cols];
-        let seen = (want.stretches as usize).div_ceil(range.len()) + 1;
-        // Of a part of the circle, weights: a whole hemisphere's is π.
-        let whole = if is_last { 1.0 } else { std::f64::consts::PI };
-        let tolerance = whole * twin_thrown(relief, 0.5 * x.min(y), seen, brightest);
-        let want = if is_last { want.radiance().into() } else { want.light };
-        pairs.extend((0..3).map(|c| Pair { got: rgb(got)[c], want: want[c], tolerance, at }));
-    }
+    let of = |i: usize| {
+        let slices = run.slices(places[i], wedge, brightest);
+        let off = ThrownError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
+        match is_last {
+            true => (radiance(&walked[i]), off.light),
+            false => (thrown(&walked[i]).0, off.sum),
+        }
+    };
+    let mut pairs = each(&got, of, [range.len(), across]);
+    pairs.extend(casts(run, pass, first..range.end, &places));
     pairs
 }

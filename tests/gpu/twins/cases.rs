@@ -70,6 +70,14 @@ fn rough(rows: usize, cols: usize, seed: u64) -> HeightField {
     field(rows, cols, [3.0, 2.0], |r, c| 900.0 + 7.0 * noise[r * cols + c])
 }
 
+/// A paraboloid, smooth and with nothing hidden: what is thrown has few places where rounding counts.
+fn bowl(side: usize) -> HeightField {
+    let middle = (side / 2) as f64;
+    field(side, side, [1.0, 1.0], |r, c| {
+        0.06 * ((r as f64 - middle).powi(2) + (c as f64 - middle).powi(2))
+    })
+}
+
 /// A dome, whose samples all stay on the hull, before a cliff that pops them: deeper than the 64
 /// entries that a line keeps in shared memory.
 fn dome(rows: usize, cols: usize) -> HeightField {
@@ -429,6 +437,7 @@ pub(super) fn walks() -> Vec<Case> {
     };
     vec![
         case("walks, colours", colourful, walked(2, 13, Lines::HalfCell), false),
+        case("walks, a bowl", grey(bowl(13), Border::Plane), walked(1, 12, Lines::Cell), false),
         case(
             "walks, periodic",
             grey(rough(10, 12, 32), Border::Periodic),
@@ -456,20 +465,22 @@ pub(super) fn walks() -> Vec<Case> {
     ]
 }
 
-/// `bounce_march`, and the passes of pyramids of radiance: colours and grey, every border and either storage.
+/// `bounce_march`, and the passes of pyramids of radiance: colours and grey, every border, either storage and
+/// receiver; uneven ground, and smooth where tolerances are least.
 pub(super) fn throws() -> Vec<Case> {
-    let case = |name, (rows, cols), border, engine, levels| {
+    let case = |name, field: HeightField, border, engine, levels| {
+        let (rows, cols) = (field.rows(), field.cols());
         let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
         let albedo = match border {
             Border::Plane => Albedo::Constant([0.8; 3]),
             _ => Albedo::Map(map),
         };
-        // None along the field's edge, where a rounding decides whether a ray leaves it.
-        let bounces = Bounces { count: 2, engine, azimuths: 4, cutoff: 0.0, ..Bounces::default() };
+        // Two of them along columns, along the field's edge too.
+        let bounces = Bounces { count: 2, engine, azimuths: 6, cutoff: 0.0, ..Bounces::default() };
         Case {
             name,
             scene: Scene {
-                field: rough(rows, cols, 36),
+                field,
                 surface: Surface { border, albedo, phong: None },
                 lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
             },
@@ -479,12 +490,49 @@ pub(super) fn throws() -> Vec<Case> {
         }
     };
     use BounceEngine::{Brute, Pyramid};
+    let rough = |rows, cols| rough(rows, cols, 36);
+    let lobe = case("a bowl by a lobe", bowl(13), Border::Plane, Pyramid, Levels::Stack);
+    let lobe = Case { quality: Quality { receiver: Receiver::Lobe, ..lobe.quality }, ..lobe };
     vec![
-        case("every stretch, grey", (7, 9), Border::Plane, Brute, Levels::Stack),
-        case("every stretch, colours", (6, 5), Border::Open, Brute, Levels::Stack),
-        case("radiance by a stack, grey", (11, 13), Border::Plane, Pyramid, Levels::Stack),
-        case("radiance by a stack", (9, 12), Border::Open, Pyramid, Levels::Stack),
-        case("radiance by levels", (10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
+        case("every stretch, grey", rough(7, 9), Border::Plane, Brute, Levels::Stack),
+        case("every stretch, colours", rough(6, 5), Border::Open, Brute, Levels::Stack),
+        case("every stretch of a bowl", bowl(13), Border::Plane, Brute, Levels::Stack),
+        case("radiance by a stack, grey", rough(11, 13), Border::Plane, Pyramid, Levels::Stack),
+        case("radiance by a stack", rough(9, 12), Border::Open, Pyramid, Levels::Stack),
+        case("radiance by levels", rough(10, 12), Border::Periodic, Pyramid, Levels::Pyramid),
+        case("a bowl by levels", bowl(13), Border::Plane, Pyramid, Levels::Pyramid),
+        lobe,
+    ]
+}
+
+/// Bounces at every second or fourth sample, the last ones among them: every engine, colours and grey, casting sets of
+/// one batch and of several.
+pub(super) fn nodes() -> Vec<Case> {
+    let case = |name, (rows, cols), border, (engine, count, subsample)| {
+        let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
+        let albedo = match border {
+            Border::Open => Albedo::Map(map),
+            _ => Albedo::Constant([0.8; 3]),
+        };
+        let bounces = Bounces { count, engine, azimuths: 12, cutoff: 0.0, ..Bounces::default() };
+        Case {
+            name,
+            scene: Scene {
+                field: rough(rows, cols, 37),
+                surface: Surface { border, albedo, phong: None },
+                lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+            },
+            quality: Quality { azimuths: 8, bounces, subsample, ..Quality::default() },
+            wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
+            loses_lines: false,
+        }
+    };
+    use BounceEngine::{Brute, Pyramid, Sweep};
+    vec![
+        case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
+        case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
+        case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
     ]
 }
 

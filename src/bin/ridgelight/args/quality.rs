@@ -3,6 +3,7 @@ use clap::{ArgMatches, Args, Id, ValueEnum};
 
 use super::bounces::BounceArgs;
 use super::values::whole;
+use crate::scene_file::SceneFile;
 
 /// Flags of quality, as plans name what they really used.
 pub const SETTINGS: [&str; 25] = [
@@ -108,10 +109,11 @@ pub struct QualityArgs {
 }
 
 impl QualityArgs {
-    /// Remembers what was written out, which values alone do not tell from defaults.
-    pub fn remember(&mut self, matches: &ArgMatches) {
+    /// Remembers what was written out, not in a scene file, which values alone do not tell from defaults.
+    pub fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
         let written = matches.ids().map(Id::as_str).filter_map(|id| {
-            let by_user = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let is_word = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let by_user = is_word && !scene.gave(id);
             let value = matches.get_raw(id).filter(|_| by_user)?.next()?;
             Some((id.to_owned(), value.to_string_lossy().into_owned()))
         });

@@ -1,0 +1,24 @@
+//! Ridgelight for C: what `include/ridgelight.h` declares. Only the library's public API stands behind it.
+//!
+//! Every struct begins with its size, so that one of an older header is read as far as it goes; what is 0 is
+//! the default. Plans and renderers are opaque. Functions that can fail return a [`RidgelightResult`], and
+//! leave a sentence for [`ridgelight_last_error`].
+
+mod allocator;
+mod errors;
+mod plan;
+mod read;
+mod renderer;
+mod scene;
+mod types;
+
+/// Under the name that C has for it; null is none.
+#[expect(non_camel_case_types, reason = "C's name")]
+type PFN_vkGetInstanceProcAddr = Option<ash::vk::PFN_vkGetInstanceProcAddr>;
+
+pub use allocator::*;
+pub use errors::*;
+pub use plan::*;
+pub use renderer::*;
+pub use scene::*;
+pub use types::*;

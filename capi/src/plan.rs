@@ -1,0 +1,216 @@
+use std::ffi::c_char;
+
+use ash::vk;
+use ridgelight::gpu;
+use ridgelight::plan::{self, Kind, Picture, Plan, Resource};
+
+use crate::errors::{Done, Failure, RidgelightResult, done};
+use crate::read::{SizeFirst, hand_out, handle, write};
+use crate::scene::{RidgelightQuality, RidgelightScene, quality, scene};
+use crate::types::{RidgelightHost, host};
+
+/// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it.
+pub struct RidgelightPlan(pub(crate) Plan);
+
+impl RidgelightPlan {
+    /// The settings really used, as (name, value): for Rust.
+    pub fn settings(&self) -> &[(String, String)] {
+        &self.0.settings
+    }
+}
+
+/// Besides the whole, an image for each light and each bounce.
+pub const RIDGELIGHT_PICTURE_LIGHT_LAYERS: u32 = 1;
+/// Besides, what a sky of radiance 1 gives to albedo 1.
+pub const RIDGELIGHT_PICTURE_SKY_VIEW: u32 = 2;
+/// Horizons are kept, so that light alone may change, and rectangles of heights be edited.
+pub const RIDGELIGHT_PICTURE_KEEPS_HORIZONS: u32 = 4;
+
+/// Plans a picture of a scene for a host's device. `quality` may be null; `picture` is flags
+/// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap.
+///
+/// Returns OK, ARGUMENT, SETTING or LIMIT.
+///
+/// # Safety
+/// Pointers are null, or to structs whose struct_size is set and whose pointers and handles are what their
+/// fields say; `plan` may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_create(
+    host: *const RidgelightHost,
+    scene: *const RidgelightScene,
+    quality: *const RidgelightQuality,
+    picture: u32,
+    memory_budget: u64,
+    plan: *mut *mut RidgelightPlan,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        hand_out(plan, || {
+            let host = self::host(host)?;
+            let (scene, quality) = (self::scene(scene)?, self::quality(quality)?);
+            let mut limits = gpu::limits(&host.instance, host.physical_device);
+            if memory_budget != 0 {
+                limits.memory_budget = memory_budget;
+            }
+            Ok(RidgelightPlan(plan::picture(&scene, &quality, &limits, wanted(picture)?)?))
+        })
+    })
+}
+
+fn wanted(flags: u32) -> Done<Picture> {
+    let all = RIDGELIGHT_PICTURE_LIGHT_LAYERS
+        | RIDGELIGHT_PICTURE_SKY_VIEW
+        | RIDGELIGHT_PICTURE_KEEPS_HORIZONS;
+    if flags & !all != 0 {
+        return Err(Failure::argument("picture", flags, "flags RIDGELIGHT_PICTURE_"));
+    }
+    Ok(Picture {
+        light_layers: flags & RIDGELIGHT_PICTURE_LIGHT_LAYERS != 0,
+        sky_view: flags & RIDGELIGHT_PICTURE_SKY_VIEW != 0,
+        keeps_horizons: flags & RIDGELIGHT_PICTURE_KEEPS_HORIZONS != 0,
+        still: false,
+    })
+}
+
+/// Gives a plan up; renderers made for it keep theirs. Null is allowed.
+///
+/// # Safety
+/// It came from ridgelight_plan_create and is not used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_destroy(plan: *mut RidgelightPlan) {
+    if !plan.is_null() {
+        // SAFETY: as the caller says.
+        drop(unsafe { Box::from_raw(plan) });
+    }
+}
+
+/// How much of what a plan has.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightPlanInfo {
+    /// sizeof(RidgelightPlanInfo).
+    pub struct_size: u32,
+    /// Images that are handed in to be read.
+    pub inputs: u32,
+    /// Images that are handed in to be written.
+    pub outputs: u32,
+    /// Passes: as many timings.
+    pub passes: u32,
+    /// Bytes of a renderer's own images and buffers.
+    pub internal_bytes: u64,
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightPlanInfo {}
+
+/// Says how much of what a plan has.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_info(
+    plan: *const RidgelightPlan,
+    info: *mut RidgelightPlanInfo,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let plan = &handle(plan, "plan")?.0;
+        let value = RidgelightPlanInfo {
+            struct_size: 0,
+            inputs: plan.inputs().count() as u32,
+            outputs: plan.outputs().count() as u32,
+            passes: plan.passes.len() as u32,
+            internal_bytes: plan.internal_bytes(),
+        };
+        write(info, &value, "info")
+    })
+}
+
+/// An image that a plan asks its caller for.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightImageInfo {
+    /// sizeof(RidgelightImageInfo).
+    pub struct_size: u32,
+    /// Its format; of inputs the one of which no bit is lost, see RidgelightImage.
+    pub format: vk::Format,
+    /// Columns, rows and layers.
+    pub extent: [u32; 3],
+    /// What it must be made for: SAMPLED or STORAGE.
+    pub usage: vk::ImageUsageFlags,
+    /// "heights", "environment", "albedo"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
+    pub name: [c_char; 32],
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightImageInfo {}
+
+/// Describes input number `index` of a plan.
+///
+/// Returns OK; ARGUMENT, beyond the last too.
+///
+/// # Safety
+/// `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_input(
+    plan: *const RidgelightPlan,
+    index: u32,
+    info: *mut RidgelightImageInfo,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let image = handle(plan, "plan")?.0.inputs().nth(index as usize);
+        describe(image.map(|(_, r)| r), index, vk::ImageUsageFlags::SAMPLED, info)
+    })
+}
+
+/// Describes output number `index` of a plan.
+///
+/// Returns OK; ARGUMENT, beyond the last too.
+///
+/// # Safety
+/// `plan` is alive or null; `info` is null or points at a struct whose struct_size is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_output(
+    plan: *const RidgelightPlan,
+    index: u32,
+    info: *mut RidgelightImageInfo,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let image = handle(plan, "plan")?.0.outputs().nth(index as usize);
+        describe(image.map(|(_, r)| r), index, vk::ImageUsageFlags::STORAGE, info)
+    })
+}
+
+unsafe fn describe(
+    image: Option<&Resource>,
+    index: u32,
+    usage: vk::ImageUsageFlags,
+    info: *mut RidgelightImageInfo,
+) -> Done {
+    let resource =
+        image.ok_or_else(|| Failure::argument("index", index, "less than the plan has of them"))?;
+    let Kind::Image { format, width, height, layers, .. } = resource.kind else {
+        return Err(Failure(RidgelightResult::Internal, "a buffer, where images are".to_owned()));
+    };
+    let mut value = RidgelightImageInfo {
+        struct_size: 0,
+        format: format.vk(),
+        extent: [width, height, layers],
+        usage,
+        name: [0; 32],
+    };
+    text(&mut value.name, &resource.name);
+    // SAFETY: as the caller of the callers says.
+    unsafe { write(info, &value, "info") }
+}
+
+/// A text of C; its end is cut off where it does not fit.
+pub(crate) fn text<const N: usize>(to: &mut [c_char; N], from: &str) {
+    for (to, byte) in to[..N - 1].iter_mut().zip(from.bytes()) {
+        *to = byte as c_char;
+    }
+}

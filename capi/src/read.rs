@@ -1,0 +1,132 @@
+//! Structs of the caller's, read as far as the size that they begin with says.
+
+use std::mem::{MaybeUninit, size_of};
+use std::ptr;
+
+use crate::errors::{Done, Failure};
+
+/// A struct of C: begins with its size in bytes, a u32, and may hold any bits, zeros too.
+///
+/// # Safety
+/// All bits are a value of the type, and its first four bytes are the size.
+pub(crate) unsafe trait SizeFirst: Copy {}
+
+/// A copy of what `from` points at; zeros where the caller's struct is shorter.
+///
+/// # Safety
+/// `from` is null or points at as many bytes as its first four say.
+pub(crate) unsafe fn read<T: SizeFirst>(from: *const T, name: &str) -> Done<T> {
+    if from.is_null() {
+        return Err(Failure::argument(name, "a null pointer", "a struct"));
+    }
+    // SAFETY: at least its size is there, as the caller says.
+    let bytes = check_size::<T>(unsafe { from.cast::<u32>().read_unaligned() }, name)?;
+    let mut copy = MaybeUninit::<T>::zeroed();
+    // SAFETY: `bytes` are there, as the caller says, and fit the copy; any bits are a value.
+    unsafe {
+        ptr::copy_nonoverlapping(from.cast::<u8>(), copy.as_mut_ptr().cast(), bytes);
+        Ok(copy.assume_init())
+    }
+}
+
+fn check_size<T>(found: u32, name: &str) -> Done<usize> {
+    let own = size_of::<T>();
+    if (size_of::<u32>()..=own).contains(&(found as usize)) {
+        return Ok(found as usize);
+    }
+    let expected = format!("sizeof the struct, {own}, or what an older header says");
+    Err(Failure::argument(&format!("{name}: struct_size"), found, &expected))
+}
+
+/// Copies of `count` structs one after the other, each as long as the first says.
+///
+/// # Safety
+/// `from` points at that many of them, or is null.
+pub(crate) unsafe fn read_all<T: SizeFirst>(
+    from: *const T,
+    count: u32,
+    name: &str,
+) -> Done<Vec<T>> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    // SAFETY: as the caller says.
+    let first = unsafe { read(from, &format!("{name} 0")) }?;
+    let all = (1..count as usize).map(|i| {
+        // SAFETY: the first is there; the others follow at its own distance, as the caller says.
+        unsafe {
+            let stride = from.cast::<u32>().read_unaligned() as usize;
+            read(from.byte_add(i * stride), &format!("{name} {i}"))
+        }
+    });
+    std::iter::once(Ok(first)).chain(all).collect()
+}
+
+/// Writes a struct back, as far as the caller's goes; its size stays.
+///
+/// # Safety
+/// As [`read`], and nobody else looks at it meanwhile.
+pub(crate) unsafe fn write<T: SizeFirst>(to: *mut T, value: &T, name: &str) -> Done {
+    // SAFETY: as the caller says.
+    unsafe {
+        read(to.cast_const(), name)?;
+        let size = to.cast::<u32>().read_unaligned();
+        let from = ptr::from_ref(value).cast::<u8>();
+        ptr::copy_nonoverlapping(from, to.cast(), size as usize);
+        to.cast::<u32>().write_unaligned(size);
+    }
+    Ok(())
+}
+
+/// `count` numbers that a pointer points at.
+///
+/// # Safety
+/// They are there for as long as the slice is used, or the pointer is null.
+pub(crate) unsafe fn numbers<'a>(from: *const f32, count: usize) -> Option<&'a [f32]> {
+    // SAFETY: as the caller says.
+    (!from.is_null()).then(|| unsafe { std::slice::from_raw_parts(from, count) })
+}
+
+/// What an opaque handle stands for.
+///
+/// # Safety
+/// It is null or came from the function that makes it and has not been destroyed.
+pub(crate) unsafe fn handle<'a, T>(from: *const T, name: &str) -> Done<&'a T> {
+    // SAFETY: as the caller says.
+    unsafe { from.as_ref() }.ok_or_else(|| Failure::argument(name, "a null pointer", "a handle"))
+}
+
+/// The same, to be changed: by one thread at a time.
+///
+/// # Safety
+/// As [`handle`], and nobody else uses it meanwhile.
+pub(crate) unsafe fn handle_mut<'a, T>(from: *mut T, name: &str) -> Done<&'a mut T> {
+    // SAFETY: as the caller says.
+    unsafe { from.as_mut() }.ok_or_else(|| Failure::argument(name, "a null pointer", "a handle"))
+}
+
+/// Hands a new value out as a handle.
+///
+/// # Safety
+/// `to` is null or may be written to.
+pub(crate) unsafe fn hand_out<T>(to: *mut *mut T, make: impl FnOnce() -> Done<T>) -> Done {
+    if to.is_null() {
+        return Err(Failure::argument("out", "a null pointer", "a place for the handle"));
+    }
+    // SAFETY: as the caller says.
+    unsafe {
+        to.write(ptr::null_mut());
+        to.write(Box::into_raw(Box::new(make()?)));
+    }
+    Ok(())
+}
+
+/// A field of the caller's as Rust's own: 0 is the default, others count from 1.
+pub(crate) fn pick<T: Copy>(name: &str, found: u32, default: T, all: &[T]) -> Done<T> {
+    match found {
+        0 => Ok(default),
+        _ => all.get(found as usize - 1).copied().ok_or_else(|| {
+            Failure::argument(name, found, &format!("one of its constants, 0 to {}", all.len()))
+        }),
+    }
+}

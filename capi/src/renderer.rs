@@ -1,0 +1,255 @@
+use std::collections::HashMap;
+use std::ffi::c_char;
+
+use ash::vk;
+use ridgelight::gpu::{ImageArg, Renderer};
+use ridgelight::plan::{Rectangle, Resource};
+
+use crate::allocator::{Callbacks, RidgelightAllocator};
+use crate::errors::{Done, Failure, RidgelightResult, done};
+use crate::plan::{RidgelightPlan, text};
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, read_all, write};
+use crate::types::{RidgelightHost, RidgelightImage, host};
+
+/// A plan on a device. One thread at a time uses it, any thread.
+pub struct RidgelightRenderer(Renderer);
+
+/// Makes all that a plan needs on a host's device, for `slots` frames in flight (0: 1): recording takes nothing
+/// more of it. `allocator` may be null: memory is then taken in blocks of 4 MiB.
+///
+/// Internal images serve all slots: command buffers of different slots run one after the other on one queue.
+///
+/// Returns OK, ARGUMENT or DEVICE.
+///
+/// # Safety
+/// Pointers are null, or to structs whose struct_size is set, and whose handles are alive until the renderer is
+/// destroyed, as is what `allocator` points at through `user`; `renderer` may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_renderer_create(
+    host: *const RidgelightHost,
+    plan: *const RidgelightPlan,
+    slots: u32,
+    allocator: *const RidgelightAllocator,
+    renderer: *mut *mut RidgelightRenderer,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        hand_out(renderer, || {
+            let host = self::host(host)?;
+            let plan = handle(plan, "plan")?.0.clone();
+            let slots = slots.max(1) as usize;
+            let made = match callbacks(allocator)? {
+                Some(callbacks) => Renderer::with_memory(&host, plan, slots, Box::new(callbacks)),
+                None => Renderer::new(&host, plan, slots),
+            };
+            Ok(RidgelightRenderer(made?))
+        })
+    })
+}
+
+unsafe fn callbacks(from: *const RidgelightAllocator) -> Done<Option<Callbacks>> {
+    if from.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: as the caller of the caller says.
+    let given = unsafe { read(from, "allocator") }?;
+    let null = |name: &str| Failure::argument(&format!("allocator: {name}"), "null", "a function");
+    Ok(Some(Callbacks {
+        user: given.user,
+        allocate: given.allocate.ok_or_else(|| null("allocate"))?,
+        free: given.free.ok_or_else(|| null("free"))?,
+        held: HashMap::new(),
+    }))
+}
+
+/// Frees everything. The device must be done with all that was recorded. Null is allowed.
+///
+/// # Safety
+/// It came from ridgelight_renderer_create and is not used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_renderer_destroy(renderer: *mut RidgelightRenderer) {
+    if !renderer.is_null() {
+        // SAFETY: as the caller says.
+        unsafe { Box::from_raw(renderer) }.0.destroy();
+    }
+}
+
+/// A rectangle of a field's samples.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightRectangle {
+    /// The first column.
+    pub col: u32,
+    /// The first row.
+    pub row: u32,
+    /// How many columns, 1 or more.
+    pub cols: u32,
+    /// How many rows, 1 or more.
+    pub rows: u32,
+}
+
+/// Appends a plan to `commands`: no submit, no wait, nothing allocated on the device. Checks everything first:
+/// after an error nothing has been recorded.
+///
+/// `commands` is being recorded outside a render pass, for the host's family. `slot` is the frame in flight,
+/// whose last command buffer has run. `inputs` and `outputs` are the plan's, in its order.
+///
+/// Returns OK, ARGUMENT or SETTING.
+///
+/// # Safety
+/// `renderer` is alive or null, and used by this thread alone meanwhile; arrays are as long as said, and each
+/// struct's struct_size is set; images and views are alive until the command buffer has run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_record(
+    renderer: *mut RidgelightRenderer,
+    commands: vk::CommandBuffer,
+    slot: u32,
+    inputs: *const RidgelightImage,
+    input_count: u32,
+    outputs: *const RidgelightImage,
+    output_count: u32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = recorder(renderer, commands)?;
+        let (inputs, outputs) = images(renderer, (inputs, input_count), (outputs, output_count))?;
+        Ok(renderer.record(commands, slot as usize, &inputs, &outputs)?)
+    })
+}
+
+/// Appends what an edit of a rectangle of heights needs, to a plan of RIDGELIGHT_PICTURE_KEEPS_HORIZONS: the same
+/// bits in every output as ridgelight_record. Outputs hold what the last recording left in them.
+///
+/// Returns OK, ARGUMENT or SETTING.
+///
+/// # Safety
+/// As ridgelight_record; `rectangle` is null or points at one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_record_edit(
+    renderer: *mut RidgelightRenderer,
+    commands: vk::CommandBuffer,
+    slot: u32,
+    inputs: *const RidgelightImage,
+    input_count: u32,
+    outputs: *const RidgelightImage,
+    output_count: u32,
+    rectangle: *const RidgelightRectangle,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = recorder(renderer, commands)?;
+        let RidgelightRectangle { col, row, cols, rows } = *handle(rectangle, "rectangle")?;
+        let (inputs, outputs) = images(renderer, (inputs, input_count), (outputs, output_count))?;
+        let edited = Rectangle { col, row, cols, rows };
+        Ok(renderer.record_edit(commands, slot as usize, &inputs, &outputs, edited)?)
+    })
+}
+
+unsafe fn recorder<'a>(
+    renderer: *mut RidgelightRenderer,
+    commands: vk::CommandBuffer,
+) -> Done<&'a mut Renderer> {
+    if commands == vk::CommandBuffer::null() {
+        return Err(Failure::argument("commands", "null", "a command buffer"));
+    }
+    // SAFETY: as the caller of the caller says.
+    Ok(&mut unsafe { handle_mut(renderer, "renderer") }?.0)
+}
+
+type Images = (*const RidgelightImage, u32);
+
+unsafe fn images(
+    renderer: &Renderer,
+    inputs: Images,
+    outputs: Images,
+) -> Done<(Vec<ImageArg>, Vec<ImageArg>)> {
+    let plan = renderer.plan();
+    // SAFETY: as the caller of the caller says.
+    unsafe {
+        Ok((
+            args(inputs, plan.inputs().map(|(_, r)| r), "input")?,
+            args(outputs, plan.outputs().map(|(_, r)| r), "output")?,
+        ))
+    }
+}
+
+unsafe fn args<'a>(
+    (images, count): Images,
+    mut wanted: impl Iterator<Item = &'a Resource>,
+    name: &str,
+) -> Done<Vec<ImageArg>> {
+    // SAFETY: as the caller of the caller says.
+    let images = unsafe { read_all(images, count, name) }?;
+    // More than the plan has are for `record` to refuse, by their number.
+    Ok(images.into_iter().map(|image| image.arg(wanted.next())).collect())
+}
+
+/// Goes over to a plan that differs in what its passes are told, not in which there are nor in images and
+/// buffers: another colour of a light, a sun that has moved a little. The device must be done with all that was
+/// recorded; what is recorded next is a whole recording.
+///
+/// Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
+///
+/// # Safety
+/// Both are alive or null; the renderer is used by this thread alone meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_replace_plan(
+    renderer: *mut RidgelightRenderer,
+    plan: *const RidgelightPlan,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let plan = handle(plan, "plan")?.0.clone();
+        handle_mut(renderer, "renderer")?.0.replace_plan(plan)?;
+        Ok(())
+    })
+}
+
+/// GPU time of one pass.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightTiming {
+    /// sizeof(RidgelightTiming).
+    pub struct_size: u32,
+    /// The pass's name and part: UTF-8, ended by a nul.
+    pub label: [c_char; 60],
+    /// Nanoseconds.
+    pub ns: f64,
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightTiming {}
+
+/// GPU times of the passes that `slot` recorded last, in order. Never waits: `count` becomes 0 while they are not
+/// all in, and where the queue family has no timestamps.
+///
+/// `count` is how many `timings` has room for, and becomes how many there are; more than fit are left out.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// `renderer` is alive or null; `timings` has `count` structs, each with its struct_size set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_timings(
+    renderer: *const RidgelightRenderer,
+    slot: u32,
+    timings: *mut RidgelightTiming,
+    count: *mut u32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = &handle(renderer, "renderer")?.0;
+        let count = handle_mut(count, "count")?;
+        let room = read_all(timings.cast_const(), *count, "timing")?;
+        let times = renderer.timings(slot as usize).unwrap_or_default();
+        *count = times.len() as u32;
+        let mut at = timings;
+        for (timing, room) in times.iter().zip(room) {
+            let mut value = RidgelightTiming { struct_size: 0, label: [0; 60], ns: timing.ns };
+            text(&mut value.label, &timing.label);
+            write(at, &value, "timing")?;
+            at = at.byte_add(room.struct_size as usize);
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,367 @@
+use ridgelight::scene::{
+    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
+    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges, Window,
+};
+
+use crate::errors::{Done, Failure};
+use crate::read::{SizeFirst, numbers, pick, read, read_all};
+
+/// A disc of uniform radiance at infinity.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightSun {
+    /// sizeof(RidgelightSun).
+    pub struct_size: u32,
+    /// Irradiance on a surface that faces it, unoccluded, linear RGB.
+    pub irradiance: [f32; 3],
+    /// Direction of the centre in the plane, radians counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// Elevation of the centre, radians, [0..pi/2].
+    pub elevation_rad: f64,
+    /// Angular diameter, radians, [0..pi/2]; below 0.01 degrees a point with hard shadows.
+    pub diameter_rad: f64,
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightSun {}
+
+/// A patch of uniform radiance at infinity, between two azimuths and two elevations.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightKeyLight {
+    /// sizeof(RidgelightKeyLight).
+    pub struct_size: u32,
+    /// Radiance, linear RGB.
+    pub radiance: [f32; 3],
+    /// Direction of its middle in the plane, radians counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// Extent in azimuth, radians, above 0 up to 2 pi.
+    pub width_rad: f64,
+    /// Its lowest and its highest elevation, radians, [-pi/2..pi/2].
+    pub elevations_rad: [f64; 2],
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightKeyLight {}
+
+/// A ball of uniform radiance near the field.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightSphereLight {
+    /// sizeof(RidgelightSphereLight).
+    pub struct_size: u32,
+    /// Radiance, linear RGB.
+    pub radiance: [f32; 3],
+    /// Centre: x east from the westernmost column, y north from the southernmost row, z as heights.
+    pub position_m: [f64; 3],
+    /// Radius, above 0.
+    pub radius_m: f64,
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightSphereLight {}
+
+/// Beyond the field's edge the ground goes on forever at horizontal: the default.
+pub const RIDGELIGHT_BORDER_PLANE: u32 = 1;
+/// Nothing lies there: light may come from below horizontal.
+pub const RIDGELIGHT_BORDER_OPEN: u32 = 2;
+/// The field repeats.
+pub const RIDGELIGHT_BORDER_PERIODIC: u32 = 3;
+
+/// A field, what it is made of, and the light that falls on it. Heights are the image's that is handed in with
+/// each frame, in the unit of `cell_m`: the host need not know them. All that pointers point at is copied.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightScene {
+    /// sizeof(RidgelightScene).
+    pub struct_size: u32,
+    /// Rows of samples, row 0 in the north.
+    pub rows: u32,
+    /// Columns of samples, column 0 in the west.
+    pub cols: u32,
+    /// What lies beyond the field's edge, a RIDGELIGHT_BORDER_; 0: PLANE.
+    pub border: u32,
+    /// Spacing of columns and of rows, in the unit of heights; 0, 0: 1, 1.
+    pub cell_m: [f64; 2],
+    /// Radiance of a uniform sky, linear RGB; 0, 0, 0: none.
+    pub sky: [f32; 3],
+    /// Diffuse reflectance, linear RGB, [0..1]; 0, 0, 0: 1, 1, 1.
+    pub albedo: [f32; 3],
+    /// VK_TRUE for an image of reflectance instead.
+    pub albedo_is_map: u32,
+    /// VK_TRUE for an environment: an image whose middle looks east, its left quarter north, row 0 the zenith.
+    pub has_environment: u32,
+    /// The map's texels, RGB; null where only the device knows them.
+    pub albedo_map: *const f32,
+    /// The environment's texels, RGB; null where only the device knows them: azimuths are even then.
+    pub environment: *const f32,
+    /// Texels around the full circle.
+    pub environment_width: u32,
+    /// Texels from zenith to nadir.
+    pub environment_height: u32,
+    /// Counter-clockwise turn of the environment, radians.
+    pub environment_rotation_rad: f64,
+    /// Exponent of a lobe about the mirror direction of the view from straight above, [0..1e4].
+    pub phong_exponent: f32,
+    /// Share of light that the lobe reflects, [0..1]; 0: no lobe.
+    pub phong_scale: f32,
+    /// Suns, one after the other.
+    pub suns: *const RidgelightSun,
+    /// Key lights, one after the other.
+    pub keys: *const RidgelightKeyLight,
+    /// Balls of light, one after the other.
+    pub spheres: *const RidgelightSphereLight,
+    /// How many suns.
+    pub sun_count: u32,
+    /// How many key lights.
+    pub key_count: u32,
+    /// How many balls of light.
+    pub sphere_count: u32,
+}
+
+// SAFETY: numbers and pointers that may be null; the size is first.
+unsafe impl SizeFirst for RidgelightScene {}
+
+/// The scene that a struct describes.
+///
+/// # Safety
+/// As [`read`]; its pointers are null or point at what its sizes and counts say.
+pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
+    // SAFETY: as the caller says, here and below.
+    let scene = unsafe { read(from, "scene") }?;
+    let (rows, cols) = (scene.rows as usize, scene.cols as usize);
+    if !(1..=1 << 30).contains(&(u64::from(scene.rows) * u64::from(scene.cols))) {
+        let found = format!("{rows} x {cols}");
+        let expected = "at least one sample, at most 2^30";
+        return Err(Failure::argument("scene: rows and cols", found, expected));
+    }
+    let samples = rows * cols;
+    let cell_m = if scene.cell_m == [0.0; 2] { [1.0; 2] } else { scene.cell_m };
+    let field = HeightField::unknown(rows, cols, cell_m)?;
+    let borders = [Border::Plane, Border::Open, Border::Periodic];
+    let surface = Surface {
+        // SAFETY: as the caller says.
+        albedo: unsafe { albedo(&scene, samples) },
+        border: pick("scene: border", scene.border, Border::Plane, &borders)?,
+        phong: (scene.phong_scale != 0.0)
+            .then_some(Phong { exponent: scene.phong_exponent, scale: scene.phong_scale }),
+    };
+    // SAFETY: as the caller says.
+    Ok(Scene { field, surface, lights: unsafe { lights(&scene) }? })
+}
+
+fn texels(values: &[f32]) -> Vec<[f32; 3]> {
+    values.as_chunks::<3>().0.to_vec()
+}
+
+unsafe fn albedo(scene: &RidgelightScene, samples: usize) -> Albedo {
+    if scene.albedo_is_map != 0 {
+        // SAFETY: as the caller of `scene` says.
+        let known = unsafe { numbers(scene.albedo_map, 3 * samples) };
+        return known.map_or_else(|| Albedo::unknown(samples), |m| Albedo::Map(texels(m)));
+    }
+    Albedo::Constant(if scene.albedo == [0.0; 3] { [1.0; 3] } else { scene.albedo })
+}
+
+unsafe fn lights(scene: &RidgelightScene) -> Done<Lights> {
+    let sky = (scene.sky != [0.0; 3]).then_some(scene.sky);
+    let mut lights = Lights { sky, ..Lights::default() };
+    if scene.has_environment != 0 {
+        let (width, height) = (scene.environment_width, scene.environment_height);
+        let count = u64::from(width) * u64::from(height);
+        if !(1..=1 << 28).contains(&count) {
+            let found = format!("{width} x {height}");
+            let name = "scene: environment_width and environment_height";
+            return Err(Failure::argument(name, found, "at least one texel, at most 2^28"));
+        }
+        let (width, height) = (width as usize, height as usize);
+        let turn = scene.environment_rotation_rad;
+        // SAFETY: as the caller of `scene` says.
+        let known = unsafe { numbers(scene.environment, 3 * count as usize) };
+        lights.environment = Some(match known {
+            Some(values) => Environment::new(width, height, texels(values), turn)?,
+            None => Environment::unknown(width, height, turn)?,
+        });
+    }
+    // SAFETY: as the caller of `scene` says.
+    let (suns, keys, spheres) = unsafe {
+        (
+            read_all(scene.suns, scene.sun_count, "sun")?,
+            read_all(scene.keys, scene.key_count, "key light")?,
+            read_all(scene.spheres, scene.sphere_count, "sphere light")?,
+        )
+    };
+    lights.suns = suns
+        .into_iter()
+        .map(|s| Sun {
+            azimuth_rad: s.azimuth_rad,
+            elevation_rad: s.elevation_rad,
+            diameter_rad: s.diameter_rad,
+            irradiance: s.irradiance,
+        })
+        .collect();
+    lights.keys = keys
+        .into_iter()
+        .map(|k| KeyLight {
+            azimuth_rad: k.azimuth_rad,
+            width_rad: k.width_rad,
+            elevations_rad: k.elevations_rad,
+            radiance: k.radiance,
+        })
+        .collect();
+    lights.spheres = spheres
+        .into_iter()
+        .map(|s| SphereLight {
+            position_m: s.position_m,
+            radius_m: s.radius_m,
+            radiance: s.radiance,
+        })
+        .collect();
+    Ok(lights)
+}
+
+/// What speed is traded against accuracy with. In every field 0 is the default.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightQuality {
+    /// sizeof(RidgelightQuality).
+    pub struct_size: u32,
+    /// How horizons are found: 1 auto (default), 2 sweep, 3 pyramid, 4 brute.
+    pub method: u32,
+    /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp silhouettes.
+    pub azimuths: u32,
+    /// Slices across a sun's disc, a key light or a ball of light, [1..256], default 8. Fewer: faster, steps in
+    /// soft shadows.
+    pub sun_azimuths: u32,
+    /// Distance between the lines of a sweep: 1 exact, 2 a quarter of a cell, 3 half a cell, 4 a cell (default),
+    /// 5 two cells, 6 four cells. Wider: faster, small occluders missed between lines.
+    pub lines: u32,
+    /// How the lines' results come back to samples: 1 nearest, 2 slopes, 3 own, 4 aimed-nearest (default),
+    /// 5 aimed, 6 aimed-around. Later: nearer to the truth, slower.
+    pub fuse: u32,
+    /// Bits of what the sweep keeps: 1 f32 (default), 2 f16. (Packed ones would have to know heights beforehand.)
+    pub precision: u32,
+    /// Where the sweep's hull lives: 1 auto (default), 2 private, 3 shared, 4 list. Never changes the result.
+    pub hull: u32,
+    /// Levels a doubling of distance in a height pyramid, [1..16], default 4. Fewer: faster, smeared horizons.
+    pub level_step: u32,
+    /// One more than the doublings of resolution by which a march over a pyramid looks at finer levels, [1..5],
+    /// default 3. Fewer: soft distant horizons.
+    pub level_offset_plus_1: u32,
+    /// What is stored of a pyramid's levels: 1 stack (default), 2 pyramid: less memory, slower.
+    pub levels: u32,
+    /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, small bright places smeared.
+    pub table_elevations: u32,
+    /// What an environment is looked up in: 1 auto (default), 2 table, 3 sh.
+    pub basis: u32,
+    /// Order of what samples see as spherical harmonics, [2..6], default 4.
+    pub sh_order: u32,
+    /// How what is seen becomes harmonics: 1 slices (default), 2 nlp, 3 table.
+    pub wedges: u32,
+    /// How a surface turns what it sees into light: 1 plane (default), 2 lobe.
+    pub receiver: u32,
+    /// What tames the ringing of harmonics: 1 none (default), 2 lanczos, 3 hann, 4 nonnegative.
+    pub window: u32,
+    /// What is seen is found at every so many samples, 1, 2 or 4, default 1. More: faster, blurred shadows.
+    pub subsample: u32,
+    /// Horizons of either side of a table of wedges, [4..256], default 64.
+    pub wedge_side: u32,
+    /// What balls of light are lit by: 1 exact (default), 2 sh.
+    pub light_basis: u32,
+    /// What a sample may lose, all balls of light together, of the brightest that one of them would give to
+    /// level ground at height 0, [0..1], default 1/65536; below 0: nothing.
+    pub light_cutoff: f64,
+    /// Times that light may be reflected on its way to a sample, [0..64].
+    pub bounces: u32,
+    /// How what a sample sees of the surface is found: 1 brute (default), 2 sweep, 3 pyramid.
+    pub bounce_engine: u32,
+    /// Azimuths that each sample looks along for them, [4..1024], default 32.
+    pub bounce_azimuths: u32,
+    /// As level_step, for the pyramid of exit radiance, [1..16], default 4.
+    pub bounce_level_step: u32,
+    /// As level_offset_plus_1, for the pyramid of exit radiance, [1..5], default 3.
+    pub bounce_level_offset_plus_1: u32,
+    /// Share of the direct light's energy that may be left out of bounces, [0..1], default 1/65536; below 0: none.
+    pub bounce_cutoff: f64,
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightQuality {}
+
+/// The quality that a struct describes; null is the default.
+///
+/// # Safety
+/// As [`read`].
+pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
+    let default = Quality::default();
+    if from.is_null() {
+        return Ok(default);
+    }
+    // SAFETY: as the caller says.
+    let q = unsafe { read(from, "quality") }?;
+    let or = |found: u32, default: u32| if found == 0 { default } else { found };
+    let less_1 = |found: u32, default: u32| if found == 0 { default } else { found - 1 };
+    let share = |found: f64, default: f64| if found == 0.0 { default } else { found.max(0.0) };
+    let methods = [Method::Auto, Method::Sweep, Method::Pyramid, Method::Brute];
+    let lines = [
+        Lines::Exact,
+        Lines::QuarterCell,
+        Lines::HalfCell,
+        Lines::Cell,
+        Lines::TwoCells,
+        Lines::FourCells,
+    ];
+    let fuses = [
+        Fuse::Nearest,
+        Fuse::Slopes,
+        Fuse::Own,
+        Fuse::AimedNearest,
+        Fuse::Aimed,
+        Fuse::AimedAround,
+    ];
+    let precisions = [Precision::F32, Precision::F16];
+    let hulls = [Hull::Auto, Hull::Private, Hull::Shared, Hull::List];
+    let windows = [Window::None, Window::Lanczos, Window::Hann, Window::Nonnegative];
+    let wedges = [Wedges::Slices, Wedges::Nlp, Wedges::Table];
+    let engines = [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+    let bases = [Basis::Auto, Basis::Table, Basis::Sh];
+    let (receivers, levels) = ([Receiver::Plane, Receiver::Lobe], [Levels::Stack, Levels::Pyramid]);
+    let light_bases = [LightBasis::Exact, LightBasis::Sh];
+    let none = Bounces::NONE;
+    Ok(Quality {
+        method: pick("quality: method", q.method, default.method, &methods)?,
+        azimuths: or(q.azimuths, default.azimuths),
+        sun_azimuths: or(q.sun_azimuths, default.sun_azimuths),
+        light_cutoff: share(q.light_cutoff, default.light_cutoff),
+        light_basis: pick(
+            "quality: light_basis",
+            q.light_basis,
+            default.light_basis,
+            &light_bases,
+        )?,
+        lines: pick("quality: lines", q.lines, default.lines, &lines)?,
+        fuse: pick("quality: fuse", q.fuse, default.fuse, &fuses)?,
+        precision: pick("quality: precision", q.precision, default.precision, &precisions)?,
+        hull: pick("quality: hull", q.hull, default.hull, &hulls)?,
+        level_step: or(q.level_step, default.level_step),
+        level_offset: less_1(q.level_offset_plus_1, default.level_offset),
+        levels: pick("quality: levels", q.levels, default.levels, &levels)?,
+        table_elevations: or(q.table_elevations, default.table_elevations),
+        basis: pick("quality: basis", q.basis, default.basis, &bases)?,
+        sh_order: or(q.sh_order, default.sh_order),
+        wedges: pick("quality: wedges", q.wedges, default.wedges, &wedges)?,
+        receiver: pick("quality: receiver", q.receiver, default.receiver, &receivers)?,
+        window: pick("quality: window", q.window, default.window, &windows)?,
+        subsample: or(q.subsample, default.subsample),
+        wedge_side: or(q.wedge_side, default.wedge_side),
+        bounces: Bounces {
+            count: q.bounces,
+            engine: pick("quality: bounce_engine", q.bounce_engine, none.engine, &engines)?,
+            azimuths: or(q.bounce_azimuths, none.azimuths),
+            cutoff: share(q.bounce_cutoff, none.cutoff),
+            level_step: or(q.bounce_level_step, none.level_step),
+            level_offset: less_1(q.bounce_level_offset_plus_1, none.level_offset),
+        },
+    })
+}

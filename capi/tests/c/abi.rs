@@ -1,0 +1,332 @@
+//! The functions themselves, called as C would, on a device of the library's own: what a C program that goes well
+//! does not reach.
+
+use std::collections::HashMap;
+use std::ffi::{CStr, c_void};
+use std::ptr;
+
+use ash::vk;
+use ash::vk::Handle;
+use ridgelight::gpu::{Headless, HeadlessOptions, ImageArg};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
+use ridgelight_c::*;
+
+const SIDE: usize = 24;
+
+fn size<T>() -> u32 {
+    size_of::<T>() as u32
+}
+
+fn last_error() -> String {
+    // SAFETY: a text of the library's, which no call replaces meanwhile.
+    unsafe { CStr::from_ptr(ridgelight_last_error()) }.to_str().expect("UTF-8").to_owned()
+}
+
+#[track_caller]
+fn good(result: RidgelightResult) {
+    assert_eq!(result, RidgelightResult::Ok, "{}", last_error());
+}
+
+#[track_caller]
+fn refused(result: RidgelightResult, code: RidgelightResult, named: &str) {
+    assert_eq!(result, code, "{named}");
+    assert!(last_error().contains(named), "{named}: {}", last_error());
+}
+
+/// All zeros, but for the size that it begins with.
+fn zeroed<T>() -> T {
+    let mut value = std::mem::MaybeUninit::<T>::zeroed();
+    // SAFETY: the library's structs take zeros for their defaults, and begin with their size.
+    unsafe {
+        value.as_mut_ptr().cast::<u32>().write(size::<T>());
+        value.assume_init()
+    }
+}
+
+fn heights() -> Vec<f64> {
+    (0..SIDE * SIDE).map(|i| f64::from((i / SIDE * 31 + i % SIDE * 17) as u32 % 7) - 3.0).collect()
+}
+
+/// A device that says what validation hears, and what C is told of it.
+fn device() -> (Headless, RidgelightHost) {
+    let validation = crate::is_validated();
+    let gpu = Headless::new(&HeadlessOptions { device: None, validation }).expect("a device");
+    // SAFETY: the system's loader, as above.
+    let entry = unsafe { ash::Entry::load() }.expect("a loader");
+    let lent = gpu.host();
+    let host = RidgelightHost {
+        queue_family: lent.queue_family,
+        instance: lent.instance.handle(),
+        physical_device: lent.physical_device,
+        device: lent.device.handle(),
+        get_instance_proc_addr: Some(entry.static_fn().get_instance_proc_addr),
+        debug_utils: vk::Bool32::from(validation),
+        ..zeroed()
+    };
+    (gpu, host)
+}
+
+fn scene() -> RidgelightScene {
+    let side = SIDE as u32;
+    RidgelightScene { rows: side, cols: side, sky: [1.0, 0.5, 0.25], ..zeroed() }
+}
+
+fn image(arg: &ImageArg) -> RidgelightImage {
+    let state = |s: ridgelight::gpu::ImageState| RidgelightImageState {
+        stage: s.stage,
+        access: s.access,
+        layout: s.layout,
+    };
+    let (before, after) = (state(arg.before), state(arg.after));
+    RidgelightImage { image: arg.image, view: arg.view, before, after, ..zeroed() }
+}
+
+/// Memory that an engine gives: pieces of the device's, by key.
+struct Engine {
+    device: ash::Device,
+    types: vk::PhysicalDeviceMemoryProperties,
+    held: HashMap<u64, String>,
+    /// So many pieces are given.
+    left: usize,
+}
+
+unsafe extern "C" fn allocate(
+    user: *mut c_void,
+    request: *const RidgelightMemoryRequest,
+    allocation: *mut RidgelightAllocation,
+) -> vk::Bool32 {
+    // SAFETY: what `allocator` handed in, and the library's structs.
+    unsafe {
+        let (engine, request) = (&mut *user.cast::<Engine>(), &*request);
+        assert_eq!(request.struct_size, size::<RidgelightMemoryRequest>());
+        if engine.left == 0 {
+            return vk::FALSE;
+        }
+        engine.left -= 1;
+        let is_mapped = request.used_by != RIDGELIGHT_MEMORY_DEVICE;
+        let mut wanted = vk::MemoryPropertyFlags::empty();
+        if is_mapped {
+            wanted = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+        }
+        let fits = |i: &u32| {
+            request.requirements.memory_type_bits >> i & 1 == 1
+                && engine.types.memory_types[*i as usize].property_flags.contains(wanted)
+        };
+        let kind = (0..engine.types.memory_type_count).find(fits).expect("such memory");
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(request.requirements.size)
+            .memory_type_index(kind);
+        let memory = engine.device.allocate_memory(&info, None).expect("memory");
+        let mut mapped = ptr::null_mut();
+        if is_mapped {
+            let flags = vk::MemoryMapFlags::empty();
+            mapped = engine.device.map_memory(memory, 0, vk::WHOLE_SIZE, flags).expect("mapped");
+        }
+        let key = memory.as_raw();
+        let name = CStr::from_ptr(request.name).to_str().expect("UTF-8").to_owned();
+        engine.held.insert(key, name);
+        *allocation = RidgelightAllocation { memory, offset: 0, mapped, key };
+    }
+    vk::TRUE
+}
+
+unsafe extern "C" fn free(user: *mut c_void, allocation: *const RidgelightAllocation) {
+    // SAFETY: as above; what lay there is gone.
+    unsafe {
+        let (engine, allocation) = (&mut *user.cast::<Engine>(), &*allocation);
+        assert!(engine.held.remove(&allocation.key).is_some(), "freed once");
+        engine.device.free_memory(allocation.memory, None);
+    }
+}
+
+#[test]
+fn an_engine_in_c_lends_its_memory_and_reads_times() {
+    let (mut gpu, host) = device();
+    let heights = heights();
+    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None).expect("a field");
+    assert_eq!(field.base_m(), 0.0, "offsets are heights");
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    let scene_of_rust = Scene { field, surface: Surface::default(), lights };
+    let limits = gpu.report().limits;
+    let planned = plan::picture(&scene_of_rust, &Quality::default(), &limits, Picture::default());
+    let planned = planned.expect("a plan");
+    let texels = scene_of_rust.field.heights_m();
+    let mut frame = gpu.frame(planned.clone(), &[texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let right = gpu.pixels(&frame, 0).expect("pixels");
+    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
+    gpu.refill(&frame, 0, texels).expect("the heights again");
+
+    let lent = gpu.host().clone();
+    // SAFETY: the instance is alive.
+    let types =
+        unsafe { lent.instance.get_physical_device_memory_properties(lent.physical_device) };
+    let held = HashMap::new();
+    let mut engine = Engine { device: lent.device.clone(), types, held, left: 2 };
+    let user = ptr::from_mut(&mut engine);
+    let allocator = RidgelightAllocator {
+        user: user.cast(),
+        allocate: Some(allocate),
+        free: Some(free),
+        ..zeroed()
+    };
+    let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
+    // SAFETY: structs, handles and callbacks of this function, alive until its end.
+    unsafe {
+        good(ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 0, &mut plan));
+        let short = ridgelight_renderer_create(&host, plan, 1, &allocator, &mut renderer);
+        refused(short, RidgelightResult::Device, "the allocator has no such memory");
+        assert!(renderer.is_null() && (*user).held.is_empty(), "all is given back");
+        (*user).left = usize::MAX;
+        good(ridgelight_renderer_create(&host, plan, 1, &allocator, &mut renderer));
+        let names: Vec<&String> = (*user).held.values().collect();
+        for resource in planned.resources.iter().filter(|r| r.owner == plan::Owner::Internal) {
+            assert!(names.contains(&&resource.name), "{}", resource.name);
+        }
+
+        let mut info: RidgelightPlanInfo = zeroed();
+        good(ridgelight_plan_info(plan, &mut info));
+        let passes = planned.passes.len() as u32;
+        assert_eq!((info.inputs, info.outputs, info.passes), (1, 1, passes));
+        assert_eq!(info.internal_bytes, planned.internal_bytes());
+        // A plan that is given up: renderers have their own.
+        ridgelight_plan_destroy(plan);
+
+        let (input, output) = (image(&frame.inputs()[0]), image(&frame.outputs()[0]));
+        let mut times: Vec<RidgelightTiming> = (0..passes).map(|_| zeroed()).collect();
+        let mut count = passes;
+        good(ridgelight_timings(renderer, 0, times.as_mut_ptr(), &mut count));
+        assert_eq!(count, 0, "nothing has run");
+        gpu.run(|commands| {
+            good(ridgelight_record(renderer, commands, 0, &input, 1, &output, 1));
+            Ok(())
+        })
+        .expect("run");
+        assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+        count = passes;
+        good(ridgelight_timings(renderer, 0, times.as_mut_ptr(), &mut count));
+        if gpu.report().timestamp_period_ns > 0.0 {
+            let labels = times.iter().map(|t| CStr::from_ptr(t.label.as_ptr()).to_str());
+            let labels: Vec<&str> = labels.map(|l| l.expect("UTF-8")).collect();
+            let passes: Vec<String> = planned.passes.iter().map(plan::Pass::label).collect();
+            assert_eq!(labels, passes);
+            assert!(times.iter().all(|t| t.ns >= 0.0));
+        } else {
+            assert_eq!(count, 0);
+        }
+
+        // What the library's own checks refuse arrives as it says it, and nothing has been recorded.
+        let setting = RidgelightResult::Setting;
+        let wrong = RidgelightImage { format: vk::Format::R8_UNORM, ..input };
+        gpu.run(|commands| {
+            let record = |slot, input: &RidgelightImage, inputs, output: &RidgelightImage| {
+                ridgelight_record(renderer, commands, slot, input, inputs, output, 1)
+            };
+            refused(record(1, &input, 1, &output), setting, "slot");
+            refused(record(0, &input, 0, &output), setting, "inputs");
+            refused(record(0, &wrong, 1, &output), setting, "heights: format");
+            let nothing = RidgelightImage { image: vk::Image::null(), ..output };
+            refused(record(0, &input, 1, &nothing), setting, "radiance");
+            let short = RidgelightImage { struct_size: 3, ..output };
+            refused(
+                record(0, &input, 1, &short),
+                RidgelightResult::Argument,
+                "output 0: struct_size",
+            );
+            Ok(())
+        })
+        .expect("run");
+        ridgelight_renderer_destroy(renderer);
+        assert!((*user).held.is_empty());
+    }
+    gpu.end(frame);
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
+
+#[test]
+fn what_a_plan_cannot_be_is_named() {
+    let (gpu, host) = device();
+    let mut plan = ptr::null_mut();
+    let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
+    let mut refuse = |scene: RidgelightScene, quality: RidgelightQuality, flags, code, named| {
+        // SAFETY: structs of this function; pointers that are null, or of this function, too.
+        let made = unsafe { ridgelight_plan_create(&host, &scene, &quality, flags, 0, &mut plan) };
+        refused(made, code, named);
+        assert!(plan.is_null());
+    };
+    let sun: RidgelightSun = RidgelightSun { elevation_rad: 2.0, irradiance: [1.0; 3], ..zeroed() };
+    let of_scene: [(RidgelightScene, _, &str); 6] = [
+        (RidgelightScene { rows: 0, ..scene() }, argument, "scene: rows and cols"),
+        (RidgelightScene { border: 4, ..scene() }, argument, "scene: border"),
+        (RidgelightScene { has_environment: 1, ..scene() }, argument, "environment_width"),
+        (RidgelightScene { sky: [0.0; 3], ..scene() }, setting, "lights: found none"),
+        (RidgelightScene { suns: &sun, sun_count: 1, ..scene() }, setting, "sun 1: elevation"),
+        (RidgelightScene { sun_count: 1, ..scene() }, argument, "sun 0: found a null pointer"),
+    ];
+    for (scene, code, named) in of_scene {
+        refuse(scene, zeroed(), 0, code, named);
+    }
+    let of_quality: [(RidgelightQuality, _, &str); 3] = [
+        (RidgelightQuality { fuse: 7, ..zeroed() }, argument, "quality: fuse"),
+        (RidgelightQuality { azimuths: 3, ..zeroed() }, setting, "--azimuths"),
+        (RidgelightQuality { level_offset_plus_1: 6, ..zeroed() }, setting, "--level-offset"),
+    ];
+    for (quality, code, named) in of_quality {
+        refuse(scene(), quality, 0, code, named);
+    }
+    refuse(scene(), zeroed(), 8, argument, "picture: found 8");
+    // SAFETY: as above.
+    let made = unsafe { ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 1, &mut plan) };
+    refused(made, RidgelightResult::Limit, "the limit is");
+    drop(gpu);
+}
+
+/// Zeros are the defaults, and every field is its own: no two of them are mixed up.
+#[test]
+fn every_setting_of_c_is_the_one_of_rust() {
+    let (gpu, host) = device();
+    let settings = |quality: RidgelightQuality| {
+        let mut plan = ptr::null_mut();
+        let scene = RidgelightScene {
+            has_environment: 1,
+            environment_width: 16,
+            environment_height: 8,
+            ..scene()
+        };
+        // SAFETY: structs of this function; a handle that is given up.
+        unsafe {
+            good(ridgelight_plan_create(&host, &scene, &quality, 0, 0, &mut plan));
+            let settings = (*plan).settings().to_vec();
+            ridgelight_plan_destroy(plan);
+            settings
+        }
+    };
+    let default = settings(zeroed());
+    let changed = |quality: RidgelightQuality, name: &str, value: &str| {
+        let of = settings(quality);
+        let has = of.iter().any(|s| s.0 == name && s.1 == value);
+        let had = default.iter().any(|s| s.0 == name && s.1 == value);
+        assert!(has && !had, "{name} {value}: {of:?}, of zeros {default:?}");
+    };
+    let zero = zeroed::<RidgelightQuality>;
+    changed(RidgelightQuality { azimuths: 32, ..zero() }, "azimuths", "32");
+    changed(RidgelightQuality { method: 4, ..zero() }, "method", "brute");
+    changed(RidgelightQuality { fuse: 5, ..zero() }, "fuse", "aimed");
+    changed(RidgelightQuality { table_elevations: 64, ..zero() }, "table_elevations", "64");
+    let sh = || RidgelightQuality { basis: 3, ..zero() };
+    changed(sh(), "basis", "sh");
+    changed(RidgelightQuality { sh_order: 3, ..sh() }, "sh_order", "3");
+    changed(RidgelightQuality { wedges: 2, ..sh() }, "wedges", "nlp");
+    changed(RidgelightQuality { receiver: 2, ..sh() }, "receiver", "lobe");
+    changed(RidgelightQuality { window: 3, ..sh() }, "window", "hann");
+    changed(RidgelightQuality { subsample: 2, ..sh() }, "subsample", "2");
+    let levels = || RidgelightQuality { method: 3, ..zero() };
+    changed(RidgelightQuality { level_step: 2, ..levels() }, "level_step", "2");
+    changed(RidgelightQuality { level_offset_plus_1: 1, ..levels() }, "level_offset", "0");
+    changed(RidgelightQuality { levels: 2, ..levels() }, "levels", "pyramid");
+    changed(RidgelightQuality { bounces: 1, ..zero() }, "bounces", "1");
+    drop(gpu);
+}

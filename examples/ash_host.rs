@@ -1,0 +1,245 @@
+//! Ridgelight in a Vulkan program of its own, by `ash`. README.md shows the first half, which is what an
+//! engine writes; the second stands for the engine. A test runs it under validation.
+
+use ash::vk;
+use ridgelight::gpu::{self, Host, ImageArg, ImageState, Renderer};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{Quality, Scene};
+
+/// Once for a scene: plans, and makes what the plan needs on the engine's device, for two frames in flight.
+pub fn prepare(host: &Host, scene: &Scene) -> ridgelight::Result<Renderer> {
+    let limits = gpu::limits(&host.instance, host.physical_device);
+    let plan = plan::picture(scene, &Quality::default(), &limits, Picture::default())?;
+    Renderer::new(host, plan, 2)
+}
+
+/// Each frame, in the engine's command buffer: heights (R32F) that were copied to an image become light (R32F
+/// under grey lights, else RGBA32F) in another, which is to be copied from.
+pub fn record(
+    renderer: &mut Renderer,
+    commands: vk::CommandBuffer,
+    frame_in_flight: usize,
+    heights: (vk::Image, vk::ImageView),
+    light: (vk::Image, vk::ImageView),
+) -> ridgelight::Result<()> {
+    let [cols, rows] = renderer.plan().size;
+    let arg = |(image, view), before, after| {
+        let (format, extent) = (vk::Format::R32_SFLOAT, [cols, rows, 1]);
+        ImageArg { image, view, format, extent, before, after }
+    };
+    let inputs = [arg(heights, FILLED, FILLED)];
+    let outputs = [arg(light, NEW, COPIED)];
+    renderer.record(commands, frame_in_flight, &inputs, &outputs)
+}
+
+/// How the images come, and how the light is to be left.
+const FILLED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::COPY,
+    access: vk::AccessFlags2::TRANSFER_WRITE,
+    layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+};
+const NEW: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::NONE,
+    access: vk::AccessFlags2::NONE,
+    layout: vk::ImageLayout::UNDEFINED,
+};
+const COPIED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::COPY,
+    access: vk::AccessFlags2::TRANSFER_READ,
+    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+};
+
+// What follows an engine has already.
+
+use ridgelight::gpu::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
+use ridgelight::scene::{HeightField, Lights, Sun, Surface};
+
+type Any<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Rows of the scene.
+pub const ROWS: usize = 48;
+/// Its columns.
+pub const COLS: usize = 64;
+const EXTENT: vk::Extent3D = vk::Extent3D { width: COLS as u32, height: ROWS as u32, depth: 1 };
+
+/// Heights of small whole numbers under a sky and a sun in the east.
+pub fn scene() -> ridgelight::Result<Scene> {
+    let height = |i: usize| ((i / COLS * 31 + i % COLS * 17) % 7) as f64 - 3.0;
+    let heights: Vec<f64> = (0..ROWS * COLS).map(height).collect();
+    let field = HeightField::new(ROWS, COLS, &heights, [1.0; 2], None)?;
+    let sun = Sun {
+        azimuth_rad: 0.0,
+        elevation_rad: 30_f64.to_radians(),
+        diameter_rad: 0.5_f64.to_radians(),
+        irradiance: [3.0; 3],
+    };
+    let lights = Lights { sky: Some([0.5; 3]), suns: vec![sun], ..Lights::default() };
+    Ok(Scene { field, surface: Surface::default(), lights })
+}
+
+/// An instance and a device with what Ridgelight needs, and its queue.
+fn host(entry: &ash::Entry) -> Any<(Host, vk::Queue)> {
+    let mut needs = gpu::requirements();
+    let app = vk::ApplicationInfo::default().api_version(needs.api_version);
+    let instance_info = vk::InstanceCreateInfo::default().application_info(&app);
+    // SAFETY: the loader stays loaded; all structs live across their calls.
+    unsafe {
+        let instance = entry.create_instance(&instance_info, None)?;
+        let physical_device = instance.enumerate_physical_devices()?[0];
+        let families = instance.get_physical_device_queue_family_properties(physical_device);
+        let family = families.iter().position(|f| f.queue_flags.contains(needs.queue_flags));
+        let queue_family = family.ok_or("no queue for compute")? as u32;
+        let queue = vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family);
+        let queues = [queue.queue_priorities(&[1.0])];
+        let device_info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&needs.features)
+            .push_next(&mut needs.features12)
+            .push_next(&mut needs.features13);
+        let device = instance.create_device(physical_device, &device_info, None)?;
+        let queue = device.get_device_queue(queue_family, 0);
+        let pipeline_cache = vk::PipelineCache::null();
+        let debug_utils = None;
+        Ok((
+            Host { instance, physical_device, device, queue_family, pipeline_cache, debug_utils },
+            queue,
+        ))
+    }
+}
+
+struct Image {
+    image: vk::Image,
+    view: vk::ImageView,
+    memory: Allocation,
+}
+
+fn image(host: &Host, blocks: &mut Blocks, usage: vk::ImageUsageFlags) -> Any<Image> {
+    let info = vk::ImageCreateInfo::default()
+        .image_type(vk::ImageType::TYPE_2D)
+        .format(vk::Format::R32_SFLOAT)
+        .extent(EXTENT)
+        .mip_levels(1)
+        .array_layers(1)
+        .samples(vk::SampleCountFlags::TYPE_1)
+        .usage(usage);
+    // SAFETY: the device is alive; the memory is the image's own.
+    unsafe {
+        let image = host.device.create_image(&info, None)?;
+        let requirements = host.device.get_image_memory_requirements(image);
+        let (used_by, is_linear) = (MemoryUse::Device, false);
+        let request = MemoryRequest { name: "image", requirements, used_by, is_linear };
+        let memory = blocks.allocate(&request)?;
+        host.device.bind_image_memory(image, memory.memory, memory.offset)?;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(image)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(vk::Format::R32_SFLOAT)
+            .subresource_range(WHOLE);
+        let view = host.device.create_image_view(&info, None)?;
+        Ok(Image { image, view, memory })
+    }
+}
+
+const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+    aspect_mask: vk::ImageAspectFlags::COLOR,
+    base_mip_level: 0,
+    level_count: 1,
+    base_array_layer: 0,
+    layer_count: 1,
+};
+const LAYER: vk::ImageSubresourceLayers = vk::ImageSubresourceLayers {
+    aspect_mask: vk::ImageAspectFlags::COLOR,
+    mip_level: 0,
+    base_array_layer: 0,
+    layer_count: 1,
+};
+
+/// Heights to an image, light from another to the host, and Ridgelight between.
+fn frame(host: &Host, queue: vk::Queue, blocks: &mut Blocks, scene: &Scene) -> Any<Vec<f32>> {
+    let device = &host.device;
+    let (from, to) = (vk::ImageUsageFlags::TRANSFER_SRC, vk::ImageUsageFlags::TRANSFER_DST);
+    let heights = image(host, blocks, vk::ImageUsageFlags::SAMPLED | to)?;
+    let light = image(host, blocks, vk::ImageUsageFlags::STORAGE | from)?;
+    let mut renderer = prepare(host, scene)?;
+    let size = 4 * (ROWS * COLS) as u64;
+    let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+    let buffer_info = vk::BufferCreateInfo::default().size(size).usage(usage);
+    let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
+    let region = [vk::BufferImageCopy::default().image_subresource(LAYER).image_extent(EXTENT)];
+    let filling = [vk::ImageMemoryBarrier2::default()
+        .image(heights.image)
+        .subresource_range(WHOLE)
+        .dst_stage_mask(FILLED.stage)
+        .dst_access_mask(FILLED.access)
+        .new_layout(FILLED.layout)];
+    let reading = [vk::MemoryBarrier2::default()
+        .src_stage_mask(vk::PipelineStageFlags2::COPY)
+        .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+        .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+        .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+    // SAFETY: all handles are alive, and are destroyed when the queue has done all its work.
+    unsafe {
+        let buffer = device.create_buffer(&buffer_info, None)?;
+        let requirements = device.get_buffer_memory_requirements(buffer);
+        let (used_by, is_linear) = (MemoryUse::Upload, true);
+        let request = MemoryRequest { name: "texels", requirements, used_by, is_linear };
+        let memory = blocks.allocate(&request)?;
+        device.bind_buffer_memory(buffer, memory.memory, memory.offset)?;
+        let texels = memory.mapped.ok_or("not mapped")?.cast::<f32>().as_ptr();
+        texels.copy_from(scene.field.heights_m().as_ptr(), ROWS * COLS);
+
+        let pool = device.create_command_pool(&pool_info, None)?;
+        let commands_info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
+        let commands = device.allocate_command_buffers(&commands_info.command_buffer_count(1))?[0];
+        device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default())?;
+        let info = vk::DependencyInfo::default().image_memory_barriers(&filling);
+        device.cmd_pipeline_barrier2(commands, &info);
+        let copied_to = FILLED.layout;
+        device.cmd_copy_buffer_to_image(commands, buffer, heights.image, copied_to, &region);
+        let (read, written) = ((heights.image, heights.view), (light.image, light.view));
+        record(&mut renderer, commands, 0, read, written)?;
+        let copied_from = COPIED.layout;
+        device.cmd_copy_image_to_buffer(commands, light.image, copied_from, buffer, &region);
+        let info = vk::DependencyInfo::default().memory_barriers(&reading);
+        device.cmd_pipeline_barrier2(commands, &info);
+        device.end_command_buffer(commands)?;
+        let submitted = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
+        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&submitted)];
+        device.queue_submit2(queue, &submit, vk::Fence::null())?;
+        device.queue_wait_idle(queue)?;
+        let lit = std::slice::from_raw_parts(texels, ROWS * COLS).to_vec();
+
+        renderer.destroy();
+        device.destroy_command_pool(pool, None);
+        device.destroy_buffer(buffer, None);
+        blocks.free(memory);
+        for image in [heights, light] {
+            device.destroy_image_view(image.view, None);
+            device.destroy_image(image.image, None);
+            blocks.free(image.memory);
+        }
+        Ok(lit)
+    }
+}
+
+/// Light of every sample, row by row.
+pub fn lit() -> Any<Vec<f32>> {
+    // SAFETY: the system's Vulkan loader, whose initialisers are meant to run.
+    let entry = unsafe { ash::Entry::load() }?;
+    let (host, queue) = host(&entry)?;
+    let mut blocks = Blocks::new(&host)?;
+    let lit = frame(&host, queue, &mut blocks, &scene()?);
+    drop(blocks);
+    // SAFETY: nothing is left that was made on them.
+    unsafe {
+        host.device.destroy_device(None);
+        host.instance.destroy_instance(None);
+    }
+    lit
+}
+
+fn main() -> Any<()> {
+    let lit = lit()?;
+    println!("{} samples, the first is lit by {}", lit.len(), lit[0]);
+    Ok(())
+}

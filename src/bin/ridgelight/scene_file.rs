@@ -1,0 +1,182 @@
+//! Scene files: a JSON of field, surface, lights and quality. Each of its keys is a flag of the command line, which
+//! it becomes where the user wrote none of that name; a mistake is told by line and key.
+
+mod json;
+mod keys;
+#[cfg(test)]
+mod schema;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::error::{ContextKind, ContextValue};
+use clap::parser::ValueSource;
+use ridgelight::{Error, Result};
+
+use json::Found;
+use keys::{GROUPS, Kind};
+
+/// A flag that a scene file gave.
+struct Given {
+    /// As the parser calls it.
+    id: &'static str,
+    value: OsString,
+    line: usize,
+    key: String,
+}
+
+/// What a scene file gave to a command line; nothing where there is none.
+#[derive(Default)]
+pub struct SceneFile {
+    path: PathBuf,
+    given: Vec<Given>,
+}
+
+/// The largest scene file that is read, bytes.
+const LARGEST: u64 = 1 << 24;
+
+impl SceneFile {
+    /// Reads the file that `--scene` names, if it does, and adds to the words what it gives.
+    ///
+    /// # Errors
+    /// The file, the line and the key that cannot be read.
+    pub fn add_to(parser: &clap::Command, words: &mut Vec<OsString>) -> Result<Self> {
+        let partial = parser.clone().ignore_errors(true);
+        let Ok(matches) = partial.try_get_matches_from(words.iter()) else {
+            return Ok(Self::default());
+        };
+        let Some((name, matches)) = matches.subcommand() else { return Ok(Self::default()) };
+        let path = matches.try_get_one::<PathBuf>("scene").ok().flatten();
+        let (Some(path), Some(command)) = (path, parser.find_subcommand(name)) else {
+            return Ok(Self::default());
+        };
+        let mut scene = Self { path: path.clone(), given: all(parser, path)? };
+        let input = command.get_positionals().next().map(|arg| arg.get_id().as_str());
+        scene.given.retain(|given| {
+            let id = if given.id == keys::INPUT { input } else { Some(given.id) };
+            let known = id.filter(|id| command.get_arguments().any(|arg| arg.get_id() == id));
+            known.is_some_and(|id| matches.value_source(id) != Some(ValueSource::CommandLine))
+        });
+        let at = words.iter().position(|word| word == name).map_or(words.len(), |i| i + 1);
+        let new = scene.given.iter().map(|given| match given.id {
+            keys::INPUT => given.value.clone(),
+            id => {
+                let mut word = OsString::from(format!("--{}=", id.replace('_', "-")));
+                word.push(&given.value);
+                word
+            }
+        });
+        let new: Vec<OsString> = new.collect();
+        words.splice(at..at, new);
+        Ok(scene)
+    }
+
+    /// Whether it gave an argument, by its name in the parser.
+    pub fn gave(&self, id: &str) -> bool {
+        self.given.iter().any(|given| given.id == id)
+    }
+
+    /// What the parser says of a flag that came from the file, by line and key.
+    pub fn explain(&self, error: &clap::Error) -> Option<Error> {
+        let text = |kind| match error.get(kind)? {
+            ContextValue::String(text) => Some(text.clone()),
+            ContextValue::Strings(all) => Some(all.join(", ")),
+            _ => None,
+        };
+        let flag = text(ContextKind::InvalidArg)?;
+        let id = flag.trim_start_matches("--").split([' ', '=']).next()?.replace('-', "_");
+        let value = text(ContextKind::InvalidValue);
+        let of_flag = || self.given.iter().filter(|given| given.id == id);
+        let is_it = |given: &&Given| value.as_ref().is_some_and(|v| given.value == v.as_str());
+        let given = of_flag().find(is_it).or_else(|| of_flag().next())?;
+        let expected = text(ContextKind::ValidValue)
+            .map(|all| format!("one of {all}"))
+            .or_else(|| Some(std::error::Error::source(error)?.to_string()))
+            .or_else(|| Some(format!("none beside {}", text(ContextKind::PriorArg)?)));
+        Some(self.wrong(given, "", value.unwrap_or_default(), expected?))
+    }
+
+    /// The same for what a command says of it.
+    pub fn place(&self, error: Error) -> Error {
+        let Error::Setting { name, found, expected } = error else { return error };
+        let Some((given, rest)) = self.named(&name) else {
+            return Error::Setting { name, found, expected };
+        };
+        self.wrong(given, rest, found, expected)
+    }
+
+    /// What `--flag`, `--flag 2` or `--flag 2 elevation` is, and what follows it.
+    fn named<'n>(&self, name: &'n str) -> Option<(&Given, &'n str)> {
+        let (flag, rest) = name.strip_prefix("--")?.split_once(' ').unwrap_or((&name[2..], ""));
+        let (number, after) = rest.split_once([' ', ':']).unwrap_or((rest, ""));
+        let id = flag.replace('-', "_");
+        let mut of_flag = self.given.iter().filter(|given| given.id == id);
+        match number.parse::<usize>() {
+            Ok(number) => Some((of_flag.nth(number.checked_sub(1)?)?, after)),
+            Err(_) => Some((of_flag.next()?, rest)),
+        }
+    }
+
+    fn wrong(&self, given: &Given, rest: &str, found: String, expected: String) -> Error {
+        let place = format!("line {}, {} {rest}", given.line, given.key);
+        Error::File { path: self.path.clone(), place: place.trim_end().to_owned(), found, expected }
+    }
+}
+
+/// All that a file gives, whatever the command takes of it.
+fn all(parser: &clap::Command, path: &Path) -> Result<Vec<Given>> {
+    let text = read(path)?;
+    let root = Found::root(path, &text)?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut given = Vec::new();
+    for group in root.members()? {
+        if group.key == "$schema" {
+            continue;
+        }
+        let keys = match group.key.as_str() {
+            "quality" => keys::quality(parser),
+            name => match GROUPS.iter().find(|(known, _)| *known == name) {
+                Some((_, keys)) => keys.to_vec(),
+                None => {
+                    let known = GROUPS.map(|(known, _)| known).join(", ");
+                    return Err(group.unknown(&format!("{known}, quality or $schema")));
+                }
+            },
+        };
+        for found in group.members()? {
+            let name = found.name();
+            let Some(key) = keys.iter().find(|key| key.name == name) else {
+                let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
+                return Err(found.unknown(&known.join(", ")));
+            };
+            let values = match key.kind {
+                Kind::List(parts) => found
+                    .items()?
+                    .iter()
+                    .map(|item| Ok((item.line(), item.key.clone(), item.parts(parts)?.into())))
+                    .collect::<Result<Vec<_>>>()?,
+                _ => vec![(found.line(), found.key.clone(), found.value(&key.kind, folder)?)],
+            };
+            given.extend(values.into_iter().map(|(line, place, value)| Given {
+                id: key.id,
+                value,
+                line,
+                key: place,
+            }));
+        }
+    }
+    Ok(given)
+}
+
+fn read(path: &Path) -> Result<String> {
+    let io = |source| Error::Io { path: path.to_owned(), source };
+    let bytes = std::fs::metadata(path).map_err(io)?.len();
+    if bytes > LARGEST {
+        return Err(Error::Limit {
+            what: path.display().to_string(),
+            needs: format!("{bytes} bytes"),
+            limit: format!("{LARGEST} for a scene file"),
+        });
+    }
+    std::fs::read_to_string(path).map_err(io)
+}

@@ -1,0 +1,188 @@
+//! Values of a JSON text, with where they stand in it.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::path::Path;
+
+use ridgelight::{Error, Result};
+use serde::de::{Deserializer as _, MapAccess, Visitor};
+use serde_json::value::RawValue;
+
+use super::keys::{Kind, Numbers, Part};
+
+/// A value, or a member with its value.
+pub struct Found<'t> {
+    path: &'t Path,
+    text: &'t str,
+    raw: &'t RawValue,
+    /// Its keys from the root: `lights.suns[0]`.
+    pub key: String,
+}
+
+struct Members;
+
+impl<'de> Visitor<'de> for Members {
+    type Value = Vec<(String, &'de RawValue)>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(
+        self,
+        mut map: A,
+    ) -> std::result::Result<Self::Value, A::Error> {
+        let mut all = Vec::new();
+        while let Some(member) = map.next_entry()? {
+            all.push(member);
+        }
+        Ok(all)
+    }
+}
+
+impl<'t> Found<'t> {
+    /// The whole of a text.
+    ///
+    /// # Errors
+    /// Line and column of what is no JSON.
+    pub fn root(path: &'t Path, text: &'t str) -> Result<Self> {
+        let raw = serde_json::from_str(text).map_err(|error| Error::File {
+            path: path.to_owned(),
+            place: format!("line {}, column {}", error.line(), error.column()),
+            found: error.to_string().split(" at line").next().unwrap_or_default().to_owned(),
+            expected: "JSON".into(),
+        })?;
+        Ok(Self { path, text, raw, key: String::new() })
+    }
+
+    /// Counted from 1.
+    pub fn line(&self) -> usize {
+        let before = self.raw.get().as_ptr() as usize - self.text.as_ptr() as usize;
+        1 + self.text[..before].matches('\n').count()
+    }
+
+    /// The last of its keys.
+    pub fn name(&self) -> &str {
+        self.key.rsplit('.').next().unwrap_or_default()
+    }
+
+    fn error(&self, found: &str, expected: &str) -> Error {
+        let key = if self.key.is_empty() { "the whole" } else { &self.key };
+        Error::File {
+            path: self.path.to_owned(),
+            place: format!("line {}, {key}", self.line()),
+            found: found.to_owned(),
+            expected: expected.to_owned(),
+        }
+    }
+
+    fn wrong(&self, expected: &str) -> Error {
+        let found: String = self.raw.get().chars().take(40).collect();
+        self.error(&found, expected)
+    }
+
+    /// That nothing has its key.
+    pub fn unknown(&self, known: &str) -> Error {
+        self.error("a key that nothing has", known)
+    }
+
+    /// An object's members in order.
+    ///
+    /// # Errors
+    /// What is no object, or has a key twice.
+    pub fn members(&self) -> Result<Vec<Self>> {
+        let mut text = serde_json::Deserializer::from_str(self.raw.get());
+        let all = text.deserialize_map(Members).map_err(|_| self.wrong("an object"))?;
+        let dot = if self.key.is_empty() { "" } else { "." };
+        let all: Vec<Self> = all
+            .into_iter()
+            .map(|(key, raw)| Self { raw, key: format!("{}{dot}{key}", self.key), ..*self })
+            .collect();
+        match (1..all.len()).find(|i| all[..*i].iter().any(|other| other.key == all[*i].key)) {
+            Some(again) => Err(all[again].error("the same key again", "it once")),
+            None => Ok(all),
+        }
+    }
+
+    /// A list's values.
+    ///
+    /// # Errors
+    /// What is no list.
+    pub fn items(&self) -> Result<Vec<Self>> {
+        let all: Vec<&'t RawValue> =
+            serde_json::from_str(self.raw.get()).map_err(|_| self.wrong("a list"))?;
+        let item = |(i, raw)| Self { raw, key: format!("{}[{i}]", self.key), ..*self };
+        Ok(all.into_iter().enumerate().map(item).collect())
+    }
+
+    fn number(&self) -> Option<String> {
+        let number: serde_json::Number = serde_json::from_str(self.raw.get()).ok()?;
+        Some(number.to_string())
+    }
+
+    fn string(&self) -> Option<String> {
+        serde_json::from_str(self.raw.get()).ok()
+    }
+
+    /// Numbers with commas between them.
+    fn numbers(&self, numbers: Numbers) -> Result<String> {
+        let (count, expected) = match numbers {
+            Numbers::One => (0, "a number"),
+            Numbers::Pair => (2, "a number, or 2 in a list"),
+            Numbers::Colour => (3, "a number, or 3 in a list"),
+            Numbers::Three => (3, "3 numbers in a list"),
+        };
+        if let Some(number) = self.number().filter(|_| numbers != Numbers::Three) {
+            return Ok(number);
+        }
+        let items = self.items().ok().filter(|all| count > 0 && all.len() == count);
+        let all = items.and_then(|all| all.iter().map(Self::number).collect::<Option<Vec<_>>>());
+        all.map(|all| all.join(",")).ok_or_else(|| self.wrong(expected))
+    }
+
+    /// What a flag holds between commas.
+    ///
+    /// # Errors
+    /// A member that is missing, unknown or no number.
+    pub fn parts(&self, parts: &[Part]) -> Result<String> {
+        let members = self.members()?;
+        let is_part = |found: &&Self| !parts.iter().any(|part| part.name == found.name());
+        if let Some(found) = members.iter().find(is_part) {
+            let known: Vec<&str> = parts.iter().map(|part| part.name).collect();
+            return Err(found.unknown(&known.join(", ")));
+        }
+        let value = |part: &Part| match members.iter().find(|found| found.name() == part.name) {
+            Some(found) => found.numbers(part.numbers),
+            None => {
+                let missing = || self.error(&format!("no {}", part.name), "it");
+                part.default.map(str::to_owned).ok_or_else(missing)
+            }
+        };
+        Ok(parts.iter().map(value).collect::<Result<Vec<_>>>()?.join(","))
+    }
+
+    /// As a flag's text; files from `folder`.
+    ///
+    /// # Errors
+    /// What is not of its kind.
+    pub fn value(&self, kind: &Kind, folder: &Path) -> Result<OsString> {
+        let file = || self.string().map(|name| folder.join(name).into_os_string());
+        match kind {
+            Kind::Numbers(numbers) => Ok(self.numbers(*numbers)?.into()),
+            Kind::Word => self
+                .string()
+                .or_else(|| self.number())
+                .map(OsString::from)
+                .ok_or_else(|| self.wrong("a word or a number")),
+            Kind::File => file().ok_or_else(|| self.wrong("a file's name")),
+            Kind::ColourOrFile => match file() {
+                Some(file) => Ok(file),
+                None => self
+                    .numbers(Numbers::Colour)
+                    .map(OsString::from)
+                    .map_err(|_| self.wrong("a number, 3 in a list, or a file's name")),
+            },
+            Kind::Parts(parts) | Kind::List(parts) => Ok(self.parts(parts)?.into()),
+        }
+    }
+}

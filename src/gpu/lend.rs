@@ -1,0 +1,109 @@
+//! Images as an engine has them, in formats of its own: for tests, and programs that hold 8 or 16 bits.
+
+use ash::vk;
+
+use super::allocator::MemoryUse;
+use super::memory::Backed;
+use super::{Headless, ImageArg, ImageState};
+use crate::{Error, Result};
+
+/// An image beside those of frames, in GENERAL; given back with [`Headless::take_back`].
+pub struct Lent {
+    backed: Backed,
+    format: vk::Format,
+    extent: [u32; 3],
+}
+
+impl Lent {
+    /// To be read by a renderer in place of a frame's own input.
+    pub fn arg(&self) -> ImageArg {
+        ImageArg {
+            image: self.backed.image,
+            view: self.backed.view,
+            format: self.format,
+            extent: self.extent,
+            before: ImageState::ANY_USE,
+            after: ImageState::ANY_USE,
+        }
+    }
+}
+
+impl Headless {
+    /// Makes an image of a colour format that the device samples, and fills it: rows of texels as Vulkan
+    /// packs them.
+    ///
+    /// # Errors
+    /// Texels that are not whole ones for `cols` × `rows`, or the device's.
+    pub fn lend(
+        &mut self,
+        name: &str,
+        format: vk::Format,
+        [cols, rows]: [u32; 2],
+        texels: &[u8],
+    ) -> Result<Lent> {
+        let count = cols as usize * rows as usize;
+        if count == 0 || texels.is_empty() || !texels.len().is_multiple_of(count) {
+            return Err(Error::setting(
+                name,
+                format!("{} bytes for {cols} × {rows} texels", texels.len()),
+                "as many for each of at least one texel",
+            ));
+        }
+        let host = self.host();
+        // SAFETY: the physical device is the instance's.
+        let properties = unsafe {
+            host.instance.get_physical_device_format_properties(host.physical_device, format)
+        };
+        if !properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::SAMPLED_IMAGE) {
+            let found = format!("{format:?}");
+            return Err(Error::setting(name, found, "a format that the device samples"));
+        }
+        let extent = [cols, rows, 1];
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let backed = self.memory.image_for(name, (format, usage), extent, false)?;
+        let mut lent = Lent { backed, format, extent };
+        match self.fill_lent(&lent, texels) {
+            Ok(()) => Ok(lent),
+            Err(error) => {
+                self.memory.free(&mut lent.backed);
+                Err(error)
+            }
+        }
+    }
+
+    fn fill_lent(&mut self, lent: &Lent, texels: &[u8]) -> Result<()> {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        let bytes = texels.len() as u64;
+        let mut staging = self.memory.buffer("staging", bytes, usage, MemoryUse::Upload)?;
+        staging.mapped().expect("uploads are mapped").copy_from_slice(texels);
+        let [width, height, _] = lent.extent;
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                mip_level: 0,
+                base_array_layer: 0,
+                layer_count: 1,
+            })
+            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let filled = self.run(|commands| {
+            let unknown = ImageState { layout: vk::ImageLayout::UNDEFINED, ..ImageState::ANY_USE };
+            self.transition(commands, &ImageArg { before: unknown, ..lent.arg() });
+            let (from, to) = (staging.buffer, lent.backed.image);
+            let device = &self.host().device;
+            // SAFETY: the image is in GENERAL, the buffer holds its texels, both are ours.
+            unsafe {
+                let layout = vk::ImageLayout::GENERAL;
+                device.cmd_copy_buffer_to_image(commands, from, to, layout, &region);
+            }
+            self.transition(commands, &lent.arg());
+            Ok(())
+        });
+        self.memory.free(&mut staging);
+        filled
+    }
+
+    /// Frees an image that was lent.
+    pub fn take_back(&mut self, mut lent: Lent) {
+        self.memory.free(&mut lent.backed);
+    }
+}
