@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use ash::vk;
+use ash::vk::{self, Handle};
 use ridgelight::cpu::sky_draw::sky_draw;
 use ridgelight::cpu::terrain_draw::{Met, colour, ray, terrain_draw};
 use ridgelight::files::Tone;
-use ridgelight::gpu::Seen;
+use ridgelight::gpu::{ImageArg, ImageState, Seen, ViewInputs, ViewOutputs, ViewRenderer};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{
     Border, Camera, Environment, HeightField, Lens, Method, Quality, Scene, Sun,
@@ -358,4 +358,63 @@ fn screens_show_what_pictures_hold() {
         println!("{differ} of {} codes differ by one", 3 * linear.len());
         assert!(codes.iter().any(|c| c[0] > 20 && c[0] < 235), "all black or white");
     }
+}
+
+/// What is refused names the argument, and nothing has been recorded: validation would hear of what is not there.
+#[test]
+fn wrong_arguments_are_refused_by_name() {
+    let mut device = Device::new();
+    let options = ViewOptions { size: [8, 6], samples: 1, ..ViewOptions::default() };
+    let scene = under_sky(field(9, 9, [1.0, 1.0], |r, _| r as f64), Border::Plane);
+    let camera = around(&scene, 200.0, 25.0, LENSES[0], &options);
+    let limits = device.limits();
+    let plan = plan::picture(&scene, &quality(), &limits, Picture::default()).expect("a plan");
+    let view = |options| View::new(&scene, &plan, &camera, &options, &limits).expect("a view");
+    let (right, wide) = (view(options), view(ViewOptions { size: [9, 6], ..options }));
+    let gpu = device.gpu.as_mut().expect("alive");
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let strange = ViewRenderer::new(gpu.host(), &right, vk::Format::R8_UINT, 1);
+    assert!(strange.err().expect("no format of pictures").to_string().contains("picture: format"));
+    let mut frame = gpu.frame(plan.clone(), &[scene.field.heights_m()]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let mut renderer = ViewRenderer::new(gpu.host(), &right, format, 1).expect("a renderer");
+    let (heights, radiance) = (frame.inputs()[0], frame.outputs()[0]);
+    // Never drawn into.
+    let picture = ImageArg { format, extent: [8, 6, 1], image: vk::Image::from_raw(1), ..radiance };
+    let inputs = ViewInputs { heights, radiance, environment: None, voids: None };
+    let outputs = ViewOutputs { picture, depth: None };
+    let small = |arg: ImageArg| ImageArg { extent: [8, 9, 1], ..arg };
+    let before = |arg: ImageArg| ImageArg {
+        before: ImageState { layout: vk::ImageLayout::UNDEFINED, ..arg.before },
+        ..arg
+    };
+    let after = |arg: ImageArg| ImageArg {
+        after: ImageState { layout: vk::ImageLayout::UNDEFINED, ..arg.after },
+        ..arg
+    };
+    let other = |arg: ImageArg| ImageArg { format: vk::Format::R8G8B8A8_UNORM, ..arg };
+    let read = |heights, radiance| ViewInputs { heights, radiance, ..inputs };
+    let drawn = |picture| ViewOutputs { picture, ..outputs };
+    let cases = [
+        (1, &right, inputs, outputs, "slot: found 1"),
+        (0, &wide, inputs, outputs, "view: found another shape"),
+        (0, &right, read(small(heights), radiance), outputs, "heights: extent"),
+        (0, &right, read(other(heights), radiance), outputs, "heights: format"),
+        (0, &right, read(before(heights), radiance), outputs, "heights: layout before"),
+        (0, &right, read(heights, small(radiance)), outputs, "radiance: extent"),
+        (0, &right, read(heights, heights), outputs, "radiance: found the image of heights"),
+        (0, &right, inputs, drawn(small(picture)), "picture: extent"),
+        (0, &right, inputs, drawn(other(picture)), "picture: format"),
+        (0, &right, inputs, drawn(after(picture)), "picture: layout after"),
+        (0, &right, inputs, ViewOutputs { depth: Some(picture), ..outputs }, "depth: format"),
+    ];
+    for (slot, view, inputs, outputs, says) in cases {
+        let refused = gpu
+            .run(|commands| renderer.record(commands, slot, (view, 1.0), &inputs, &outputs))
+            .expect_err(says);
+        assert!(refused.to_string().contains(says), "{refused} does not say {says}");
+    }
+    assert_eq!(renderer.timings(0), None);
+    renderer.destroy();
+    gpu.end(frame);
 }
