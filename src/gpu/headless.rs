@@ -76,12 +76,17 @@ fn make_device(
 ) -> Result<(ash::Device, u32)> {
     // SAFETY: the physical device is the instance's.
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical_device) };
-    let family = families.iter().position(|f| f.queue_flags.contains(vk::QueueFlags::COMPUTE));
+    let with = |flags| families.iter().position(|f| f.queue_flags.contains(flags));
+    // Graphics for views, where there are any.
+    let family = with(vk::QueueFlags::COMPUTE | vk::QueueFlags::GRAPHICS);
+    let family = family.or_else(|| with(vk::QueueFlags::COMPUTE));
     let queue_family = family.expect("the report found one") as u32;
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
     let mut needed = requirements();
+    // For views; every device of Vulkan 1.3 has it.
+    needed.features13 = needed.features13.dynamic_rendering(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_features(&needed.features)

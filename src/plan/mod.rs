@@ -26,6 +26,7 @@ pub(crate) mod sphere_sh;
 mod spheres;
 pub mod sweep;
 mod sweeping;
+mod view;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
@@ -43,6 +44,7 @@ pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
+pub use view::{View, ViewOptions, surface_error_m};
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]

@@ -227,7 +227,6 @@ fn lobes() {
 #[test]
 fn not_yet() {
     let folder = Folder::new();
-    each(&[PLAN, RENDER, HORIZON], &folder, &[("--camera 1,2", 2, &["--camera", "not yet"])]);
     refused(
         &folder,
         &[

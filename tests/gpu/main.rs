@@ -38,6 +38,7 @@ mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
+mod view;
 mod walks;
 
 use std::sync::{Mutex, MutexGuard};
