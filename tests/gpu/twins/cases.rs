@@ -536,6 +536,7 @@ pub(super) fn nodes() -> Vec<Case> {
     vec![
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
         case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
     ]
