@@ -13,7 +13,7 @@ use crate::passes::{
     bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, height_cells,
     pyramid_march, shade_expand, shade_reduce, sky_shade,
 };
-use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene, Surface};
+use crate::scene::{Border, BounceEngine, Bounces, Levels, Quality, Scene, Surface};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -263,6 +263,8 @@ fn walk(
                 edited: None,
             };
             let (border, cell_m) = field;
+            // Where nothing is met there is no ground to share.
+            let border = if border == Border::Plane { Border::Open } else { border };
             sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, &part, &images);
         }
         let swept = bounce_walk::Swept {

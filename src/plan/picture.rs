@@ -160,6 +160,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     }
     let mut used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
+    if bouncing.is_some() {
+        used.push(("bounce_cutoff".into(), quality.bounces.cutoff.to_string()));
+    }
     let of_bounces = bouncing.iter().flat_map(Bouncing::used);
     let more: Vec<_> = of_bounces.filter(|(name, _)| used.iter().all(|u| u.0 != *name)).collect();
     used.extend(more);

@@ -61,7 +61,7 @@ impl<'a> Shining<'a> {
         for (i, _) in dark {
             notes.push(format!("light {} dropped: its radiance is 0", i + 1));
         }
-        let spheres = Spheres::of(field, balls, quality.light_cutoff, notes);
+        let spheres = Spheres::of(field, balls, quality.light_cutoff, notes)?;
         let gloss = surface.phong.filter(|p| p.scale > 0.0);
         if surface.phong.is_some() && gloss.is_none() {
             notes.push("lobe dropped: its scale is 0".into());

@@ -114,7 +114,7 @@ fn lights() {
         &[PLAN, RENDER],
         &folder,
         &[
-            ("--sky -1", 2, &["--sky: found [-1.0", "0 or more"]),
+            ("--sky -1", 2, &["--sky: found [-1.0", "0 to 1e36"]),
             ("--sky nan", 2, &["--sky: found [NaN"]),
             ("--sky inf", 2, &["--sky: found [inf"]),
             ("--sky 1e39", 2, &["--sky: found [inf"]),
