@@ -9,6 +9,7 @@ mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;
+mod debugger;
 mod edits;
 mod embedding;
 mod extremes;
