@@ -21,6 +21,9 @@ const SNAP: f64 = 0.5 / 16.0;
 /// Parts of the picture that a vertex is off by before that: a few roundings of numbers about as large as the picture.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
+/// Radiance, and distance, infinite where there is no ground.
+type Truth = ([f64; 3], f64);
+
 struct Shot {
     scene: Scene,
     camera: Camera,
@@ -62,7 +65,7 @@ impl Shot {
     }
 
     /// Radiance and distance at a place of the picture, in f64.
-    fn truth(&self, pixel: [f64; 2]) -> ([f64; 3], f64) {
+    fn truth(&self, pixel: [f64; 2]) -> Truth {
         match self.met(pixel) {
             Some(met) => (colour(&self.scene.field, &self.lit, &met), met.distance_m),
             None => {
@@ -84,7 +87,7 @@ impl Shot {
         for i in 0..self.seen.radiance.len() {
             let at = [i % width as usize, i / width as usize].map(|v| v as f64 + 0.5);
             let around = [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|x| [x * away, y * away]));
-            let truths: Vec<([f64; 3], f64)> =
+            let truths: Vec<Truth> =
                 around.iter().flatten().map(|d| self.truth([at[0] + d[0], at[1] + d[1]])).collect();
             let met = truths.iter().filter(|t| t.1.is_finite()).count();
             if met != 0 && met != truths.len() {
@@ -94,7 +97,7 @@ impl Shot {
             let got = f64::from(self.seen.distances_m[i]);
             assert_eq!(got.is_finite(), met > 0, "pixel {at:?}: {got} for {truths:?}");
             let edge = f64::from(width.max(height));
-            let range = |of: &dyn Fn(&([f64; 3], f64)) -> f64| {
+            let range = |of: &dyn Fn(&Truth) -> f64| {
                 let low = truths.iter().map(of).fold(f64::INFINITY, f64::min);
                 let high = truths.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
                 (low, high, (high - low) / away)
