@@ -15,10 +15,13 @@ mod extremes;
 mod flight;
 mod forms;
 mod gloss;
+mod glossy;
 mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+#[path = "../naive/mod.rs"]
+mod naive;
 mod pits;
 mod pruned;
 mod pyramid;

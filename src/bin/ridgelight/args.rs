@@ -24,8 +24,8 @@ pub use quality::{
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
-pub use values::albedo_colour;
 use values::bytes;
+pub use values::{PhongArg, albedo_colour};
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
