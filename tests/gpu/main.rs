@@ -40,6 +40,7 @@ mod spheres;
 mod subsampled;
 mod twins;
 mod view;
+mod view_flight;
 mod walks;
 
 use std::sync::{Mutex, MutexGuard};

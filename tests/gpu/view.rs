@@ -21,7 +21,7 @@ const SNAP: f64 = 0.5 / 16.0;
 /// Parts of the picture that a vertex is off by before that: a few roundings of numbers about as large as the picture.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
-/// Radiance, and the distance to the ground.
+/// Radiance, and distance, infinite where there is no ground.
 type Truth = ([f64; 3], f64);
 
 struct Shot {
