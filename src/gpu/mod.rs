@@ -11,8 +11,10 @@ mod pipelines;
 mod read;
 mod renderer;
 mod requirements;
+mod screen;
 pub mod shaders;
 mod specialise;
+mod surface;
 mod validation;
 
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
@@ -22,6 +24,7 @@ pub use instance::{choose, devices};
 pub use lend::Lent;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
+pub use screen::{Panel, Screen, Shot, Shown};
 
 use ash::vk;
 

@@ -8,6 +8,7 @@ mod quality;
 mod reference;
 mod scene;
 mod values;
+mod view;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -24,8 +25,9 @@ pub use quality::{
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
-pub use values::albedo_colour;
 use values::bytes;
+pub use values::{albedo_colour, sun};
+pub use view::ViewArgs;
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
@@ -76,6 +78,12 @@ impl Cli {
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
+            Command::View(args) => {
+                if let Some((_, matches)) = matches.subcommand() {
+                    args.remember(matches);
+                }
+                Some(&mut args.quality)
+            }
             _ => None,
         };
         if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
@@ -105,9 +113,8 @@ pub enum Command {
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),
-    /// A window (not yet)
-    #[command(hide = true)]
-    View(NotYet),
+    /// A window: look around, move the sun, try methods
+    View(ViewArgs),
 }
 
 #[derive(Args)]
