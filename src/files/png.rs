@@ -263,6 +263,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn steps_are_where_codes_change() {
+        for exposure in [1.0, 0.37, 1e-3, 250.0] {
+            let tone = Tone { exposure };
+            let steps = tone.steps();
+            assert_eq!(steps[0], 0.0);
+            for (code, step) in steps.iter().enumerate().skip(1) {
+                assert_eq!(usize::from(tone.code(*step)), code, "{exposure}");
+                assert_eq!(usize::from(tone.code(step.next_down())), code - 1, "{exposure}");
+            }
+        }
+        // No radiance has a code above 0, but at the least exposure infinity has every.
+        assert!(Tone { exposure: 0.0 }.steps()[1..].iter().all(|s| s.is_nan()));
+        assert!(Tone { exposure: 1e-45 }.steps()[1..].iter().all(|s| s.is_infinite()));
+    }
+
+    #[test]
     fn every_code_survives_its_own_decoding() {
         for code in 0..=255_u8 {
             let light = decoded(f64::from(code) / 255.0) as f32;

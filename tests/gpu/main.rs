@@ -18,6 +18,7 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+mod map;
 mod pits;
 mod pruned;
 mod pyramid;

@@ -58,7 +58,9 @@ impl Asked {
 }
 
 fn parsed(text: &str) -> Option<Vec<Value>> {
-    let number = |t: &str| Some(Value::from(t.trim().parse::<f64>().ok()?));
+    // As it was written, where JSON writes it so.
+    let kept = |t: &str| Some(Value::Number(serde_json::from_str(t).ok()?));
+    let number = |t: &str| kept(t.trim()).or_else(|| Some(t.trim().parse::<f64>().ok()?.into()));
     text.split(',').map(number).collect()
 }
 
