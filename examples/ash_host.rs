@@ -56,11 +56,14 @@ use ridgelight::scene::{HeightField, Lights, Sun, Surface};
 
 type Any<T> = Result<T, Box<dyn std::error::Error>>;
 
-const ROWS: usize = 48;
-const COLS: usize = 64;
+/// Rows of the scene.
+pub const ROWS: usize = 48;
+/// Its columns.
+pub const COLS: usize = 64;
 const EXTENT: vk::Extent3D = vk::Extent3D { width: COLS as u32, height: ROWS as u32, depth: 1 };
 
-fn scene() -> ridgelight::Result<Scene> {
+/// Heights of small whole numbers under a sky and a sun in the east.
+pub fn scene() -> ridgelight::Result<Scene> {
     let height = |i: usize| ((i / COLS * 31 + i % COLS * 17) % 7) as f64 - 3.0;
     let heights: Vec<f64> = (0..ROWS * COLS).map(height).collect();
     let field = HeightField::new(ROWS, COLS, &heights, [1.0; 2], None)?;
@@ -235,7 +238,7 @@ pub fn lit() -> Any<Vec<f32>> {
     lit
 }
 
-pub fn main() -> Any<()> {
+fn main() -> Any<()> {
     let lit = lit()?;
     println!("{} samples, the first is lit by {}", lit.len(), lit[0]);
     Ok(())

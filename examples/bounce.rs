@@ -1,21 +1,32 @@
 //! How far each engine of bounces is from the truth, and what it costs.
 //!
-//! `cargo run --release --example bounce -- [FOLDER] [--side N] [--spp N] [--rim N]`
+//! `cargo run --release --example bounce -- [FOLDER] [--side N] [--spp N] [--rim N] [-o FILE.svg]`
 //!
 //! First spherical pits, their rim N (30) cells from the middle, beside their closed form: RMSE over the radiance, at
 //! samples up to half of the rim's distance. Then the middle N² (64) samples of real fields under environments, for
-//! two albedos, one and three bounces, beside N (1024) light paths a sample: what is bounced alone, and the whole.
+//! two albedos, one and three bounces, beside N (4096) light paths a sample: what is bounced alone, and the whole; and
+//! three bounces of albedo 0.8 under each field's first environment by azimuths, as FILE.svg draws them.
 //! FOLDER has `height/` and `env/`; without it, the bundled mountain and sky. Milliseconds are those of the passes
 //! for bounces, sweeps included.
+//!
+//! `… -- table [--side N] [--samples K]` the paper's table 1 (Nowrouzezahrai & Snyder 2009): a frame of N² (512)
+//! samples, 2× sub-sampled, with one, two and three bounces over one without; and what sub-sampling takes off.
 
-use std::path::{Path, PathBuf};
+#[path = "bounce/nodes.rs"]
+mod nodes;
+#[path = "soft/plot.rs"]
+mod plot;
+#[path = "bounce/real.rs"]
+mod real;
+#[path = "bounce/table.rs"]
+mod table;
 
-use ridgelight::files::{HeightOptions, read_environment, read_heights};
-use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
+use std::path::PathBuf;
+
+use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
+use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, Bounces, Environment, HeightField, Lights, Quality, Scene,
-    Surface,
+    Albedo, Border, BounceEngine, Bounces, HeightField, Lights, Quality, Scene, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -23,14 +34,25 @@ const ENGINES: [BounceEngine; 3] =
     [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
 
 struct Asked {
+    is_table: bool,
     folder: Option<PathBuf>,
-    side: usize,
+    side: Option<usize>,
+    samples: usize,
     paths: u32,
     rim: u32,
+    output: Option<PathBuf>,
 }
 
 fn asked() -> Result<Asked> {
-    let mut asked = Asked { folder: None, side: 64, paths: 1024, rim: 30 };
+    let mut asked = Asked {
+        is_table: false,
+        folder: None,
+        side: None,
+        samples: 11,
+        paths: 4096,
+        rim: 30,
+        output: None,
+    };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut whole = || {
@@ -39,9 +61,12 @@ fn asked() -> Result<Asked> {
             number.ok_or_else(|| Error::setting(&arg, text, "a whole number, 2 or more"))
         };
         match arg.as_str() {
-            "--side" => asked.side = whole()? as usize,
+            "table" => asked.is_table = true,
+            "--side" => asked.side = Some(whole()? as usize),
+            "--samples" => asked.samples = whole()? as usize,
             "--spp" => asked.paths = whole()?,
             "--rim" => asked.rim = whole()?,
+            "-o" => asked.output = args.next().map(PathBuf::from),
             _ => asked.folder = Some(arg.into()),
         }
     }
@@ -58,16 +83,15 @@ struct Drawn {
     ms: f64,
 }
 
-fn colours(pixels: &ridgelight::gpu::Pixels) -> Colours {
+fn colours(pixels: &Pixels) -> Colours {
     let channel = |t: &[f32], c: usize| f64::from(t[c.min(t.len() - 1)]);
     pixels.values.chunks_exact(pixels.channels).map(|t| [0, 1, 2].map(|c| channel(t, c))).collect()
 }
 
 /// Drawn twice: the first draw warms up.
-fn drawn(gpu: &mut Headless, scene: &Scene, bounces: Bounces) -> Result<Drawn> {
-    let quality = Quality { azimuths: bounces.azimuths, bounces, ..Quality::default() };
+fn drawn(gpu: &mut Headless, scene: &Scene, quality: &Quality) -> Result<Drawn> {
     let wanted = Picture { light_layers: true, ..Picture::default() };
-    let plan = plan::picture(scene, &quality, &gpu.report().limits, wanted)?;
+    let plan = plan::picture(scene, quality, &gpu.report().limits, wanted)?;
     let layers: Vec<String> = plan.outputs().map(|(_, r)| r.name.clone()).collect();
     let first =
         plan.passes.iter().rposition(|p| p.part.starts_with("env") || p.part.starts_with("sky"));
@@ -89,20 +113,9 @@ fn drawn(gpu: &mut Headless, scene: &Scene, bounces: Bounces) -> Result<Drawn> {
     })
 }
 
-/// Light paths' mean radiance, and its standard error.
-fn traced(gpu: &mut Headless, scene: &Scene, bounces: u32, paths: u32) -> Result<[Colours; 2]> {
-    let plan = plan::reference(scene, bounces, 1, &gpu.report().limits)?;
-    let contents = plan::reference_inputs(scene);
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let passes = plan.passes.iter().enumerate();
-    let bands: Vec<usize> = passes.filter(|(_, p)| p.name() == "path_trace").map(|b| b.0).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        for _ in 1..paths.div_ceil(REFERENCE_BATCH).max(2) {
-            gpu.draw_passes(frame, &bands)?;
-        }
-        Ok([colours(&gpu.pixels(frame, 0)?), colours(&gpu.pixels(frame, 1)?)])
-    })
+/// As many azimuths of direct light as of bounces.
+fn quality(bounces: Bounces) -> Quality {
+    Quality { azimuths: bounces.azimuths, bounces, ..Quality::default() }
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -118,10 +131,6 @@ fn mean(all: &Colours) -> f64 {
 fn off(found: &Colours, truth: &Colours) -> f64 {
     let pairs = found.as_flattened().iter().zip(truth.as_flattened());
     100.0 * rms(pairs.map(|(a, b)| a - b)) / mean(truth)
-}
-
-fn less(a: &Colours, b: &Colours) -> Colours {
-    a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect()
 }
 
 /// The spherical pit of half-angle `alpha`, its rim so many cells from the middle of a field that ends two beyond.
@@ -163,7 +172,7 @@ fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
             for engine in ENGINES {
                 let bounces =
                     Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
-                let whole = drawn(gpu, &scene, bounces)?.whole;
+                let whole = drawn(gpu, &scene, &quality(bounces))?.whole;
                 let middle = (side / 2) as f64;
                 let inner = whole.iter().enumerate().filter(|(i, _)| {
                     let [r, c] = [i / side, i % side].map(|n| n as f64 - middle);
@@ -188,88 +197,19 @@ fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
     HeightField::new(rows, cols, &heights, field.cell_m(), None)
 }
 
-type Named<T> = Vec<(&'static str, T)>;
-
-fn inputs(folder: Option<&Path>, side: usize) -> Result<(Named<HeightField>, Named<Environment>)> {
-    let plain = HeightOptions::default();
-    let washington = HeightOptions { cell_m: Some([66.0, 92.6]), ..plain };
-    let Some(folder) = folder else {
-        let mountain = read_heights(Path::new("assets/mt_washington_256.png"), &washington)?;
-        let sky = read_environment(Path::new("assets/sky_512x256.hdr"), 0.0)?;
-        return Ok((vec![("Mt Washington", middle(&mountain, side)?)], vec![("sky", sky)]));
-    };
-    let rainier = HeightOptions { cell_m: Some([64.0, 92.6]), nodata: Some(-32768.0), ..plain };
-    // 80 cells from black to white.
-    let moss = HeightOptions { z_scale: 80.0 / 65535.0, cell_m: Some([1.0; 2]), ..plain };
-    let fields = [
-        ("Mt Washington", "mt_washington_256.png", washington),
-        ("White Mountains", "N44W072.hgt", plain),
-        ("Mt Rainier", "mt_rainier_90m.tif", rainier),
-        ("moss", "Moss001_1K_Displacement.png", moss),
-    ];
-    let fields = fields.into_iter().map(|(name, file, options)| {
-        let field = read_heights(&folder.join("height").join(file), &options)?;
-        Ok((name, middle(&field, side)?))
-    });
-    let environments = [("sky", "sky_512x256.hdr"), ("room", "lab.hdr")];
-    let environments = environments
-        .into_iter()
-        .map(|(name, file)| Ok((name, read_environment(&folder.join("env").join(file), 0.0)?)));
-    Ok((fields.collect::<Result<_>>()?, environments.collect::<Result<_>>()?))
-}
-
-fn real(gpu: &mut Headless, asked: &Asked) -> Result<()> {
-    let (fields, environments) = inputs(asked.folder.as_deref(), asked.side)?;
-    let (side, paths) = (asked.side, asked.paths);
-    println!(
-        "The middle {side}² samples, {paths} paths: RMSE over the mean, %; noise: the paths' own, at most, as those without bounces begin alike\n"
-    );
-    println!(
-        "| field | light | albedo | bounces | engine | bounced | noise | whole | noise | ms | over brute's |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for ((name, field), (light, environment)) in
-        fields.iter().flat_map(|f| environments.iter().map(move |e| (f, e)))
-    {
-        for albedo in [0.3_f32, 0.8] {
-            let lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
-            let albedo_of = Albedo::Constant([albedo; 3]);
-            let surface = Surface { albedo: albedo_of, ..Surface::default() };
-            let scene = Scene { field: field.clone(), surface, lights };
-            let [direct, direct_error] = traced(gpu, &scene, 0, paths)?;
-            for count in [1, 3] {
-                let [whole, whole_error] = traced(gpu, &scene, count, paths)?;
-                let bounced = less(&whole, &direct);
-                let both = whole_error.as_flattened().iter().zip(direct_error.as_flattened());
-                let noise = 100.0 * rms(both.map(|(a, b)| a.hypot(*b))) / mean(&bounced);
-                let whole_noise =
-                    100.0 * rms(whole_error.as_flattened().iter().copied()) / mean(&whole);
-                let mut slowest = None;
-                for engine in ENGINES {
-                    let bounces =
-                        Bounces { count, engine, azimuths: 64, cutoff: 0.0, ..Bounces::default() };
-                    let got = drawn(gpu, &scene, bounces)?;
-                    let over = got.ms / *slowest.get_or_insert(got.ms);
-                    println!(
-                        "| {name} | {light} | {albedo} | {count} | {} | {:.2} | {noise:.2} | {:.3} | {whole_noise:.3} | {:.1} | {over:.3} |",
-                        engine.name(),
-                        off(&got.bounced, &bounced),
-                        off(&got.whole, &whole),
-                        got.ms,
-                    );
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
 fn run() -> Result<()> {
     let asked = asked()?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     println!("{}, {}\n", gpu.report().name, gpu.report().driver);
+    if asked.is_table {
+        nodes::run(&mut gpu)?;
+        return table::run(&mut gpu, asked.side.unwrap_or(512), asked.samples);
+    }
     pits(&mut gpu, asked.rim)?;
-    real(&mut gpu, &asked)
+    let side = asked.side.unwrap_or(64);
+    let svg = real::run(&mut gpu, asked.folder.as_deref(), side, asked.paths)?;
+    let Some(path) = asked.output else { return Ok(()) };
+    std::fs::write(&path, svg).map_err(|source| Error::Io { path, source })
 }
 
 fn main() -> std::process::ExitCode {

@@ -40,7 +40,8 @@ fn text(cases: &[Case], methods: &[Method], found: &[Found]) -> String {
         out += "| method |";
         found.iter().for_each(|f| write!(out, " {}: worst | bound | share |", f.name).unwrap());
         writeln!(out, "\n|---|{}", "---|---|---|".repeat(found.len())).unwrap();
-        for (m, method) in methods.iter().enumerate() {
+        let of_case = |(_, m): &(usize, &Method)| m.about == case.about;
+        for (m, method) in methods.iter().enumerate().filter(of_case) {
             write!(out, "| {} |", method.name).unwrap();
             for device in found {
                 let row = device.rows.iter().find(|r| (r.case, r.method) == (c, m));

@@ -6,7 +6,7 @@
 // shade_table.
 // Reads and writes: bounce_sum (exit radiance for albedo 1; until the last azimuths not yet divided by its A,
 // what whole hemispheres would have given).
-// One invocation is one sample.
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -22,6 +22,8 @@ layout(constant_id = 3) const int SHADE_LEVELS = 0;
 layout(constant_id = 4) const bool GREY = false;
 // The cosine is exact; else three bands of it, and four Legendre coefficients a slice.
 layout(constant_id = 5) const bool IS_PLANE = true;
+// Samples from node to node: 1, 2 or 4.
+layout(constant_id = 6) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
 layout(binding = 1) uniform texture2D height_levels;
@@ -56,6 +58,7 @@ layout(push_constant) uniform BounceGatherPush {
 #include "shared/cosine.glsl"
 #include "shared/spline.glsl"
 #include "shared/shade.glsl"
+#include "shared/nodes.glsl"
 
 // The march: whole steps along columns or rows, straight across the other axis.
 ivec2 here;
@@ -251,8 +254,9 @@ vec4 three_bands() {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    bool exists = at.x < cols && at.y < rows;
-    here = min(at, ivec2(cols, rows) - 1);
+    ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
+    bool exists = at.x < nodes.x && at.y < nodes.y;
+    here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     // On its own sample either axis' grid line is the same.

@@ -3,7 +3,7 @@
 // and its radiance where the weighted mean of its distances lies.
 // Reads: cells, maxima, ground, exit_radiance. Reads and writes: bounce_sum (exit radiance for albedo 1; until
 // the last azimuths not yet divided by its A, what whole hemispheres would have given).
-// One invocation is one sample.
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -20,6 +20,8 @@ layout(constant_id = 2) const bool THIN_COLS = false;
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 // Radiance of one channel.
 layout(constant_id = 4) const bool GREY = false;
+// Samples from node to node: 1, 2 or 4.
+layout(constant_id = 5) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -42,6 +44,7 @@ layout(push_constant) uniform BounceMarchPush {
 };
 
 #include "shared/walk.glsl"
+#include "shared/nodes.glsl"
 
 // The slice.
 Facing facing;
@@ -165,8 +168,9 @@ void march(Ray ray, bool going) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    bool exists = at.x < cols && at.y < rows;
-    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
+    bool exists = at.x < nodes.x && at.y < nodes.y;
+    ivec2 here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
     vec4 own = texelFetch(ground, here, 0);
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     bool is_line = THIN_ROWS || THIN_COLS;

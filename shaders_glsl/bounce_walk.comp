@@ -3,8 +3,9 @@
 // radiance and weighed in closed form. What a swept line met at its samples is a hull tree of it
 // (Timonen 2012): all between a sample and what it meets lies below the straight line between the two.
 // Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey). Reads and writes: bounce_sum (exit
-// radiance for albedo 1; until the last dispatch not yet divided by its A, what whole hemispheres would give).
-// One invocation is one sample.
+// radiance for albedo 1; until the last dispatch not yet divided by its A, what whole hemispheres would give). Writes:
+// casting_sets.
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -17,6 +18,13 @@ layout(constant_id = 1) const uint BORDER = 0u;
 layout(constant_id = 2) const bool MARCHES_ROWS = false;
 // Radiance of one channel.
 layout(constant_id = 3) const bool GREY = false;
+// Samples from node to node: 1, 2 or 4.
+layout(constant_id = 4) const int NODE_STRIDE = 1;
+// Stretches that are kept of an azimuth, for later bounces.
+layout(constant_id = 5) const int CAST_SLOTS = 0;
+// How much farther a kept stretch ends than it begins, at most: about as wide as azimuths are apart. Measured on the
+// bundled mountain, of 1.25, 1.5 and 2.
+const float CAST_GROWTH = 1.5;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -25,10 +33,13 @@ layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
 layout(binding = 3, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 4, r32f) uniform readonly image2D exit_grey;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
+layout(binding = 6, rg32ui) uniform writeonly uimage2DArray casting_sets;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
 #include "shared/quad.glsl"
+#include "shared/nodes.glsl"
+#include "shared/casting_set.glsl"
 
 layout(push_constant) uniform BounceWalkPush {
     int cols;
@@ -40,15 +51,18 @@ layout(push_constant) uniform BounceWalkPush {
     uint azimuth_count;
     uint clears;  // 1 in the first dispatch of a bounce
     uint is_last; // 1 in the last
+    uint begin;   // of the bounces' azimuths
 };
 
 // The sample, in the lanes and steps of the azimuth that is walked.
 Azimuth azimuth;
+uint azimuth_index;
 int lanes;
 int steps;
 int own_lane;
 int own_step;
 float own_height;
+ivec2 own_node;
 
 // A place of the sample's own line: two lanes and how far it lies between them.
 struct Place {
@@ -171,11 +185,53 @@ vec2 passed;
 float reached;
 vec3 thrown;
 
-void add(float slope, vec3 light) {
-    vec2 here = moments_above(slope);
-    thrown += dot(faces, passed - here) * light;
-    passed = here;
-    reached = slope;
+void throw_light(vec2 opened, vec3 light) {
+    thrown += dot(faces, opened) * light;
+}
+
+// The casting set so far: how many slots are begun; of the last one's stretches, where they begin, their weight, and
+// that times their distance.
+int cast_count;
+float cast_begin;
+float cast_weight;
+float cast_moment;
+
+void keep_slot(int slot, uvec2 kept) {
+    int layer = int(azimuth_index - begin) * CAST_SLOTS + slot;
+    imageStore(casting_sets, ivec3(own_node, layer), uvec4(kept, 0u, 0u));
+}
+
+// The last one, at the mean of its stretches.
+void keep_cast() {
+    float mean = cast_moment / max(cast_weight, 1e-30);
+    float distance = mix(cast_begin, mean, cast_weight > 0.0);
+    Place p = place_at(int(distance + 0.5));
+    ivec2 place = texel_at(mix(p.lane, p.next, p.t >= 0.5), p.march);
+    keep_slot(cast_count - 1, cast_of(place, cast_weight));
+}
+
+// A stretch, with the middle of what is seen of it. Those that go no farther than CAST_GROWTH of where the first of
+// them begins are kept as one, and so are all that come when no slot is left.
+void take_cast(float from, float middle, float to, vec2 opened, bool on) {
+    bool goes_on = cast_count > 0 && (to <= CAST_GROWTH * cast_begin || cast_count == CAST_SLOTS);
+    bool begins = on && !goes_on;
+    if (begins && cast_count > 0) {
+        keep_cast();
+    }
+    float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
+    cast_begin = mix(cast_begin, from, begins);
+    cast_weight = mix(cast_weight, 0.0, begins) + weight;
+    cast_moment = mix(cast_moment, 0.0, begins) + weight * middle;
+    cast_count += int(begins);
+}
+
+void end_casts() {
+    if (cast_count > 0) {
+        keep_cast();
+    }
+    if (cast_count < CAST_SLOTS) {
+        keep_slot(cast_count, uvec2(CASTS_END, 0u));
+    }
 }
 
 // What is thrown along the azimuth, on a surface with this normal that rises by `plane` along it; and what
@@ -193,6 +249,10 @@ vec4 walked(vec3 normal, float plane) {
     passed = moments_above(plane);
     float whole = dot(faces, passed);
     thrown = vec3(0.0);
+    cast_count = 0;
+    cast_begin = 0.0;
+    cast_weight = 0.0;
+    cast_moment = 0.0;
     reached = plane;
     // The triangle that holds the sample: what leads into it meets it at once. Its end is the cell's diagonal,
     // where that is crossed, else the first step.
@@ -204,9 +264,15 @@ vec4 walked(vec3 normal, float plane) {
     precise float split_slope = rise / (u * azimuth.step_m);
     vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
     vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
-    if (walking && split && split_slope > reached) {
-        add(split_slope, own_light);
+    bool sees_split = walking && split && split_slope > reached;
+    vec2 split_moments = moments_above(split_slope);
+    vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(sees_split));
+    throw_light(split_opened, own_light);
+    if (CAST_SLOTS > 0) {
+        take_cast(0.0, 0.0, u, split_opened, sees_split);
     }
+    passed = mix(passed, split_moments, bvec2(sees_split));
+    reached = sees_split ? split_slope : reached;
     // Where the next piece begins: its distance in steps, slope, and radiance, if that is known.
     int at = 0;
     float from = split ? u : 0.0;
@@ -241,10 +307,16 @@ vec4 walked(vec3 normal, float plane) {
                 vec3 here = light_at(at);
                 near = mix(here, light, bvec3(is_known));
             }
-            vec3 begins = mix(near, far, under / max(under + over, 1e-30));
+            float hidden = under / max(under + over, 1e-30);
+            vec3 begins = mix(near, far, hidden);
             vec2 now = moments_above(to_slope);
-            vec3 more = dot(faces, passed - now) * 0.5 * (begins + far);
-            thrown += mix(vec3(0.0), more, bvec3(sees));
+            vec2 opened = mix(vec2(0.0), passed - now, bvec2(sees));
+            throw_light(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(sees)));
+            if (CAST_SLOTS > 0) {
+                float begin_of = mix(from, float(to), hidden);
+                float middle = mix(0.5 * (begin_of + float(to)), 0.0, is_own);
+                take_cast(begin_of, middle, float(to), opened, sees);
+            }
             passed = mix(passed, now, bvec2(sees));
             light = mix(light, far, bvec3(sees));
             reached = sees ? to_slope : reached;
@@ -255,17 +327,23 @@ vec4 walked(vec3 normal, float plane) {
         slope = walking ? to_slope : slope;
         walking = walking && at < limit;
     }
+    if (CAST_SLOTS > 0) {
+        end_casts();
+    }
     return vec4(thrown, whole);
 }
 
 void main() {
     lanes = MARCHES_ROWS ? cols : rows;
     steps = MARCHES_ROWS ? rows : cols;
-    int march = int(gl_GlobalInvocationID.x);
-    int lane = int(gl_GlobalInvocationID.y);
-    if (lane >= lanes || march >= steps) {
+    int along = int(gl_GlobalInvocationID.x);
+    int across = int(gl_GlobalInvocationID.y);
+    if (across >= node_count(lanes, NODE_STRIDE) || along >= node_count(steps, NODE_STRIDE)) {
         return;
     }
+    own_node = texel_at(across, along);
+    int lane = node_place(across, lanes, NODE_STRIDE);
+    int march = node_place(along, steps, NODE_STRIDE);
     Quad q = quad_at(lane & ~3, march, lanes, steps);
     vec4 easts;
     vec4 norths;
@@ -274,18 +352,19 @@ void main() {
     float north = norths[lane & 3];
     vec3 normal = vec3(-east, -north, 1.0) * inversesqrt(1.0 + east * east + north * north);
     own_height = height_of(lane, march);
-    ivec2 to = texel_at(lane, march);
     vec4 sum = vec4(0.0);
     if (clears == 0u) {
-        sum = imageLoad(bounce_sum, to);
+        sum = imageLoad(bounce_sum, own_node);
     }
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         azimuth = azimuth_at(azimuths, k);
+        azimuth_index = k;
         own_lane = lane_position(azimuth, lane, lanes);
         own_step = march_position(azimuth, march, steps);
         sum += walked(normal, east * azimuth.cos_phi + north * azimuth.sin_phi);
     }
-    // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is.
-    vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), 1.0);
-    imageStore(bounce_sum, to, mix(sum, light, bvec4(is_last != 0u)));
+    // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is. Later bounces of
+    // casting sets divide by the same.
+    vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), sum.a);
+    imageStore(bounce_sum, own_node, mix(sum, light, bvec4(is_last != 0u)));
 }

@@ -35,6 +35,7 @@ layout(push_constant) uniform ShShadePush {
 
 #include "shared/quad.glsl"
 #include "shared/nodes.glsl"
+#include "shared/alike.glsl"
 
 vec4 harmonics[36];
 
@@ -53,22 +54,6 @@ vec4 hat(vec4 x, int before, int here, int after) {
     return clamp(min(rising, falling), 0.0, 1.0);
 }
 
-// Light bleeds over ridges from nodes that lie off a sample's plane, or it off theirs. Where the two are off
-// by a quarter of their distance in all, a node counts half. Fitted: of 0.05, 0.1, 0.25, 0.5 and 1 on two
-// elevation models the best or within 2 % of it; bilinear weights alone err by 15 to 31 % more. To find it
-// again: change it here and in the twin, and run `examples/soft converge`.
-const float OFF_PLANE = 0.25;
-
-// What a node counts for samples (`h`, `east`, `north`) that see it so far towards east and north.
-vec4 alike(vec4 node, vec4 h, vec4 east, vec4 north, vec4 east_m, vec4 north_m) {
-    vec4 rise = node.x - h;
-    vec4 off = abs(rise - (east * east_m + north * north_m)) + abs(rise - (node.y * east_m + node.z * north_m));
-    // A sample is no farther off its own node than 0.
-    float cell_m = min(cell_x_m, cell_y_m);
-    vec4 distance2 = max(east_m * east_m + north_m * north_m, vec4(cell_m * cell_m));
-    return 1.0 / (1.0 + off * off / (OFF_PLANE * OFF_PLANE * distance2));
-}
-
 void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     vec4 x = vec4(q.lane);
     int along = q.march / NODE_STRIDE;
@@ -77,6 +62,7 @@ void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     int march_before = node_place(along, steps, NODE_STRIDE);
     int march_after = node_place(along + 1, steps, NODE_STRIDE);
     float t = float(q.march - march_before) / float(max(march_after - march_before, 1));
+    float cell_m = min(cell_x_m, cell_y_m);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 2 * ACROSS; i++) {
         int across = q.lane.x / NODE_STRIDE + (i >> 1);
@@ -98,7 +84,7 @@ void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
         vec4 east_m = MARCHES_ROWS ? lane_m : march_m;
         vec4 north_m = MARCHES_ROWS ? march_m : lane_m;
         vec4 near = exists * weight * hat(x, before, here, after);
-        node_weights[i] = near * alike(node, q.here.four, east, north, east_m, north_m);
+        node_weights[i] = near * alike(node, q.here.four, east, north, east_m, north_m, cell_m);
         sum += node_weights[i];
     }
     for (int i = 0; i < 2 * ACROSS; i++) {

@@ -2,8 +2,6 @@
 //! windows, holds no more memory after many frames, and validation has nothing to say.
 #![cfg(all(feature = "window", target_os = "linux"))]
 
-mod common;
-
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -42,15 +40,16 @@ impl Drop for Display {
 struct Folder(tempfile::TempDir);
 
 impl Folder {
-    /// With a field of hills, 64 columns and 48 rows, as "hills.npy".
+    /// With a field of hills, 64 columns and 48 rows, as "hills.asc".
     fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         let height = |i: usize| {
             let (x, y) = ((i % 64) as f32, (i / 64) as f32);
             5.0 * (x / 6.0).sin() * (y / 5.0).cos() + (x * y / 40.0).sin()
         };
-        let bytes: Vec<u8> = (0..64 * 48).flat_map(|i| height(i).to_le_bytes()).collect();
-        folder.write("hills.npy", &common::npy("<f4", false, "(48, 64)", &bytes));
+        let heights: Vec<String> = (0..64 * 48).map(|i| height(i).to_string()).collect();
+        let text = format!("ncols 64 nrows 48 cellsize 1 {}", heights.join(" "));
+        folder.write("hills.asc", text.as_bytes());
         folder
     }
 
@@ -109,18 +108,18 @@ fn gpu_a_window_shows_what_render_writes() {
         key shift+right\nkey .\nkey b\nframes 2\nscreenshot second.png\nscene second.json\n\
         drag right 10,10 30,-20\nkey ,\nkey ,\nkey m\nkey m\nframes 1\nscreenshot third.png\n\
         scene third.json\nlose\nframes 1\nscreenshot fourth.png\n";
-    folder.view(&display, &format!("hills.npy {LIT} --size 64x48"), script);
-    folder.done(None, &format!("render hills.npy {LIT} -o first_r.png --quiet"));
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+    folder.done(None, &format!("render hills.asc {LIT} -o first_r.png --quiet"));
     assert_same(&folder, "first.png", "first_r.png");
     assert_same(&folder, "saved.png", "first_r.png");
     folder.done(None, "render --scene second.json -o second_r.png --quiet");
     let flags = "--sun 320,30 --sky 0.3 --azimuths 16 --bounces 1";
-    folder.done(None, &format!("render hills.npy {flags} -o second_f.png --quiet"));
+    folder.done(None, &format!("render hills.asc {flags} -o second_f.png --quiet"));
     assert_same(&folder, "second.png", "second_r.png");
     assert_same(&folder, "second.png", "second_f.png");
     folder.done(None, "render --scene third.json -o third_r.png --quiet");
     let flags = "--sun 335,35 --sky 0.3 --azimuths 4 --bounces 1 --method pyramid";
-    folder.done(None, &format!("render hills.npy {flags} -o third_f.png --quiet"));
+    folder.done(None, &format!("render hills.asc {flags} -o third_f.png --quiet"));
     assert_same(&folder, "third.png", "third_r.png");
     assert_same(&folder, "third.png", "third_f.png");
     // Another surface of the same window.
@@ -143,7 +142,7 @@ fn reported(line: &str) -> (u64, u64) {
 fn gpu_two_hundred_frames_hold_no_memory() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key w\nframes 60\nreport\nframes 200\nreport\n";
-    let out = folder.view(&display, &format!("hills.npy {LIT} --size 200x150"), script);
+    let out = folder.view(&display, &format!("hills.asc {LIT} --size 200x150"), script);
     let lines: Vec<&str> = out.lines().filter(|line| line.starts_with("frames ")).collect();
     let [before, after] = [lines[0], lines[1]].map(reported);
     assert_eq!(after.0 - before.0, 200, "{out}");
@@ -155,8 +154,8 @@ fn gpu_a_window_outlives_its_sizes() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "frames 2\nsize 301,203\nframes 2\nkey +\nkey left\nwheel -3 20,20\nsize 64,48\nkey home\n\
         key h\nkey h\nframes 1\nsize 1,1\nframes 2\nsize 64,48\nframes 1\nscreenshot last.png\n";
-    folder.view(&display, &format!("hills.npy {LIT}"), script);
-    folder.done(None, &format!("render hills.npy {LIT} -o render.png --quiet"));
+    folder.view(&display, &format!("hills.asc {LIT}"), script);
+    folder.done(None, &format!("render hills.asc {LIT} -o render.png --quiet"));
     assert_same(&folder, "last.png", "render.png");
 }
 
@@ -165,10 +164,10 @@ fn gpu_a_window_outlives_its_sizes() {
 fn gpu_keys_and_the_mouse_are_heard() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.write("script", b"frames 2\nwait 6\nscene heard.json\n");
-    let mut view = folder.command(&format!("view hills.npy {LIT} --size 300x200 --script script"));
+    let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200 --script script"));
     let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
     // Nobody manages windows here, so that nobody gives them the keyboard.
-    let act = "search --sync --name ridgelight windowfocus --sync sleep 0.5 mousemove 100 100 key period key m mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3";
+    let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3";
     let mut xdotool = Command::new("xdotool");
     let acted = xdotool.env("DISPLAY", &display.name).args(act.split(' ')).status();
     let ended = view.wait().unwrap();
@@ -195,8 +194,8 @@ fn refused(mut command: Command, says: &[&str]) {
 #[test]
 fn no_display_is_one_sentence() {
     let folder = Folder::new();
-    refused(folder.command("view hills.npy"), &["ridgelight: view: needs a display: "]);
-    let mut elsewhere = folder.command("view hills.npy");
+    refused(folder.command("view hills.asc"), &["ridgelight: view: needs a display: "]);
+    let mut elsewhere = folder.command("view hills.asc");
     elsewhere.env("DISPLAY", ":6553");
     refused(elsewhere, &["ridgelight: view: needs a display: "]);
 }
@@ -204,7 +203,7 @@ fn no_display_is_one_sentence() {
 #[test]
 fn a_window_without_a_driver_is_one_sentence() {
     let (folder, display) = (Folder::new(), Display::new());
-    let mut command = folder.command("view hills.npy");
+    let mut command = folder.command("view hills.asc");
     for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         command.env(name, Path::new("no-driver.json"));
     }

@@ -124,7 +124,6 @@ pub unsafe extern "C" fn ridgelight_record(
 ///
 /// # Safety
 /// As ridgelight_record; `rectangle` is null or points at one.
-#[expect(clippy::too_many_arguments, reason = "those of ridgelight_record, and one")]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ridgelight_record_edit(
     renderer: *mut RidgelightRenderer,

@@ -87,8 +87,10 @@ impl Seen {
                 (high - low, facing.abs() * cos)
             }
         };
-        let (radiance, spread) = (radiance(), [0.0; 3]);
-        self.casts.push(Cast { low_rad, high_rad, weight, facing, radiance, spread, distance });
+        let radiance = radiance();
+        let seen =
+            Cast { low_rad, high_rad, weight, facing, radiance, distance, ..Cast::default() };
+        self.casts.push(seen);
         self.top = high_rad;
     }
 }

@@ -4,6 +4,7 @@ use super::bounce::mean_distance_m;
 use super::light::{Receiver, normal};
 use super::oracle::Oracle;
 use super::shared::thrown::{Along, Cast, NEARLY_RAD, radiance};
+use crate::scene::Border;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Light of one more bounce at a sample, for albedo 1, from the exit radiance of all samples, in `azimuths` at the
@@ -44,6 +45,7 @@ pub fn stretches_along(
         let cast = |stretch: &super::profile::Stretch| {
             let from = oracle.corners(stretch.triangle).map(|[r, c]| exit[r * field.cols() + c]);
             let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
+            let [rise_m, steepest] = land_around(oracle, stretch.triangle, [row, col]);
             let of = |c: usize| from.map(|corner| corner[c]);
             let [low_rad, high_rad] = [stretch.low_rad, stretch.high_rad].map(|w| w.max(slice.low));
             Cast {
@@ -57,9 +59,43 @@ pub fn stretches_along(
                         - of(c).iter().fold(f64::MAX, |m, l| m.min(*l))
                 }),
                 distance: stretch.end_m(),
+                rise_m,
+                steepest,
             }
         };
         Along { azimuth_rad, low_rad: slice.low, whole, casts: casts.map(cast).collect() }
     };
     (0..azimuths).map(along).collect()
+}
+
+/// The largest rise from a sample to the corners of a triangle's cell and of those around it, and the steepest slope
+/// between neighbours there.
+fn land_around(oracle: &Oracle, triangle: usize, [row, col]: [usize; 2]) -> [f64; 2] {
+    let field = oracle.field();
+    let [[r, c], ..] = oracle.corners(triangle);
+    let [cell_x, cell_y] = field.cell_m();
+    let own = oracle.vertex(row as f64, col as f64);
+    let at = |down: usize, right: usize| {
+        let place = |i: usize, more: usize, n: usize| match oracle.border() {
+            Border::Periodic => (i + more + n - 1) % n,
+            Border::Plane | Border::Open => (i + more).saturating_sub(1).min(n - 1),
+        };
+        let (r, c) = (place(r, down, field.rows()), place(c, right, field.cols()));
+        oracle.vertex(r as f64, c as f64)
+    };
+    let (mut rise_m, mut steepest) = (0.0_f64, 0.0_f64);
+    for (down, right) in (0..16).map(|i| (i / 4, i % 4)) {
+        let here = at(down, right);
+        rise_m = rise_m.max((here - own).abs());
+        for (down, right, distance) in [
+            (down, right + 1, cell_x),
+            (down + 1, right, cell_y),
+            (down + 1, right + 1, cell_x.min(cell_y)),
+        ] {
+            if down < 4 && right < 4 {
+                steepest = steepest.max((at(down, right) - here).abs() / distance);
+            }
+        }
+    }
+    [rise_m, steepest]
 }

@@ -125,6 +125,7 @@ impl Seen {
             radiance: light.to_array(),
             spread: spread.abs().to_array(),
             distance: f64::from(steps),
+            ..Cast::default()
         });
         (self.passed, self.reached) = (here, reached);
     }

@@ -144,7 +144,7 @@ impl Default for Tone {
 
 impl Tone {
     /// The 8-bit code of a radiance. Negative is black, infinity white; NaN is the caller's to catch.
-    pub(crate) fn code(self, radiance: f32) -> u8 {
+    pub fn code(self, radiance: f32) -> u8 {
         let light = f64::from(radiance) * f64::from(self.exposure);
         (255.0 * encoded(light.clamp(0.0, 1.0))).round() as u8
     }

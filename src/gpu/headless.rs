@@ -96,6 +96,8 @@ fn make_device(
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
     let mut needed = requirements();
+    // For views; every device of Vulkan 1.3 has it.
+    needed.features13 = needed.features13.dynamic_rendering(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(extensions)

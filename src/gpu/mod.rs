@@ -6,6 +6,7 @@ mod frame;
 mod headless;
 mod instance;
 mod lend;
+mod look;
 mod memory;
 mod pipelines;
 mod read;
@@ -16,15 +17,18 @@ pub mod shaders;
 mod specialise;
 mod surface;
 mod validation;
+mod view;
 
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 pub use frame::{Frame, Pixels};
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
 pub use lend::Lent;
+pub use look::Seen;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
 pub use screen::{Panel, Screen, Shot, Shown};
+pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;
 

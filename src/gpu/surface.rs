@@ -102,7 +102,12 @@ pub(super) fn queue_family(
             shows.unwrap_or(false)
         })
     };
-    let with = families.iter().zip(0_u32..);
-    let mut with = with.filter(|(f, _)| f.queue_flags.contains(vk::QueueFlags::COMPUTE));
-    with.find(|(_, index)| shows(*index)).map(|(_, index)| index)
+    let with = |flags| {
+        let mut all = families.iter().zip(0_u32..);
+        let found = all.find(|(f, index)| f.queue_flags.contains(flags) && shows(*index));
+        found.map(|(_, index)| index)
+    };
+    // Graphics for views, where there are any.
+    let compute = vk::QueueFlags::COMPUTE;
+    with(compute | vk::QueueFlags::GRAPHICS).or_else(|| with(compute))
 }

@@ -11,6 +11,7 @@ mod light;
 
 use std::f64::consts::PI;
 
+use crate::cpu::bounce_shade::LEAST_SHARE;
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use light::{BallSeen, ShadeError};
 
@@ -120,6 +121,14 @@ pub fn twin_surface_slope(largest_m: f64, step_m: f64, [march, lane]: [i32; 2]) 
 /// by no more.
 pub fn twin_fused_slope(largest_m: f64, step_m: f64) -> f64 {
     128.0 * EPSILON * largest_m / step_m
+}
+
+/// `bounce_shade` from given shares and light, of the light's own magnitude.
+///
+/// What nodes are counted for errs as in `sh_shade`, above and below; a share by 2 ε of 1, of which it is
+/// [`LEAST_SHARE`] or more, twice; sums of four and a quotient, 16 ε.
+pub fn twin_bounce_shade(error: &ShadeError) -> f64 {
+    2.0 * error.node_weight() + (2.0 * 2.0 / LEAST_SHARE + 16.0) * EPSILON
 }
 
 /// Level of a height pyramid that `height_reduce` makes of a given one.

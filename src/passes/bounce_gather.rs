@@ -65,7 +65,7 @@ pub(crate) struct Pyramids {
     pub receiver: Receiver,
 }
 
-/// What every sample sees of the surface by its pyramids, in as many dispatches as its azimuths need.
+/// What every sample, or every node, sees of the surface by its pyramids, in as many dispatches as its azimuths need.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
@@ -75,13 +75,15 @@ pub(crate) fn plan(
     [heights, ground]: [ResourceId; 2],
 ) {
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let samples = u64::from(cols) * u64::from(rows);
+    let (nodes, sum) = bounce.found_at();
+    let [across, along] = nodes.size([cols, rows]);
+    let samples = u64::from(across) * u64::from(along);
     let is_stack = of.heights.stored == Levels::Stack;
     let mut bound = vec![
         ("heights", heights),
         ("ground", ground),
         ("exit_radiance", bounce.exit),
-        ("bounce_sum", bounce.sum),
+        ("bounce_sum", sum),
     ];
     match of.height_images {
         Some(pyramid_march::Images { stack: Some(stack), .. }) => {
@@ -122,7 +124,7 @@ pub(crate) fn plan(
                     Receiver::Lobe => "in Legendre coefficients and three bands of the cosine",
                 }
             ),
-            [cols.div_ceil(8), rows.div_ceil(8), 1],
+            [across.div_ceil(8), along.div_ceil(8), 1],
             &[
                 (0, u32::from(of.heights.periodic)),
                 (1, u32::from(is_stack)),
@@ -130,6 +132,7 @@ pub(crate) fn plan(
                 (3, of.shade.levels()),
                 (4, u32::from(bounce.grey)),
                 (5, u32::from(of.receiver == Receiver::Plane)),
+                (6, nodes.stride),
             ],
             &BounceGatherPush {
                 cols: cols as i32,

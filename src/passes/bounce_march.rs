@@ -22,7 +22,7 @@ same_layout!(
     last_azimuth = LAST_AZIMUTH,
 );
 
-/// What every sample sees of the surface, in as many dispatches as its azimuths need.
+/// What every sample, or every node, sees of the surface, in as many dispatches as its azimuths need.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
@@ -31,9 +31,10 @@ pub(crate) fn plan(
     bounce: &Bounce,
 ) {
     let field = &scene.field;
-    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let (nodes, sum) = bounce.found_at();
+    let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
-    let samples = u64::from(cols) * u64::from(rows);
+    let samples = u64::from(across) * u64::from(along);
     let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
         let last = azimuths.min(first + at_once);
@@ -46,13 +47,14 @@ pub(crate) fn plan(
             &shaders::BOUNCE_MARCH,
             &part,
             format!("{}, every stretch seen along {count} azimuths", bounce.why),
-            [cols.div_ceil(8), rows.div_ceil(8), 1],
+            [across.div_ceil(8), along.div_ceil(8), 1],
             &[
                 (0, scene.surface.border as u32),
                 (1, u32::from(thin_rows)),
                 (2, u32::from(thin_cols)),
                 (3, blocks.most_steps()),
                 (4, u32::from(bounce.grey)),
+                (5, nodes.stride),
             ],
             &BounceMarchPush {
                 land: LandPush::of(field, blocks),
@@ -65,7 +67,7 @@ pub(crate) fn plan(
                 ("maxima", blocks.images.maxima),
                 ("ground", blocks.images.ground),
                 ("exit_radiance", bounce.exit),
-                ("bounce_sum", bounce.sum),
+                ("bounce_sum", sum),
             ],
             samples * (3 * 16 + if bounce.grey { 4 } else { 16 }),
             samples * u64::from(count),

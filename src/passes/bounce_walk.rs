@@ -1,6 +1,6 @@
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Batch, Bounce, Builder, ResourceId};
+use crate::plan::{Batch, Bounce, Builder, CAST_SLOTS, ResourceId};
 use crate::scene::Border;
 
 #[repr(C)]
@@ -15,6 +15,7 @@ struct BounceWalkPush {
     azimuth_count: u32,
     clears: u32,
     is_last: u32,
+    begin: u32,
 }
 
 same_layout!(
@@ -29,6 +30,7 @@ same_layout!(
     azimuth_count = AZIMUTH_COUNT,
     clears = CLEARS,
     is_last = IS_LAST,
+    begin = BEGIN,
 );
 
 /// What a walk reads of the heights and of what a sweep left.
@@ -37,11 +39,12 @@ pub(crate) struct Swept {
     pub azimuths: ResourceId,
     pub occluders: ResourceId,
     pub line_shift: u32,
-    /// Whether the circle ends with the batch.
+    /// Where the circle begins, and whether it ends with the batch.
+    pub begin: u32,
     pub is_last: bool,
 }
 
-/// What every sample sees of the ground in the azimuths of a batch, in as many dispatches as its turns need.
+/// What every sample, or every node, sees of the ground in the azimuths of a batch, in as many dispatches as its turns need.
 pub(crate) fn plan(
     builder: &mut Builder,
     (border, cell_m): (Border, [f64; 2]),
@@ -53,6 +56,18 @@ pub(crate) fn plan(
     let [cols, rows] = axis.size();
     let at_once = (MOST_TURNS / (axis.steps + axis.warm_up + 1)).max(1);
     let all = batch.azimuths();
+    let (nodes, sum) = bounce.found_at();
+    let [along, across] = nodes.size([axis.steps, axis.lanes]);
+    let found = u64::from(along) * u64::from(across);
+    let casts = bounce.at_nodes.and_then(|at| at.casts);
+    let mut bound = vec![
+        ("lane_heights", swept.lane_heights),
+        ("azimuths", swept.azimuths),
+        ("occluders", swept.occluders),
+        (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
+        ("bounce_sum", sum),
+    ];
+    bound.extend(casts.map(|c| ("casting_sets", c)));
     for first in all.clone().step_by(at_once as usize) {
         let last = all.end.min(first + at_once);
         let part = match last - first == batch.count {
@@ -63,12 +78,14 @@ pub(crate) fn plan(
             &shaders::BOUNCE_WALK,
             &part,
             format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
-            [axis.steps.div_ceil(8), axis.lanes.div_ceil(8), 1],
+            [along.div_ceil(8), across.div_ceil(8), 1],
             &[
                 (0, swept.line_shift),
                 (1, border as u32),
                 (2, u32::from(axis.marches_rows)),
                 (3, u32::from(bounce.grey)),
+                (4, nodes.stride),
+                (5, if casts.is_some() { CAST_SLOTS } else { 0 }),
             ],
             &BounceWalkPush {
                 cols: cols as i32,
@@ -80,16 +97,11 @@ pub(crate) fn plan(
                 azimuth_count: last - first,
                 clears: u32::from(batch.is_first && first == all.start),
                 is_last: u32::from(swept.is_last && last == all.end),
+                begin: swept.begin,
             },
-            &[
-                ("lane_heights", swept.lane_heights),
-                ("azimuths", swept.azimuths),
-                ("occluders", swept.occluders),
-                (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
-                ("bounce_sum", bounce.sum),
-            ],
-            axis.samples() * (4 + 32 + u64::from(last - first) * 2),
-            axis.samples() * u64::from(last - first),
+            &bound,
+            found * (4 + 32 + u64::from(last - first) * 2),
+            found * u64::from(last - first),
         );
         pass.azimuths = first..last;
     }

@@ -2,7 +2,9 @@
 
 pub(crate) mod bounce_gather;
 pub(crate) mod bounce_march;
+pub(crate) mod bounce_shade;
 pub(crate) mod bounce_walk;
+pub(crate) mod cast_gather;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
@@ -20,12 +22,14 @@ pub(crate) mod light_matrix;
 pub(crate) mod light_resolve;
 pub(crate) mod map_draw;
 pub(crate) mod path_trace;
+pub(crate) mod picture_tone;
 pub(crate) mod pyramid_march;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
 pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
+pub(crate) mod sky_draw;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
@@ -33,6 +37,7 @@ pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
+pub(crate) mod terrain_draw;
 
 use crate::gpu::shaders::same_layout;
 use crate::plan::pyramid::Pyramid;

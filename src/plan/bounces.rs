@@ -4,14 +4,16 @@
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
 use super::blocks::Blocks;
+use super::bounce_nodes::BounceNodes;
 use super::pyramid::Pyramid;
+use super::sweep::Sweep;
 use super::sweeping::{Sweeping, part};
-use super::{Batch, Builder, Format, Owner, ResourceId};
+use super::{Batch, Builder, Format, Nodes, Owner, ResourceId};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_walk, height_cells, pyramid_march, shade_expand,
-    shade_reduce,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, height_cells,
+    pyramid_march, shade_expand, shade_reduce, sky_shade,
 };
-use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene};
+use crate::scene::{BounceEngine, Bounces, Levels, Quality, Scene, Surface};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -24,6 +26,18 @@ pub(crate) struct Bounce {
     pub grey: bool,
     /// To be written: exit radiance for albedo 1, R, G, B; the fourth channel is the engine's own.
     pub sum: ResourceId,
+    /// Where the engine finds what arrives, in place of every sample.
+    pub at_nodes: Option<BounceNodes>,
+}
+
+impl Bounce {
+    /// Where an engine finds what arrives, and what it writes there.
+    pub fn found_at(&self) -> (Nodes, ResourceId) {
+        match &self.at_nodes {
+            Some(at) => (at.nodes, at.sum),
+            None => (Nodes { stride: 1 }, self.sum),
+        }
+    }
 }
 
 /// The bounces of a picture, and what their passes read and write.
@@ -31,6 +45,7 @@ pub(super) struct Bouncing {
     azimuths: u32,
     grey: bool,
     sum: ResourceId,
+    at_nodes: Option<BounceNodes>,
     engine: Engine,
     /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
     /// into the picture alone.
@@ -44,6 +59,28 @@ enum Engine {
     Pyramid(bounce_gather::Pyramids),
 }
 
+/// The settings with the engine that the planner takes where it is to choose.
+pub(super) fn settled(
+    quality: &Quality,
+    surface: &Surface,
+    sweep: &Sweep,
+    notes: &mut Vec<String>,
+) -> Quality {
+    let albedo = f64::from(surface.albedo.largest());
+    if quality.bounces.engine != BounceEngine::Auto || quality.bounces.worth_drawing(albedo) == 0 {
+        return *quality;
+    }
+    let (engine, why) = match sweep.why_no_lines() {
+        None => (
+            BounceEngine::Sweep,
+            "the sweep's lines lead to what is seen, in a fraction of brute's time".to_owned(),
+        ),
+        Some(way) => (BounceEngine::Brute, format!("{way} has no lines to walk over")),
+    };
+    notes.push(format!("bounce engine {}: {why}", engine.name()));
+    Quality { bounces: Bounces { engine, ..quality.bounces }, ..*quality }
+}
+
 /// How many bounces are worth drawing.
 pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
     let albedo = f64::from(scene.surface.albedo.largest());
@@ -55,12 +92,12 @@ pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<St
 }
 
 impl Bouncing {
-    /// So many bounces, 1 or more; `levels` are those that direct light has of heights.
+    /// So many bounces, 1 or more, at nodes or at every sample; `levels` are those that direct light has of heights.
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
         quality: &Quality,
-        (count, levels): (u32, Option<pyramid_march::Images>),
+        (count, at_nodes, levels): (u32, Option<BounceNodes>, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
     ) -> Self {
         let bounces = &quality.bounces;
@@ -80,11 +117,12 @@ impl Bouncing {
         let engine = match bounces.engine {
             BounceEngine::Brute => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
+            BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
                 Engine::Pyramid(pyramids(builder, (scene, grey), quality, levels))
             }
         };
-        Self { azimuths: bounces.azimuths, grey, sum, engine, exits }
+        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, exits }
     }
 
     /// How many there are.
@@ -104,14 +142,16 @@ impl Bouncing {
         let pyramids = match &self.engine {
             Engine::Brute if is_recorded => return,
             Engine::Brute => return blocks.record(builder, &scene.field, heights, None),
-            Engine::Sweep => return,
-            Engine::Pyramid(pyramids) => pyramids,
+            Engine::Sweep if self.at_nodes.is_none() => return,
+            Engine::Sweep => None,
+            Engine::Pyramid(pyramids) => Some(pyramids),
         };
         if !is_recorded {
             let of = (&scene.field, scene.surface.border);
             let ids = [heights, blocks.images.cells, blocks.images.ground];
             height_cells::plan(builder, of, ids, None);
         }
+        let Some(pyramids) = pyramids else { return };
         if let Some(images) = pyramids.height_images.as_ref().filter(|_| pyramids.fills_heights) {
             pyramids.heights.record(builder, heights, images);
         }
@@ -137,11 +177,21 @@ impl Bouncing {
             exit: before.unwrap_or(direct),
             grey: self.grey,
             sum: self.sum,
+            at_nodes: self.at_nodes,
         };
+        let size = [scene.field.cols() as u32, scene.field.rows() as u32];
         let blocks = || blocks.expect("made for engines that read cells and ground");
         match &self.engine {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
-            Engine::Sweep => walk(builder, scene, k, swept.expect("swept for walks"), &bounce),
+            Engine::Sweep => {
+                let (sweeping, batches) = swept.expect("swept for walks");
+                match self.at_nodes.and_then(|at| Some((at, at.casts?))) {
+                    Some((at, casts)) if k > 1 => {
+                        cast_gather::plan(builder, size, self.azimuths, (&at, casts), &bounce);
+                    }
+                    _ => walk(builder, scene, k, (sweeping, batches), &bounce),
+                }
+            }
             Engine::Pyramid(of) => {
                 if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
                     for level in 1..=of.shade.levels() {
@@ -155,6 +205,9 @@ impl Bouncing {
                 bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
             }
         }
+        if let Some(at) = &self.at_nodes {
+            bounce_shade::plan(builder, &scene.field, at, &bounce, blocks().images.ground);
+        }
         (self.sum, self.exits[k - 1])
     }
 
@@ -163,6 +216,7 @@ impl Bouncing {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());
+        add("subsample", self.at_nodes.map_or(1, |at| at.nodes.stride).to_string());
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::Brute,
             Engine::Sweep => BounceEngine::Sweep,
@@ -198,14 +252,27 @@ fn walk(
         if k == 1 || is_shared {
             sweeping.record(builder, batch, &part);
         }
+        let field = (scene.surface.border, scene.field.cell_m());
+        if let Some(at) = bounce.at_nodes.filter(|at| at.finds_share && k == 1) {
+            let images = sky_shade::Images {
+                lane_heights: sweeping.lane_heights(batch),
+                lattice: sweeping.lattice(batch),
+                azimuths: sweeping.azimuths,
+                sky_sum: Some(at.sky_share),
+                environment: None,
+                edited: None,
+            };
+            let (border, cell_m) = field;
+            sky_shade::plan(builder, &sweeping.sweep, border, cell_m, batch, &part, &images);
+        }
         let swept = bounce_walk::Swept {
             lane_heights: sweeping.lane_heights(batch),
             azimuths: sweeping.azimuths,
             occluders,
             line_shift: sweeping.sweep.line_shift(),
+            begin: batches[0].first,
             is_last: i + 1 == batches.len(),
         };
-        let field = (scene.surface.border, scene.field.cell_m());
         bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }
 }

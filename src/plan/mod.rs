@@ -4,6 +4,7 @@
 pub mod azimuths;
 mod batch;
 mod blocks;
+mod bounce_nodes;
 mod bounces;
 mod builder;
 mod change;
@@ -25,10 +26,12 @@ pub(crate) mod sphere_sh;
 mod spheres;
 pub mod sweep;
 mod sweeping;
+mod view;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use blocks::Blocks;
+pub(crate) use bounce_nodes::{BounceNodes, CAST_SLOTS};
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
@@ -42,6 +45,7 @@ pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
+pub use view::{View, ViewOptions, surface_error_m};
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@ mod images;
 
 use super::azimuths::{self, Shape};
 use super::blocks::Blocks;
+use super::bounce_nodes::BounceNodes;
 use super::bounces::{self, Bouncing};
 use super::edit::Edits;
 use super::shining::Shining;
@@ -59,6 +60,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
     let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
+    let quality = &bounces::settled(quality, surface, &sweep, &mut notes);
     let is_walked = quality.bounces.walk_over(surface);
     if is_walked {
         sweep.keep_occluders()?;
@@ -85,9 +87,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         notes.push("one channel: every colour is grey".into());
     }
     let mut builder = Builder::new();
-    let images = Images::make(&mut builder, scene, &shining, wanted);
     let bounces =
         if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
+    // Sub-sampled bounces are lit by what samples see of the sky; walks find that themselves.
+    let need_share = bounces > 0 && quality.subsample > 1 && !is_walked;
+    let images = Images::make(&mut builder, scene, &shining, (wanted, need_share));
     let mut lists = shining.lists(
         images.need_circle(),
         quality,
@@ -130,7 +134,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
     let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
     let held = (limits, kept_from, nodes);
-    let need_blocks = images.sphere_sum.is_some() || (bounces > 0 && !is_walked);
+    let shared = (bounces, images.sky_sum);
+    let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
+    let need_blocks =
+        images.sphere_sum.is_some() || (bounces > 0 && !is_walked) || at_nodes.is_some();
     let blocks = need_blocks.then(|| Blocks::make(&mut builder, size, surface.border));
     let (sweeping, lists) = if lists.is_empty() {
         (None, Lists::default())
@@ -141,8 +148,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     };
     let levels = sweeping.as_ref().and_then(|s| s.levels);
     let of_light = (shining.is_grey, wanted.light_layers);
-    let bouncing = (bounces > 0)
-        .then(|| Bouncing::make(&mut builder, scene, quality, (bounces, levels), of_light));
+    let bouncing = (bounces > 0).then(|| {
+        Bouncing::make(&mut builder, scene, quality, (bounces, at_nodes, levels), of_light)
+    });
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
     let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
         SphereSh::make(&mut builder, (size, surface.border), quality, images.heights, levels)

@@ -90,6 +90,14 @@ pub struct Resource {
 }
 
 impl Resource {
+    /// An image's.
+    pub fn format(&self) -> Option<Format> {
+        match self.kind {
+            Kind::Image { format, .. } => Some(format),
+            Kind::Buffer { .. } => None,
+        }
+    }
+
     /// Bytes it takes on the device.
     pub fn bytes(&self) -> u64 {
         match self.kind {

@@ -225,15 +225,26 @@ impl Sweep {
     /// # Errors
     /// Other sweeps, which do not know it.
     pub(crate) fn keep_occluders(&mut self) -> Result<()> {
+        if let Some(way) = self.why_no_lines() {
+            return Err(Error::setting(
+                "--bounce-engine sweep",
+                way,
+                "a sweep along lines, or --bounce-engine brute, which needs none",
+            ));
+        }
+        if let Sweep::Lines(lines) = self {
+            lines.writes_occluders = true;
+        }
+        Ok(())
+    }
+
+    /// The flag of a way that sweeps along no lines.
+    pub(crate) fn why_no_lines(&self) -> Option<&'static str> {
         match self {
-            Sweep::Lines(lines) => {
-                lines.writes_occluders = true;
-                Ok(())
-            }
-            Sweep::Surface { .. } => Err(no_lines("--lines exact")),
-            Sweep::Pyramid(_) => Err(no_lines("--method pyramid")),
-            Sweep::March { .. } => Err(no_lines("--method brute")),
-            Sweep::Crossings => Ok(()),
+            Sweep::Lines(_) | Sweep::Crossings => None,
+            Sweep::Surface { .. } => Some("--lines exact"),
+            Sweep::Pyramid(_) => Some("--method pyramid"),
+            Sweep::March { .. } => Some("--method brute"),
         }
     }
 
@@ -369,12 +380,4 @@ impl Lines {
             Lines::FourCells => "4",
         }
     }
-}
-
-fn no_lines(asked: &str) -> Error {
-    Error::setting(
-        "--bounce-engine sweep",
-        asked,
-        "a sweep along lines, or --bounce-engine brute, which needs none",
-    )
 }

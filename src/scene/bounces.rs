@@ -36,7 +36,7 @@ impl Bounces {
     /// The default: direct light alone.
     pub const NONE: Self = Self {
         count: 0,
-        engine: BounceEngine::Brute,
+        engine: BounceEngine::Auto,
         azimuths: 32,
         cutoff: 1.0 / 65536.0,
         level_step: 4,
@@ -83,9 +83,13 @@ impl Bounces {
 /// How what a sample sees of the surface is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BounceEngine {
+    /// The planner's choice: [`Sweep`](Self::Sweep) where horizons come from a sweep along lines, else
+    /// [`Brute`](Self::Brute). On four real fields the former took 0.2 to 0.4 of the latter's time and was as near to
+    /// light paths (`examples/bounce`).
+    #[default]
+    Auto,
     /// Every stretch of the surface that a sample sees along each azimuth, in closed form: exact but for the
     /// azimuths, and slower in proportion to the side.
-    #[default]
     Brute,
     /// Those stretches of the surface that a sample sees on its own lines at every march step, found through what
     /// a sweep along lines has met: a hull tree (Timonen 2012). Needs such a sweep.
@@ -100,6 +104,7 @@ impl BounceEngine {
     /// As the command line spells it.
     pub fn name(self) -> &'static str {
         match self {
+            BounceEngine::Auto => "auto",
             BounceEngine::Brute => "brute",
             BounceEngine::Sweep => "sweep",
             BounceEngine::Pyramid => "pyramid",

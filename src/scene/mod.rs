@@ -1,6 +1,7 @@
 //! What is lit and by what: plain data, range-checked when it is made.
 
 mod bounces;
+mod camera;
 mod environment;
 mod field;
 mod key;
@@ -9,6 +10,8 @@ mod quality;
 mod surface;
 
 pub use bounces::{BounceEngine, Bounces};
+pub(crate) use camera::corners;
+pub use camera::{Camera, Lens};
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;

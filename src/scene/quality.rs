@@ -59,7 +59,8 @@ pub struct Quality {
     /// What is seen is found at every so many samples along either axis, and light at all of them, each by
     /// its own normal, from the nodes around it: 1, 2 or 4, default 1. More: faster, a quarter of the memory
     /// of what is seen or a sixteenth, shadows blurred within so many samples: 0.2 % RMSE at 2 and 0.4 % at
-    /// 4 on the bundled mountain under the bundled sky (`examples/soft converge`).
+    /// 4 on the bundled mountain under the bundled sky (`examples/soft converge`). Of [`bounces`](Self::bounces) what
+    /// is thrown is found there, too, whatever the [`basis`](Self::basis).
     pub subsample: u32,
     /// Horizons of either side of a table of wedges, [4..256], default 64. Fewer: less memory, horizons
     /// rounded off between them. Only with [`Wedges::Table`].

@@ -40,6 +40,11 @@ fn wrong_goals_are_refused() {
                 2,
                 &["--max-error", "cannot be used with", "--method"],
             ),
+            (
+                "render a.asc -o out.exr --max-error 1 --bounces 2",
+                2,
+                &["--bounces 2 with --max-error", "direct light alone", "trade --reference"],
+            ),
             ("render a.asc -o out.exr --max-error 1 --seed -1", 2, &["--seed", "whole number"]),
             ("render a.asc -o out.exr --max-error 1 --sky 0", 2, &["--sky", "radiance 0"]),
             ("render void.asc -o out.exr --max-error 1", 1, &["void.asc", "no-data"]),

@@ -211,7 +211,6 @@ fn lobes() {
 #[test]
 fn not_yet() {
     let folder = Folder::new();
-    each(&[PLAN, RENDER, HORIZON], &folder, &[("--camera 1,2", 2, &["--camera", "not yet"])]);
     refused(
         &folder,
         &[
@@ -353,7 +352,7 @@ fn help_says_units_and_defaults() {
         ("--subsample", &["samples", "[default: 1]"]),
         ("--wedge-side", &["4..256", "[default: 64]"]),
         ("--bounces", &["0..64", "[default: 0]"]),
-        ("--bounce-engine", &["[default: brute]"]),
+        ("--bounce-engine", &["[default: auto]"]),
         ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
         ("--bounce-level-step", &["1..16", "[default: 4]"]),

@@ -41,7 +41,9 @@ fn flags_that_change_nothing_are_said() {
         ("--env env.hdr --sh-order 3", &["--sh-order 3 changes nothing without --basis sh"]),
         (
             "--env env.hdr --subsample 2",
-            &["--subsample 2 changes nothing without --basis sh: tables light each sample"],
+            &[
+                "--subsample 2 changes nothing without --basis sh or --bounces: tables light each sample",
+            ],
         ),
         (
             "--env env.hdr --basis sh --wedge-side 16",

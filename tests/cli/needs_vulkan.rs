@@ -64,7 +64,16 @@ fn gpu_voids_are_nan_and_transparent() {
     );
     done(&folder, "horizon v.asc -o v.npy --azimuths 8 --distances far.npy");
     done(&folder, "horizon v.asc -o h.exr --azimuths 8");
-    for file in ["v.exr", "v.npy", "far.npy", "h.exr"] {
+    // Bounces see it filled, and say nothing of it.
+    for engine in ["brute", "sweep", "pyramid"] {
+        let bounces =
+            format!("--bounces 2 --bounce-engine {engine} --bounce-cutoff 0 --layers lights");
+        done(&folder, &format!("render v.asc -o {engine}.exr {bounces}"));
+        assert!(
+            read(&folder.path(&format!("{engine}.exr"))).names.contains(&"indirect.2.R".into())
+        );
+    }
+    for file in ["v.exr", "v.npy", "far.npy", "h.exr", "brute.exr", "sweep.exr", "pyramid.exr"] {
         let planes = read(&folder.path(file));
         for (name, plane) in planes.names.iter().zip(&planes.planes) {
             for (i, v) in plane.iter().enumerate() {

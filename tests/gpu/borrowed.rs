@@ -24,7 +24,7 @@ fn quality() -> Quality {
 
 /// Heights of 0 and 1, with a median of 0: their own offsets from it.
 fn heights() -> Vec<f64> {
-    (0..ROWS * COLS).map(|i| f64::from(u8::from((i * i + i / COLS) % 5 == 0))).collect()
+    (0..ROWS * COLS).map(|i| f64::from(u8::from((i * i + i / COLS).is_multiple_of(5)))).collect()
 }
 
 /// Under a sky, a sun and an environment, on ground of 0 and 1 in each channel.

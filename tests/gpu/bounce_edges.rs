@@ -73,6 +73,10 @@ fn what_leaves_a_field_that_repeats_comes_in_again() {
         };
         let third =
             |all: &[f32]| -> f64 { all[2 * SIDE..3 * SIDE].iter().map(|v| f64::from(*v)).sum() };
+        // Fine levels, which a wall one sample thick takes.
+        let (level_step, level_offset) = (8, 4);
+        let bounces = Bounces { level_step, level_offset, ..quality.bounces };
+        let quality = Quality { bounces, level_step, level_offset, ..quality };
         let [over, within] = [Border::Periodic, Border::Plane]
             .map(|border| third(&thrown(&mut gpu, &walled(border), &quality)[0]));
         assert!(over > 2.0 * within, "{engine:?}: {over} beside {within}");

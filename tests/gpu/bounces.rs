@@ -136,7 +136,6 @@ fn every_stretch_is_the_twins() {
             let direct = drawn(&mut gpu, &scene, &brute(0, azimuths)).swap_remove(0);
             let oracle = Oracle::new(&scene.field, border);
             let (cols, cell) = (scene.field.cols(), scene.field.cell_m());
-            let land = Land::of(&scene.field, border);
             let mut from = direct;
             for layer in &all[1..] {
                 let brightest = brightest(&from);
@@ -145,7 +144,7 @@ fn every_stretch_is_the_twins() {
                     let all = stretches_along(&oracle, &from, azimuths, at);
                     let normal = Land::normal_at(&scene.field, border, at);
                     let slices = Slices { normal, wedge: 1.0, brightest };
-                    let error = |along: &Along, cast: &_| march_error(&land, cell, along, cast);
+                    let error = |along: &Along, cast: &_| march_error(cell, along, cast);
                     let error = ThrownError::of(&all, error, &slices);
                     (all, error)
                 });

@@ -5,6 +5,7 @@ mod analytic;
 mod ash_host;
 mod borrowed;
 mod bounce_edges;
+mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;
@@ -35,6 +36,7 @@ mod soft_spheres;
 mod spheres;
 mod subsampled;
 mod twins;
+mod view;
 mod walks;
 
 use std::sync::{Mutex, MutexGuard};

@@ -23,7 +23,13 @@ fn pit_of(alpha: f64, albedo: f32) -> Scene {
 /// Light with no bounce, one, and so on.
 fn bounced(gpu: &mut Device, scene: &Scene, bounces: Bounces) -> Vec<Vec<f64>> {
     let Bounces { level_step, level_offset, .. } = bounces;
-    let quality = Quality { azimuths: 32, bounces, level_step, level_offset, ..Quality::default() };
+    let method = match bounces.engine {
+        BounceEngine::Brute => Method::Brute,
+        _ => Method::Sweep,
+    };
+    let azimuths = bounces.azimuths;
+    let quality =
+        Quality { method, azimuths, bounces, level_step, level_offset, ..Quality::default() };
     let wanted = Picture { light_layers: true, ..Picture::default() };
     let plan = plan::picture(scene, &quality, &gpu.limits(), wanted).expect("a plan");
     let outputs = gpu.draw(plan, &[scene.field.heights_m()]);

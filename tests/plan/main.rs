@@ -1,13 +1,14 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
+mod bounces;
 mod reference;
 mod sizes;
 mod walks;
 
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights,
-    Lines, Method, Precision, Quality, Receiver, Scene, Sun, Surface,
+    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
+    Levels, Lights, Lines, Method, Precision, Quality, Receiver, Scene, Sun, Surface,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -288,7 +289,8 @@ fn bounces() {
     let drawn = |count, albedo: f32, cutoff, light_layers| {
         let mut scene = under_sky(flat(9, 14));
         scene.surface.albedo = Albedo::Constant([albedo; 3]);
-        let bounces = Bounces { count, cutoff, ..Bounces::default() };
+        let engine = BounceEngine::Brute;
+        let bounces = Bounces { count, cutoff, engine, ..Bounces::default() };
         let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
         let wanted = Picture { light_layers, keeps_horizons: true, ..Picture::default() };
         plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")

@@ -2,8 +2,8 @@
 
 mod auto;
 mod bounces;
+mod camera;
 mod compare;
-mod later;
 mod quality;
 mod reference;
 mod scene;
@@ -17,8 +17,8 @@ use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand,
 
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
+pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use later::LaterArgs;
 pub use quality::{
     BasisName, FuseName, HullName, LevelsName, LightBasisName, LinesName, MethodName,
     PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
@@ -94,7 +94,7 @@ impl Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Light a field: one pixel a sample, seen from above
+    /// Light a field: one pixel a sample, seen from above, or from a camera
     Render(RenderArgs),
     /// Horizons of every sample: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
@@ -138,7 +138,10 @@ pub struct RenderArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub auto: AutoArgs,
-    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation)
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation); with --camera depth
+    /// (Z, the distance along the view)
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,
     /// Factor before the picture curve of a .png, which clips at 1 and is sRGB
@@ -146,8 +149,6 @@ pub struct RenderArgs {
     pub exposure: f32,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -166,8 +167,6 @@ pub struct HorizonArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -185,8 +184,6 @@ pub struct PlanArgs {
     pub format: PlanFormat,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -223,8 +220,6 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -303,6 +298,7 @@ pub enum Layer {
     Lights,
     SkyView,
     Horizon,
+    Depth,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -103,12 +103,16 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
     })
 }
 
-/// Bounces beside chosen settings, of which the last may be left out up to the error asked for.
-pub fn bounces(goal: Goal, asked: Bounces) -> Bounces {
-    match goal {
-        Goal::MaxError(most) => Bounces { cutoff: most.min(1.0), ..asked },
-        Goal::MaxCost(_) => asked,
+/// Refuses to choose for bounced light, which exact light at probes does not hold.
+pub fn check_direct(bounces: &Bounces) -> Result<()> {
+    if bounces.count == 0 {
+        return Ok(());
     }
+    Err(Error::setting(
+        format!("--bounces {} with --max-error or --time-budget", bounces.count),
+        "bounced light",
+        "none: settings are judged by exact direct light alone; `reference` and `trade --reference` judge bounces",
+    ))
 }
 
 /// For metadata and --json.

@@ -58,10 +58,12 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             {
                 "without an environment or --light-basis sh".into()
             }
+            ("subsample", None) => "without an environment or --bounces".into(),
             (_, None) => "without an environment".into(),
             ("wedge_side", Some("sh")) => "without --wedges table".into(),
             ("subsample", _) => {
-                "without --basis sh: tables light each sample through its own horizons".into()
+                "without --basis sh or --bounces: tables light each sample through its own horizons"
+                    .into()
             }
             ("table_elevations", _) => "with --basis sh".into(),
             _ => "without --basis sh".into(),

@@ -26,6 +26,7 @@ fn said(written: std::io::Result<()>) {
 mod args;
 mod auto;
 mod bench;
+mod camera;
 mod compare;
 mod devices;
 mod horizon;

@@ -289,7 +289,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 13] = [
+    const FLAGS: [(&str, &str); 20] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
         ("key ", "--key "),
@@ -303,6 +303,13 @@ pub fn in_flags(error: Error) -> Error {
         ("lights", "--sky, --env, --sun, --key, --light"),
         ("cell size", "--cell"),
         ("pixels per degree", "--pixels-per-degree"),
+        ("camera: look-at point", "--look-at"),
+        ("camera: field of view", "--fov"),
+        ("camera", "--camera"),
+        ("samples a pixel", "--samples"),
+        ("picture size", "--size"),
+        ("mesh step", "--mesh-step"),
+        ("background", "--background"),
     ];
     match error {
         Error::Setting { name, found, expected } => {

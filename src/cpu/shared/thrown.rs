@@ -34,6 +34,10 @@ pub struct Cast {
     pub spread: [f64; 3],
     /// How far away its upper end is found: metres of stretches, else march steps.
     pub distance: f64,
+    /// Of stretches: the largest rise from the sample to the land around, and the steepest slope of that land.
+    pub rise_m: f64,
+    /// That slope.
+    pub steepest: f64,
 }
 
 /// Radiance times weight, and the weight of whole hemispheres.

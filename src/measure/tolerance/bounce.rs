@@ -114,13 +114,13 @@ pub struct ThrownError {
 impl ThrownError {
     /// From all that a twin has seen, each cast with what an engine errs by there.
     ///
-    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that is off
-    /// by δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the
-    /// light itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without
-    /// weight, up to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is
-    /// 0; a normal that turns by ν changes a slice's weight by ν ∫ cos ω dω. Where on a piece a mean is taken errs by
-    /// what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε), times the spread. Sums round
-    /// once a cast.
+    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that is off by
+    /// δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the light
+    /// itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without weight, up
+    /// to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is 0 and F
+    /// itself errs as at other ends; a normal that turns by ν changes a slice's weight by ν ∫ cos ω dω. Where on a
+    /// piece a mean is taken errs by what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε),
+    /// times the spread. Sums round once a cast.
     pub fn of(all: &[Along], error: impl Fn(&Along, &Cast) -> CastError, of: &Slices) -> Self {
         let (sum, whole) = thrown(all);
         let normal = of.normal * of.wedge;
@@ -135,6 +135,7 @@ impl ThrownError {
                 let mean = if width > 0.0 { cast.weight.abs() / width } else { 0.0 };
                 let ends = before.elevation_rad.max(delta);
                 let turned = normal * (cast.high_rad.sin() - cast.low_rad.sin());
+                let first = if i == 0 { here.end } else { 0.0 };
                 let moved = (cast.facing + 2.0 * delta * of.wedge) * delta + here.end;
                 for c in 0..3 {
                     let radiance = cast.radiance[c].abs();
@@ -145,7 +146,7 @@ impl ThrownError {
                     off[c] += moved * step
                         + mean * (2.0 * ends + 16.0 * EPSILON) * cast.spread[c]
                         + cast.weight.abs() * here.radiance
-                        + (turned + here.weight) * radiance;
+                        + (turned + here.weight + first) * radiance;
                 }
                 before = here;
             }
@@ -172,24 +173,25 @@ impl ThrownError {
 /// A direction is turned by 40 ε: a quotient of 5 ε and its difference from a half, times π, as halves of turns, and
 /// sines of 6e-8. Its components err by 23 ε besides: products and three quotients. A crossing t cells away stands
 /// 65 ε t beside its place, a cell's diagonal by 1 / a of that, a being how fast the ray comes nearer to it, and the
-/// land there differs by twice that times the steepest slope: 130 (1 + 1/a) ε of that slope. A rise costs 8 roundings
-/// of the relief; distance and quotient 20 ε of the slope, a direction ε. d atan(s) = ds / (1 + s²).
+/// land there differs by twice that times its steepest slope: 130 (1 + 1/a) ε of that slope. A rise costs 8 roundings
+/// of the largest around; distance and quotient 20 ε of the slope, a direction ε. d atan(s) = ds / (1 + s²).
 ///
 /// Weights: two products whose difference is a sine, 2 ε; that of the width itself, of squares, a
 /// root, a quotient and an arc tangent, and the length of a direction, 5 ε: 24 ε of the width. Radiance between three
 /// corners 8 ε, and their spread times 65 ε t.
-pub fn march_error(land: &Land, cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
+pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
     let (sin, cos) = along.azimuth_rad.sin_cos();
     let [x, y] = [cos.abs() / cell_m[0], sin.abs() / cell_m[1]];
     let nearer = if cos * sin < 0.0 { (x - y).abs() } else { x + y } / x.max(y);
     let slope = cast.high_rad.tan();
     let place = 65.0 * (1.0 + 1.0 / nearer.max(1e-3));
-    let rise = 8.0 * land.relief_m / cast.distance.max(0.5 * land.cell_m);
-    let of_slope = rise + 2.0 * place * land.steepest + 20.0 * slope.abs();
+    let cell = cell_m[0].min(cell_m[1]);
+    let rise = 8.0 * cast.rise_m / cast.distance.max(0.5 * cell);
+    let of_slope = rise + 2.0 * place * cast.steepest + 20.0 * slope.abs();
     let width = cast.high_rad - cast.low_rad;
     let brightest = cast.radiance.iter().fold(0.0_f64, |m, l| m.max(l.abs()));
     let spread = cast.spread.iter().fold(0.0_f64, |m, l| m.max(*l));
-    let cells = cast.distance / land.cell_m;
+    let cells = cast.distance / cell;
     CastError {
         elevation_rad: EPSILON * (of_slope / (1.0 + slope * slope) + 1.0),
         end: 0.0,

@@ -48,7 +48,7 @@ const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
 const BOUNCE_ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Pyramid, BounceEngine::Sweep, BounceEngine::Brute];
+    [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::Brute];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
@@ -195,14 +195,16 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             },
             idle: |_| false,
         });
+    }
+    if lights.environment.is_some() || bounces > 0 {
         all.push(Knob {
             name: "sub-sampling",
             steps: spell("--subsample", &SUBSAMPLES),
             range: None,
             default: 0,
-            dearer: "what is seen at more samples: sharp shadows",
+            dearer: "what is seen, and thrown, at more samples: sharp shadows",
             set: |quality, step| quality.subsample = SUBSAMPLES[step],
-            idle: |quality| quality.basis != Basis::Sh,
+            idle: |quality| quality.basis != Basis::Sh && quality.bounces.count == 0,
         });
     }
     if bounces > 0 {
@@ -393,7 +395,7 @@ mod tests {
             ("table elevations", "--table-elevations 256"),
             ("basis", "--basis table"),
             ("sub-sampling", "--subsample 1"),
-            ("bounce engine", "--bounce-engine brute"),
+            ("bounce engine", "--bounce-engine auto"),
             ("bounce azimuths", "--bounce-azimuths 32"),
         ];
         assert_eq!(found, expected);

@@ -35,7 +35,7 @@ impl Images {
         builder: &mut Builder,
         scene: &Scene,
         shining: &Shining<'_>,
-        wanted: Picture,
+        (wanted, need_share): (Picture, bool),
     ) -> Self {
         let flat = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
         let mut image = |name: &str, owner: Owner, format: Format, extent: [u32; 3]| {
@@ -66,7 +66,7 @@ impl Images {
         let mut sum = |needed: bool, name: &str, format: Format| {
             needed.then(|| image(name, Owner::Internal, format, flat))
         };
-        let sky_sum = sum(shining.sky.is_some() || view, "sky_sum", Format::R32Float);
+        let sky_sum = sum(shining.sky.is_some() || view || need_share, "sky_sum", Format::R32Float);
         let env_sum = sum(environment.is_some(), "env_sum", Format::Rgba32Float);
         let sun_sum = sum(shining.aimed().next().is_some(), "sun_sum", Format::R32Float);
         let sphere_sum = sum(!spheres.is_empty(), "sphere_sum", Format::Rgba32Float);

@@ -11,10 +11,11 @@ use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{
     Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
 };
-use ridgelight::plan::Pass;
 use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 
+use super::nodes::{casts, places};
 use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
@@ -26,7 +27,7 @@ impl Run<'_> {
     }
 
     /// What every sample throws.
-    fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
+    pub(super) fn exit(&mut self, pass: &Pass) -> Vec<[f64; 3]> {
         let texels = self.floats(pass, "exit_radiance").expect("bound");
         let samples = self.scene.field.heights_m().len();
         match texels.len() / samples {
@@ -39,18 +40,17 @@ impl Run<'_> {
         Land::of(&self.scene.field, self.border())
     }
 
-    fn slices(&self, i: usize, wedge: f64, brightest: f64) -> Slices {
-        let [cols, _] = self.size();
-        let normal = Land::normal_at(&self.scene.field, self.border(), [i / cols, i % cols]);
+    pub(super) fn slices(&self, place: [usize; 2], wedge: f64, brightest: f64) -> Slices {
+        let normal = Land::normal_at(&self.scene.field, self.border(), place);
         Slices { normal, wedge, brightest }
     }
 }
 
-fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
+pub(super) fn colours(texels: &[f32]) -> Vec<[f64; 3]> {
     texels.chunks_exact(4).map(|t| [0, 1, 2].map(|c| t[c].into())).collect()
 }
 
-fn brightest(exit: &[[f64; 3]]) -> f64 {
+pub(super) fn brightest(exit: &[[f64; 3]]) -> f64 {
     exit.as_flattened().iter().fold(0.0, |m, v| v.max(m))
 }
 
@@ -78,14 +78,16 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
-    let ([cols, _], land, brightest) = (run.size(), run.land(), brightest(&exit));
+    let nodes = Nodes { stride: constant(pass, 5) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let (places, brightest) = (places(run, nodes), brightest(&exit));
     let cell_m = run.scene.field.cell_m();
     let of = |i: usize| {
-        let all = stretches_along(&oracle, &exit, azimuths, [i / cols, i % cols]);
-        let error = |along: &_, cast: &_| march_error(&land, cell_m, along, cast);
-        (radiance(&all), ThrownError::of(&all, error, &run.slices(i, 1.0, brightest)).light)
+        let all = stretches_along(&oracle, &exit, azimuths, places[i]);
+        let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
+        (radiance(&all), ThrownError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
     };
-    each(&got, of, [0, cols])
+    each(&got, of, [0, across])
 }
 
 /// A level, and what the table says of it.
@@ -161,7 +163,9 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver,
         azimuths,
     };
-    let [cols, _] = run.size();
+    let nodes = Nodes { stride: constant(pass, 6) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let places = places(run, nodes);
     let [x, y] = field.cell_m();
     let (land, brightest) = (run.land(), brightest(&exit));
     let gathered = Gathered {
@@ -174,12 +178,12 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         spread: brightest - exit.as_flattened().iter().fold(brightest, |m, v| v.min(m)),
     };
     let of = |i: usize| {
-        let all = twin.casts_along([i / cols, i % cols]);
-        let slices = run.slices(i, 1.0, brightest);
+        let all = twin.casts_along(places[i]);
+        let slices = run.slices(places[i], 1.0, brightest);
         let off = ThrownError::of(&all, |_, cast| gathered.error(cast), &slices);
         (radiance(&all), off.light)
     };
-    each(&got, of, [0, cols])
+    each(&got, of, [0, across])
 }
 
 /// The sum so far; what is thrown, once the last azimuths are there.
@@ -202,19 +206,24 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = colours(&got);
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
     let is_last = word(IS_LAST) == 1;
-    let [cols, _] = run.size();
+    let nodes = Nodes { stride: constant(pass, 4) };
+    let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let places = places(run, nodes);
     let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
     let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
-    let walked = run.swept(range.clone(), settings, |swept| {
-        swept.per_sample(|col, row| walked_along(swept, &exit, col, row).0)
+    let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
+        let of = |[row, col]: &[usize; 2]| walked_along(swept, &exit, *col as i32, *row as i32).0;
+        places.iter().map(of).collect()
     });
     let of = |i: usize| {
-        let slices = run.slices(i, wedge, brightest);
+        let slices = run.slices(places[i], wedge, brightest);
         let off = ThrownError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
         match is_last {
             true => (radiance(&walked[i]), off.light),
             false => (thrown(&walked[i]).0, off.sum),
         }
     };
-    each(&got, of, [range.len(), cols])
+    let mut pairs = each(&got, of, [range.len(), across]);
+    pairs.extend(casts(run, pass, first..range.end, &places));
+    pairs
 }

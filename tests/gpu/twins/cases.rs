@@ -505,6 +505,37 @@ pub(super) fn throws() -> Vec<Case> {
     ]
 }
 
+/// Bounces at every second or fourth sample, the last ones among them: every engine, colours and grey, casting sets of
+/// one batch and of several.
+pub(super) fn nodes() -> Vec<Case> {
+    let case = |name, (rows, cols), border, (engine, count, subsample)| {
+        let map = (0..rows * cols).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect();
+        let albedo = match border {
+            Border::Open => Albedo::Map(map),
+            _ => Albedo::Constant([0.8; 3]),
+        };
+        let bounces = Bounces { count, engine, azimuths: 12, cutoff: 0.0, ..Bounces::default() };
+        Case {
+            name,
+            scene: Scene {
+                field: rough(rows, cols, 37),
+                surface: Surface { border, albedo, phong: None },
+                lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+            },
+            quality: Quality { azimuths: 8, bounces, subsample, ..Quality::default() },
+            wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
+            loses_lines: false,
+        }
+    };
+    use BounceEngine::{Brute, Pyramid, Sweep};
+    vec![
+        case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
+        case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
+        case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
+    ]
+}
+
 /// Light paths: every kind of light, a lobe and a map; and a field that repeats, with two levels of blocks.
 pub(super) fn references() -> Vec<Case> {
     let sun = |diameter_rad| Sun {

@@ -5,6 +5,7 @@ mod bounce;
 mod cases;
 mod edit;
 mod light;
+mod nodes;
 mod paths;
 mod pyramid;
 mod sh;
@@ -86,7 +87,9 @@ const TWINS: &[(&str, Twin)] = &[
     ("light_resolve", light::light_resolve),
     ("bounce_gather", bounce::bounce_gather),
     ("bounce_march", bounce::bounce_march),
+    ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", bounce::bounce_walk),
+    ("cast_gather", nodes::cast_gather),
     ("shade_expand", bounce::shade_expand),
     ("shade_reduce", bounce::shade_reduce),
 ];
@@ -310,6 +313,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::references(),
         cases::walks(),
         cases::throws(),
+        cases::nodes(),
     ]
     .into_iter()
     .flatten()
@@ -372,6 +376,14 @@ fn walks_are_their_twins_pass_by_pass() {
 fn throws_are_their_twins() {
     let mut device = Device::new();
     for case in cases::throws() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn bounces_at_nodes_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::nodes() {
         check(&mut device, &case);
     }
 }

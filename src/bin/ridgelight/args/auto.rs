@@ -3,9 +3,10 @@ use clap::Args;
 use super::quality::SETTINGS;
 use super::values::whole;
 
-/// What `--max-error` and `--time-budget` choose themselves: all but where hulls live, and bounces.
+/// What `--max-error` and `--time-budget` choose themselves, or what does nothing beside them: all but where hulls
+/// live, and whether there are bounces, which is refused with a reason.
 fn chosen() -> impl Iterator<Item = &'static str> {
-    let is_asked = |s: &str| s == "hull" || (s.starts_with("bounce") && s != "bounce_cutoff");
+    let is_asked = |s: &str| matches!(s, "hull" | "bounces");
     SETTINGS.into_iter().filter(move |s| !is_asked(s)).chain(["method"])
 }
 
@@ -16,8 +17,7 @@ pub struct AutoArgs {
     /// bounded with 95 % confidence by exact light at 192 to 3000 samples that had no part in choosing. Draws
     /// up to 16 frames, where none of them holds two more of exact horizons, and the chosen once more; none
     /// that is expected to take more than 30 s; refused, with the nearest that was found, where none is that
-    /// accurate. Of direct light: bounces are as asked, the last of them left out where they carry less than
-    /// this share of the direct light
+    /// accurate. Of direct light: not with --bounces
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = chosen())]
     pub max_error: Option<f64>,
     /// Choose the most accurate settings of at most this GPU time a frame on this device, drawn once more

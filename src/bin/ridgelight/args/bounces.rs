@@ -12,7 +12,7 @@ pub struct BounceArgs {
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
     pub bounces: u32,
     /// How what a sample sees of the surface is found; with --bounces
-    #[arg(long, default_value = "brute")]
+    #[arg(long, default_value = "auto")]
     pub bounce_engine: BounceEngineName,
     /// Azimuths of bounces, 4..1024; with --bounces
     #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true)]
@@ -34,6 +34,7 @@ impl BounceArgs {
         let bounces = Bounces {
             count: self.bounces,
             engine: match self.bounce_engine {
+                BounceEngineName::Auto => BounceEngine::Auto,
                 BounceEngineName::Brute => BounceEngine::Brute,
                 BounceEngineName::Sweep => BounceEngine::Sweep,
                 BounceEngineName::Pyramid => BounceEngine::Pyramid,
@@ -49,6 +50,8 @@ impl BounceArgs {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum BounceEngineName {
+    /// The planner's choice: sweep where horizons come from a sweep along lines, else brute
+    Auto,
     /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
     Brute,
     /// Those that it sees at every march step, through what a sweep along lines has met

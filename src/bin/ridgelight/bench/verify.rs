@@ -1,7 +1,9 @@
 //! Before a time is printed, the light is compared with the oracle's.
 
+mod balls;
 mod bounces;
 mod harmonics;
+mod sweeps;
 
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::sphere::sphere_of;
@@ -46,6 +48,15 @@ impl Truth {
         let oracle = Oracle::new(field, scene.surface.border);
         let (expected, open) = places.iter().map(|p| light_at(scene, &oracle, *p)).unzip();
         Self { places, expected, open }
+    }
+
+    /// The same of all light but balls'.
+    fn without_balls(&self) -> Self {
+        let rest = self
+            .expected
+            .iter()
+            .map(|[sky, environment, suns, _]| [*sky, *environment, *suns, 0.0]);
+        Self { places: self.places.clone(), expected: rest.collect(), open: self.open.clone() }
     }
 
     /// RMSE of a picture over the root mean square of what is expected.
@@ -95,11 +106,8 @@ fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// light that reaches it.
 fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
-    let albedo = match &scene.surface.albedo {
-        Albedo::Constant(c) => *c,
-        Albedo::Map(map) => map[place],
-    };
-    let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * f64::from(a)).sum::<f64>() / 3.0;
+    let albedo = albedo_of(scene, place);
+    let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * a).sum::<f64>() / 3.0;
     let Lights { sky, environment, suns, keys, spheres } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
@@ -112,6 +120,13 @@ fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
         tint(s.radiance.map(|c| f64::from(c) * share))
     };
     ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(ball).sum()], share)
+}
+
+fn albedo_of(scene: &Scene, place: usize) -> [f64; 3] {
+    match &scene.surface.albedo {
+        Albedo::Constant(c) => c.map(f64::from),
+        Albedo::Map(map) => map[place].map(f64::from),
+    }
 }
 
 /// A scene, or of a large one a piece from its middle, and its light.
@@ -149,11 +164,10 @@ impl Verifier {
         limits: &Limits,
     ) -> Result<String> {
         if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
-            return Err(Error::setting(
-                "--light-basis",
-                "sh",
-                "exact: what is timed is held against the oracle's light, from which harmonics are far",
-            ));
+            let found = balls::check(&self.scene, &self.truth, gpu, quality, limits)?;
+            let Some(scene) = balls::without(&self.scene) else { return Ok(found) };
+            let rest = Self { scene, truth: self.truth.without_balls() };
+            return Ok(format!("{}; {found}", rest.check_direct(gpu, quality, limits)?));
         }
         if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {
             return harmonics::check(self, gpu, quality, limits);
@@ -168,7 +182,10 @@ impl Verifier {
             gpu.pixels(frame, 0)
         })?;
         let (error, bound) = self.judge(self.truth.error(&picture), quality)?;
-        Ok(format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound)))
+        let of_oracle =
+            format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound));
+        let of_twin = sweeps::check(&self.scene, &self.truth.places, gpu, quality, limits)?;
+        Ok(of_twin.map_or(of_oracle.clone(), |found| format!("{found}; {of_oracle}")))
     }
 
     /// A relative error and its bound, where it is within.

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_4;
 use ridgelight::cpu::oracle;
 use ridgelight::scene::{Border, HeightField, Lights};
 
-use super::{Asks, Case, Found, Method, Probe, field, largest, never, none, white};
+use super::{About, Asks, Case, Found, Method, Probe, field, largest, never, none, white};
 
 /// Odd, and one more than a multiple of the widest lines' distance: the middle is on a line in the
 /// four azimuths along the grid and, in square cells, the four between. A hull of it fits in memory.
@@ -53,6 +53,7 @@ fn horizons(
 ) -> Case {
     Case {
         name: name.into(),
+        about: About::Horizons,
         expected: expected.into(),
         bound: bound.into(),
         scene: white(field, Border::Plane, Lights::default()),
@@ -67,7 +68,7 @@ fn horizons(
 /// A pyramid looks at many levels, some of them nearly level: there the rounding of 1e6 cells, 232 ε of it,
 /// is a slope of 14, and its spline over their angles may be anything.
 fn rounded_away(case: Case) -> Case {
-    Case { unjudged: Method::is_pyramid, ..case }
+    Case { unjudged: super::is_pyramid, ..case }
 }
 
 /// Rows and columns per step in azimuth k of 8.

@@ -8,7 +8,7 @@ use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
 use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights};
 
-use super::{Asks, Case, Found, Probe, field, never, none, suns, white};
+use super::{About, Asks, Case, Found, Probe, field, never, none, suns, white};
 
 pub const SIDE: usize = 65;
 /// A corner, an edge, the middle.
@@ -54,6 +54,7 @@ pub fn light(
     };
     Case {
         name: format!("{}{border_name}", name.into()),
+        about: About::Horizons,
         expected: expected.into(),
         bound: bound.into(),
         scene: white(field, border, lights),

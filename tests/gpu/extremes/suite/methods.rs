@@ -7,11 +7,17 @@ use ridgelight::measure::tolerance::{
 };
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
-use ridgelight::scene::{self, Basis, Fuse, Hull, Levels, Lines, Precision, Quality, Wedges};
+use ridgelight::scene::{
+    self, Basis, BounceEngine, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Precision, Quality,
+    Receiver, Wedges,
+};
+
+use super::About;
 
 /// A way to find horizons, as the page names it.
 pub struct Method {
     pub name: &'static str,
+    pub about: About,
     pub quality: Quality,
 }
 
@@ -50,8 +56,76 @@ pub fn all() -> Vec<Method> {
         ("harmonics, 4, nlp", Quality { wedges: Wedges::Nlp, ..soft(4, 1) }),
         ("harmonics, 4, table", Quality { wedges: Wedges::Table, ..soft(4, 1) }),
     ]
-    .map(|(name, quality)| Method { name, quality })
-    .into()
+    .map(|(name, quality)| Method { name, about: About::Horizons, quality })
+    .into_iter()
+    .chain(bounces(&base))
+    .chain(soft_balls(&base))
+    .chain(lobes(&base))
+    .collect()
+}
+
+/// Balls of light by harmonics of every kind.
+fn soft_balls(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+    let of = |sh_order| Quality {
+        light_basis: LightBasis::Sh,
+        light_cutoff: 0.0,
+        sun_azimuths: 8,
+        sh_order,
+        ..*base
+    };
+    let (nlp, table) = (Wedges::Nlp, Wedges::Table);
+    [
+        ("balls by harmonics, 2", of(2)),
+        ("balls by harmonics, 4, lobe", Quality { receiver: Receiver::Lobe, ..of(4) }),
+        ("balls by harmonics, 6", of(6)),
+        ("balls by harmonics, 4, nlp", Quality { wedges: nlp, ..of(4) }),
+        ("balls by harmonics, 4, table", Quality { wedges: table, wedge_side: 33, ..of(4) }),
+        ("balls by harmonics, 4, pyramid", Quality { method: scene::Method::Pyramid, ..of(4) }),
+    ]
+    .into_iter()
+    .map(|(name, quality)| Method { name, about: About::SoftBalls, quality })
+}
+
+/// Lobes by harmonics of every order, and through horizons of every kind.
+fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+    let of = |sh_order| Quality { basis: Basis::Sh, sh_order, ..*base };
+    [
+        ("a lobe by harmonics, 2", of(2)),
+        ("a lobe by harmonics, 4, brute", Quality { method: scene::Method::Brute, ..of(4) }),
+        ("a lobe by harmonics, 5, pyramid", Quality { method: scene::Method::Pyramid, ..of(5) }),
+        ("a lobe by harmonics, 6, every 4th", Quality { subsample: 4, ..of(6) }),
+    ]
+    .into_iter()
+    .map(|(name, quality)| Method { name, about: About::Lobes, quality })
+}
+
+/// Every engine of bounces: walks along the grid, where they meet all there is; rays along cells' diagonals, and
+/// along the grid and not.
+fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+    let base = *base;
+    let of =
+        |engine, azimuths| Bounces { count: 2, engine, azimuths, cutoff: 0.0, ..Bounces::NONE };
+    let thrown = |engine, azimuths| Quality { bounces: of(engine, azimuths), ..base };
+    let walked = |lines| Quality { lines, ..thrown(BounceEngine::Sweep, 4) };
+    let stack = thrown(BounceEngine::Pyramid, 4);
+    let levels = Quality {
+        levels: Levels::Pyramid,
+        receiver: Receiver::Lobe,
+        level_step: 3,
+        level_offset: 0,
+        bounces: Bounces { level_step: 2, level_offset: 1, ..of(BounceEngine::Pyramid, 5) },
+        ..base
+    };
+    [
+        ("every stretch, 4 azimuths", thrown(BounceEngine::Brute, 4)),
+        ("every stretch, 5 azimuths", thrown(BounceEngine::Brute, 5)),
+        ("walks, lines of 1", walked(Lines::Cell)),
+        ("walks, lines of 4", walked(Lines::FourCells)),
+        ("thrown by a pyramid, stack", stack),
+        ("thrown by a pyramid, levels, 3, 0, lobe", levels),
+    ]
+    .into_iter()
+    .map(|(name, quality)| Method { name, about: About::Bounces, quality })
 }
 
 impl Method {
@@ -65,7 +139,9 @@ impl Method {
     }
 
     pub fn is_pyramid(&self) -> bool {
+        let bounces = &self.quality.bounces;
         self.quality.method == scene::Method::Pyramid
+            || (bounces.count > 0 && bounces.engine == BounceEngine::Pyramid)
     }
 
     /// Whether an environment is lit by spherical harmonics.
@@ -80,7 +156,10 @@ impl Method {
     }
 
     fn has_lines(&self) -> bool {
-        !self.is_brute() && !self.is_pyramid()
+        let is_swept = !self.is_brute() && !self.is_pyramid();
+        is_swept
+            && (self.quality.bounces.count == 0
+                || self.quality.bounces.engine == BounceEngine::Sweep)
     }
 
     /// Whether a line of the sweep runs through the samples of this lane in azimuths along the grid.

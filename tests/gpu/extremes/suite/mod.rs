@@ -2,11 +2,14 @@
 //! it on the driver at hand; `examples/extremes.rs` prints it for several as `docs/extremes.md`.
 
 mod balls;
+mod bounces;
 mod horizons;
 pub mod inputs;
 mod lights;
+mod lobes;
 pub mod methods;
 pub mod page;
+mod soft_balls;
 mod suns;
 mod twin;
 
@@ -25,9 +28,23 @@ pub enum Asks {
     Light,
 }
 
+/// What a case is about: it is put to the methods of that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// Horizons, and the light that is drawn through them.
+    Horizons,
+    /// What the ground throws at itself.
+    Bounces,
+    /// Balls of light by spherical harmonics.
+    SoftBalls,
+    /// What ground mirrors.
+    Lobes,
+}
+
 /// A scene at an extreme, and what its answer has to be.
 pub struct Case {
     pub name: String,
+    pub about: About,
     /// The right answer and why; for the page.
     pub expected: String,
     /// How far from it a value may be, as a formula; for the page.
@@ -138,6 +155,18 @@ impl Found<'_> {
         f64::from(output.values[(row * self.scene.field.cols() + col) * output.channels])
     }
 
+    /// First channel of a layer, row-major.
+    pub fn layer(&self, layer: &str) -> Vec<f64> {
+        let cols = self.scene.field.cols();
+        let count = self.scene.field.heights_m().len();
+        (0..count).map(|i| self.light(layer, i / cols, i % cols)).collect()
+    }
+
+    /// Whether there is such a layer.
+    pub fn has(&self, layer: &str) -> bool {
+        self.outputs.iter().any(|o| o.name == layer)
+    }
+
     /// The circle's azimuths that were swept.
     pub fn count(&self) -> f64 {
         f64::from(self.method.quality.azimuths)
@@ -172,7 +201,15 @@ pub struct Row {
 
 /// Every case. A new one is enrolled by an entry in one of the lists.
 pub fn cases() -> Vec<Case> {
-    horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases()).collect()
+    let of_horizons = horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases());
+    let of_their_own = bounces::cases().into_iter().chain(soft_balls::cases());
+    of_horizons.chain(of_their_own).chain(lobes::cases()).collect()
+}
+
+/// Which cases are put to which methods, by their places in the lists.
+pub fn put(cases: &[Case], methods: &[Method]) -> Vec<[usize; 2]> {
+    let all = (0..methods.len()).flat_map(|m| (0..cases.len()).map(move |c| [c, m]));
+    all.filter(|[c, m]| cases[*c].about == methods[*m].about).collect()
 }
 
 /// The probes of a case under a method on a device, or the sentence of the refusal.
@@ -193,18 +230,19 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
         }
     };
     let plan = planned.map_err(|e| e.to_string())?;
-    let environment = case.scene.lights.environment.as_ref();
-    let environment: Option<Vec<f32>> =
-        environment.map(|e| e.texels().iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect());
-    let mut contents = vec![field.heights_m()];
-    contents.extend(environment.as_deref());
+    let contents = match case.asks {
+        Asks::Horizons { .. } => vec![field.heights_m().to_vec()],
+        Asks::Light => plan::picture_inputs(&case.scene),
+    };
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let (layers, outputs) = (plan.layer_azimuths.clone(), plan.outputs().count());
     let mut frame = gpu.frame(plan, &contents).map_err(|e| e.to_string())?;
     gpu.draw(&mut frame).map_err(|e| e.to_string())?;
     let outputs = (0..outputs).map(|o| gpu.pixels(&frame, o).map_err(|e| e.to_string()));
     let outputs = outputs.collect::<Result<Vec<Pixels>, String>>();
     gpu.end(frame);
-    let is_smoothed = method.is_pyramid() && !is_plane(&case.scene);
+    let finds_horizons = case.about == About::Horizons;
+    let is_smoothed = finds_horizons && method.is_pyramid() && !is_plane(&case.scene);
     let twin = is_smoothed.then(|| Twin::new(&case.scene, &quality));
     let found = Found {
         scene: &case.scene,
@@ -266,19 +304,21 @@ pub fn complaint(row: &Row, cases: &[Case], methods: &[Method]) -> Option<String
 
 /// Every case under every method; long ones where asked.
 pub fn run(gpu: &mut Headless, cases: &[Case], methods: &[Method], long: bool) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for (m, method) in methods.iter().enumerate() {
-        for (c, case) in cases.iter().enumerate().filter(|(_, c)| long || !(c.is_long)(method)) {
-            let outcome = outcome(probes(gpu, case, method));
-            rows.push(Row { case: c, method: m, outcome });
-        }
-    }
-    rows
+    let is_drawn = |[c, m]: &[usize; 2]| long || !(cases[*c].is_long)(&methods[*m]);
+    let row = |[c, m]: [usize; 2]| {
+        let outcome = outcome(probes(gpu, &cases[c], &methods[m]));
+        Row { case: c, method: m, outcome }
+    };
+    put(cases, methods).into_iter().filter(is_drawn).map(row).collect()
 }
 
 /// No method refuses.
 fn never(_: &Method) -> Option<&'static str> {
     None
+}
+
+fn is_pyramid(method: &Method) -> bool {
+    method.is_pyramid()
 }
 
 /// Every method can be judged.

@@ -29,6 +29,9 @@ horizon, at the distance d of what makes it, with heights up to H:
 *Not judged*: a pyramid's levels are nearly level somewhere whatever they are made from, and the rounding of 1e6
 cells alone turns an angle there by anything. In each other row a bound is below a tenth of the largest that is expected in it.
 
+What ground throws at itself (`--bounces`) is found by engines of its own: every stretch of it, walks over what
+sweeps along lines have met, and pyramids; with the azimuths of `--bounce-azimuths`.
+
 Bounds on a slope are each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
 Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
@@ -60,7 +63,7 @@ pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
             continue;
         };
         let table = rest.split("\n## ").next().unwrap_or_default();
-        for method in methods {
+        for method in methods.iter().filter(|m| m.about == case.about) {
             let begin = format!("| {} | ", method.name);
             let row = table.lines().find_map(|l| l.strip_prefix(&begin));
             let refusal = (case.refuses)(method);

@@ -72,7 +72,8 @@ fn bound(quality: &Quality) -> f64 {
     let apart = f64::from(quality.lines.shift().unwrap_or(15)).exp2() / 32768.0;
     rule + match quality.bounces.engine {
         BounceEngine::Brute => 0.0,
-        BounceEngine::Sweep => 0.03 * apart.max(1.0),
+        // The planner's is one of these two.
+        BounceEngine::Auto | BounceEngine::Sweep => 0.03 * apart.max(1.0),
         BounceEngine::Pyramid => 0.75,
     }
 }

@@ -1,0 +1,85 @@
+//! Balls of light by spherical harmonics at the extremes: the same scenes as exact ones. What harmonics keep of
+//! them is known in f64, from the surface's own horizons or a pyramid's.
+
+use ridgelight::cpu::height_expand::height_expand;
+use ridgelight::cpu::height_reduce::height_levels;
+use ridgelight::cpu::light::normal;
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::cpu::pyramid_march::Stored;
+use ridgelight::cpu::shared::levels::LevelTexels;
+use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::cpu::sphere_sh_shade::SphereSh;
+use ridgelight::measure::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight::measure::tolerance::{BallSeen, EPSILON, twin_pyramid_angle, twin_pyramid_slope};
+use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::scene::{Border, Levels};
+
+use super::{About, Case, Found, Method, Probe, balls};
+
+pub fn cases() -> Vec<Case> {
+    // Borders alone make no other series.
+    let is_other = |case: &Case| case.scene.surface.border != Border::Open;
+    balls::cases().into_iter().filter(is_other).map(soft).collect()
+}
+
+fn soft(case: Case) -> Case {
+    Case {
+        name: format!("{}, by harmonics", case.name),
+        about: About::SoftBalls,
+        expected: "what their order keeps of it, from the same series in f64, at least 0"
+            .to_owned(),
+        bound: "what f32 may do to the series (`src/measure/soft_ball.rs`), and 4 ε".to_owned(),
+        probes: Box::new(probes),
+        // Of 64 cells a pyramid's levels may err by more than a ball is wide.
+        unjudged: match super::relief(&case.scene.field) > 16.0 {
+            true => super::is_pyramid,
+            false => super::none,
+        },
+        ..case
+    }
+}
+
+fn probes(found: &Found) -> Vec<Probe> {
+    let (field, border) = (&found.scene.field, found.scene.surface.border);
+    let (quality, ball) = (&found.method.quality, &found.scene.lights.spheres[0]);
+    let pyramid = Pyramid::new(quality, [field.cols() as u32, field.rows() as u32], border);
+    let texels = height_levels(&Heights::of(field, border), &pyramid);
+    let of = LevelTexels { pyramid: &pyramid, texels: &texels };
+    let stack: Vec<f32> = (1..=pyramid.levels()).flat_map(|n| height_expand(&of, n)).collect();
+    let stored = match quality.levels {
+        Levels::Stack => Stored::Stack(&stack),
+        Levels::Pyramid => Stored::Levels(&texels),
+    };
+    let levels = found.method.is_pyramid().then_some((pyramid, stored));
+    let twin = SphereSh::new(Oracle::new(field, border), levels, *quality);
+    let errors = SoftBall::new(quality);
+    let (rows, cols) = (field.rows(), field.cols());
+    let at = |[row, col]: [usize; 2]| {
+        let soft = twin.at(ball, row, col);
+        let seen = BallSeen::of(field, ball, row * cols + col);
+        let slope = slope_error(&seen, found.method, super::largest(field));
+        let off = errors.twin(&seen, slope, normal(field, border, row, col), &soft.seen);
+        let radiance = f64::from(ball.radiance[0]);
+        let light = soft.light.max(0.0);
+        Probe {
+            found: found.light("direct.light1", row, col),
+            expected: [radiance * light; 2],
+            bound: radiance * (off + 4.0 * EPSILON * light),
+            at: [0, row, col],
+        }
+    };
+    let places = [[0, 0], [rows / 2, cols / 2], [rows / 3, cols - 1], [rows / 2, cols / 4]];
+    places.map(at).into()
+}
+
+/// What slopes towards a ball err by, where a pyramid's levels, too, are the twins'.
+fn slope_error(seen: &BallSeen, method: &Method, largest: f64) -> f64 {
+    if !method.is_pyramid() {
+        return twin_surface_within(seen);
+    }
+    let (relief, step) = (seen.relief_m, seen.cell_m);
+    let steepest = relief / step;
+    let march = twin_pyramid_slope(steepest, largest, relief, step)
+        + (1.0 + steepest * steepest) * twin_pyramid_angle(largest, relief, step);
+    twin_pyramid_within(seen, march, steepest, method.quality.level_step)
+}

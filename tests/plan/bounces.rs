@@ -1,0 +1,156 @@
+//! Which passes bounces have: engines, nodes, and none where nothing is reflected.
+
+use ridgelight::plan::{self, Limits, Pass, Picture, Plan, missing_barriers};
+use ridgelight::scene::{
+    Albedo, Border, BounceEngine, Bounces, Environment, Lights, Lines, Method, Quality, Scene,
+    Surface,
+};
+
+use crate::{flat, under_sky};
+
+const ENGINES: [BounceEngine; 3] =
+    [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
+
+fn quality(engine: BounceEngine, count: u32, subsample: u32) -> Quality {
+    let bounces = Bounces { count, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
+    Quality { azimuths: 8, bounces, subsample, ..Quality::default() }
+}
+
+fn drawn(scene: &Scene, quality: &Quality, memory_budget: u64) -> Plan {
+    let limits = Limits { memory_budget, ..Limits::lavapipe() };
+    plan::picture(scene, quality, &limits, Picture::default()).expect("a plan")
+}
+
+fn count(plan: &Plan, name: &str) -> usize {
+    plan.passes.iter().filter(|p| p.name() == name).count()
+}
+
+const ROOMY: u64 = 2 << 30;
+
+/// Walks where lines are swept, else every stretch, and the plan says why; nothing where nothing is thrown.
+#[test]
+fn the_planner_takes_walks_where_there_are_lines() {
+    let mut scene = under_sky(flat(9, 14));
+    let auto = quality(BounceEngine::Auto, 1, 1);
+    for (method, lines, pass, why) in [
+        (Method::Auto, Lines::Cell, "bounce_walk", "bounce engine sweep: "),
+        (Method::Sweep, Lines::FourCells, "bounce_walk", "bounce engine sweep: "),
+        (Method::Sweep, Lines::Exact, "bounce_march", "bounce engine brute: --lines exact "),
+        (Method::Brute, Lines::Cell, "bounce_march", "bounce engine brute: --method brute "),
+        (Method::Pyramid, Lines::Cell, "bounce_march", "bounce engine brute: --method pyramid "),
+    ] {
+        let plan = drawn(&scene, &Quality { method, lines, ..auto }, ROOMY);
+        assert!(count(&plan, pass) > 0, "{method:?} {lines:?}");
+        assert!(plan.notes.iter().any(|n| n.starts_with(why)), "{:?}", plan.notes);
+        let engine = &plan.settings.iter().find(|s| s.0 == "bounce_engine").unwrap().1;
+        assert!(why.contains(engine.as_str()), "{engine}");
+    }
+    scene.surface = Surface { albedo: Albedo::Constant([0.0; 3]), ..scene.surface };
+    let dark = drawn(&scene, &auto, ROOMY);
+    assert!(!dark.notes.iter().any(|n| n.contains("engine")), "{:?}", dark.notes);
+}
+
+/// An engine works at nodes and every sample is lit from them. Of sweeps later bounces go by casting sets, which take
+/// no more than half of what is left: else each is swept and walked.
+#[test]
+fn bounces_at_nodes() {
+    let scene = under_sky(flat(13, 18));
+    let nodes = |stride: u32| {
+        u64::from(12_u32.div_ceil(stride) + 1) * u64::from(17_u32.div_ceil(stride) + 1)
+    };
+    for stride in [2, 4] {
+        let engines = [
+            (BounceEngine::Sweep, "bounce_walk"),
+            (BounceEngine::Brute, "bounce_march"),
+            (BounceEngine::Pyramid, "bounce_gather"),
+        ];
+        for (engine, name) in engines {
+            let plan = drawn(&scene, &quality(engine, 3, stride), ROOMY);
+            let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.samples);
+            let walks_once = engine == BounceEngine::Sweep;
+            let bounces = if walks_once { 1 } else { 3 };
+            assert_eq!(samples.sum::<u64>(), bounces * nodes(stride) * 8, "{name} {stride}");
+            assert_eq!(count(&plan, "bounce_shade"), 3);
+            assert_eq!(count(&plan, "cast_gather"), if walks_once { 2 } else { 0 });
+            assert_eq!(missing_barriers(&plan.passes), vec![]);
+            let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
+            assert_eq!(bytes("node_sum"), nodes(stride) * 16);
+            let has = |s: &(String, String)| *s == ("subsample".into(), stride.to_string());
+            assert!(plan.settings.iter().any(has), "{:?}", plan.settings);
+            if walks_once {
+                assert_eq!(bytes("casting_sets"), nodes(stride) * 8 * 8 * 8);
+            }
+        }
+    }
+    let (large, walks) = (under_sky(flat(50, 70)), quality(BounceEngine::Sweep, 3, 2));
+    let plan = drawn(&large, &walks, ROOMY);
+    let sets = plan.resources[plan.find("casting_sets").expect("kept").0].bytes();
+    let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
+    let tight = drawn(&large, &walks, all - sets);
+    assert!(tight.find("casting_sets").is_none() && count(&tight, "cast_gather") == 0);
+    assert_eq!(count(&tight, "bounce_walk"), 3 * count(&plan, "bounce_walk"));
+    assert!(tight.notes.iter().any(|n| n.contains("anew")), "{:?}", tight.notes);
+    // One bounce is not looked at again, and none is not found anywhere.
+    let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);
+    assert!(once.find("casting_sets").is_none() && once.find("node_sum").is_some());
+    let none = drawn(&scene, &quality(BounceEngine::Sweep, 0, 2), ROOMY);
+    assert!(none.find("node_sum").is_none() && none.find("ground").is_none());
+}
+
+/// The share of ground is that of a sky's light, where there is one, else walks find it on their own lines, and other
+/// engines have a circle of azimuths swept.
+#[test]
+fn shares_of_ground_are_found_once() {
+    let mut scene = under_sky(flat(9, 14));
+    let walks = quality(BounceEngine::Sweep, 2, 2);
+    let of_sky = drawn(&scene, &walks, ROOMY);
+    assert!(of_sky.find("sky_share").is_none() && of_sky.find("sky_sum").is_some());
+    let environment = Environment::new(4, 2, vec![[1.0, 0.5, 0.2]; 8], 0.0).unwrap();
+    scene.lights = Lights { environment: Some(environment), ..Lights::default() };
+    let walked = drawn(&scene, &walks, ROOMY);
+    assert!(walked.find("sky_share").is_some() && walked.find("sky_sum").is_none());
+    let shares = walked.passes.iter().filter(|p| p.label().starts_with("sky_shade bounce1"));
+    assert_eq!(shares.map(|p| p.azimuths.len()).sum::<usize>(), 8);
+    let marched = drawn(&scene, &quality(BounceEngine::Brute, 2, 2), ROOMY);
+    assert!(marched.find("sky_share").is_none() && marched.find("sky_sum").is_some());
+}
+
+fn planned(albedo: [f32; 3], count: u32, engine: BounceEngine) -> Plan {
+    let surface = Surface { albedo: Albedo::Constant(albedo), border: Border::Plane, phong: None };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field: flat(9, 14), surface, lights };
+    let bounces = Bounces { count, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
+    let quality = Quality { azimuths: 8, bounces, ..Quality::default() };
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+}
+
+fn labels(plan: &Plan) -> Vec<String> {
+    plan.passes.iter().map(Pass::label).collect()
+}
+
+/// Ground that reflects nothing has the passes, images and outputs of a picture without bounces, and says why; ground
+/// that reflects the least there is in one colour has them all.
+#[test]
+fn black_ground_drops_every_pass_of_bounces() {
+    for engine in ENGINES {
+        let [black, none, faint] = [([0.0; 3], 3), ([0.0; 3], 0), ([0.0, 1e-30, 0.0], 3)]
+            .map(|(albedo, count)| planned(albedo, count, engine));
+        assert_eq!(labels(&black), labels(&none), "{engine:?}");
+        let names = |plan: &Plan| -> Vec<String> {
+            plan.resources.iter().map(|r| r.name.clone()).collect()
+        };
+        assert_eq!(names(&black), names(&none), "{engine:?}");
+        assert!(black.notes.contains(&"no bounces: the surface reflects nothing".to_owned()));
+        let of_bounces = |plan: &Plan| {
+            let is_one = |l: &&String| l.contains("bounce") || l.contains("shade_reduce");
+            labels(plan).iter().filter(is_one).count()
+        };
+        assert_eq!(of_bounces(&black), 0, "{engine:?}");
+        let faint_ones = labels(&faint).join(" ");
+        for k in 1..=3 {
+            assert!(faint_ones.contains(&format!("bounce{k}")), "{engine:?}: {faint_ones}");
+        }
+        assert!(of_bounces(&faint) >= 6, "{engine:?}: {faint_ones}");
+    }
+}
