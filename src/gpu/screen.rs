@@ -15,7 +15,7 @@ use super::memory::Backed;
 use super::surface::Handles;
 use super::{Frame, Headless, HeadlessOptions, Timing, failed};
 use crate::files::Tone;
-use crate::plan::{Map, Plan};
+use crate::plan::{Map, Plan, View};
 use crate::{Error, Result};
 
 use chain::Chain;
@@ -60,6 +60,15 @@ pub struct Panel<'a> {
     pub pixels: &'a [[u8; 4]],
 }
 
+/// How a lit field is seen.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// From straight above, to the byte as in a PNG; its order of bytes is [`Screen::swaps`].
+    Map(&'a Map),
+    /// From a camera.
+    Camera(&'a View),
+}
+
 /// What one frame shows, and what is done before.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot<'a> {
@@ -67,8 +76,8 @@ pub struct Shot<'a> {
     pub heights: Option<&'a [f32]>,
     /// Passes that light the field anew, by position in its plan.
     pub passes: &'a [usize],
-    /// The part that is shown; its size is [`Screen::size`], its order of bytes [`Screen::swaps`].
-    pub map: &'a Map,
+    /// What is seen of it; the size is [`Screen::size`].
+    pub sight: Sight<'a>,
     /// How radiance looks.
     pub tone: Tone,
     /// The field's, where it has any.

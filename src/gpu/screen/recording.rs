@@ -6,7 +6,7 @@ use super::super::allocator::MemoryUse;
 use super::super::memory::whole;
 use super::super::{Frame, failed};
 use super::drawer::{COPIED, Drawer};
-use super::{Panel, Screen, Shot, Slot, fitting};
+use super::{Panel, Screen, Shot, Sight, Slot, fitting};
 use crate::{Error, Result};
 
 /// Where the window's picture is, between the copies into it.
@@ -29,11 +29,15 @@ impl Screen {
             return Err(Error::setting("heights", found, format!("{samples}, one a sample")));
         }
         let chain = self.chain.as_ref().expect("acquired from");
-        if shot.map.size != chain.size || shot.map.swaps != chain.swaps() {
-            return Err(Error::setting("map: size", "another", "the window's pictures'"));
+        let (size, swaps) = match shot.sight {
+            Sight::Map(map) => (map.size, map.swaps),
+            Sight::Camera(view) => (view.size, chain.swaps()),
+        };
+        if size != chain.size || swaps != chain.swaps() {
+            return Err(Error::setting("sight: size", "another", "the window's pictures'"));
         }
         let pixels = u64::from(chain.size[0]) * u64::from(chain.size[1]);
-        let (swaps, gpu) = (chain.swaps(), &mut self.gpu);
+        let gpu = &mut self.gpu;
         let is_readable = chain.is_readable;
         let of_slot = &mut self.slots[slot];
         if let Some(heights) = shot.heights {
@@ -55,12 +59,12 @@ impl Screen {
             let named = ("picture of a frame", 4 * pixels);
             fitting(gpu, &mut of_slot.readback, named, MemoryUse::Readback)?;
         }
-        if self.drawer.as_ref().is_none_or(|d| !d.fits(shot.map)) {
+        if self.drawer.as_ref().is_none_or(|d| !d.fits(shot)) {
             self.wait()?;
             if let Some(old) = self.drawer.take() {
                 old.end(&mut self.gpu);
             }
-            self.drawer = Some(Drawer::new(&mut self.gpu, shot.map, shot.tone, shot.voids)?);
+            self.drawer = Some(Drawer::new(&mut self.gpu, shot, swaps)?);
         }
         let drawer = self.drawer.as_mut().expect("made above");
         drawer.set_tone(&mut self.gpu, shot.tone)
@@ -92,7 +96,7 @@ impl Screen {
             frame.renderer().record_passes(commands, slot, &inputs, &outputs, shot.passes)?;
         }
         let drawer = self.drawer.as_mut().expect("prepared");
-        drawer.record(&self.gpu, commands, slot, (shot.map, frame))?;
+        drawer.record(&self.gpu, commands, slot, (shot, frame))?;
         self.fill(slot, image, shot);
         // SAFETY: recording was begun above.
         unsafe { device.end_command_buffer(commands) }.map_err(failed("recording a frame"))

@@ -3,8 +3,8 @@
 use ridgelight::Result;
 use ridgelight::files::Tone;
 use ridgelight::gpu::Timing;
-use ridgelight::plan::{self, Limits, Map, Picture, Plan};
-use ridgelight::scene::{Lights, Method, Quality, Scene, Sun};
+use ridgelight::plan::{self, Limits, Map, Picture, Plan, View, ViewOptions};
+use ridgelight::scene::{Camera, Lens, Lights, Method, Quality, Scene, Sun};
 
 use super::script::Button;
 use super::waves::Waves;
@@ -13,18 +13,21 @@ use crate::scene_file::Asked;
 
 /// The keys, as they are listed on the screen.
 pub const KEYS: [&str; 11] = [
-    "arrows, drag      move            + - or wheel     nearer, farther",
-    "Home              all of it",
-    "Shift+arrows, right drag          the sun (there is one from then on)",
-    "M                 method          , .              fewer, more azimuths",
-    "B                 bounces         E D              brighter, darker",
+    "V                 from above, from a camera",
+    "arrows, drag      move the map, turn the camera",
+    "I J K L           move either; middle drag",
+    "+ - or wheel      nearer, farther     Home    all of it",
+    "Shift+arrows      the sun (there is one from then on); right drag",
+    "M  B  , .         method, bounces, fewer and more azimuths",
+    "E D               brighter, darker",
     "W                 waves, on and off",
     "P                 save the picture, as `render` does",
     "S                 save the scene, for `render --scene`",
-    "H                 this list, the figures, nothing",
-    "Q Esc             end",
-    "",
+    "H    Q Esc        this list, the figures, nothing; end",
 ];
+
+/// Cells of the mesh along a side, at most: larger fields are drawn through fewer samples.
+const MOST_CELLS: u32 = 1024;
 
 /// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +69,8 @@ pub struct State {
     exposure: f32,
     /// None: all of the field.
     place: Option<Place>,
+    /// None: from straight above.
+    camera: Option<Camera>,
     text: Text,
     /// Said until the next key.
     pub message: Option<String>,
@@ -80,6 +85,7 @@ impl State {
             waves: None,
             exposure: args.exposure,
             place: None,
+            camera: None,
             text: Text::Keys,
             message: None,
         }
@@ -207,22 +213,94 @@ impl State {
         Wish::Light
     }
 
+    /// What a camera sees, where there is one.
+    pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
+        let Some(camera) = &self.camera else { return Ok(None) };
+        let field = &self.scene.field;
+        let options = ViewOptions {
+            size,
+            // Processors pay for each.
+            samples: if limits.is_cpu { 1 } else { 4 },
+            mesh_step: (field.rows().max(field.cols()) as u32).div_ceil(MOST_CELLS).min(1024),
+            ..ViewOptions::default()
+        };
+        View::new(&self.scene, lit, camera, &options, limits).map(Some)
+    }
+
+    /// From the south, all of the field in the picture.
+    fn begin_camera(&mut self, size: [u32; 2]) -> Wish {
+        let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
+        let lens = Lens::Perspective { fov_rad: 40_f64.to_radians() };
+        let angles = [-90_f64, 45.0].map(f64::to_radians);
+        if self.scene.field.rows().min(self.scene.field.cols()) < 2 {
+            self.message = Some("a camera needs two rows and two columns".into());
+            return Wish::Show;
+        }
+        self.camera = Some(Camera::around(&self.scene.field, None, angles, lens, aspect));
+        Wish::Show
+    }
+
+    /// Moves what is seen by pixels.
+    fn pan(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
+        let Some(camera) = &mut self.camera else { return self.shift(size, pixels) };
+        let [right, up, _] = camera.axes();
+        let half =
+            if let Lens::Perspective { fov_rad } = camera.lens { fov_rad / 2.0 } else { 0.0 };
+        let metres = 2.0 * camera.distance_m * half.tan() / f64::from(size[1].max(1));
+        let moved = right * (-pixels[0] * metres) + up * (pixels[1] * metres);
+        for (place, by) in camera.target_m.iter_mut().zip(moved.to_array()) {
+            *place += by;
+        }
+        Wish::Show
+    }
+
+    /// Turns the camera, degrees; moves the map where there is none.
+    fn turn(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
+        let Some(camera) = &mut self.camera else { return self.shift(size, pixels) };
+        let per_pixel = 180.0_f64.to_radians() / f64::from(size[1].max(1));
+        camera.azimuth_rad -= pixels[0] * per_pixel;
+        let elevation = camera.elevation_rad + pixels[1] * per_pixel;
+        camera.elevation_rad = elevation.clamp(1_f64.to_radians(), 90_f64.to_radians());
+        Wish::Show
+    }
+
+    /// Nearer by a factor.
+    fn near(&mut self, size: [u32; 2], factor: f64, at: [f64; 2]) -> Wish {
+        match &mut self.camera {
+            Some(camera) => {
+                camera.distance_m = (camera.distance_m / factor).clamp(1e-6, 1e12);
+                Wish::Show
+            }
+            None => self.zoom(size, factor, at),
+        }
+    }
+
     /// A key by its name: a letter, `left`, `shift+left`, `escape`.
     pub fn key(&mut self, name: &str, size: [u32; 2]) -> Wish {
         self.message = None;
         let middle = size.map(|n| f64::from(n) / 2.0);
         let step = f64::from(size[0].min(size[1])) / 16.0;
         match name {
-            "left" => self.shift(size, [step, 0.0]),
-            "right" => self.shift(size, [-step, 0.0]),
-            "up" => self.shift(size, [0.0, step]),
-            "down" => self.shift(size, [0.0, -step]),
+            "left" => self.turn(size, [step, 0.0]),
+            "right" => self.turn(size, [-step, 0.0]),
+            "up" => self.turn(size, [0.0, step]),
+            "down" => self.turn(size, [0.0, -step]),
+            "j" => self.pan(size, [step, 0.0]),
+            "l" => self.pan(size, [-step, 0.0]),
+            "i" => self.pan(size, [0.0, step]),
+            "k" => self.pan(size, [0.0, -step]),
+            "v" if self.camera.is_some() => {
+                self.camera = None;
+                Wish::Show
+            }
+            "v" => self.begin_camera(size),
+            "home" if self.camera.is_some() => self.begin_camera(size),
             "shift+left" => self.turn_sun(-5.0, 0.0),
             "shift+right" => self.turn_sun(5.0, 0.0),
             "shift+up" => self.turn_sun(0.0, 2.0),
             "shift+down" => self.turn_sun(0.0, -2.0),
-            "+" | "=" => self.zoom(size, 1.25, middle),
-            "-" => self.zoom(size, 0.8, middle),
+            "+" | "=" => self.near(size, 1.25, middle),
+            "-" => self.near(size, 0.8, middle),
             "home" => {
                 self.place = None;
                 Wish::Show
@@ -284,14 +362,15 @@ impl State {
     /// A drag by a button, pixels.
     pub fn drag(&mut self, button: Button, way: [f64; 2], size: [u32; 2]) -> Wish {
         match button {
-            Button::Left | Button::Middle => self.shift(size, way),
+            Button::Left => self.turn(size, way),
+            Button::Middle => self.pan(size, way),
             Button::Right => self.turn_sun(way[0] / 2.0, -way[1] / 4.0),
         }
     }
 
     /// Notches of the wheel, upwards, at a pixel.
     pub fn wheel(&mut self, notches: f64, at: [f64; 2], size: [u32; 2]) -> Wish {
-        self.zoom(size, 1.25_f64.powf(notches.clamp(-20.0, 20.0)), at)
+        self.near(size, 1.25_f64.powf(notches.clamp(-20.0, 20.0)), at)
     }
 
     /// What stands over the picture; nothing where no text is wanted.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ridgelight::gpu::{Panel, Shot};
+use ridgelight::gpu::{Panel, Shot, Sight};
 use ridgelight::plan::{self, Format, Kind, Plan};
 use ridgelight::{Error, Result};
 
@@ -57,11 +57,12 @@ impl App<'_> {
         let scale = if shown.window.scale_factor() >= 1.5 { 2 } else { 1 };
         let drawn = (!lines.is_empty()).then(|| panel::draw(&lines, scale));
         let map = self.state.map(size, shown.screen.swaps(), has_colour(plan));
+        let view = self.state.view(plan, size, &shown.limits)?;
         let field = &self.state.scene.field;
         let shot = Shot {
             heights: lights_anew.then_some(field.heights_m()),
             passes: &passes,
-            map: &map,
+            sight: view.as_ref().map_or(Sight::Map(&map), Sight::Camera),
             tone: self.state.tone(),
             voids: field.voids(),
             panel: drawn.as_ref().map(|d| Panel { size: d.size, pixels: &d.pixels }),

@@ -11,20 +11,27 @@ use crate::args::Cli;
 use crate::{render, setup};
 
 impl App<'_> {
-    /// The lit field, a pixel a sample, into a file or one of a name that is free.
+    /// The lit field, a pixel a sample, or what the camera sees, into a file or one of a name that is free.
     pub(super) fn save_picture(&mut self, path: Option<&Path>) -> Result<()> {
         let path = path.map_or_else(|| self.free_name("png"), Path::to_owned);
         let Some(shown) = &mut self.shown else { return Ok(()) };
         let Some(lit) = &shown.lit else { return Ok(()) };
         shown.screen.wait()?;
+        let field = &self.state.scene.field;
+        let tone = self.state.tone();
+        let view = self.state.view(lit.plan(), shown.size, &shown.limits)?;
         let gpu = shown.screen.gpu();
         let pixels = gpu.pixels(lit, 0)?;
-        let field = &self.state.scene.field;
+        if let Some(view) = view {
+            let seen = gpu.look(lit, &view, field.voids())?.radiance;
+            let (rows, cols) = (view.size[1] as usize, view.size[0] as usize);
+            let saved = files::write_png(&path, rows, cols, &seen, None, tone, &view.settings);
+            return self.say(saved, &path);
+        }
         let saved = render::check_finite(&pixels, field).and_then(|()| {
             let metadata = setup::metadata(gpu, field, lit.plan(), &shown.times);
             let (rows, cols) = (field.rows(), field.cols());
             let picture = render::rgb(&pixels);
-            let tone = self.state.tone();
             files::write_png(&path, rows, cols, &picture, field.voids(), tone, &metadata)
         });
         self.say(saved, &path)
