@@ -128,6 +128,36 @@ fn gpu_a_window_shows_what_render_writes() {
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
 }
 
+/// What the window draws, and what `render --camera` does: the same passes, whose codes are rounded here by the
+/// device after its own power function, there by the host.
+#[test]
+fn gpu_a_camera_sees_what_render_does() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nkey v\nframes 2\nscreenshot shot.png\npicture saved.png\n\
+        key left\nkey up\nkey +\nkey k\ndrag middle 9,9 5,3\nframes 1\nscreenshot other.png\nkey home\nlose\n\
+        frames 1\nscreenshot again.png\nkey v\nframes 1\nscreenshot map.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 96x60"), script);
+    let camera = "--camera 180,45 --fov 40 --samples 1 --size 96x60";
+    folder.done(None, &format!("render hills.asc {LIT} {camera} -o camera.png --quiet"));
+    assert_same(&folder, "saved.png", "camera.png");
+    assert_same(&folder, "again.png", "shot.png");
+    let [shot, saved, other] = ["shot.png", "saved.png", "other.png"].map(|n| folder.picture(n));
+    let apart = |a: &Planes| {
+        let pairs = colours(a).concat().into_iter().zip(colours(&saved).concat());
+        pairs.map(|(a, b)| (code(a) - code(b)).abs()).fold(0.0, f64::max)
+    };
+    assert!(apart(&shot) <= 1.0, "{} codes", apart(&shot));
+    // The comparison can fail.
+    assert!(apart(&other) > 16.0);
+}
+
+/// The 8-bit code that a plane's linear light was read from (IEC 61966-2-1).
+fn code(light: f32) -> f64 {
+    let l = f64::from(light);
+    let encoded = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * encoded).round()
+}
+
 /// Numbers of a line that a report printed.
 fn reported(line: &str) -> (u64, u64) {
     let number = |text: Option<&str>| text.and_then(|t| t.parse().ok()).expect("a number");

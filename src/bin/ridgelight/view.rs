@@ -44,8 +44,24 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
         let why = why.map_or(text.as_str(), |(_, why)| why).trim_end_matches('.');
         Error::Device { doing: "view".into(), reason: format!("needs a display: {why}") }
     };
+    check_keyboard()?;
     let events = EventLoop::new().map_err(no_display)?;
     let mut app = App::new(args, State::new(args, scene, quality), steps);
     let ended = events.run_app(&mut app).map_err(no_display);
     app.end().and(ended).map(|()| Outcome::Done)
+}
+
+/// Refuses where winit would panic: it loads the library when it opens a window on X.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn check_keyboard() -> Result<()> {
+    let is_there = xkbcommon_dl::xkbcommon_option().is_some()
+        && xkbcommon_dl::x11::xkbcommon_x11_option().is_some();
+    let reason = "needs libxkbcommon-x11.so.0 (Debian: libxkbcommon-x11-0)";
+    let missing = || Error::Device { doing: "view".into(), reason: reason.into() };
+    is_there.then_some(()).ok_or_else(missing)
+}
+
+#[cfg(not(all(unix, not(target_vendor = "apple"))))]
+fn check_keyboard() -> Result<()> {
+    Ok(())
 }
