@@ -4,7 +4,7 @@
 //!
 //! First spherical pits, their rim N (30) cells from the middle, beside their closed form: RMSE over the radiance, at
 //! samples up to half of the rim's distance. Then the middle N² (64) samples of real fields under environments, for
-//! two albedos, one and three bounces, beside N (4096) light paths a sample: what is bounced alone, and the whole; and
+//! two albedos, one and three bounces, beside N (8192) light paths a sample: what is bounced alone, and the whole; and
 //! three bounces of albedo 0.8 under each field's first environment by azimuths, as FILE.svg draws them.
 //! FOLDER has `height/` and `env/`; without it, the bundled mountain and sky. Milliseconds are those of the passes
 //! for bounces, sweeps included.
@@ -49,7 +49,7 @@ fn asked() -> Result<Asked> {
         folder: None,
         side: None,
         samples: 11,
-        paths: 4096,
+        paths: 8192,
         rim: 30,
         output: None,
     };
@@ -202,8 +202,8 @@ fn run() -> Result<()> {
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     println!("{}, {}\n", gpu.report().name, gpu.report().driver);
     if asked.is_table {
-        nodes::run(&mut gpu)?;
-        return table::run(&mut gpu, asked.side.unwrap_or(512), asked.samples);
+        table::run(&mut gpu, asked.side.unwrap_or(512), asked.samples)?;
+        return nodes::run(&mut gpu);
     }
     pits(&mut gpu, asked.rim)?;
     let side = asked.side.unwrap_or(64);

@@ -16,8 +16,8 @@ use ridgelight::scene::{
 };
 use ridgelight::{Error, Result};
 
-const SIZE: [u32; 2] = [1200, 520];
-const EXPOSURE: f32 = 0.8;
+const SIZE: [u32; 2] = [1200, 500];
+const EXPOSURE: f32 = 0.95;
 /// Compass azimuth and elevation: from the left.
 const SUN: [f64; 2] = [185.0, 11.0];
 /// Degrees counter-clockwise: its bright half, and its own sun behind clouds, before the camera.
@@ -39,7 +39,7 @@ fn albedo(field: &HeightField) -> Vec<[f32; 3]> {
         let t = ((v - low) / (high - low)).clamp(0.0, 1.0);
         (t * t * (3.0 - 2.0 * t)) as f32
     };
-    let (forest, heath, rock) = ([0.06, 0.09, 0.035], [0.19, 0.16, 0.085], [0.24, 0.22, 0.20]);
+    let (forest, heath, rock) = ([0.045, 0.062, 0.030], [0.15, 0.135, 0.08], [0.21, 0.20, 0.185]);
     let colour = |height: f64| {
         let grown = mix(forest, heath, smooth(1000.0, 1400.0, height));
         mix(grown, rock, smooth(1350.0, 1750.0, height))
@@ -74,11 +74,11 @@ fn scene() -> Result<Scene> {
 /// From the east, above the ravines.
 fn camera() -> Camera {
     Camera {
-        target_m: [8500.0, 12300.0, 1100.0],
+        target_m: [8200.0, 12400.0, 1150.0],
         azimuth_rad: (90.0_f64 - 80.0).to_radians(),
         elevation_rad: 12_f64.to_radians(),
-        distance_m: 9500.0,
-        lens: Lens::Perspective { fov_rad: 34_f64.to_radians() },
+        distance_m: 11500.0,
+        lens: Lens::Perspective { fov_rad: 25_f64.to_radians() },
     }
 }
 

@@ -51,6 +51,8 @@ void main() {
         return;
     }
     vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
+    // Light that is all but hidden may come out below 0 by a rounding; what is no number stays none.
+    light = mix(light, vec4(0.0), lessThan(light, vec4(0.0)));
     light *= colour;
     if (ALBEDO_IS_MAP) {
         light *= texelFetch(albedo_map, at, 0);

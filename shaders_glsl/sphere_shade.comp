@@ -266,7 +266,9 @@ void main() {
         float spaced = 0.5 * widest * sine(u);
         float half_turn = around ? u : spaced;
         float weight_around = 2.0 * PI / float(count);
-        float weight_ahead = widest * cosine(u) * PI / float(count);
+        // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+        float alone = count > 1 ? 1.0 : 0.5;
+        float weight_ahead = alone * widest * cosine(u) * PI / float(count);
         float weight = around ? weight_around : weight_ahead;
         float slice = slice_light(here, own, towards, away, up, vec2(cosine(half_turn), sine(half_turn)), has_slice);
         light += has_slice ? weight * slice : 0.0;

@@ -1,4 +1,4 @@
-//! One light's share of the picture: its sum times its colour and the surface's albedo.
+//! One light's share of the picture: its sum, no less than 0, times its colour and the surface's albedo.
 
 /// A light's sum over azimuths, one value a sample.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,8 @@ pub fn light_resolve(
     let resolve = |i: usize, light: [f64; 3]| -> [f64; 3] {
         std::array::from_fn(|c| {
             let albedo = albedo_map.map_or(1.0, |map| f64::from(map[i][c]));
-            light[c] * f64::from(colour[c]) * albedo
+            let seen = if light[c] < 0.0 { 0.0 } else { light[c] };
+            seen * f64::from(colour[c]) * albedo
         })
     };
     match sum {

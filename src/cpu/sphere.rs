@@ -39,7 +39,9 @@ pub fn sphere_on(
         let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
         let (offset, weight) = if sphere.radius_m < away {
             let u = FRAC_PI_2 * centre;
-            (widest * u.sin(), widest * u.cos() * PI / strips as f64)
+            // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+            let alone = if strips > 1 { 1.0 } else { 0.5 };
+            (widest * u.sin(), alone * widest * u.cos() * PI / strips as f64)
         } else {
             (PI * centre, TAU / strips as f64)
         };

@@ -109,7 +109,12 @@ fn member(path: &Path, archive: &mut Archive, held: usize, name: &str) -> Result
     bytes
         .try_reserve_exact(usize::try_from(claimed).unwrap_or(usize::MAX))
         .map_err(|_| wrong(format!("{claimed} bytes, more than there is memory")))?;
-    file.take(claimed).read_to_end(&mut bytes).map_err(|e| wrong(open::complaint(e)))?;
+    // A byte more: checksums are held to at the end alone.
+    let read = file.take(claimed.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|e| wrong(open::complaint(e)))?;
+    if bytes.len() as u64 != claimed {
+        return Err(wrong(format!("more than the {claimed} bytes that it says")));
+    }
     Ok(bytes)
 }
 

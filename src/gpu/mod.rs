@@ -77,6 +77,7 @@ impl Format {
     pub fn vk(self) -> vk::Format {
         match self {
             Format::R32Float => vk::Format::R32_SFLOAT,
+            Format::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             Format::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
             Format::R32Uint => vk::Format::R32_UINT,
             Format::Rg32Uint => vk::Format::R32G32_UINT,
@@ -97,6 +98,7 @@ impl Format {
                 vk::Format::R8G8B8A8_UNORM,
                 vk::Format::R8G8B8A8_SRGB,
             ],
+            Format::Rgba16Float => &[vk::Format::R16G16B16A16_SFLOAT],
             Format::R32Uint => &[vk::Format::R32_UINT],
             Format::Rg32Uint => &[vk::Format::R32G32_UINT],
             Format::Rgba32Uint => &[vk::Format::R32G32B32A32_UINT],

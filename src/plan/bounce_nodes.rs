@@ -24,8 +24,9 @@ pub(crate) struct BounceNodes {
 }
 
 impl BounceNodes {
-    /// None where every sample is a node, or without bounces; `sky_share` where other lights find it. Of sweeps, casting
-    /// sets are kept where later bounces need them and they take no more than half of what the budget leaves.
+    /// None where every sample is a node, or without bounces; `sky_share` is that of other lights, which walks find by
+    /// their own azimuths. Of walks, casting sets are kept where later bounces need them and they take no more than half
+    /// of what the budget leaves.
     pub fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -43,13 +44,14 @@ impl BounceNodes {
         };
         let [across, along] = nodes.size(size);
         let sum = image("node_sum", Format::Rgba32Float, [across, along]);
-        let finds_share = sky_share.is_none();
-        let sky_share = sky_share.unwrap_or_else(|| image("sky_share", Format::R32Float, size));
+        let is_walked = quality.bounces.engine == BounceEngine::Sweep;
+        let shared = sky_share.filter(|_| !is_walked);
+        let sky_share = shared.unwrap_or_else(|| image("sky_share", Format::R32Float, size));
         let layers = quality.bounces.azimuths * CAST_SLOTS;
         let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 8;
         let room =
             (limits.memory_budget.saturating_sub(builder.bytes()) / 2).min(limits.allocation_bytes);
-        let are_wanted = quality.bounces.engine == BounceEngine::Sweep && count > 1;
+        let are_wanted = is_walked && count > 1;
         let fits = bytes <= room && layers <= limits.image_layers;
         if are_wanted && !fits {
             notes.push(format!(
@@ -63,7 +65,7 @@ impl BounceNodes {
             let extent = [across, along, layers];
             builder.image("casting_sets", Owner::Internal, Format::Rg32Uint, extent, true)
         });
-        Some(Self { nodes, sum, sky_share, finds_share, casts })
+        Some(Self { nodes, sum, sky_share, finds_share: shared.is_none(), casts })
     }
 
     /// How many nodes there are on a field of this size.

@@ -10,6 +10,7 @@ mod builder;
 mod change;
 mod choice;
 mod edit;
+pub(crate) mod glossy;
 mod horizons;
 mod limits;
 mod map;

@@ -6,6 +6,7 @@ use super::{Builder, Rectangle, ResourceId};
 use crate::passes::sphere_sh_shade;
 use crate::passes::sphere_shade::{self, Look};
 use crate::scene::{HeightField, Scene, SphereLight};
+use crate::{Error, Result};
 
 /// Parts of the field, along either side, whose loss is bounded together.
 const PARTS: usize = 16;
@@ -13,6 +14,9 @@ const PARTS: usize = 16;
 const HALVINGS: u32 = 32;
 /// The threshold lies at most this far below what may be lost: more lights are in no plan.
 const MOST_LIGHTS: f64 = 1e18;
+
+/// The least radius over the distance to the nearest sample: both limbs' elevations err by 6e-8.
+const NARROWEST: f64 = 0.99e-6;
 
 /// Balls that any sample is to get light from.
 pub(super) struct Spheres<'a> {
@@ -34,7 +38,19 @@ impl<'a> Spheres<'a> {
         lit: Vec<(usize, &'a SphereLight)>,
         cutoff: f64,
         notes: &mut Vec<String>,
-    ) -> Self {
+    ) -> Result<Self> {
+        for (i, ball) in &lit {
+            let seems = (on_nearest(field, ball) / strongest(ball)).sqrt();
+            if seems < NARROWEST {
+                return Err(Error::setting(
+                    format!("light {}: radius", i + 1),
+                    ball.radius_m.to_string(),
+                    format!("{} at least: a millionth of the way to the nearest sample", {
+                        ball.radius_m * NARROWEST / seems
+                    }),
+                ));
+            }
+        }
         let brightest = lit.iter().map(|(_, ball)| on_nearest(field, ball)).fold(0.0, f64::max);
         let most = cutoff * brightest;
         let threshold = threshold(field, &lit, most);
@@ -65,7 +81,7 @@ impl<'a> Spheres<'a> {
                  {most:.3e}, {cutoff} of the brightest"
             ));
         }
-        spheres
+        Ok(spheres)
     }
 
     /// As [`record`](Self::record), by spherical harmonics.

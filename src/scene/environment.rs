@@ -1,4 +1,5 @@
 use super::Border;
+use super::lights::{ANGLE, RADIANCES, is_angle, shines};
 use crate::{Error, Result};
 
 /// Radiance from infinity as an equirectangular (latitude-longitude) image, linear RGB.
@@ -34,18 +35,14 @@ impl Environment {
                 "width × height texels, at least one",
             ));
         }
-        if !rotation_rad.is_finite() {
-            return Err(Error::setting(
-                "environment rotation",
-                rotation_rad.to_string(),
-                "a finite angle",
-            ));
+        if !is_angle(rotation_rad) {
+            return Err(Error::setting("environment rotation", rotation_rad.to_string(), ANGLE));
         }
-        if let Some(i) = texels.iter().position(|t| !t.iter().all(|v| v.is_finite() && *v >= 0.0)) {
+        if let Some(i) = texels.iter().position(|t| !shines(t)) {
             return Err(Error::setting(
                 format!("environment at row {}, column {}", i / width, i % width),
                 format!("{:?}", texels[i]),
-                "finite radiance, 0 or more",
+                RADIANCES,
             ));
         }
         Ok(Self { width, height, texels, rotation_rad })

@@ -5,6 +5,8 @@ use crate::{Error, Result};
 ///
 /// Products of a height difference and a distance stay far from the largest f32 below it.
 pub const HEIGHT_LIMIT: f64 = 1e15;
+/// The largest height difference over a cell.
+const STEEPEST: f64 = 1e18;
 
 /// A grid of heights: row-major, row 0 in the north, column 0 in the west.
 ///
@@ -80,6 +82,16 @@ impl HeightField {
         let middle = known.len() / 2;
         let base_m = *known.select_nth_unstable_by(middle, f64::total_cmp).1;
         let mut offsets: Vec<f32> = heights_m.iter().map(|h| (h - base_m) as f32).collect();
+        let (low, high) =
+            known.iter().fold((f64::MAX, f64::MIN), |(l, h), k| (l.min(*k), h.max(*k)));
+        let steepest = (high - low) / cell_m[0].min(cell_m[1]);
+        if steepest > STEEPEST {
+            return Err(Error::setting(
+                "cell size",
+                format!("{} × {} for heights of {low} to {high}", cell_m[0], cell_m[1]),
+                "slopes up to 1e18, whose squares f32 holds",
+            ));
+        }
         if let Some(voids) = &voids {
             fill_voids(rows, cols, &mut offsets, voids);
         }

@@ -1,5 +1,6 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use super::lights::{ANGLE, RADIANCES, is_angle, shines};
 use crate::{Error, Result};
 
 /// A patch of uniform radiance at infinity, between two azimuths and two elevations: a window, a bright
@@ -18,6 +19,9 @@ pub struct KeyLight {
     pub radiance: [f32; 3],
 }
 
+/// The least height of a key light: both its edges err by 6e-8.
+const LOWEST_RAD: f64 = 1e-5;
+
 impl KeyLight {
     /// Checks every range; `number` counts from 1.
     pub(super) fn check(&self, number: usize) -> Result<()> {
@@ -27,8 +31,8 @@ impl KeyLight {
         // Less the rounding of turning degrees to radians and back.
         let degrees = |rad: f64| format!("{}°", (rad.to_degrees() * 1e9).round() / 1e9);
         let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = *self;
-        if !azimuth_rad.is_finite() {
-            return bad("azimuth", azimuth_rad.to_string(), "a finite angle");
+        if !is_angle(azimuth_rad) {
+            return bad("azimuth", azimuth_rad.to_string(), ANGLE);
         }
         if !(width_rad > 0.0 && width_rad <= TAU) {
             return bad("width", degrees(width_rad), "an angle above 0°, up to 360°");
@@ -37,8 +41,16 @@ impl KeyLight {
             let found = format!("{} to {}", degrees(low), degrees(high));
             return bad("elevations", found, "a lower and a higher one, from -90° to 90°");
         }
-        if !radiance.iter().all(|v| v.is_finite() && *v >= 0.0) {
-            return bad("radiance", format!("{radiance:?}"), "finite numbers, 0 or more");
+        if high - low < LOWEST_RAD {
+            let found = format!("{} to {}", degrees(low), degrees(high));
+            return bad(
+                "elevations",
+                found,
+                "0.0006° between them at least: f32 tells no less apart",
+            );
+        }
+        if !shines(&radiance) {
+            return bad("radiance", format!("{radiance:?}"), RADIANCES);
         }
         Ok(())
     }

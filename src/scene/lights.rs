@@ -65,6 +65,22 @@ const PLACE_LIMIT: f64 = 1e15;
 /// half a kilometre, and the f32 slopes of its limbs would no longer tell its chords' widths.
 pub const POINT_DIAMETER_RAD: f64 = 1.75e-4;
 
+/// The largest radiance or irradiance of a light: what lobes and series make of it is within f32.
+const BRIGHTEST: f32 = 1e36;
+pub(super) const RADIANCES: &str = "numbers from 0 to 1e36";
+
+/// Whether a light may be so bright.
+pub(super) fn shines(colour: &[f32; 3]) -> bool {
+    colour.iter().all(|v| (0.0..=BRIGHTEST).contains(v))
+}
+
+pub(super) const ANGLE: &str = "an angle within ±1e6 radians";
+
+/// Whether so many turns leave digits for the direction.
+pub(super) fn is_angle(rad: f64) -> bool {
+    rad.abs() <= 1e6
+}
+
 impl Sun {
     /// Whether it is lit as a point: lit or not, nothing between.
     pub fn is_point(&self) -> bool {
@@ -84,23 +100,18 @@ impl Lights {
     /// # Errors
     /// The first value out of range, by name.
     pub fn check(&self) -> Result<()> {
-        let shines = |c: &[f32; 3]| c.iter().all(|v| v.is_finite() && *v >= 0.0);
         if let Some(sky) = &self.sky
             && !shines(sky)
         {
-            return Err(Error::setting(
-                "sky radiance",
-                format!("{sky:?}"),
-                "finite numbers, 0 or more",
-            ));
+            return Err(Error::setting("sky radiance", format!("{sky:?}"), RADIANCES));
         }
         for (i, sun) in self.suns.iter().enumerate() {
             let bad = |what: &str, found: String, expected: &str| {
                 Err(Error::setting(format!("sun {}: {what}", i + 1), found, expected))
             };
             let half_turn = std::f64::consts::FRAC_PI_2;
-            if !sun.azimuth_rad.is_finite() {
-                return bad("azimuth", sun.azimuth_rad.to_string(), "a finite angle");
+            if !is_angle(sun.azimuth_rad) {
+                return bad("azimuth", sun.azimuth_rad.to_string(), ANGLE);
             }
             if !(0.0..=half_turn).contains(&sun.elevation_rad) {
                 return bad(
@@ -117,11 +128,7 @@ impl Lights {
                 );
             }
             if !shines(&sun.irradiance) {
-                return bad(
-                    "irradiance",
-                    format!("{:?}", sun.irradiance),
-                    "finite numbers, 0 or more",
-                );
+                return bad("irradiance", format!("{:?}", sun.irradiance), RADIANCES);
             }
         }
         for (i, key) in self.keys.iter().enumerate() {
@@ -139,7 +146,7 @@ impl Lights {
                 return bad("radius", radius_m.to_string(), "a length above 0, up to 1e15");
             }
             if !shines(radiance) {
-                return bad("radiance", format!("{radiance:?}"), "finite numbers, 0 or more");
+                return bad("radiance", format!("{radiance:?}"), RADIANCES);
             }
         }
         Ok(())

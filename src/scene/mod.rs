@@ -9,7 +9,7 @@ mod lights;
 mod quality;
 mod surface;
 
-pub use bounces::{BounceEngine, Bounces};
+pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
 pub use environment::Environment;
@@ -20,7 +20,7 @@ pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,
 };
-pub use surface::{Albedo, Border, Phong, Surface};
+pub use surface::{Albedo, Border, Lobe, Phong, Surface};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

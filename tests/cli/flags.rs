@@ -114,7 +114,7 @@ fn lights() {
         &[PLAN, RENDER],
         &folder,
         &[
-            ("--sky -1", 2, &["--sky: found [-1.0", "0 or more"]),
+            ("--sky -1", 2, &["--sky: found [-1.0", "0 to 1e36"]),
             ("--sky nan", 2, &["--sky: found [NaN"]),
             ("--sky inf", 2, &["--sky: found [inf"]),
             ("--sky 1e39", 2, &["--sky: found [inf"]),
@@ -195,6 +195,22 @@ fn lobes() {
             ("--phong 10,0.5", 2, &["--phong scale", "albedo of 1"]),
             ("--phong 10,0.5 --albedo 0.5 --basis table", 2, &["--phong: found", "--basis sh"]),
             ("--phong 10,0.5 --albedo 0.5 --key 0,30,9,9,1", 2, &["--phong: found", "key light"]),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
+                2,
+                &["--bounce-engine", "found sweep, expected pyramid"],
+            ),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
+                2,
+                &["--receiver", "a lobe: found lobe, expected plane"],
+            ),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
+                2,
+                &["--subsample", "found 2"],
+            ),
+            ("--bounces 1 --bounce-gloss half", 2, &["--bounce-gloss", "vector-f16"]),
         ],
     );
     let both = "--phong 10,0.5 --albedo 0.5";
@@ -357,6 +373,7 @@ fn help_says_units_and_defaults() {
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
         ("--bounce-level-step", &["1..16", "[default: 4]"]),
         ("--bounce-level-offset", &["0..4", "[default: 2]"]),
+        ("--bounce-gloss", &["vector-f16", "[default: vector]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];
@@ -366,7 +383,7 @@ fn help_says_units_and_defaults() {
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0..1", "[default: 1]"]),
-        ("--phong", &["0..10000", "0..1", "--basis sh"]),
+        ("--phong", &["0..10000", "0..1", ".npy", "--basis sh"]),
     ];
     let render: &[(&str, &[&str])] = &[
         ("--exposure", &["[default: 1]"]),

@@ -105,6 +105,11 @@ fn malformed_heights_are_one_sentence() {
     refused("a.asc", b"\xff\xfe\0\x01", "no text");
     refused("a.npz", &zip(&[("a.txt", b"hello".to_vec())]), "no arrays");
     refused("a.npz", &zip(&[("elevation.npy", b"hello".to_vec())]), "no array");
+    // The checksum that the archive's directory says of its first member.
+    let mut flipped = height_files().into_iter().find(|f| f.0 == "a.npz").expect("kept").1;
+    let at = flipped.windows(4).position(|w| w == b"PK\x01\x02").expect("a directory");
+    flipped[at + 16] ^= 1;
+    refused("a.npz", &flipped, "hecksum");
     println!("{count} malformed files refused");
 }
 

@@ -3,7 +3,7 @@
 
 use ash::vk;
 use ridgelight::Result;
-use ridgelight::gpu::{Frame, Headless, Renderer};
+use ridgelight::gpu::{Frame, Headless, Host, Renderer};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Border, Quality, Scene, Sun};
@@ -108,4 +108,101 @@ fn a_new_size_is_drawn_beside_the_old_one() {
     gpu.draw(&mut new).expect("drawn");
     assert!(bits(gpu, &new) == alone[1]);
     gpu.end(new);
+}
+
+/// A command buffer of its own pool, which another thread may have.
+struct Recorded {
+    pool: vk::CommandPool,
+    commands: vk::CommandBuffer,
+    fence: vk::Fence,
+}
+
+impl Recorded {
+    /// Records `what` and does not submit it.
+    fn new(host: &Host, what: impl FnOnce(vk::CommandBuffer)) -> Self {
+        let device = &host.device;
+        let pool_info = vk::CommandPoolCreateInfo::default().queue_family_index(host.queue_family);
+        // SAFETY: the device is alive; pool and buffer are this thread's until they are handed on.
+        unsafe {
+            let pool = device.create_command_pool(&pool_info, None).expect("a pool");
+            let info = vk::CommandBufferAllocateInfo::default().command_pool(pool);
+            let buffers = device.allocate_command_buffers(&info.command_buffer_count(1));
+            let commands = buffers.expect("a command buffer")[0];
+            let begin = vk::CommandBufferBeginInfo::default();
+            device.begin_command_buffer(commands, &begin).expect("begun");
+            what(commands);
+            device.end_command_buffer(commands).expect("recorded");
+            let fence = device.create_fence(&vk::FenceCreateInfo::default(), None);
+            Self { pool, commands, fence: fence.expect("a fence") }
+        }
+    }
+
+    fn submit(&self, device: &ash::Device, queue: vk::Queue) {
+        let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
+        let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+        // SAFETY: recorded above; nobody else uses the queue meanwhile.
+        unsafe { device.queue_submit2(queue, &submit, self.fence) }.expect("submitted");
+    }
+
+    /// Waits for it, and frees it.
+    fn end(self, device: &ash::Device) {
+        // SAFETY: submitted above, and done after the wait.
+        unsafe {
+            device.wait_for_fences(&[self.fence], true, u64::MAX).expect("done");
+            device.destroy_fence(self.fence, None);
+            device.destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+/// The first frame is submitted and not waited for before another thread has recorded the second.
+#[test]
+fn a_frame_is_recorded_on_another_thread_while_one_is_in_flight() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let scenes = [scene(33, 1), scene(33, 2)];
+    let mut frames = scenes.each_ref().map(|scene| frame(gpu, scene));
+    let alone = frames.each_mut().map(|frame| {
+        gpu.draw(frame).expect("drawn");
+        bits(gpu, frame)
+    });
+    // Other light in the images, so that nothing is right because nothing was written.
+    for ((frame, other), alone) in frames.iter_mut().zip([1, 0]).zip(&alone) {
+        gpu.refill(frame, 0, scenes[other].field.heights_m()).expect("other heights");
+        gpu.draw(frame).expect("drawn");
+        assert!(bits(gpu, frame) != *alone);
+        gpu.refill(frame, 0, scenes[1 - other].field.heights_m()).expect("the heights again");
+    }
+    let plan = planned(gpu, &scenes[0]);
+    let mut renderer = Renderer::new(gpu.host(), plan, 2).expect("a renderer");
+    let args = frames.each_ref().map(|frame| (frame.inputs(), frame.outputs()));
+    let host = gpu.host().clone();
+    let lent = &host.device;
+    // SAFETY: the device is alive, the family its own; `gpu` submits nothing until the end.
+    let queue = unsafe { lent.get_device_queue(host.queue_family, 0) };
+    let first = Recorded::new(&host, |commands| {
+        renderer.record(commands, 0, &args[0].0, &args[0].1).expect("recorded");
+    });
+    first.submit(lent, queue);
+    let (renderer, second) = std::thread::scope(|scope| {
+        let (host, args) = (&host, &args);
+        let recording = scope.spawn(move || {
+            let second = Recorded::new(host, |commands| {
+                renderer.record(commands, 1, &args[1].0, &args[1].1).expect("recorded");
+            });
+            (renderer, second)
+        });
+        recording.join().expect("recorded")
+    });
+    second.submit(lent, queue);
+    first.end(lent);
+    second.end(lent);
+    if gpu.report().timestamp_period_ns > 0.0 {
+        assert!((0..2).all(|slot| renderer.timings(slot).is_some()));
+    }
+    for (frame, alone) in frames.iter().zip(&alone) {
+        assert!(bits(gpu, frame) == *alone);
+    }
+    renderer.destroy();
+    frames.into_iter().for_each(|frame| gpu.end(frame));
 }

@@ -308,6 +308,28 @@ fn a_moving_ball_pops_no_more_than_the_truth() {
     assert!(popped <= 0.01, "{popped}");
 }
 
+/// A narrow ball over level ground gives (r / d)² cos θ, of however few slices: a disc of half-width w is cos u wide, whose
+/// square midpoints sum as it is. What is not a disc's differs by the square of its half-width in azimuth.
+#[test]
+fn few_slices_hold_all_of_a_narrow_ball() {
+    let mut gpu = Device::new();
+    let (level, side, radius) = (field(33, 33, [1.0; 2], |_, _| 0.0), 33, 0.5);
+    let scene = under(&level, Border::Plane, vec![ball([16.4, 16.4, 12.0], radius)]);
+    for slices in [1, 2, 3] {
+        let found = values(&gpu.picture(&scene, &all(slices)));
+        for (i, found) in found.iter().enumerate() {
+            let [x, y] = [i % side, side - 1 - i / side].map(|n| n as f64 - 16.4);
+            let away = x.hypot(y);
+            if away > 4.0 * radius {
+                let squared = x * x + y * y + 144.0;
+                let want = radius * radius / squared * 12.0 / squared.sqrt();
+                let off = (found / want - 1.0).abs();
+                assert!(off <= (radius / away).powi(2) + 1e-5, "{slices} slices, {i}: {off}");
+            }
+        }
+    }
+}
+
 /// 64 lamps over mountains of 512²: what they add up to, at some samples, beside the oracle in as many slices, less
 /// at most what the plan says is lost.
 #[test]

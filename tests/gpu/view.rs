@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use ash::vk;
+use ash::vk::{self, Handle};
 use ridgelight::cpu::sky_draw::sky_draw;
 use ridgelight::cpu::terrain_draw::{Met, colour, ray, terrain_draw};
 use ridgelight::files::Tone;
-use ridgelight::gpu::Seen;
+use ridgelight::gpu::{ImageArg, ImageState, Seen, ViewInputs, ViewOutputs, ViewRenderer};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{
     Border, Camera, Environment, HeightField, Lens, Method, Quality, Scene, Sun,
@@ -20,6 +20,9 @@ const SNAP: f64 = 0.5 / 16.0;
 
 /// Parts of the picture that a vertex is off by before that: a few roundings of numbers about as large as the picture.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
+
+/// Radiance, and the distance to the ground.
+type Truth = ([f64; 3], f64);
 
 struct Shot {
     scene: Scene,
@@ -62,7 +65,7 @@ impl Shot {
     }
 
     /// Radiance and distance at a place of the picture, in f64.
-    fn truth(&self, pixel: [f64; 2]) -> ([f64; 3], f64) {
+    fn truth(&self, pixel: [f64; 2]) -> Truth {
         match self.met(pixel) {
             Some(met) => (colour(&self.scene.field, &self.lit, &met), met.distance_m),
             None => {
@@ -84,7 +87,7 @@ impl Shot {
         for i in 0..self.seen.radiance.len() {
             let at = [i % width as usize, i / width as usize].map(|v| v as f64 + 0.5);
             let around = [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|x| [x * away, y * away]));
-            let truths: Vec<([f64; 3], f64)> =
+            let truths: Vec<Truth> =
                 around.iter().flatten().map(|d| self.truth([at[0] + d[0], at[1] + d[1]])).collect();
             let met = truths.iter().filter(|t| t.1.is_finite()).count();
             if met != 0 && met != truths.len() {
@@ -94,7 +97,7 @@ impl Shot {
             let got = f64::from(self.seen.distances_m[i]);
             assert_eq!(got.is_finite(), met > 0, "pixel {at:?}: {got} for {truths:?}");
             let edge = f64::from(width.max(height));
-            let range = |of: &dyn Fn(&([f64; 3], f64)) -> f64| {
+            let range = |of: &dyn Fn(&Truth) -> f64| {
                 let low = truths.iter().map(of).fold(f64::INFINITY, f64::min);
                 let high = truths.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
                 (low, high, (high - low) / away)
@@ -358,4 +361,63 @@ fn screens_show_what_pictures_hold() {
         println!("{differ} of {} codes differ by one", 3 * linear.len());
         assert!(codes.iter().any(|c| c[0] > 20 && c[0] < 235), "all black or white");
     }
+}
+
+/// What is refused names the argument, and nothing has been recorded: validation would hear of what is not there.
+#[test]
+fn wrong_arguments_are_refused_by_name() {
+    let mut device = Device::new();
+    let options = ViewOptions { size: [8, 6], samples: 1, ..ViewOptions::default() };
+    let scene = under_sky(field(9, 9, [1.0, 1.0], |r, _| r as f64), Border::Plane);
+    let camera = around(&scene, 200.0, 25.0, LENSES[0], &options);
+    let limits = device.limits();
+    let plan = plan::picture(&scene, &quality(), &limits, Picture::default()).expect("a plan");
+    let view = |options| View::new(&scene, &plan, &camera, &options, &limits).expect("a view");
+    let (right, wide) = (view(options), view(ViewOptions { size: [9, 6], ..options }));
+    let gpu = device.gpu.as_mut().expect("alive");
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let strange = ViewRenderer::new(gpu.host(), &right, vk::Format::R8_UINT, 1);
+    assert!(strange.err().expect("no format of pictures").to_string().contains("picture: format"));
+    let mut frame = gpu.frame(plan.clone(), &[scene.field.heights_m()]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let mut renderer = ViewRenderer::new(gpu.host(), &right, format, 1).expect("a renderer");
+    let (heights, radiance) = (frame.inputs()[0], frame.outputs()[0]);
+    // Never drawn into.
+    let picture = ImageArg { format, extent: [8, 6, 1], image: vk::Image::from_raw(1), ..radiance };
+    let inputs = ViewInputs { heights, radiance, environment: None, voids: None };
+    let outputs = ViewOutputs { picture, depth: None };
+    let small = |arg: ImageArg| ImageArg { extent: [8, 9, 1], ..arg };
+    let before = |arg: ImageArg| ImageArg {
+        before: ImageState { layout: vk::ImageLayout::UNDEFINED, ..arg.before },
+        ..arg
+    };
+    let after = |arg: ImageArg| ImageArg {
+        after: ImageState { layout: vk::ImageLayout::UNDEFINED, ..arg.after },
+        ..arg
+    };
+    let other = |arg: ImageArg| ImageArg { format: vk::Format::R8G8B8A8_UNORM, ..arg };
+    let read = |heights, radiance| ViewInputs { heights, radiance, ..inputs };
+    let drawn = |picture| ViewOutputs { picture, ..outputs };
+    let cases = [
+        (1, &right, inputs, outputs, "slot: found 1"),
+        (0, &wide, inputs, outputs, "view: found another shape"),
+        (0, &right, read(small(heights), radiance), outputs, "heights: extent"),
+        (0, &right, read(other(heights), radiance), outputs, "heights: format"),
+        (0, &right, read(before(heights), radiance), outputs, "heights: layout before"),
+        (0, &right, read(heights, small(radiance)), outputs, "radiance: extent"),
+        (0, &right, read(heights, heights), outputs, "radiance: found the image of heights"),
+        (0, &right, inputs, drawn(small(picture)), "picture: extent"),
+        (0, &right, inputs, drawn(other(picture)), "picture: format"),
+        (0, &right, inputs, drawn(after(picture)), "picture: layout after"),
+        (0, &right, inputs, ViewOutputs { depth: Some(picture), ..outputs }, "depth: format"),
+    ];
+    for (slot, view, inputs, outputs, says) in cases {
+        let refused = gpu
+            .run(|commands| renderer.record(commands, slot, (view, 1.0), &inputs, &outputs))
+            .expect_err(says);
+        assert!(refused.to_string().contains(says), "{refused} does not say {says}");
+    }
+    assert_eq!(renderer.timings(0), None);
+    renderer.destroy();
+    gpu.end(frame);
 }

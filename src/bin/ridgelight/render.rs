@@ -52,7 +52,11 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
-    setup::check_plan(&args.global, |limits| picture(&quality, limits))?;
+    setup::check_plan(&args.global, |limits| {
+        let plan = picture(&quality, limits)?;
+        shot.as_ref().map_or(Ok(()), |shot| shot.view(&scene, &plan, limits).map(drop))?;
+        Ok(plan)
+    })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let progress = progress(args.global.quiet, "lighting");
     let mut chosen = None;

@@ -1,4 +1,4 @@
-//! Scene files: a JSON of field, surface, lights and quality. Each of its keys is a flag of the command line, which
+//! Scene files: a JSON of field, surface, lights, camera and quality. Each of its keys is a flag of the command line, which
 //! it becomes where the user wrote none of that name; a mistake is told by line and key.
 
 mod json;
@@ -23,6 +23,8 @@ struct Given {
     /// As the parser calls it.
     id: &'static str,
     value: OsString,
+    /// A flag that takes nothing.
+    is_switch: bool,
     line: usize,
     key: String,
 }
@@ -55,6 +57,9 @@ impl SceneFile {
         let mut scene = Self { path: path.clone(), given: all(parser, path)? };
         let input = command.get_positionals().next().map(|arg| arg.get_id().as_str());
         scene.given.retain(|given| {
+            if given.is_switch && given.value == "false" {
+                return false;
+            }
             let id = if given.id == keys::INPUT { input } else { Some(given.id) };
             let known = id.filter(|id| command.get_arguments().any(|arg| arg.get_id() == id));
             known.is_some_and(|id| matches.value_source(id) != Some(ValueSource::CommandLine))
@@ -63,8 +68,11 @@ impl SceneFile {
         let new = scene.given.iter().map(|given| match given.id {
             keys::INPUT => given.value.clone(),
             id => {
-                let mut word = OsString::from(format!("--{}=", id.replace('_', "-")));
-                word.push(&given.value);
+                let mut word = OsString::from(format!("--{}", id.replace('_', "-")));
+                if !given.is_switch {
+                    word.push("=");
+                    word.push(&given.value);
+                }
                 word
             }
         });
@@ -161,6 +169,7 @@ fn all(parser: &clap::Command, path: &Path) -> Result<Vec<Given>> {
             };
             given.extend(values.into_iter().map(|(line, place, value)| Given {
                 id: key.id,
+                is_switch: matches!(key.kind, Kind::Switch),
                 value,
                 line,
                 key: place,

@@ -54,7 +54,8 @@ impl Part {
         let lights = &scene.lights;
         match self {
             Part::Geometry => {
-                Part::Azimuths.is_in(scene) || !lights.suns.is_empty() || lights.spheres.is_empty()
+                let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
+                Part::Azimuths.is_in(scene) || !are_none_aimed || lights.spheres.is_empty()
             }
             Part::Azimuths => {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()

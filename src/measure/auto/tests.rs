@@ -311,3 +311,21 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     let seen = error(&all, &blue, None).error;
     assert!((seen / expected * 3.0_f64.sqrt() - 1.0).abs() < 1e-3, "{seen}");
 }
+
+/// A sun or a key light needs horizons, whatever balls are there: those look for themselves.
+#[test]
+fn key_lights_beside_balls_have_geometry() {
+    use super::Part;
+    use crate::scene::{KeyLight, SphereLight};
+    let key = KeyLight {
+        azimuth_rad: 0.0,
+        width_rad: 0.2,
+        elevations_rad: [0.1, 0.2],
+        radiance: [1.0; 3],
+    };
+    let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    let spheres = vec![ball];
+    let of = |lights: Lights| Part::Geometry.is_in(&Scene { lights, ..scene() });
+    assert!(of(Lights { keys: vec![key], spheres: spheres.clone(), ..Lights::default() }));
+    assert!(!of(Lights { spheres, ..Lights::default() }));
+}

@@ -4,6 +4,7 @@
 mod bounce;
 mod cases;
 mod edit;
+mod gloss;
 mod light;
 mod nodes;
 mod paths;
@@ -15,13 +16,14 @@ mod sweep;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use ridgelight::cpu::gloss_gather::Series;
 use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
 use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Fuse, Quality, Scene};
+use ridgelight::scene::{Border, Fuse, Phong, Quality, Scene};
 
 use crate::Device;
 use cases::Case;
@@ -86,6 +88,10 @@ const TWINS: &[(&str, Twin)] = &[
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
     ("bounce_gather", bounce::bounce_gather),
+    ("gloss_exit", gloss::gloss_exit),
+    ("gloss_gather", gloss::gloss_gather),
+    ("gloss_seen", gloss::gloss_seen),
+    ("vector_reduce", gloss::vector_reduce),
     ("bounce_march", bounce::bounce_march),
     ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", bounce::bounce_walk),
@@ -120,6 +126,8 @@ struct Run<'a> {
     balls: Vec<([f64; 3], f64)>,
     /// What the lobe's passes have left so far.
     gloss: Vec<[f64; 3]>,
+    /// What arrives to be thrown on, as series.
+    arriving: Vec<Series>,
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
     edit: Option<edit::Edit>,
@@ -143,6 +151,7 @@ impl<'a> Run<'a> {
             lights: 0,
             balls: Vec::new(),
             gloss: Vec::new(),
+            arriving: Vec::new(),
             lost: 0,
             edit: None,
             plan,
@@ -195,6 +204,10 @@ impl<'a> Run<'a> {
 
     fn size(&self) -> [usize; 2] {
         [self.scene.field.cols(), self.scene.field.rows()]
+    }
+
+    fn lobe(&self, sample: usize) -> Phong {
+        self.scene.surface.phong.as_ref().expect("a lobe").at(sample)
     }
 
     fn border(&self) -> Border {
@@ -313,6 +326,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::references(),
         cases::walks(),
         cases::throws(),
+        cases::glosses(),
         cases::nodes(),
     ]
     .into_iter()
@@ -376,6 +390,14 @@ fn walks_are_their_twins_pass_by_pass() {
 fn throws_are_their_twins() {
     let mut device = Device::new();
     for case in cases::throws() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn lobes_throw_as_their_twins() {
+    let mut device = Device::new();
+    for case in cases::glosses() {
         check(&mut device, &case);
     }
 }

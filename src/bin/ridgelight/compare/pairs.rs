@@ -131,7 +131,10 @@ impl<'a> Pairs<'a> {
         let is_opaque = |name: &str| {
             name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0))
         };
-        let lost = only_b.iter().copied().filter(|name| !is_opaque(name)).collect();
+        // What a reference says of itself is no light that a result could lack.
+        let is_own = |name: &str| name.split('.').next() == Some("standard_error");
+        let lost =
+            only_b.iter().copied().filter(|name| !is_opaque(name) && !is_own(name)).collect();
         let pairs = Self { rows, cols, channels, only_a, only_b, lost };
         let of_pictures = [
             ("--max-flip", args.bounds.max_flip.is_some()),

@@ -39,7 +39,7 @@ impl Report<'_> {
             }
         });
         let here = front.iter().position(|p| p.place == point.place).unwrap_or(0);
-        let ratio = |of: f64, to: f64| digits(of / to.max(f64::MIN_POSITIVE));
+        let ratio = |of: f64, to: f64| if to > 0.0 { digits(of / to) } else { "∞".into() };
         let is_cheaper = |p: &&&Point| p.ratio <= WORTH * point.ratio;
         if let Some(cheaper) = front[..here].iter().rev().find(is_cheaper) {
             all.push(format!(

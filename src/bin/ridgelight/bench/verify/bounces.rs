@@ -65,15 +65,18 @@ fn white(scene: &Scene) -> Scene {
 /// A rule over azimuths errs by a squared part of the circle where light is smooth and by a part where the edge
 /// of something bright turns past: a quarter of what a part is of a radian. Sweeps: twice what lines a cell apart
 /// have on the bundled mountain and on a fractal, 0.015, in proportion to their distance. Pyramids: half as much
-/// again as their coarsest settings have on that mountain under a low sun, 0.5; no bounce at all has 1.
+/// again as their coarsest settings have on that mountain under a low sun, 0.5; no bounce at all has 1. Sub-sampling:
+/// twice what every second sample has on that mountain, 0.05, and every fourth, less than three times as much.
 fn bound(quality: &Quality) -> f64 {
     let rule = std::f64::consts::TAU / f64::from(quality.bounces.azimuths) / 4.0;
     // Cells from line to line.
     let apart = f64::from(quality.lines.shift().unwrap_or(15)).exp2() / 32768.0;
-    rule + match quality.bounces.engine {
-        BounceEngine::Brute => 0.0,
-        // The planner's is one of these two.
-        BounceEngine::Auto | BounceEngine::Sweep => 0.03 * apart.max(1.0),
-        BounceEngine::Pyramid => 0.75,
-    }
+    let between = 0.1 * f64::from(quality.subsample - 1);
+    rule + between
+        + match quality.bounces.engine {
+            BounceEngine::Brute => 0.0,
+            // The planner's is one of these two.
+            BounceEngine::Auto | BounceEngine::Sweep => 0.03 * apart.max(1.0),
+            BounceEngine::Pyramid => 0.75,
+        }
 }
