@@ -5,6 +5,7 @@ mod json;
 mod keys;
 #[cfg(test)]
 mod schema;
+mod write;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,7 @@ use ridgelight::{Error, Result};
 
 use json::Found;
 use keys::{GROUPS, Kind};
+pub use write::Asked;
 
 /// A flag that a scene file gave.
 struct Given {
