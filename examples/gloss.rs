@@ -38,8 +38,9 @@ const FORMS: [(BounceGloss, u32); 6] = [
     (BounceGloss::Scalar, 6),
 ];
 const DRAWN: usize = 3;
-/// White pixels between pictures.
-const GAP: usize = 2;
+/// Pixels a sample, and white ones between pictures.
+const ZOOM: usize = 2;
+const GAP: usize = 4;
 
 /// Linear RGB of all samples.
 type Colours = Vec<[f64; 3]>;
@@ -212,16 +213,18 @@ fn run() -> Result<()> {
 
 /// Rows of pictures as bright as each other's truth.
 fn write(path: &Path, sheet: &[Vec<Colours>], side: usize) -> Result<()> {
-    let cell = side + GAP;
+    let cell = ZOOM * side + GAP;
     let [width, height] = [(1 + DRAWN) * cell - GAP, sheet.len() * cell - GAP];
     let mut texels = vec![[1.0_f32; 3]; width * height];
     for (y, row) in sheet.iter().enumerate() {
         // The mean is a fifth of white.
         let scale = 0.2 / mean(&row[0]);
         for (x, light) in row.iter().enumerate() {
-            for (i, texel) in light.iter().enumerate() {
-                let at = (y * cell + i / side) * width + x * cell + i % side;
-                texels[at] = texel.map(|v| (scale * v) as f32);
+            for k in 0..(cell - GAP) * (cell - GAP) {
+                let [down, across] = [k / (cell - GAP), k % (cell - GAP)];
+                let light = light[down / ZOOM * side + across / ZOOM];
+                let at = (y * cell + down) * width + x * cell + across;
+                texels[at] = light.map(|v| (scale * v) as f32);
             }
         }
     }
