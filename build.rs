@@ -1,8 +1,8 @@
 //! GLSL to SPIR-V, and SPIR-V to a typed table of what each shader binds.
 //!
-//! Every `shaders_glsl/*.comp` is compiled (files of `shaders_glsl/shared/` are included, never
+//! Every `shaders_glsl/*.comp`, `.vert` and `.frag` is compiled (files of `shaders_glsl/shared/` are included, never
 //! compiled alone), parsed back, and written to `$OUT_DIR/shaders.rs` as one constant a shader:
-//! words, bindings, push constant size, and the byte offsets of every struct with explicit layout,
+//! words, bindings, push constant size (of a `.vert` `NAME_VERT`, of a `.frag` `NAME_FRAG`), and the byte offsets of every struct with explicit layout,
 //! against which `same_layout!` (src/gpu/shaders.rs) checks the host's structs at compile time. The first error of a
 //! shader stops the build with file and line.
 
@@ -21,28 +21,36 @@ fn main() {
     let mut sources: Vec<PathBuf> = fs::read_dir(&folder)
         .unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())))
         .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|e| e == "comp"))
+        .filter(|path| stage(path).is_some())
         .collect();
     sources.sort();
     let mut table = String::new();
     let mut layouts: BTreeMap<String, BTreeMap<String, u32>> = BTreeMap::new();
-    let mut names = Vec::new();
+    let (mut names, mut graphics) = (Vec::new(), Vec::new());
     for path in &sources {
-        let name =
-            path.file_stem().expect("a listed file has a name").to_string_lossy().into_owned();
+        let stem = path.file_stem().expect("a listed file has a name").to_string_lossy();
+        let name = match stage(path) {
+            Some("comp") | None => stem.into_owned(),
+            Some(stage) => format!("{stem}_{stage}"),
+        };
         let (text, files) = include(path);
         let words = compile(&text, &files);
         let module = rspirv::dr::load_words(&words)
             .unwrap_or_else(|e| fail(&format!("{}: {e:?}", path.display())));
-        describe(&mut table, &name, &words, &module, &mut layouts);
-        names.push(name);
+        let source = path.to_string_lossy();
+        describe(&mut table, (&name, &source), &words, &module, &mut layouts);
+        if stage(path) == Some("comp") { names.push(name) } else { graphics.push(name) }
     }
-    writeln!(table, "/// Every shader, by name.").unwrap();
-    writeln!(table, "pub static ALL: &[Shader] = &[").unwrap();
-    for name in &names {
-        writeln!(table, "    {},", name.to_uppercase()).unwrap();
+    for (what, list, names) in
+        [("compute shader", "ALL", names), ("vertex and fragment shader", "GRAPHICS", graphics)]
+    {
+        writeln!(table, "/// Every {what}, by name.").unwrap();
+        writeln!(table, "pub static {list}: &[Shader] = &[").unwrap();
+        for name in &names {
+            writeln!(table, "    {},", name.to_uppercase()).unwrap();
+        }
+        writeln!(table, "];").unwrap();
     }
-    writeln!(table, "];").unwrap();
     writeln!(table, "/// Byte offsets of struct members as the shaders see them.").unwrap();
     writeln!(table, "pub mod offsets {{").unwrap();
     for (structure, members) in &layouts {
@@ -60,6 +68,12 @@ fn main() {
     writeln!(table, "}}").unwrap();
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR")).join("shaders.rs");
     fs::write(&out, table).unwrap_or_else(|e| fail(&format!("{}: {e}", out.display())));
+}
+
+/// What a file's extension says, where it is a shader's.
+fn stage(path: &Path) -> Option<&'static str> {
+    let extension = path.extension()?;
+    ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
 }
 
 fn fail(message: &str) -> ! {
@@ -132,7 +146,12 @@ fn compile(text: &str, files: &[PathBuf]) -> Vec<u32> {
         ..CompilerOptions::default()
     };
     let source = ShaderSource::from(text);
-    let words = ShaderInput::new(&source, ShaderStage::Compute, &options, None, None)
+    let stage = match stage(&files[0]) {
+        Some("vert") => ShaderStage::Vertex,
+        Some("frag") => ShaderStage::Fragment,
+        _ => ShaderStage::Compute,
+    };
+    let words = ShaderInput::new(&source, stage, &options, None, None)
         .and_then(|input| compiler.create_shader(input))
         .and_then(|shader| shader.compile());
     words.unwrap_or_else(|e| fail(&located(&e.to_string(), files)))
@@ -147,8 +166,13 @@ fn compile(text: &str, files: &[PathBuf]) -> Vec<u32> {
     options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_3 as u32);
     options.set_target_spirv(shaderc::SpirvVersion::V1_5);
     let name = files[0].to_string_lossy();
+    let kind = match stage(&files[0]) {
+        Some("vert") => shaderc::ShaderKind::Vertex,
+        Some("frag") => shaderc::ShaderKind::Fragment,
+        _ => shaderc::ShaderKind::Compute,
+    };
     compiler
-        .compile_into_spirv(text, shaderc::ShaderKind::Compute, &name, "main", Some(&options))
+        .compile_into_spirv(text, kind, &name, "main", Some(&options))
         .unwrap_or_else(|e| fail(&located(&e.to_string(), files)))
         .as_binary()
         .to_vec()
@@ -241,7 +265,7 @@ impl Decorations<'_> {
 /// Writes one shader's constant and adds the offsets of its structs.
 fn describe(
     table: &mut String,
-    name: &str,
+    (name, source): (&str, &str),
     words: &[u32],
     module: &Module,
     layouts: &mut BTreeMap<String, BTreeMap<String, u32>>,
@@ -326,7 +350,7 @@ fn describe(
             }
         }
     }
-    writeln!(table, "/// `shaders_glsl/{name}.comp`.").unwrap();
+    writeln!(table, "/// `{source}`.").unwrap();
     writeln!(table, "pub const {}: Shader = Shader {{", name.to_uppercase()).unwrap();
     writeln!(table, "    name: {name:?},\n    push_bytes: {push_bytes},\n    bindings: &[")
         .unwrap();

@@ -4,19 +4,18 @@
 //! the bundled sky in a lobe alone, without a sun, whose texels are cut at 20 times the mean: of so small a light
 //! harmonics keep next to nothing, and suns belong in suns.
 
+#[path = "shared/mountain.rs"]
+mod mountain;
 #[path = "shared/traced.rs"]
 mod traced;
 
-use std::path::Path;
-
-use ridgelight::files::{self, HeightOptions};
+use mountain::{middle, side_of, sky};
+use ridgelight::Result;
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, HeightField, Lights, Phong, Quality, Receiver, Scene,
-    Surface,
+    Albedo, Basis, Border, Lights, Lobe, Phong, Quality, Receiver, Scene, Surface,
 };
-use ridgelight::{Error, Result};
 use traced::traced;
 
 const BATCHES: u32 = 48;
@@ -29,13 +28,9 @@ fn main() {
 }
 
 fn run() -> Result<()> {
-    let side = std::env::args().nth(1).map_or(Ok(64), |text| text.parse());
-    let side: usize = side
-        .ok()
-        .filter(|side| (2..=256).contains(side))
-        .ok_or_else(|| Error::setting("SIDE", "no such number", "2 to 256"))?;
+    let side = side_of(std::env::args().nth(1), 64)?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
-    let (field, sky) = (middle(side)?, sky()?);
+    let (field, sky) = (middle(side, 1.0)?, sky()?);
     let device = gpu.report();
     println!(
         "Middle {side}² of mt_washington_256 under sky_512x256, cut at 20 times its mean; a lobe alone, {} light \
@@ -53,7 +48,7 @@ fn run() -> Result<()> {
             surface: Surface {
                 albedo: Albedo::Constant([0.0; 3]),
                 border: Border::Plane,
-                phong: Some(Phong { exponent, scale: 1.0 }),
+                phong: Some(Lobe::Constant(Phong { exponent, scale: 1.0 })),
             },
             lights: Lights { environment: Some(sky.clone()), ..Lights::default() },
         };
@@ -73,23 +68,6 @@ fn run() -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn middle(side: usize) -> Result<HeightField> {
-    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
-    let whole = files::read_heights(Path::new("assets/mt_washington_256.png"), &options)?;
-    let first = (256 - side) / 2;
-    let height = |i: usize| whole.heights_m()[(first + i / side) * 256 + first + i % side];
-    let heights: Vec<f64> = (0..side * side).map(|i| f64::from(height(i))).collect();
-    HeightField::new(side, side, &heights, whole.cell_m(), None)
-}
-
-fn sky() -> Result<Environment> {
-    let sky = files::read_environment(Path::new("assets/sky_512x256.hdr"), 0.0)?;
-    let texels = sky.texels();
-    let most = 20.0 * texels.as_flattened().iter().sum::<f32>() / (3 * texels.len()) as f32;
-    let cut = texels.iter().map(|t| t.map(|v| v.min(most))).collect();
-    Environment::new(sky.width(), sky.height(), cut, 0.0)
 }
 
 /// Radiance, and the share of samples where some was below 0.

@@ -1,6 +1,6 @@
 // Computes: one more batch of 2^SET_BITS light paths from each sample of some rows, and the mean of all batches
 // so far with its standard error, from the spread between batches.
-// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map. Reads and writes:
+// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map, phong_map. Reads and writes:
 // batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays), part_sum (of
 // a batch in parts, light so far; w: rays). Writes: radiance, standard_error (w: rays so far). Adds to lost_rays.
 // One invocation is one sample.
@@ -34,6 +34,7 @@ layout(constant_id = 9) const bool HAS_BOUNCES = false;
 // together after 65,535 turns.
 layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(constant_id = 12) const bool IN_PARTS = false;
+layout(constant_id = 13) const bool LOBE_IS_MAP = false;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -53,6 +54,8 @@ layout(binding = 9, rgba32f) uniform writeonly image2D radiance;
 layout(binding = 10, rgba32f) uniform writeonly image2D standard_error;
 layout(binding = 11) buffer LostRays { uint lost_rays[]; };
 layout(binding = 12, rgba32f) uniform image2D part_sum;
+// Exponent and scale of the lobe.
+layout(binding = 13) uniform texture2D phong_map;
 
 layout(push_constant) uniform PathTracePush {
     int cols;
@@ -65,8 +68,8 @@ layout(push_constant) uniform PathTracePush {
     float cell_x_m;
     float cell_y_m;
     float rotation_turns;  // of the environment
-    float exponent;        // of the lobe
-    float lobe_share;      // what the lobe reflects
+    float exponent;        // of the lobe, where it is constant
+    float lobe_share;      // what it reflects
     int bounces;
     int suns;
     int light_count;
@@ -90,11 +93,9 @@ struct Place {
     float own;
     vec3 normal;
     vec3 albedo;
-    bool has_lobe;
+    vec2 lobe;    // exponent, and what it reflects
+    vec3 mirror;  // the direction about which it lies
 };
-
-// The direction about which the lobe lies.
-vec3 mirror;
 
 // First entry above u of n entries of the CDF from `at` on, `step` apart.
 int picked(float u, ivec2 at, ivec2 step, int n) {
@@ -137,7 +138,8 @@ vec3 towards_key(vec4 key, vec2 u) {
     return vec3(round, 1.0 - below);
 }
 
-Place place_of(Met met) {
+// Of what a ray along e has met.
+Place place_of(Met met, vec3 e) {
     vec4 corners = texelFetch(cells, met.cell, 0);
     float east = met.lower ? corners.w - corners.z : corners.y - corners.x;
     float south = met.lower ? corners.z - corners.x : corners.w - corners.y;
@@ -147,16 +149,24 @@ Place place_of(Met met) {
     place.own = corners.x + met.offset.x * east + met.offset.y * south;
     place.normal = normalize(vec3(-east / cell_x_m, south / cell_y_m, 1.0));
     place.albedo = albedo.rgb;
-    place.has_lobe = false;
+    place.lobe = vec2(exponent, lobe_share);
+    place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
+    // Cells of a field that repeats lead from its last samples to its first.
+    ivec2 next = ivec2((met.cell.x + 1) % cols, (met.cell.y + 1) % rows);
+    ivec2 third = met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y);
+    float far = met.lower ? met.offset.x : met.offset.y;
+    float near = 1.0 - (met.lower ? met.offset.y : met.offset.x);
+    float rest = 1.0 - near - far;
     if (ALBEDO_IS_MAP) {
-        // Cells of a field that repeats lead from its last samples to its first.
-        ivec2 next = ivec2((met.cell.x + 1) % cols, (met.cell.y + 1) % rows);
         vec3 nw = texelFetch(albedo_map, met.cell, 0).rgb;
         vec3 se = texelFetch(albedo_map, next, 0).rgb;
-        vec3 third = texelFetch(albedo_map, met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y), 0).rgb;
-        float far = met.lower ? met.offset.x : met.offset.y;
-        float near = 1.0 - (met.lower ? met.offset.y : met.offset.x);
-        place.albedo = near * nw + far * se + (1.0 - near - far) * third;
+        place.albedo = near * nw + far * se + rest * texelFetch(albedo_map, third, 0).rgb;
+    }
+    if (LOBE_IS_MAP) {
+        vec2 nw = texelFetch(phong_map, met.cell, 0).xy;
+        vec2 se = texelFetch(phong_map, next, 0).xy;
+        // No rounding makes an exponent or a share less than nothing.
+        place.lobe = max(near * nw + far * se + rest * texelFetch(phong_map, third, 0).xy, vec2(0.0));
     }
     return place;
 }
@@ -171,9 +181,9 @@ struct Reflected {
 };
 
 // Share of scattered rays that the lobe sends, where there is one.
-float lobe_choice(vec3 diffuse) {
-    float most_diffuse = max(diffuse.r, max(diffuse.g, diffuse.b));
-    return most_diffuse + lobe_share > 0.0 ? lobe_share / (most_diffuse + lobe_share) : 0.0;
+float lobe_choice(Place place) {
+    float most_diffuse = max(place.albedo.r, max(place.albedo.g, place.albedo.b));
+    return place.lobe.y / max(most_diffuse + place.lobe.y, 1e-30);
 }
 
 Reflected reflected_from(Place place, vec3 e) {
@@ -181,12 +191,10 @@ Reflected reflected_from(Place place, vec3 e) {
     float density = facing / PI;
     Reflected of = Reflected(facing, place.albedo * density, density, place.albedo);
     if (HAS_LOBE) {
-        float lobe = lobe_density(e - mirror, exponent);
-        float both = mix(density, lobe, lobe_choice(place.albedo));
-        vec3 sum = of.light + lobe_share * lobe;
-        of.density = place.has_lobe ? both : of.density;
-        of.light = place.has_lobe ? sum : of.light;
-        of.scattered = place.has_lobe ? sum / max(both, 1e-30) : of.scattered;
+        float lobe = lobe_density(e - place.mirror, place.lobe.x);
+        of.density = mix(density, lobe, lobe_choice(place));
+        of.light += place.lobe.y * lobe;
+        of.scattered = of.light / max(of.density, 1e-30);
     }
     return of;
 }
@@ -268,12 +276,12 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             light += going && met.what == RAY_FREE ? carried * brought : vec3(0.0);
         }
         points_of(index, key, first_ray + uint(light_count + 1), is_first, u, v);
-        bool by_lobe = HAS_LOBE && place.has_lobe && v.x < lobe_choice(place.albedo);
+        bool by_lobe = HAS_LOBE && v.x < lobe_choice(place);
         // Evenly over a sphere that touches the place, seen from there: as the cosine.
         vec3 e = normalize(place.normal + vec3(on_circle(u.y) * sqrt(4.0 * u.x * (1.0 - u.x)), 1.0 - 2.0 * u.x));
         if (HAS_LOBE) {
-            float near_mirror = pow(max(u.x, 1e-30), 1.0 / (exponent + 1.0));
-            vec3 glossy = direction_about(mirror, 1.0 - near_mirror, u.y);
+            float near_mirror = pow(max(u.x, 1e-30), 1.0 / (place.lobe.x + 1.0));
+            vec3 glossy = direction_about(place.mirror, 1.0 - near_mirror, u.y);
             e = by_lobe ? glossy : e;
         }
         Reflected of = reflected_from(place, e);
@@ -304,7 +312,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         light += going ? carried * of.scattered * seen : vec3(0.0);
         if (HAS_BOUNCES) {
             alive = going && met.what == RAY_HIT;
-            place = place_of(met);
+            place = place_of(met, e);
             carried *= of.scattered;
         }
         if (!HAS_BOUNCES || !subgroupAny(alive)) {
@@ -325,12 +333,15 @@ void main() {
     place.own = own.x;
     place.normal = normalize(vec3(-own.y, -own.z, 1.0));
     place.albedo = albedo.rgb;
-    place.has_lobe = HAS_LOBE;
+    place.lobe = vec2(exponent, lobe_share);
     if (ALBEDO_IS_MAP) {
         place.albedo = texelFetch(albedo_map, here, 0).rgb;
     }
+    if (LOBE_IS_MAP) {
+        place.lobe = texelFetch(phong_map, here, 0).xy;
+    }
     // Seen from straight above.
-    mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
+    place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
     vec4 before = imageLoad(batch_mean, here);
     uvec3 key = uvec3(uint(here.y * cols + here.x), uint(before.w), seed);
     uvec2 rays = uvec2(0u);

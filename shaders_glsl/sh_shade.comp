@@ -1,7 +1,7 @@
 // Computes: the light of an environment at every sample from what it sees, or from what the nodes around it
 // see: a series of visibility times the light's matrix, for the sample's own normal.
-// Reads: lane_heights, visibility, light_matrix, nodes. Writes: env_sum (exit radiance for albedo 1, of a lobe for
-// scale 1, RGB; in A 1 where a colour was below 0 and is now 0).
+// Reads: lane_heights, visibility, light_matrix, nodes, phong_map. Writes: env_sum (exit radiance for albedo 1, or
+// of a lobe, RGB; in A 1 where a colour was below 0 and is now 0).
 // One invocation is four samples side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -17,6 +17,7 @@ const uint RECEIVER_GLOSS = 2u;  // Y_lm of the mirror direction of the view fro
 layout(constant_id = 3) const uint RECEIVER = 1u;
 // Samples from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
+layout(constant_id = 5) const bool LOBE_IS_MAP = false;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -25,12 +26,15 @@ layout(binding = 2) uniform texture2D light_matrix;
 layout(binding = 3, rgba32f) uniform writeonly image2D env_sum;
 // Height, slopes towards east and north.
 layout(binding = 4, rgba32f) uniform readonly image2D nodes;
+// Exponent and scale of the lobe.
+layout(binding = 5) uniform texture2D phong_map;
 
 layout(push_constant) uniform ShShadePush {
     int cols;
     int rows;
     float cell_x_m;
     float cell_y_m;
+    vec2 lobe;  // exponent and scale, where they are constant
 };
 
 #include "shared/quad.glsl"
@@ -40,6 +44,7 @@ layout(push_constant) uniform ShShadePush {
 vec4 harmonics[36];
 
 #include "shared/harmonics.glsl"
+#include "shared/lobe_bands.glsl"
 
 // Nodes across that four samples lie between, at two march positions: where they are stored, and what each
 // counts for each of the four.
@@ -181,6 +186,14 @@ void main() {
     vec4 y = -north * z;
     if (RECEIVER == RECEIVER_GLOSS) {
         find_harmonics(2.0 * z * x, 2.0 * z * y, 2.0 * z * z - 1.0);
+        vec4 exponents = vec4(lobe.x);
+        vec4 scales = vec4(lobe.y);
+        for (int k = 0; k < 4 && LOBE_IS_MAP; k++) {
+            vec2 of = texelFetch(phong_map, texel_at(min(lane + k, lanes - 1), march), 0).xy;
+            exponents[k] = of.x;
+            scales[k] = of.y;
+        }
+        keep_bands(exponents, scales);
     }
     if (NODE_STRIDE > 1) {
         find_nodes(q, lanes, steps, east, north);

@@ -1,6 +1,6 @@
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
+    Levels, LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene,
     SphereLight, Sun, Surface, Wedges, Window,
 };
 
@@ -145,7 +145,8 @@ pub(crate) unsafe fn scene(from: *const RidgelightScene) -> Done<Scene> {
         albedo: unsafe { albedo(&scene, samples) },
         border: pick("scene: border", scene.border, Border::Plane, &borders)?,
         phong: (scene.phong_scale != 0.0)
-            .then_some(Phong { exponent: scene.phong_exponent, scale: scene.phong_scale }),
+            .then_some(Phong { exponent: scene.phong_exponent, scale: scene.phong_scale })
+            .map(Lobe::Constant),
     };
     // SAFETY: as the caller says.
     Ok(Scene { field, surface, lights: unsafe { lights(&scene) }? })
@@ -362,6 +363,7 @@ pub(crate) unsafe fn quality(from: *const RidgelightQuality) -> Done<Quality> {
             cutoff: share(q.bounce_cutoff, none.cutoff),
             level_step: or(q.bounce_level_step, none.level_step),
             level_offset: less_1(q.bounce_level_offset_plus_1, none.level_offset),
+            gloss: none.gloss,
         },
     })
 }

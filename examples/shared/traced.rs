@@ -5,7 +5,7 @@ use ridgelight::gpu::Headless;
 use ridgelight::plan;
 use ridgelight::scene::Scene;
 
-/// Radiance by light paths, and its standard error: 64 paths a batch.
+/// Radiance by light paths with all bounces up to a number, and its standard error: 64 paths a batch.
 pub fn traced(
     gpu: &mut Headless,
     scene: &Scene,

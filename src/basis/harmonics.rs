@@ -39,6 +39,36 @@ pub fn reconstruct(coefficients: &[f64], direction: DVec3) -> f64 {
     coefficients.iter().zip(values).map(|(c, y)| c * y).sum()
 }
 
+/// Directions and weights by which the product of two functions of an order is integrated exactly: Gauss' n points in
+/// z times 2n - 1 even azimuths, n (2n - 1) in all.
+pub fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
+    let turns = 2 * order - 1;
+    let step = TAU / turns as f64;
+    let rows = super::quadrature::rule(order).into_iter();
+    rows.flat_map(|(z, weight)| {
+        let sin = ((1.0 - z) * (1.0 + z)).sqrt();
+        (0..turns).map(move |k| {
+            let (s, c) = (step * k as f64).sin_cos();
+            (DVec3::new(sin * c, sin * s, z), step * weight)
+        })
+    })
+    .collect()
+}
+
+/// The same function turned by half a turn about a unit axis: what it was at 2 (a·o) a - o it is at o.
+///
+/// # Panics
+/// When `coefficients` are not n² for an order n.
+pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
+    let order = order_of(coefficients);
+    let mut out = vec![0.0; coefficients.len()];
+    for (o, weight) in product_rule(order) {
+        let value = reconstruct(coefficients, 2.0 * axis.dot(o) * axis - o);
+        out.iter_mut().zip(evaluate(order, o)).for_each(|(sum, y)| *sum += weight * value * y);
+    }
+    out
+}
+
 /// The same function turned counter-clockwise about z: f'(φ) = f(φ - angle).
 ///
 /// # Panics

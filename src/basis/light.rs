@@ -11,12 +11,15 @@
 //! V first, then the matrix: n² products an azimuth and 9 n² (27 n² of a lobe) a sample. Light summed over
 //! azimuths without V would take 9 n(n+1)/2 an azimuth: 90 against 16 at order 4.
 //!
-//! A Phong lobe beside the diffuse reflection is one more: [`gloss`], all bands that V has.
+//! A Phong lobe beside the diffuse reflection is one more: [`gloss`] of what arrives, V times L.
 //!
 //! All are linear in L: one matrix of constants takes its series to the light's matrix.
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
+
+use super::harmonics::evaluate;
 use super::legendre::{associated, value};
 use super::product::{Triple, light_matrix};
 use super::quadrature::integral;
@@ -121,26 +124,20 @@ pub fn lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// What a light makes of V for a Phong lobe of unit integral: `[row][k]`, n² rows and columns. Exit radiance
-/// is Σ Y_row(r) M_row,k V_k, r the direction about which the lobe lies: turned to r, band l of a zonal
-/// function has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the lobe's own bands: [`zonal::phong`]).
+/// What a Phong lobe of unit integral about a direction r makes of light that arrives as a series: Σ r_l Y_lm(r)
+/// U_lm, as turned to r band l of a zonal function has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the
+/// lobe's own bands: [`zonal::phong_bands`]).
 ///
-/// V, L and the lobe are all cut off, and V L needs bands of V that are not there: the sharper the lobe, the
-/// more is missed.
+/// Where U is the product of V and L ([`light_matrix`] times V), V, L and the lobe are all cut off, and the
+/// product needs bands of V that are not there: the sharper the lobe, the more is missed.
 ///
 /// # Panics
-/// When `light` is not of the `triples`' order.
-pub fn gloss(triples: &[Triple], order: usize, light: &[f64], exponent: f64) -> Vec<Vec<f64>> {
-    assert_eq!(light.len(), order * order, "a light of order {order}");
-    let lobe = zonal::phong(order, exponent);
-    let matrix = light_matrix(triples, light);
-    bands(order)
-        .zip(matrix)
-        .map(|((l, _), row)| {
-            let scale = lobe[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt();
-            row.iter().map(|v| v * scale).collect()
-        })
-        .collect()
+/// When `arriving` is not of an order.
+pub fn gloss(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
+    let order = arriving.len().isqrt();
+    let kept = zonal::phong_bands(order, exponent);
+    let all = bands(order).zip(evaluate(order, direction)).zip(arriving);
+    all.map(|(((l, _), y), u)| kept[l] * y * u).sum()
 }
 
 /// What stands before the polynomial of [`receiver`] in Y_lm.

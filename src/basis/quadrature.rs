@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 pub const POINTS: usize = 32;
 
 /// Nodes and weights on [-1, 1], ascending.
-static RULE: LazyLock<[(f64, f64); POINTS]> = LazyLock::new(rule);
+static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| rule(POINTS));
 
 /// Places and weights on `low` to `high` of 32 points: exact for polynomials of degree 63.
 ///
@@ -24,17 +24,17 @@ pub fn integral(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     points(low, high).map(|(x, w)| w * f(x)).sum()
 }
 
-/// The roots of P_32 by Newton's method from Tricomi's guess cos(π(i + 3/4)/(n + 1/2)), and the weights
-/// 2/((1 - x²) P'(x)²).
-fn rule() -> [(f64, f64); POINTS] {
-    let n = POINTS as f64;
-    let mut rule = [(0.0, 0.0); POINTS];
+/// Gauss' rule of so many points on [-1, 1], exact for polynomials of degree 2 `count` - 1, ascending: the roots of
+/// P_n by Newton's method from Tricomi's guess cos(π(i + 3/4)/(n + 1/2)), and the weights 2/((1 - x²) P'(x)²).
+pub(super) fn rule(count: usize) -> Vec<(f64, f64)> {
+    let n = count as f64;
+    let mut rule = vec![(0.0, 0.0); count];
     for (i, node) in rule.iter_mut().enumerate() {
         let mut x = -(PI * (i as f64 + 0.75) / (n + 0.5)).cos();
         let mut slope = 0.0;
         // Converges quadratically from 1e-4: four turns reach rounding, the rest do no harm.
         for _ in 0..8 {
-            let (value, before) = last_two(x);
+            let (value, before) = last_two(count, x);
             slope = n * (before - x * value) / (1.0 - x * x);
             x -= value / slope;
         }
@@ -43,10 +43,10 @@ fn rule() -> [(f64, f64); POINTS] {
     rule
 }
 
-/// P_32(x) and P_31(x) by Bonnet's recurrence.
-fn last_two(x: f64) -> (f64, f64) {
+/// P_n(x) and P_(n-1)(x) by Bonnet's recurrence.
+fn last_two(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
-    for l in 1..POINTS {
+    for l in 1..n {
         let l = l as f64;
         (before, value) = (value, ((2.0 * l + 1.0) * x * value - l * before) / (l + 1.0));
     }

@@ -67,18 +67,24 @@ pub fn clamped_cosine(order: usize) -> Vec<f64> {
     phong(order, 1.0).iter().map(|c| PI * c).collect()
 }
 
-/// Phong's lobe (S+1)/2π max(cos θ, 0)^S of unit integral and exponent S ≥ 0, exactly.
-///
-/// Band l keeps r_l = (S+1) ∫ from 0 to 1 of zˢ P_l dz: r_0 = 1, r_1 = (S+1)/(S+2) and
-/// r_l = r_{l-2} (S+2-l)/(S+l+1).
+/// Phong's lobe (S+1)/2π max(cos θ, 0)^S of unit integral and exponent S ≥ 0, exactly: [`phong_bands`] of √((2l+1)/4π).
 pub fn phong(order: usize, exponent: f64) -> Vec<f64> {
+    let kept = phong_bands(order, exponent);
+    kept.iter().enumerate().map(|(l, r)| r * whole_band(l)).collect()
+}
+
+/// What Phong's lobe of unit integral keeps of each band that it is convolved with.
+///
+/// r_l = (S+1) ∫ from 0 to 1 of zˢ P_l dz: r_0 = 1, r_1 = (S+1)/(S+2) and r_l = r_{l-2} (S+2-l)/(S+l+1).
+pub fn phong_bands(order: usize, exponent: f64) -> Vec<f64> {
     check_order(order);
     let s = exponent;
     let mut ratios = vec![1.0, (s + 1.0) / (s + 2.0)];
     for l in 2..order {
         ratios.push(ratios[l - 2] * (s + 2.0 - l as f64) / (s + (l + 1) as f64));
     }
-    ratios.iter().take(order).enumerate().map(|(l, r)| r * whole_band(l)).collect()
+    ratios.truncate(order);
+    ratios
 }
 
 /// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.

@@ -5,8 +5,9 @@
 //!   normal ([`normal`]) and albedo. Light in directions e with N·e > 0 counts.
 //! - What rays meet is the triangulated surface. A direction that leads from the sample into the ground
 //!   at once meets, at distance 0, the triangle that lies in its azimuth.
-//! - A point that is met reflects diffusely, whatever the lobe, with the geometric normal of its
-//!   triangle and the albedo interpolated over the triangle's corners.
+//! - A point that is met reflects diffusely, with the geometric normal of its triangle and the albedo
+//!   interpolated over the triangle's corners. Its lobe is left out, the path tracer's is not: where there is a
+//!   lobe, bounces here are less than what ground that sees itself throws.
 //! - Sky and environment are seen where nothing is met: above horizontal under `plane` and `periodic`,
 //!   everywhere under `open`. What leaves the field below horizontal under `plane` meets black ground.
 //! - Bounce 0 is light straight from its sources; bounce b has been reflected b times before it
@@ -24,7 +25,7 @@ use super::light::{Receiver, Slice, environment_on, normal, sun_on};
 use super::oracle::Oracle;
 use super::profile::Stretch;
 use super::sphere::sphere_on;
-use crate::scene::{Albedo, Border, HeightField, Lights, Scene, SphereLight};
+use crate::scene::{Albedo, Border, HeightField, Lights, Lobe, Scene, SphereLight};
 use crate::{Error, Result};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -97,7 +98,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     }
     let fine = divided_field(field, surface.border, divisions)?;
     let oracle = Oracle::new(&fine, surface.border);
-    let places = places(&oracle, field, divisions, surface.phong.map(|p| f64::from(p.exponent)));
+    let places = places(&oracle, field, divisions, surface.phong.as_ref());
     let corners = corner_count(&oracle);
     let lights = divided_lights(lights, field, surface.border, divisions);
 
@@ -113,8 +114,8 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
             [0, 1, 2].map(|i| channels[i][r * fine.cols() + c])
         })
         .collect();
-    let scale = surface.phong.map_or(0.0, |p| f64::from(p.scale));
     let towards_above = |arrived: &[[f64; 3]], at: usize| {
+        let scale = surface.phong.as_ref().map_or(0.0, |lobe| f64::from(lobe.at(at).scale));
         let diffuse = product(albedo(at), arrived[corners + at]);
         let lobe = arrived.get(corners + samples + at).copied().unwrap_or_default();
         [0, 1, 2].map(|i| diffuse[i] + scale * lobe[i])
@@ -172,7 +173,7 @@ fn places(
     oracle: &Oracle,
     field: &HeightField,
     divisions: usize,
-    exponent: Option<f64>,
+    lobe: Option<&Lobe>,
 ) -> Vec<Vec<(usize, Receiver)>> {
     let fine = oracle.field();
     let mut places = vec![Vec::new(); fine.rows() * fine.cols()];
@@ -189,7 +190,8 @@ fn places(
         let normal = normal(field, oracle.border(), r, c);
         let place = &mut places[divisions * (r * fine.cols() + c)];
         place.push((corners + at, Receiver::diffuse(normal)));
-        if let Some(n) = exponent {
+        if let Some(lobe) = lobe {
+            let n = f64::from(lobe.at(at).exponent);
             place.push((corners + samples + at, Receiver::lobe_from_above(normal, n)));
         }
     }

@@ -13,6 +13,7 @@ use crate::basis::legendre::{nlp, occlusion};
 use crate::plan::pyramid::Pyramid;
 use crate::plan::sweep::WARM_UP_PERIODS;
 use crate::scene::{HeightField, Receiver};
+use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Samples and levels, and how they are looked at.
@@ -39,7 +40,7 @@ pub struct BounceGather<'a> {
 }
 
 /// A march from a sample: whole steps along columns or rows, straight across the other axis.
-struct March {
+pub(super) struct March {
     here: [f64; 2],
     by_x: bool,
     forward: f64,
@@ -109,7 +110,16 @@ impl BounceGather<'_> {
     ///
     /// # Panics
     /// As [`Self::light`].
-    pub fn casts_along(&self, [row, col]: [usize; 2]) -> Vec<Along> {
+    pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
+        self.casts_of(place, |march, _, of| self.radiance(march, of))
+    }
+
+    /// The same of another radiance: that of a place and a level, looked at along a march in a direction.
+    pub(super) fn casts_of(
+        &self,
+        [row, col]: [usize; 2],
+        radiance: impl Fn(&March, DVec3, ([f64; 2], u32)) -> [f64; 3],
+    ) -> Vec<Along> {
         let border = self.heights.border;
         let place = Place::diffuse(normal(self.field, border, row, col));
         let along = |k: u32| {
@@ -120,7 +130,11 @@ impl BounceGather<'_> {
                 Receiver::Lobe => (Some(three_bands(&slice)), 0.5),
             };
             let mut seen = Seen { slice, bands, top: slice.low, casts: Vec::new() };
-            self.cast(&mut seen, &self.march([col, row], azimuth_rad));
+            let march = self.march([col, row], azimuth_rad);
+            self.cast(&mut seen, &march, |angle, of| {
+                let ((sin, cos), (s, c)) = (angle.sin_cos(), azimuth_rad.sin_cos());
+                radiance(&march, DVec3::new(cos * c, cos * s, sin), of)
+            });
             Along { azimuth_rad, low_rad: slice.low, whole, casts: seen.casts }
         };
         (0..self.azimuths).map(along).collect()
@@ -154,7 +168,12 @@ impl BounceGather<'_> {
         }
     }
 
-    fn cast(&self, seen: &mut Seen, march: &March) {
+    fn cast(
+        &self,
+        seen: &mut Seen,
+        march: &March,
+        radiance: impl Fn(f64, ([f64; 2], u32)) -> [f64; 3],
+    ) {
         if march.reach <= 0 {
             return;
         }
@@ -172,7 +191,8 @@ impl BounceGather<'_> {
             let (middle, knot) = ((x + w + 23.0 * (y + z)) / 48.0, (y + 4.0 * z + w) / 6.0);
             // Both radiate alike: the higher opens what both do.
             let nearest = f64::from(four[0].1);
-            seen.cast(middle.max(knot), nearest, || self.radiance(march, knot_of));
+            let angle = middle.max(knot);
+            seen.cast(angle, nearest, || radiance(angle, knot_of));
             (angles, before) = (Some(four), of);
         };
         for next in 0_u32.. {
@@ -201,7 +221,7 @@ impl BounceGather<'_> {
     }
 
     /// The two samples on a march step's grid line that a place lies between, and how far between.
-    fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
+    pub(super) fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
         let [cols, rows] = self.pyramid.size.map(|n| n as i32);
         let inside = |i: i32, n: i32| {
             if self.pyramid.periodic { wrapped(i, n) } else { i.clamp(0, n - 1) }
@@ -231,7 +251,7 @@ impl BounceGather<'_> {
         f64::from(low) + t * (f64::from(high) - f64::from(low))
     }
 
-    fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
+    pub(super) fn radiance(&self, march: &March, (place, level): ([f64; 2], u32)) -> [f64; 3] {
         if let (Stored::Levels(_), 1..) = (self.stored, level) {
             return shade_at(self.shade, self.shade_texels, level, place);
         }

@@ -134,7 +134,11 @@ impl Slice {
             return 0.0;
         }
         let cosine = (self.a * elevation_rad.cos() + self.b * elevation_rad.sin()).max(0.0);
-        self.exponent.map_or(cosine, |n| 0.5 * (n + 1.0) * cosine.powf(n))
+        match self.exponent {
+            // 0 to the power of 0 would be light from behind.
+            Some(n) if cosine > 0.0 => 0.5 * (n + 1.0) * cosine.powf(n),
+            _ => cosine,
+        }
     }
 
     /// π times the weights' integral over elevations; the lobe's by Gauss' rule of 4 points in panels

@@ -1,7 +1,7 @@
 //! What the environment makes of what is seen: its series, and the matrix from that.
 
-use crate::basis::light::{fit_above_ground, gloss, lobe, plane};
-use crate::basis::product::{Triple, triples};
+use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::product::{self, Triple, triples};
 use crate::basis::slice::{Slices, slice_index};
 use crate::basis::{bands, window};
 use crate::scene::{Border, Quality, Receiver, Window};
@@ -68,12 +68,12 @@ pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     })
 }
 
-/// The same of a Phong lobe of scale 1: `[coefficient of its direction][coefficient]`.
+/// What arrives, as a series, from what is seen: `[coefficient that arrives][coefficient that is seen]`.
 ///
 /// # Panics
 /// When the series is not of the quality's order.
-pub fn gloss_matrix(quality: &Quality, series: &[DVec3], exponent: f32) -> Vec<Vec<DVec3>> {
-    matrix(quality, series, |triples, order, light| gloss(triples, order, light, exponent.into()))
+pub fn gloss_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
+    matrix(quality, series, |triples, _, light| product::light_matrix(triples, light))
 }
 
 fn matrix(

@@ -2,9 +2,12 @@
 
 use super::shared::field::{field_slope, normal_of};
 use super::shared::sweep::Heights;
+use crate::basis::bands;
 use crate::basis::harmonics::evaluate;
 use crate::basis::light::receiver;
+use crate::basis::zonal::phong_bands;
 use crate::plan::Nodes;
+use crate::scene::Phong;
 use glam::{DVec2, DVec3};
 
 /// How far off each other's planes, over their distance, a sample and a node are where it counts half:
@@ -63,14 +66,17 @@ pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     times(rows, seen, matrix)
 }
 
-/// What a lobe of scale 1 on a surface of this normal mirrors straight upwards; `matrix` is
+/// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
 /// [`super::light_matrix::gloss_matrix`]'s.
 ///
 /// # Panics
 /// A matrix of no order.
-pub fn gloss_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+pub fn gloss_on(normal: DVec3, phong: Phong, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
-    times(&evaluate(matrix.len().isqrt(), mirror), seen, matrix)
+    let order = matrix.len().isqrt();
+    let kept = phong_bands(order, phong.exponent.into());
+    let rows = bands(order).zip(evaluate(order, mirror)).map(|((l, _), y)| kept[l] * y);
+    f64::from(phong.scale) * times(&rows.collect::<Vec<_>>(), seen, matrix)
 }
 
 fn times(rows: &[f64], seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {

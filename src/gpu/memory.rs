@@ -1,9 +1,13 @@
+mod attachment;
+
 use ash::vk;
 
 use super::allocator::{Allocation, Allocator, MemoryRequest, MemoryUse};
 use super::{Host, failed};
 use crate::plan::{Format, Kind};
 use crate::{Error, Result};
+
+pub(crate) use attachment::{DEPTH, whole_attachment};
 
 /// An image or a buffer with its memory.
 pub(crate) struct Backed {
@@ -137,10 +141,22 @@ impl Memory {
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
+        let view_type =
+            if layered { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        self.image_of(name, &info, (view_type, whole(layers)))
+    }
+
+    /// An image, its memory and a view of it.
+    fn image_of(
+        &mut self,
+        name: &str,
+        info: &vk::ImageCreateInfo<'_>,
+        (view_type, range): (vk::ImageViewType, vk::ImageSubresourceRange),
+    ) -> Result<Backed> {
         let device = self.host.device.clone();
         // SAFETY: the device is alive (the caller of Renderer::new and Headless vouch for it), `info`
         // is a plain 2D image within the plan's limits.
-        let image = unsafe { device.create_image(&info, None) }
+        let image = unsafe { device.create_image(info, None) }
             .map_err(failed(format!("making image {name}")))?;
         let mut backed = Backed {
             image,
@@ -149,20 +165,16 @@ impl Memory {
             texels: vk::BufferView::null(),
             allocation: None,
             bytes: 0,
-            layers,
+            layers: info.array_layers,
         };
         // SAFETY: `image` was made above on this device.
         let requirements = unsafe { device.get_image_memory_requirements(image) };
         let made = self.take(name, requirements, MemoryUse::Device, false).and_then(|allocation| {
             let view_info = vk::ImageViewCreateInfo::default()
                 .image(image)
-                .view_type(if layered {
-                    vk::ImageViewType::TYPE_2D_ARRAY
-                } else {
-                    vk::ImageViewType::TYPE_2D
-                })
-                .format(format)
-                .subresource_range(whole(layers));
+                .view_type(view_type)
+                .format(info.format)
+                .subresource_range(range);
             // SAFETY: the allocation is at least as large as the image requires and bound once; the
             // view is of the image's own format and layers.
             let view = unsafe {

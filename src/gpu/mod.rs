@@ -6,22 +6,29 @@ mod frame;
 mod headless;
 mod instance;
 mod lend;
+mod look;
 mod memory;
 mod pipelines;
 mod read;
 mod renderer;
 mod requirements;
+mod screen;
 pub mod shaders;
 mod specialise;
+mod surface;
 mod validation;
+mod view;
 
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 pub use frame::{Frame, Pixels};
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
 pub use lend::Lent;
+pub use look::Seen;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
+pub use screen::{Panel, Screen, Shot, Shown, Sight};
+pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;
 
@@ -70,6 +77,7 @@ impl Format {
     pub fn vk(self) -> vk::Format {
         match self {
             Format::R32Float => vk::Format::R32_SFLOAT,
+            Format::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
             Format::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
             Format::R32Uint => vk::Format::R32_UINT,
             Format::Rg32Uint => vk::Format::R32G32_UINT,
@@ -90,6 +98,7 @@ impl Format {
                 vk::Format::R8G8B8A8_UNORM,
                 vk::Format::R8G8B8A8_SRGB,
             ],
+            Format::Rgba16Float => &[vk::Format::R16G16B16A16_SFLOAT],
             Format::R32Uint => &[vk::Format::R32_UINT],
             Format::Rg32Uint => &[vk::Format::R32G32_UINT],
             Format::Rgba32Uint => &[vk::Format::R32G32B32A32_UINT],

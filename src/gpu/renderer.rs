@@ -15,6 +15,7 @@ use super::{Host, requirements};
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
 use crate::{Error, Result};
 
+pub(super) use images::transition;
 pub use images::{ImageArg, ImageState};
 
 /// GPU time of one pass.

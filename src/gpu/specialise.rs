@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn no_constant_is_left_to_the_driver() {
         let mut count = 0;
-        for shader in shaders::ALL {
+        for shader in shaders::ALL.iter().chain(shaders::GRAPHICS) {
             let made = specialised(shader.words, &[]);
             let is_number = |(op, o): &(u32, &[u32])| *op == DECORATE && o[1] == SPEC_ID;
             let before = instructions(shader.words).into_iter().filter(|i| !is_number(i));

@@ -119,13 +119,13 @@ impl Harmonics {
 }
 
 /// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with every
-/// product that they sum taken by its magnitude. `gloss`: of a lobe's exponent, and a sky that it is lit by.
+/// product that they sum taken by its magnitude. `gloss`: of what arrives at a lobe, beside a sky.
 pub fn matrix_magnitudes(
     quality: &Quality,
     border: Border,
     height: usize,
     turns: &[Vec<DVec3>],
-    gloss: Option<(f32, [f32; 3])>,
+    gloss: Option<[f32; 3]>,
 ) -> Vec<Vec<DVec3>> {
     let order = quality.sh_order as usize;
     let light_order = turns.first().map_or(order, |row| row.len().div_ceil(2));
@@ -135,7 +135,7 @@ pub fn matrix_magnitudes(
     for (i, ((_, m), weights)) in bands(light_order).zip(weights).enumerate() {
         let turn = (light_order - 1).wrapping_add_signed(m);
         let mut sum = [weights.iter().zip(turns).map(|(w, t)| w.abs() * t[turn].abs()).sum()];
-        if let Some((_, sky)) = gloss.filter(|_| i == 0) {
+        if let Some(sky) = gloss.filter(|_| i == 0) {
             add_sky(&mut sum, sky);
         }
         // Light of 1 in this coefficient alone.
@@ -143,7 +143,7 @@ pub fn matrix_magnitudes(
         unit[i] = DVec3::ONE;
         let shares = match gloss {
             None => light_matrix(quality, &unit),
-            Some((exponent, _)) => gloss_matrix(quality, &unit, exponent),
+            Some(_) => gloss_matrix(quality, &unit),
         };
         all.resize(shares.len(), vec![DVec3::ZERO; shares[0].len()]);
         for (row, shares) in all.iter_mut().zip(&shares) {

@@ -7,12 +7,14 @@
 //! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
 
 mod bounce;
+mod gloss;
 mod light;
 
 use std::f64::consts::PI;
 
 use crate::cpu::bounce_shade::LEAST_SHARE;
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
+pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
 
 /// The largest relative error of one rounding to f32.
@@ -252,10 +254,10 @@ pub fn twin_sh_shade(order: usize, normal_error: f64) -> f64 {
 }
 
 /// The same of a lobe: Y_lm of its direction are 1 at most, change by 4 a radian of it, as it turns twice as far as
-/// the normal, and err by 100 ε: polynomials of degree 5 whose coefficients sum to 15, six roundings each. Rows
-/// are as many as columns.
+/// the normal, and err by 100 ε: polynomials of degree 5 whose coefficients sum to 15, six roundings each. What the
+/// lobe keeps of a band is a product of 3 quotients at most, 8 ε each. Rows are as many as columns.
 pub fn twin_sh_gloss(order: usize, normal_error: f64) -> f64 {
-    (110.0 + 3.0 * (order * order) as f64) * EPSILON + 8.0 * normal_error
+    (135.0 + 3.0 * (order * order) as f64) * EPSILON + 8.0 * normal_error
 }
 
 /// `sun_gloss` from a given sun's sum, for irradiance 1, at a sample that the sun faces by `facing`, the cosine.

@@ -10,6 +10,9 @@ pub(crate) mod dirty_mark;
 pub(crate) mod env_tables;
 pub(crate) mod env_turns;
 pub(crate) mod env_wedges;
+pub(crate) mod gloss_exit;
+pub(crate) mod gloss_gather;
+pub(crate) mod gloss_seen;
 pub(crate) mod height_bounds;
 pub(crate) mod height_cells;
 pub(crate) mod height_expand;
@@ -20,13 +23,16 @@ pub(crate) mod horizon_resweep;
 pub(crate) mod horizon_sweep;
 pub(crate) mod light_matrix;
 pub(crate) mod light_resolve;
+pub(crate) mod map_draw;
 pub(crate) mod path_trace;
+pub(crate) mod picture_tone;
 pub(crate) mod pyramid_march;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
 pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
+pub(crate) mod sky_draw;
 pub(crate) mod sky_shade;
 pub(crate) mod sphere_sh_shade;
 pub(crate) mod sphere_shade;
@@ -34,11 +40,21 @@ pub(crate) mod sun_gloss;
 pub(crate) mod sun_shade;
 pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
+pub(crate) mod terrain_draw;
+pub(crate) mod vector_reduce;
 
 use crate::gpu::shaders::same_layout;
 use crate::plan::pyramid::Pyramid;
-use crate::plan::{Batch, Blocks};
-use crate::scene::HeightField;
+use crate::plan::{Batch, Blocks, ResourceId};
+use crate::scene::{HeightField, Phong};
+
+/// What passes are told of lobes: one of all samples, or an image of each sample's.
+#[derive(Clone, Copy)]
+pub(crate) struct Lobes {
+    /// Where there is no map.
+    pub constant: Phong,
+    pub map: Option<ResourceId>,
+}
 
 /// Of the passes that add light through a batch's horizons.
 #[repr(C)]
@@ -210,6 +226,19 @@ same_layout!(
 same_layout!(
     ReducePush,
     shade_reduce_push,
+    size = COLS,
+    first = FIRST,
+    source_size = SOURCE_COLS,
+    source_first = SOURCE_FIRST,
+    ratio = RATIO_X,
+    per_sample = PER_SAMPLE_X,
+    level = LEVEL,
+    width_shift = WIDTH_SHIFT,
+);
+
+same_layout!(
+    ReducePush,
+    vector_reduce_push,
     size = COLS,
     first = FIRST,
     source_size = SOURCE_COLS,

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Builder, ResourceId};
-use crate::scene::{Albedo, Scene};
+use crate::scene::{Albedo, Lobe, Phong, Scene};
 
 /// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
 /// more evenly, but fewer batches tell the standard error.
@@ -138,6 +138,10 @@ pub(crate) fn plan(
         Albedo::Constant(colour) => (colour, false),
         Albedo::Map(_) => ([0.0; 3], true),
     };
+    let lobe = match &surface.phong {
+        Some(Lobe::Constant(phong)) => *phong,
+        _ => Phong { exponent: 0.0, scale: 0.0 },
+    };
     let turns = |e: &crate::scene::Environment| {
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
@@ -160,6 +164,7 @@ pub(crate) fn plan(
             (9, u32::from(bounces > 0)),
             (10, blocks.most_steps()),
             (12, u32::from(part.is_some())),
+            (13, u32::from(matches!(surface.phong, Some(Lobe::Map(_))))),
         ],
         &PathTracePush {
             cols: cols as i32,
@@ -172,8 +177,8 @@ pub(crate) fn plan(
             cell_x_m: field.cell_m()[0] as f32,
             cell_y_m: field.cell_m()[1] as f32,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
-            exponent: surface.phong.map_or(0.0, |p| p.exponent),
-            lobe_share: surface.phong.map_or(0.0, |p| p.scale),
+            exponent: lobe.exponent,
+            lobe_share: lobe.scale,
             bounces: bounces as i32,
             suns: lights.suns.len() as i32,
             light_count: count as i32,

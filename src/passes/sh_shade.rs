@@ -1,3 +1,4 @@
+use super::Lobes;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::sh::{Lit, Sh};
 use crate::plan::{Axis, Builder, ResourceId};
@@ -10,6 +11,7 @@ struct ShShadePush {
     rows: i32,
     cell_x_m: f32,
     cell_y_m: f32,
+    lobe: [f32; 2],
 }
 
 same_layout!(
@@ -19,6 +21,7 @@ same_layout!(
     rows = ROWS,
     cell_x_m = CELL_X_M,
     cell_y_m = CELL_Y_M,
+    lobe = LOBE,
 );
 
 /// Light from what is seen and the light's matrix, by normals of full resolution.
@@ -28,6 +31,7 @@ pub(crate) fn plan(
     sh: &Sh,
     [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
     nodes: Option<ResourceId>,
+    lobes: Option<Lobes>,
 ) {
     let [cols, rows] = axis.size();
     let mut bound = vec![
@@ -37,6 +41,8 @@ pub(crate) fn plan(
         ("env_sum", env_sum),
     ];
     bound.extend(nodes.map(|n| ("nodes", n)));
+    let map = lobes.and_then(|lobes| lobes.map);
+    bound.extend(map.map(|map| ("phong_map", map)));
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
     let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
@@ -57,12 +63,14 @@ pub(crate) fn plan(
             (2, sh.order as u32),
             (3, sh.lit as u32),
             (4, sh.nodes.stride),
+            (5, u32::from(map.is_some())),
         ],
         &ShShadePush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,
             cell_y_m: cell_m[1] as f32,
+            lobe: lobes.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
         },
         &bound,
         axis.samples() * (4 + 16) + seen,

@@ -5,15 +5,16 @@
 
 use super::blocks::Blocks;
 use super::bounce_nodes::BounceNodes;
+use super::glossy::{Glossy, Thrown, Vectors};
 use super::pyramid::Pyramid;
 use super::sweep::Sweep;
 use super::sweeping::{Sweeping, part};
 use super::{Batch, Builder, Format, Nodes, Owner, ResourceId};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, height_cells,
-    pyramid_march, shade_expand, shade_reduce, sky_shade,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, gloss_gather,
+    height_cells, pyramid_march, shade_expand, shade_reduce, sky_shade, vector_reduce,
 };
-use crate::scene::{Border, BounceEngine, Bounces, Levels, Quality, Scene, Surface};
+use crate::scene::{Border, BounceEngine, Bounces, HeightField, Levels, Quality, Scene, Surface};
 
 /// What an engine's passes are told of one bounce.
 pub(crate) struct Bounce {
@@ -47,6 +48,8 @@ pub(super) struct Bouncing {
     sum: ResourceId,
     at_nodes: Option<BounceNodes>,
     engine: Engine,
+    /// What lobes throw on, where there are any.
+    pub glossy: Option<Glossy>,
     /// Exit radiance of each bounce: its layer where wanted, else one image, used in turn; the last one's goes
     /// into the picture alone.
     exits: Vec<Option<ResourceId>>,
@@ -66,7 +69,7 @@ pub(super) fn settled(
     sweep: &Sweep,
     notes: &mut Vec<String>,
 ) -> Quality {
-    let albedo = f64::from(surface.albedo.largest());
+    let albedo = surface.most_reflected();
     if quality.bounces.engine != BounceEngine::Auto || quality.bounces.worth_drawing(albedo) == 0 {
         return *quality;
     }
@@ -83,7 +86,7 @@ pub(super) fn settled(
 
 /// How many bounces are worth drawing.
 pub(super) fn worth_drawing(scene: &Scene, quality: &Quality, notes: &mut Vec<String>) -> u32 {
-    let albedo = f64::from(scene.surface.albedo.largest());
+    let albedo = scene.surface.most_reflected();
     let count = quality.bounces.worth_drawing(albedo);
     if count < quality.bounces.count {
         notes.push(dropped(&quality.bounces, count, albedo));
@@ -99,6 +102,7 @@ impl Bouncing {
         quality: &Quality,
         (count, at_nodes, levels): (u32, Option<BounceNodes>, Option<pyramid_march::Images>),
         (grey, layers): (bool, bool),
+        gloss: Option<&mut Vec<String>>,
     ) -> Self {
         let bounces = &quality.bounces;
         let extent = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
@@ -114,15 +118,20 @@ impl Bouncing {
             (1..=count).map(|k| exit.filter(|_| k < count)).collect()
         };
         let sum = image("bounce_sum", Owner::Internal, Format::Rgba32Float);
+        let size = [extent[0], extent[1]];
+        let shade = shade(quality, size, scene);
+        let glossy = gloss
+            .map(|notes| Glossy::make(builder, (size, &shade), quality, (grey, layers), notes));
         let engine = match bounces.engine {
             BounceEngine::Brute => Engine::Brute,
             BounceEngine::Sweep => Engine::Sweep,
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
-                Engine::Pyramid(pyramids(builder, (scene, grey), quality, levels))
+                let has_numbers = glossy.is_none_or(|g| matches!(g.thrown, Thrown::Seen(_)));
+                Engine::Pyramid(pyramids(builder, (shade, grey), quality, levels, has_numbers))
             }
         };
-        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, exits }
+        Self { azimuths: bounces.azimuths, grey, sum, at_nodes, engine, glossy, exits }
     }
 
     /// How many there are.
@@ -174,7 +183,10 @@ impl Bouncing {
                 1 => "direct light off the surface".to_owned(),
                 _ => format!("light of bounce {} off the surface", k - 1),
             },
-            exit: before.unwrap_or(direct),
+            exit: match self.glossy.map(|glossy| glossy.thrown) {
+                Some(Thrown::Seen(exit)) => exit,
+                _ => before.unwrap_or(direct),
+            },
             grey: self.grey,
             sum: self.sum,
             at_nodes: self.at_nodes,
@@ -193,22 +205,23 @@ impl Bouncing {
                 }
             }
             Engine::Pyramid(of) => {
-                if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
-                    for level in 1..=of.shade.levels() {
-                        shade_reduce::plan(builder, &of.shade, level, &bounce, [levels, table]);
-                    }
-                    if let Some(stack) = stack {
-                        shade_expand::plan(builder, &of.shade, &bounce, [levels, table, stack]);
-                    }
-                }
                 let ids = [heights, blocks().images.ground];
-                bounce_gather::plan(builder, &scene.field, of, self.azimuths, &bounce, ids);
+                let how = (of, self.glossy.as_ref(), self.azimuths);
+                gather(builder, &scene.field, how, &bounce, ids);
             }
         }
         if let Some(at) = &self.at_nodes {
             bounce_shade::plan(builder, &scene.field, at, &bounce, blocks().images.ground);
         }
         (self.sum, self.exits[k - 1])
+    }
+
+    /// What leaves the ground diffusely after bounce `k` of `direct` light, which is 0; none of the last.
+    pub fn diffuse(&self, k: usize, direct: ResourceId) -> Option<ResourceId> {
+        match k {
+            0 => Some(direct),
+            _ => self.exits[k - 1].filter(|_| k < self.exits.len()),
+        }
     }
 
     /// The settings really used.
@@ -221,6 +234,10 @@ impl Bouncing {
             Engine::Brute => BounceEngine::Brute,
             Engine::Sweep => BounceEngine::Sweep,
             Engine::Pyramid(of) => {
+                if let Some(glossy) = &self.glossy {
+                    add("bounce_gloss", glossy.gloss().name().to_owned());
+                    add("sh_order", glossy.order.to_string());
+                }
                 add("bounce_level_step", of.shade.level_step.to_string());
                 add("bounce_level_offset", of.shade.level_offset.to_string());
                 add("level_step", of.heights.level_step.to_string());
@@ -279,18 +296,55 @@ fn walk(
     }
 }
 
-/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own; light follows the receiver.
+/// Levels of what is thrown, and what is seen of them along so many azimuths.
+fn gather(
+    builder: &mut Builder,
+    field: &HeightField,
+    (of, glossy, azimuths): (&bounce_gather::Pyramids, Option<&Glossy>, u32),
+    bounce: &Bounce,
+    ids: [ResourceId; 2],
+) {
+    if let Some(glossy) = glossy
+        && let Thrown::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) = glossy.thrown
+    {
+        for level in 1..=of.shade.levels() {
+            let (of, ids) = ((&of.shade, level), [exit, levels, table]);
+            vector_reduce::plan(builder, of, glossy, &bounce.name, ids);
+        }
+    }
+    if let Some(bounce_gather::ShadeImages { levels, table, stack }) = of.shade_images {
+        for level in 1..=of.shade.levels() {
+            shade_reduce::plan(builder, &of.shade, level, bounce, [levels, table]);
+        }
+        if let Some(stack) = stack {
+            shade_expand::plan(builder, &of.shade, bounce, [levels, table, stack]);
+        }
+    }
+    match glossy {
+        Some(glossy) => gloss_gather::plan(builder, field, (of, glossy), azimuths, bounce, ids),
+        None => bounce_gather::plan(builder, field, of, azimuths, bounce, ids),
+    }
+}
+
+/// Levels of exit radiance.
+fn shade(quality: &Quality, size: [u32; 2], scene: &Scene) -> Pyramid {
+    let Bounces { level_step, level_offset, .. } = quality.bounces;
+    Pyramid { level_step, level_offset, ..Pyramid::new(quality, size, scene.surface.border) }
+}
+
+/// Levels of heights as settings of pyramids say, and of exit radiance as bounces' own, with images where numbers are
+/// stored; light follows the receiver.
 fn pyramids(
     builder: &mut Builder,
-    (scene, grey): (&Scene, bool),
+    (shade, grey): (Pyramid, bool),
     quality: &Quality,
     levels: Option<pyramid_march::Images>,
+    has_numbers: bool,
 ) -> bounce_gather::Pyramids {
-    let size = [scene.field.cols() as u32, scene.field.rows() as u32];
-    let heights = Pyramid::new(quality, size, scene.surface.border);
-    let Bounces { level_step, level_offset, .. } = quality.bounces;
-    let shade = Pyramid { level_step, level_offset, ..heights };
-    let shade_images = (shade.levels() > 0).then(|| {
+    let size = shade.size;
+    let Quality { level_step, level_offset, .. } = *quality;
+    let heights = Pyramid { level_step, level_offset, ..shade };
+    let shade_images = (has_numbers && shade.levels() > 0).then(|| {
         let width = 1 << shade.width_shift();
         let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
         let count = shade.levels();

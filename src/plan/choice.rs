@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::reference::seen_part;
-use crate::scene::{Albedo, Border, Environment, KeyLight, Scene, Sun};
+use crate::scene::{Albedo, Border, Environment, KeyLight, Lobe, Scene, Sun};
 
 /// How an environment's texels are chosen, in proportion to the light of all channels that they give:
 /// rows of width + 1. First column: the share of the rows from the zenith down to this one; then the
@@ -74,7 +74,8 @@ pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
             map.iter().fold([0.0; 3], |most, t| [0, 1, 2].map(|c| t[c].max(most[c])))
         }
     };
-    let lobe = surface.phong.map_or([0.0; 2], |p| [p.scale, p.exponent].map(f64::from));
+    let largest = surface.phong.as_ref().map(Lobe::largest);
+    let lobe = largest.map_or([0.0; 2], |p| [p.scale, p.exponent].map(f64::from));
     let brightest = albedo.into_iter().fold(0.0_f32, f32::max);
     let shares = lights.environment.as_ref().map(|environment| {
         let cdf = environment_cdf(environment, surface.border);
@@ -102,17 +103,11 @@ pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
             let met = environment[0].min(dense * environment[1]);
             (direct, scattered * (sky + met + balls), scattered)
         };
-        let mut later = 0.0;
-        let (direct, met, scattered) = vertex(diffuse, diffuse / PI, 1.0 / PI);
-        for _ in 0..bounces {
-            later = direct + met.max(scattered * later);
-        }
-        // The lobe is seen from above alone, at the first vertex.
         let peak = (lobe[1] + 1.0) / (2.0 * PI);
         let all = if surface.phong.is_some() { f64::from(brightest) + lobe[0] } else { diffuse };
         let dense = if surface.phong.is_some() { peak.max(1.0 / PI) } else { 1.0 / PI };
         let (direct, met, scattered) = vertex(all, diffuse / PI + lobe[0] * peak, dense);
-        direct + met.max(scattered * later)
+        (0..=bounces).fold(0.0, |later, _| direct + met.max(scattered * later))
     })
 }
 

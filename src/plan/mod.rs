@@ -10,8 +10,10 @@ mod builder;
 mod change;
 mod choice;
 mod edit;
+pub(crate) mod glossy;
 mod horizons;
 mod limits;
+mod map;
 mod nodes;
 mod pass;
 mod picture;
@@ -25,6 +27,7 @@ pub(crate) mod sphere_sh;
 mod spheres;
 pub mod sweep;
 mod sweeping;
+mod view;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
@@ -35,6 +38,7 @@ pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
 pub use horizons::horizons;
 pub use limits::Limits;
+pub use map::{Map, map};
 pub use nodes::Nodes;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
@@ -42,6 +46,7 @@ pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
+pub use view::{View, ViewOptions, surface_error_m};
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]

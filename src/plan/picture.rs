@@ -7,13 +7,14 @@ use super::blocks::Blocks;
 use super::bounce_nodes::BounceNodes;
 use super::bounces::{self, Bouncing};
 use super::edit::Edits;
+use super::reference::lobe_texels;
 use super::shining::Shining;
 use super::sphere_sh::SphereSh;
 use super::sweep::Sweep;
 use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
-use crate::scene::{Albedo, Basis, Border, LightBasis, Quality, Scene, Wedges};
+use crate::scene::{Albedo, Basis, Border, LightBasis, Lobe, Quality, Scene, Wedges};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -40,10 +41,10 @@ pub struct Picture {
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
-/// Inputs, in order: "heights", "environment" and "albedo" where the scene has them. Outputs:
+/// Inputs, in order: "heights", "environment", "albedo" and "phong" where the scene has them. Outputs:
 /// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
-/// all, and they without it), "sky_view" and one "indirect.*" image a bounce. All are images of one channel
-/// where every colour is grey, else of four.
+/// all, and they without it), "sky_view", one "indirect.*" image a bounce, and "glossy" (what a lobe reflects of all
+/// bounces, and they without it). All are images of one channel where every colour is grey, else of four.
 ///
 /// A lobe is seen from straight above. It reflects sky and environment by harmonics, whose order limits it as
 /// it does the light, and suns by the lobe towards their middle and the part of them that is seen.
@@ -104,8 +105,8 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
     }
     let (mut tables, mut harmonics) = (None, None);
-    let exponent = shining.gloss.filter(|_| shining.has_gloss_around()).map(|p| p.exponent);
-    if exponent.is_some() || shining.environment.is_some() && quality.basis == Basis::Sh {
+    let has_gloss = shining.has_gloss_around();
+    if has_gloss || shining.environment.is_some() && quality.basis == Basis::Sh {
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
             return Err(Error::setting(
                 "--wedges table with --lines exact",
@@ -113,7 +114,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
                 "--method brute, which is exact in every azimuth",
             ));
         }
-        let (lit, settings) = ((shining.environment, surface.border), (quality, exponent));
+        let (lit, settings) = ((shining.environment, surface.border), (quality, has_gloss));
         harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
     } else if let Some(environment) = shining.environment {
         let lit = (environment, surface.border);
@@ -149,7 +150,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let levels = sweeping.as_ref().and_then(|s| s.levels);
     let of_light = (shining.is_grey, wanted.light_layers);
     let bouncing = (bounces > 0).then(|| {
-        Bouncing::make(&mut builder, scene, quality, (bounces, at_nodes, levels), of_light)
+        let gloss = shining.gloss.is_some().then_some(&mut notes);
+        let found = (bounces, at_nodes, levels);
+        Bouncing::make(&mut builder, scene, quality, found, of_light, gloss)
     });
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
     let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
@@ -191,7 +194,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
 }
 
 /// Texels of the inputs of a [`picture`](picture()), in its plan's order: "heights"; "environment" and
-/// "albedo", opaque, where the scene has them.
+/// "albedo", opaque, where the scene has them; "phong", exponent and scale, where that is a map.
 pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque =
         |texels: &[[f32; 3]]| texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
@@ -201,6 +204,9 @@ pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     }
     if let Albedo::Map(map) = &scene.surface.albedo {
         all.push(opaque(map));
+    }
+    if let Some(Lobe::Map(map)) = scene.surface.phong.as_ref().filter(|l| l.largest().scale > 0.0) {
+        all.push(lobe_texels(map));
     }
     all
 }

@@ -4,7 +4,7 @@ use super::blocks::Blocks;
 use super::choice::{choice_density, environment_cdf, most_light};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::path_trace::{self, BATCH_PATHS};
-use crate::scene::{Albedo, Border, KeyLight, Lights, Scene};
+use crate::scene::{Albedo, Border, KeyLight, Lights, Lobe, Phong, Scene};
 use crate::{Error, Result};
 
 /// Paths a sample of one batch of a [`reference`](reference()).
@@ -14,7 +14,8 @@ pub const REFERENCE_BATCH: u32 = BATCH_PATHS;
 const MOST_BOUNCES: u32 = 64;
 
 /// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every sample: what
-/// [`cpu::bounce`](crate::cpu::bounce) defines, with all bounces up to `bounces`.
+/// [`cpu::bounce`](crate::cpu::bounce) defines, with all bounces up to `bounces`; and where there is a lobe it
+/// reflects at every place that a path meets, about the mirror direction of where the path came from.
 ///
 /// Inputs: those of [`reference_inputs`]. Outputs: "radiance", the mean of all batches so far, and
 /// "standard_error", that of the mean, infinite after the first batch; four channels each, the fourth of the
@@ -66,6 +67,9 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     bound.push(("lights", image("lights", Owner::Input, rgba, [2, count.max(1) as u32])));
     if matches!(surface.albedo, Albedo::Map(_)) {
         bound.push(("albedo_map", image("albedo", Owner::Input, rgba, size)));
+    }
+    if matches!(surface.phong, Some(Lobe::Map(_))) {
+        bound.push(("phong_map", image("phong", Owner::Input, rgba, size)));
     }
     for output in ["radiance", "standard_error"] {
         bound.push((output, image(output, Owner::Output, rgba, size)));
@@ -128,7 +132,7 @@ pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
 
 /// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" (fourth
 /// channel: how densely directions of the texel are chosen, 1/sr) and its "environment_cdf" where there is
-/// one; "lights"; "albedo" where it is a map.
+/// one; "lights"; "albedo" and "phong" (exponent, scale) where they are maps.
 pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
@@ -146,7 +150,15 @@ pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     if let Albedo::Map(map) = &surface.albedo {
         all.push(opaque(map));
     }
+    if let Some(Lobe::Map(map)) = &surface.phong {
+        all.push(lobe_texels(map));
+    }
     all
+}
+
+/// Four channels a texel: exponent, scale.
+pub(super) fn lobe_texels(map: &[Phong]) -> Vec<f32> {
+    map.iter().flat_map(|phong| [phong.exponent, phong.scale, 0.0, 1.0]).collect()
 }
 
 /// Two texels a light: suns, key lights, balls. See `path_trace.comp`.

@@ -5,6 +5,8 @@ use crate::gpu::shaders::BindingKind;
 pub enum Format {
     /// One f32.
     R32Float,
+    /// Four f16.
+    Rgba16Float,
     /// Four f32.
     Rgba32Float,
     /// One u32.
@@ -20,7 +22,7 @@ impl Format {
     pub fn bytes(self) -> u64 {
         match self {
             Format::R32Float | Format::R32Uint => 4,
-            Format::Rg32Uint => 8,
+            Format::Rg32Uint | Format::Rgba16Float => 8,
             Format::Rgba32Float | Format::Rgba32Uint => 16,
         }
     }
@@ -34,6 +36,7 @@ impl Format {
     pub fn spirv(self) -> &'static str {
         match self {
             Format::R32Float => "R32f",
+            Format::Rgba16Float => "Rgba16f",
             Format::Rgba32Float => "Rgba32f",
             Format::R32Uint => "R32ui",
             Format::Rg32Uint => "Rg32ui",
@@ -90,6 +93,14 @@ pub struct Resource {
 }
 
 impl Resource {
+    /// An image's.
+    pub fn format(&self) -> Option<Format> {
+        match self.kind {
+            Kind::Image { format, .. } => Some(format),
+            Kind::Buffer { .. } => None,
+        }
+    }
+
     /// Bytes it takes on the device.
     pub fn bytes(&self) -> u64 {
         match self.kind {

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Azimuth, Nodes, batch};
-use crate::basis::light::{fit_above_ground, gloss, lobe, plane};
-use crate::basis::product::triples;
+use crate::basis::light::{fit_above_ground, lobe, plane};
+use crate::basis::product::{light_matrix, triples};
 use crate::basis::slice::{Slices, parts, slice_index};
 use crate::basis::wedge::WedgeTable;
 use crate::basis::{bands, index, window};
@@ -17,8 +17,18 @@ pub(crate) enum Lit {
     Cosine = 0,
     /// The cosine of a surface whose plane hides what lies below it.
     Plane = 1,
-    /// A Phong lobe.
+    /// A Phong lobe: what arrives is a series of its own.
     Gloss = 2,
+}
+
+impl Lit {
+    /// On diffuse ground.
+    pub fn diffuse(receiver: Receiver) -> Self {
+        match receiver {
+            Receiver::Plane => Lit::Plane,
+            Receiver::Lobe => Lit::Cosine,
+        }
+    }
 }
 
 /// Sizes, and where things lie in [`Plan::constants`](super::Plan::constants), in texels of four.
@@ -43,8 +53,8 @@ pub(crate) struct Sh {
 }
 
 impl Sh {
-    /// Sizes for an environment, and for a uniform sky where there is none; adds the constants. For the lobe of an
-    /// exponent, else for the diffuse receiver of the quality.
+    /// Sizes for an environment, and for a uniform sky where there is none; adds the constants. For a lobe, else for
+    /// the diffuse receiver of the quality.
     ///
     /// Where ground hides all below horizontal, a plane's light is fitted to what is above: nothing else
     /// of its series is ever seen. A window needs a series of all directions. A lobe takes all bands of what is
@@ -53,18 +63,14 @@ impl Sh {
         environment: Option<&Environment>,
         border: Border,
         quality: &Quality,
-        exponent: Option<f32>,
+        is_gloss: bool,
         constants: &mut Vec<f32>,
     ) -> Self {
         let order = quality.sh_order as usize;
         let is_fitted = quality.receiver == Receiver::Plane
             && quality.window == Window::None
             && border != Border::Open;
-        let lit = match (exponent, quality.receiver) {
-            (Some(_), _) => Lit::Gloss,
-            (None, Receiver::Plane) => Lit::Plane,
-            (None, Receiver::Lobe) => Lit::Cosine,
-        };
+        let lit = if is_gloss { Lit::Gloss } else { Lit::diffuse(quality.receiver) };
         let light_order = if lit == Lit::Plane { order - 1 } else { order };
         let column_first = constants.len() / 4;
         constants.extend(environment.iter().flat_map(|e| columns(e, light_order)));
@@ -77,7 +83,7 @@ impl Sh {
             constants.extend(elevations((e.height(), rows), light_order, lowest_rad, fit));
         }
         let matrix_first = constants.len() / 4;
-        let entries = matrix(quality, light_order, exponent);
+        let entries = matrix(quality, light_order, lit);
         let receivers = entries.len() / (order * order);
         constants.extend(entries.iter().flat_map(|entry| by_fours(entry)));
         let nodes = Nodes { stride: quality.subsample };
@@ -196,11 +202,7 @@ fn elevations(
 
 /// How each entry of the light's matrix follows from the environment's series: `[entry][coefficient]`.
 /// The light of one coefficient at a time makes a column of it.
-pub(super) fn matrix(
-    quality: &Quality,
-    light_order: usize,
-    exponent: Option<f32>,
-) -> Vec<Vec<f64>> {
+pub(super) fn matrix(quality: &Quality, light_order: usize, lit: Lit) -> Vec<Vec<f64>> {
     let order = quality.sh_order as usize;
     let triples = triples(order);
     let factors = factors(quality.window, light_order);
@@ -209,10 +211,10 @@ pub(super) fn matrix(
         .map(|(i, (l, _))| {
             let mut light = vec![0.0; light_order * light_order];
             light[i] = factors[l];
-            match (exponent, quality.receiver) {
-                (Some(s), _) => gloss(&triples, order, &light, s.into()).concat(),
-                (None, Receiver::Plane) => plane(&triples, order, &light).concat(),
-                (None, Receiver::Lobe) => lobe(&triples, order, &light).concat(),
+            match lit {
+                Lit::Gloss => light_matrix(&triples, &light).concat(),
+                Lit::Plane => plane(&triples, order, &light).concat(),
+                Lit::Cosine => lobe(&triples, order, &light).concat(),
             }
         })
         .collect();

@@ -3,7 +3,7 @@ use super::azimuths::{self, Azimuth, Shape};
 use super::spheres::Spheres;
 use super::sweep::Sweep;
 use super::sweeping::circle;
-use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Phong, Quality, Scene, Sun};
+use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Lobe, Quality, Scene, Sun};
 use crate::{Error, Result};
 
 /// The lights that give any light.
@@ -16,7 +16,7 @@ pub(super) struct Shining<'a> {
     pub keys: Vec<(usize, &'a KeyLight)>,
     pub spheres: Spheres<'a>,
     /// The surface's lobe, where it reflects anything.
-    pub gloss: Option<Phong>,
+    pub gloss: Option<&'a Lobe>,
     /// Whether what a uniform sky would give is wanted as an image.
     has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
@@ -62,7 +62,7 @@ impl<'a> Shining<'a> {
             notes.push(format!("light {} dropped: its radiance is 0", i + 1));
         }
         let spheres = Spheres::of(field, balls, quality.light_cutoff, notes)?;
-        let gloss = surface.phong.filter(|p| p.scale > 0.0);
+        let gloss = surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
         if surface.phong.is_some() && gloss.is_none() {
             notes.push("lobe dropped: its scale is 0".into());
         }

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::pyramid::Pyramid;
-use super::sh::{by_fours, matrix};
+use super::sh::{Lit, by_fours, matrix};
 use super::{Builder, ResourceId};
 use crate::basis::bands;
 use crate::basis::wedge::WedgeTable;
@@ -94,7 +94,8 @@ fn entries(quality: &Quality) -> Vec<f32> {
     let (order, light_order) = (quality.sh_order as usize, quality.light_order());
     let row_first = if quality.receiver == Receiver::Plane { 1 } else { 0 };
     let mut all = Vec::new();
-    for (at, shares) in matrix(quality, light_order, None).iter().enumerate() {
+    let lit = Lit::diffuse(quality.receiver);
+    for (at, shares) in matrix(quality, light_order, lit).iter().enumerate() {
         let (row, seen) = (row_first + at / (order * order), at % (order * order));
         for (i, ((_, m), share)) in bands(light_order).zip(shares).enumerate() {
             // What is not 0 is above 1e-4: a product of three harmonics, over π.

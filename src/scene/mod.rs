@@ -1,6 +1,7 @@
 //! What is lit and by what: plain data, range-checked when it is made.
 
 mod bounces;
+mod camera;
 mod environment;
 mod field;
 mod key;
@@ -8,7 +9,9 @@ mod lights;
 mod quality;
 mod surface;
 
-pub use bounces::{BounceEngine, Bounces};
+pub use bounces::{BounceEngine, BounceGloss, Bounces};
+pub(crate) use camera::corners;
+pub use camera::{Camera, Lens};
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;
@@ -17,7 +20,7 @@ pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,
 };
-pub use surface::{Albedo, Border, Phong, Surface};
+pub use surface::{Albedo, Border, Lobe, Phong, Surface};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

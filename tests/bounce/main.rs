@@ -2,6 +2,8 @@
 
 mod energy;
 mod grooves;
+#[path = "../naive/mod.rs"]
+mod naive;
 mod paths;
 mod pits;
 mod profile;

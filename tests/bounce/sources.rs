@@ -2,7 +2,9 @@
 
 use ridgelight::cpu::bounce::{Fineness, light, truth};
 use ridgelight::cpu::light::sun;
-use ridgelight::scene::{Border, HeightField, KeyLight, Lights, Phong, Scene, SphereLight, Sun};
+use ridgelight::scene::{
+    Border, HeightField, KeyLight, Lights, Lobe, Phong, Scene, SphereLight, Sun,
+};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::{BORDERS, COARSE, field, red, rough, under_sky};
@@ -146,7 +148,7 @@ fn a_lobe_has_closed_forms() {
     let of = |mut scene: Scene, exponent: f32| {
         scene.surface = ridgelight::scene::Surface {
             albedo: ridgelight::scene::Albedo::Constant([0.0; 3]),
-            phong: Some(Phong { exponent, scale: 0.5 }),
+            phong: Some(Lobe::Constant(Phong { exponent, scale: 0.5 })),
             ..scene.surface
         };
         let fineness = Fineness { azimuths: 64, divisions: 1, strips: 1 };

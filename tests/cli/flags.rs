@@ -195,6 +195,22 @@ fn lobes() {
             ("--phong 10,0.5", 2, &["--phong scale", "albedo of 1"]),
             ("--phong 10,0.5 --albedo 0.5 --basis table", 2, &["--phong: found", "--basis sh"]),
             ("--phong 10,0.5 --albedo 0.5 --key 0,30,9,9,1", 2, &["--phong: found", "key light"]),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
+                2,
+                &["--bounce-engine", "found sweep, expected pyramid"],
+            ),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
+                2,
+                &["--receiver", "a lobe: found lobe, expected plane"],
+            ),
+            (
+                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
+                2,
+                &["--subsample", "found 2"],
+            ),
+            ("--bounces 1 --bounce-gloss half", 2, &["--bounce-gloss", "vector-f16"]),
         ],
     );
     let both = "--phong 10,0.5 --albedo 0.5";
@@ -211,15 +227,31 @@ fn lobes() {
 #[test]
 fn not_yet() {
     let folder = Folder::new();
-    each(&[PLAN, RENDER, HORIZON], &folder, &[("--camera 1,2", 2, &["--camera", "not yet"])]);
     refused(
         &folder,
         &[
             ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
-            ("view a.asc", 2, &["view", "not yet"]),
             ("nosuch a.asc", 2, &["nosuch"]),
             ("render", 2, &["<INPUT>", "--output"]),
             ("render a.asc", 2, &["--output"]),
+        ],
+    );
+}
+
+#[test]
+fn view() {
+    let folder = Folder::new();
+    folder.write("script", b"key m\n# what follows is none\njump\n");
+    refused(
+        &folder,
+        &[
+            ("view a.asc --exposure 0", 2, &["--exposure: found 0"]),
+            ("view a.asc --size 0x5", 2, &["--size", "1 to 16384"]),
+            ("view a.asc --size 640", 2, &["--size", "WxH"]),
+            ("view a.asc --azimuths 3", 2, &["--azimuths"]),
+            ("view none.asc", 1, &["none.asc"]),
+            ("view a.asc --script script", 1, &["script: line 3: found jump"]),
+            ("view a.asc --json a.asc", 2, &["--json"]),
         ],
     );
 }
@@ -341,6 +373,7 @@ fn help_says_units_and_defaults() {
         ("--bounce-cutoff", &["0..1", "[default: 0.0000152587890625]"]),
         ("--bounce-level-step", &["1..16", "[default: 4]"]),
         ("--bounce-level-offset", &["0..4", "[default: 2]"]),
+        ("--bounce-gloss", &["vector-f16", "[default: vector]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];
@@ -350,7 +383,7 @@ fn help_says_units_and_defaults() {
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
         ("--albedo", &["0..1", "[default: 1]"]),
-        ("--phong", &["0..10000", "0..1", "--basis sh"]),
+        ("--phong", &["0..10000", "0..1", ".npy", "--basis sh"]),
     ];
     let render: &[(&str, &[&str])] = &[
         ("--exposure", &["[default: 1]"]),

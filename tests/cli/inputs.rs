@@ -131,6 +131,11 @@ fn environments_and_albedos() {
     let mut shiny = vec![0.5_f32; 12];
     shiny[7] = 1.5;
     folder.write("shiny.exr", &crate::common::exr(4, 3, &[("Y", channel(&shiny))]));
+    folder.write("grey.exr", &crate::common::exr(4, 3, &[("Y", channel(&shiny))]));
+    let lobes = [("R", channel(&[9.0; 12])), ("G", channel(&shiny))];
+    folder.write("lobes.exr", &crate::common::exr(4, 3, &lobes));
+    let npy = folder.path("size.npy");
+    ridgelight::files::write_npy_f32(&npy, &[2, 1, 2], [&[1.0_f32; 4][..]]).unwrap();
     std::fs::create_dir(folder.path("folder.exr")).unwrap();
     for command in ["plan a.asc", "render a.asc -o out.png"] {
         let cases: Vec<(String, &[&str])> = [
@@ -145,6 +150,11 @@ fn environments_and_albedos() {
             ("--albedo shiny.exr", &["shiny.exr", "row 1, column 3", "1.5"]),
             ("--albedo env.hdr", &["env.hdr", "the extension .hdr"]),
             ("--albedo a.tif", &["a.tif"]),
+            ("--phong missing.exr", &["missing.exr"]),
+            ("--phong lobes.png", &["lobes.png", ".png", "exponents above 1"]),
+            ("--phong grey.exr", &["grey.exr", "channels: found Y", "R (exponent)"]),
+            ("--phong lobes.exr", &["lobes.exr", "row 1, column 3", "scale 1.5"]),
+            ("--phong size.npy", &["size.npy", "2 × 1", "4 × 3"]),
         ]
         .map(|(args, says)| (format!("{command} {args}"), says))
         .into();

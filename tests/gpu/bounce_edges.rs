@@ -3,7 +3,8 @@
 use ridgelight::measure::tolerance::EPSILON;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Quality, Scene, Sun,
+    Albedo, Border, BounceEngine, BounceGloss, Bounces, HeightField, Levels, Lights, Quality,
+    Scene, Sun,
 };
 
 use crate::{Device, field, random, under_sky};
@@ -17,7 +18,8 @@ const LOW: Sun =
 /// So many bounces, none dropped; one level an octave, whose texels lie on the field's samples.
 fn quality(engine: BounceEngine, count: u32, azimuths: u32) -> Quality {
     let (level_step, level_offset) = (1, 1);
-    let bounces = Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset };
+    let gloss = BounceGloss::Vector;
+    let bounces = Bounces { count, engine, azimuths, cutoff: 0.0, level_step, level_offset, gloss };
     let levels = Levels::Pyramid;
     Quality { azimuths, bounces, levels, level_step, level_offset, ..Quality::default() }
 }

@@ -9,7 +9,7 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::measure::tolerance::{ShadeError, twin_march_slope, twin_sun_gloss};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, HeightField, Lights, Method, Phong, Quality, Scene, Sun,
+    Albedo, Basis, Border, HeightField, Lights, Lobe, Method, Phong, Quality, Scene, Sun,
 };
 
 use crate::reference_truth::traced;
@@ -19,7 +19,7 @@ use crate::{Device, field, random, under_sky};
 fn glossy(field: HeightField, exponent: f32, scale: f32) -> Scene {
     let mut scene = under_sky(field, Border::Plane);
     scene.surface.albedo = Albedo::Constant([0.0; 3]);
-    scene.surface.phong = Some(Phong { exponent, scale });
+    scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale }));
     scene
 }
 

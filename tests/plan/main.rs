@@ -1,6 +1,7 @@
 //! The plan as text, without a device: odd sizes, fields in bands, and the audit of its barriers.
 
 mod bounces;
+mod gloss;
 mod reference;
 mod sizes;
 mod walks;

@@ -2,7 +2,7 @@
 
 use ridgelight::measure::fractal::fractal;
 use ridgelight::scene::{
-    Albedo, Border, Environment, HeightField, Lights, Phong, Scene, SphereLight, Sun, Surface,
+    Albedo, Border, Environment, HeightField, Lights, Lobe, Phong, Scene, SphereLight, Sun, Surface,
 };
 
 /// A scene and its name. Its channels are lit apart: red by the sky, green by a sun, blue by a ball of
@@ -82,7 +82,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             Scene {
                 field: cone(),
                 surface: Surface {
-                    phong: Some(Phong { exponent: 12.0, scale: 0.3 }),
+                    phong: Some(Lobe::Constant(Phong { exponent: 12.0, scale: 0.3 })),
                     ..grey(Border::Open)
                 },
                 lights: Lights { environment: Some(environment), ..Lights::default() },

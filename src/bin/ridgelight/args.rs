@@ -2,12 +2,13 @@
 
 mod auto;
 mod bounces;
+mod camera;
 mod compare;
-mod later;
 mod quality;
 mod reference;
 mod scene;
 mod values;
+mod view;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -16,16 +17,17 @@ use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand,
 
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
+pub use camera::CameraArgs;
 pub use compare::CompareArgs;
-pub use later::LaterArgs;
 pub use quality::{
     BasisName, FuseName, HullName, LevelsName, LightBasisName, LinesName, MethodName,
     PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
 };
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
-pub use values::albedo_colour;
 use values::bytes;
+pub use values::{PhongArg, albedo_colour, sun};
+pub use view::ViewArgs;
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
@@ -76,6 +78,12 @@ impl Cli {
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
+            Command::View(args) => {
+                if let Some((_, matches)) = matches.subcommand() {
+                    args.remember(matches);
+                }
+                Some(&mut args.quality)
+            }
             _ => None,
         };
         if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
@@ -86,7 +94,7 @@ impl Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Light a field: one pixel a sample, seen from above
+    /// Light a field: one pixel a sample, seen from above, or from a camera
     Render(RenderArgs),
     /// Horizons of every sample: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
@@ -105,9 +113,8 @@ pub enum Command {
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),
-    /// A window (not yet)
-    #[command(hide = true)]
-    View(NotYet),
+    /// A window: look around, move the sun, try methods
+    View(ViewArgs),
 }
 
 #[derive(Args)]
@@ -131,7 +138,10 @@ pub struct RenderArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub auto: AutoArgs,
-    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation)
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation); with --camera depth
+    /// (Z, the distance along the view)
     #[arg(long, value_delimiter = ',', value_name = "LIST")]
     pub layers: Vec<Layer>,
     /// Factor before the picture curve of a .png, which clips at 1 and is sRGB
@@ -139,8 +149,6 @@ pub struct RenderArgs {
     pub exposure: f32,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -159,8 +167,6 @@ pub struct HorizonArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -178,8 +184,6 @@ pub struct PlanArgs {
     pub format: PlanFormat,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -216,8 +220,6 @@ pub struct BenchArgs {
     pub trace: Option<PathBuf>,
     #[command(flatten)]
     pub global: GlobalArgs,
-    #[command(flatten)]
-    pub later: LaterArgs,
 }
 
 #[derive(Args)]
@@ -296,6 +298,7 @@ pub enum Layer {
     Lights,
     SkyView,
     Horizon,
+    Depth,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

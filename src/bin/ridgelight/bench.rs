@@ -27,7 +27,6 @@ const FEWEST: usize = 3;
 const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
-    args.later.check()?;
     for (flag, path) in [("--json", &args.global.json), ("--trace", &args.trace)] {
         if let Some(path) = path {
             setup::check_output(flag, path, &["json"])?;

@@ -91,7 +91,6 @@ pub fn for_each(
 }
 
 pub fn run(args: &HorizonArgs) -> Result<Outcome> {
-    args.later.check()?;
     setup::check_output("-o", &args.output, &["npy", "exr"])?;
     if let Some(path) = &args.distances {
         setup::check_output("--distances", path, &["npy"])?;

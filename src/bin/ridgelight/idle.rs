@@ -47,6 +47,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("bounce_level_step" | "bounce_level_offset", ..) => {
             "without --bounces and --bounce-engine pyramid".into()
         }
+        ("bounce_gloss", ..) => "without --bounces and --phong".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"

@@ -7,7 +7,6 @@ use crate::idle;
 use crate::setup::{self, Outcome};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
-    args.later.check()?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
         let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);

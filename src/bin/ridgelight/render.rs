@@ -6,6 +6,7 @@ use ridgelight::{Error, Result};
 
 use crate::args::{Layer, RenderArgs};
 use crate::auto;
+use crate::camera;
 use crate::idle;
 use crate::setup::{self, Outcome};
 
@@ -13,7 +14,6 @@ use crate::setup::{self, Outcome};
 const NEARLY_WHITE: f32 = 0.87;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    args.later.check()?;
     setup::check_output("-o", &args.output, &["exr", "png"])?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
@@ -38,6 +38,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             "a .png output: an .exr keeps linear radiance",
         ));
     }
+    camera::check_layers(args)?;
     let goal = auto::goal(&args.auto)?;
     auto::say_idle(&args.auto, args.global.quiet);
     let mut quality = setup::quality(&args.quality)?;
@@ -47,10 +48,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
         auto::check_direct(&quality.bounces)?;
     }
+    let shot = camera::asked(&args.camera, &scene)?;
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
-    setup::check_plan(&args.global, |limits| picture(&quality, limits))?;
+    setup::check_plan(&args.global, |limits| {
+        let plan = picture(&quality, limits)?;
+        shot.as_ref().map_or(Ok(()), |shot| shot.view(&scene, &plan, limits).map(drop))?;
+        Ok(plan)
+    })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let progress = progress(args.global.quiet, "lighting");
     let mut chosen = None;
@@ -75,19 +81,23 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
+    let view = shot.as_ref().map(|shot| shot.view(&scene, &plan, &limits)).transpose()?;
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
-    let (times, pixels, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
-        let times = gpu.draw(frame)?;
+    let (times, pixels, seen, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        let mut times = gpu.draw(frame)?;
         let pixels: Vec<Pixels> =
             (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
         pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
+        let look = |view| gpu.look(frame, view, scene.field.voids());
+        let seen = view.as_ref().map(look).transpose()?;
+        times.extend(seen.iter().flat_map(|seen| seen.timings.iter().cloned()));
         let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
         if let Some(share) = gpu.negative_share(frame)? {
             metadata.push(("negative_share".to_owned(), share.to_string()));
         }
-        Ok((times, pixels, metadata))
+        Ok((times, pixels, seen, metadata))
     })?;
     metadata.extend(setup::asked(
         &args.input.path,
@@ -97,11 +107,16 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if let Some((goal, chosen)) = &chosen {
         metadata.extend(auto::told((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
     }
+    if let (Some(shot), Some(view)) = (&shot, &view) {
+        metadata.extend(shot.told(view, &scene.field));
+    }
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
-    if is_exr {
+    if let (Some(shot), Some(seen)) = (&shot, &seen) {
+        camera::write(args, shot, seen, &metadata)?;
+    } else if is_exr {
         write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
     } else {
         let picture = rgb(&pixels[0]);
@@ -119,12 +134,16 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         files::write_json(json, &setup::as_json(&metadata, &times))?;
     }
     if !args.global.quiet {
-        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
-        crate::say!(
-            "{}: {cols} × {rows}, {ms:.1} ms on {}",
-            args.output.display(),
-            gpu.report().name
-        );
+        if let Some(shot) = &shot {
+            shot.say(args, &scene.field, &times, gpu.report());
+        } else {
+            let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+            crate::say!(
+                "{}: {cols} × {rows}, {ms:.1} ms on {}",
+                args.output.display(),
+                gpu.report().name
+            );
+        }
         for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
             crate::say!("{sentence}");
         }
@@ -158,7 +177,7 @@ pub fn check_finite(pixels: &Pixels, field: &HeightField) -> Result<()> {
     Ok(())
 }
 
-fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
+pub fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
     match pixels.channels {
         1 => pixels.values.iter().map(|v| [*v; 3]).collect(),
         _ => pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),

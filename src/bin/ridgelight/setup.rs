@@ -6,16 +6,16 @@ use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Method,
-    Precision, Quality, Receiver, Scene, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Lobe,
+    Method, Precision, Quality, Receiver, Scene, Surface, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SubsampleName,
-    SurfaceArgs, WedgesName, WindowName, albedo_colour,
+    LightBasisName, LinesName, MethodName, PhongArg, PrecisionName, QualityArgs, ReceiverName,
+    SubsampleName, SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
 pub use told::{as_json, asked, metadata, typed};
 
@@ -67,13 +67,18 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         Some(colour) => Albedo::Constant(colour),
         None => files::read_albedo(Path::new(&surface.albedo), field.rows(), field.cols())?,
     };
+    let phong = match &surface.phong {
+        None => None,
+        Some(PhongArg::Constant(phong)) => Some(Lobe::Constant(*phong)),
+        Some(PhongArg::File(path)) => Some(files::read_lobes(path, field.rows(), field.cols())?),
+    };
     let environment = match &lights.env {
         // Clockwise in compass terms; counter-clockwise inside.
         Some(path) => Some(files::read_environment(path, -lights.env_rotate.to_radians())?),
         None => None,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), phong: surface.phong },
+        surface: Surface { albedo, border: border(&surface.field), phong },
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
@@ -223,7 +228,11 @@ pub fn inputs<'a>(
     surface: &'a SurfaceArgs,
 ) -> Vec<&'a Path> {
     let albedo = albedo_colour(&surface.albedo).is_none().then_some(Path::new(&surface.albedo));
-    [Some(field), lights.env.as_deref(), albedo].into_iter().flatten().collect()
+    let phong = match &surface.phong {
+        Some(PhongArg::File(path)) => Some(path.as_path()),
+        _ => None,
+    };
+    [Some(field), lights.env.as_deref(), albedo, phong].into_iter().flatten().collect()
 }
 
 /// Replaces values of void samples, in every plane.
@@ -289,7 +298,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 13] = [
+    const FLAGS: [(&str, &str); 20] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
         ("key ", "--key "),
@@ -303,6 +312,13 @@ pub fn in_flags(error: Error) -> Error {
         ("lights", "--sky, --env, --sun, --key, --light"),
         ("cell size", "--cell"),
         ("pixels per degree", "--pixels-per-degree"),
+        ("camera: look-at point", "--look-at"),
+        ("camera: field of view", "--fov"),
+        ("camera", "--camera"),
+        ("samples a pixel", "--samples"),
+        ("picture size", "--size"),
+        ("mesh step", "--mesh-step"),
+        ("background", "--background"),
     ];
     match error {
         Error::Setting { name, found, expected } => {

@@ -147,14 +147,16 @@ impl Drawing<'_> {
                 passes::sh_wedges::plan(&mut self.builder, field, h.sh(), &table, &images);
             }
             let field = (batch.axis, border, cell_m);
-            let lit = [(&h.diffuse, env_sum), (&h.gloss, self.images.gloss_sum)];
-            for (seen, sum) in lit {
+            let lobes = self.lobes();
+            let lit = [(&h.diffuse, env_sum, None), (&h.gloss, self.images.gloss_sum, lobes)];
+            for (seen, sum, lobes) in lit {
                 if let (Some(seen), Some(sum)) = (seen, sum) {
                     let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
-                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes);
+                    passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes, lobes);
                 }
             }
             self.gloss_is_begun = h.gloss.is_some();
+            self.seen_around();
         }
         if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
             self.resolve("sky", sum, Some(colour), sky_layer);
@@ -244,12 +246,15 @@ impl Drawing<'_> {
         let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
         let begun = (heights, sphere_sum.is_some() && !ground_alone);
         bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
+        self.throw(&bouncing, 0);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];
             let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
             let (sum, exit) = bouncing.record(&mut self.builder, self.scene, looked_at, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
+            self.throw(&bouncing, k);
         }
+        self.glossy(&bouncing);
     }
 
     /// Adds the light of a sum to the picture: of one channel times `colour`, or of its own colour.

@@ -2,10 +2,12 @@
 
 use super::super::Batch;
 use super::super::ResourceId;
+use super::super::bounces::{Bouncing, bounce_name};
+use super::super::glossy::{Glossy, Thrown};
 use super::super::shining::Shining;
 use super::drawing::Drawing;
-use crate::passes::{self, light_resolve};
-use crate::scene::{Basis, Quality, Sun};
+use crate::passes::{self, Lobes, gloss_exit, light_resolve};
+use crate::scene::{Basis, BounceEngine, Lobe, Phong, Quality, Receiver, Sun};
 use crate::{Error, Result};
 
 /// The quality that a scene with a lobe is lit by.
@@ -28,20 +30,47 @@ pub(super) fn quality(
     if !shining.spheres.shining.is_empty() {
         return refuse("a lobe under a ball of light", alone);
     }
-    if quality.bounces.count > 0 {
-        return refuse("a lobe with --bounces", "--bounces 0: a lobe mirrors direct light alone");
-    }
+    let quality = bounced(*quality, notes)?;
     match quality.basis {
-        _ if !shining.has_gloss_around() => Ok(*quality),
-        Basis::Sh => Ok(*quality),
+        _ if !shining.has_gloss_around() => Ok(quality),
+        Basis::Sh => Ok(quality),
         Basis::Auto => {
             notes.push("basis sh: a lobe is lit by harmonics alone".into());
-            Ok(Quality { basis: Basis::Sh, ..*quality })
+            Ok(Quality { basis: Basis::Sh, ..quality })
         }
         Basis::Table => {
             refuse("a lobe by --basis table, whose tables are of diffuse ground", "--basis sh")
         }
     }
+}
+
+/// The same with the engine that throws light on by lobes.
+///
+/// # Errors
+/// Settings by which none does.
+fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
+    if quality.bounces.count == 0 {
+        return Ok(quality);
+    }
+    let refuse = |name: &str, found: &str, expected: &str| {
+        Err(Error::setting(format!("{name} with --bounces and a lobe"), found, expected))
+    };
+    if quality.bounces.engine == BounceEngine::Auto {
+        notes.push("bounce engine pyramid: it knows where light leaves to, as lobes need".into());
+        quality.bounces.engine = BounceEngine::Pyramid;
+    }
+    if quality.bounces.engine != BounceEngine::Pyramid {
+        let found = quality.bounces.engine.name();
+        return refuse("--bounce-engine", found, "pyramid, which knows where light leaves to");
+    }
+    if quality.receiver != Receiver::Plane {
+        return refuse("--receiver", quality.receiver.name(), "plane");
+    }
+    if quality.subsample != 1 {
+        let found = quality.subsample.to_string();
+        return refuse("--subsample", &found, "1: what arrives is a series of every sample's");
+    }
+    Ok(quality)
 }
 
 impl Drawing<'_> {
@@ -63,35 +92,93 @@ impl Drawing<'_> {
 
     /// A sun in the lobe, from what it gives to diffuse ground.
     pub(super) fn sun_gloss(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
-        let (Some(phong), Some(gloss)) = (self.shining.gloss, self.images.gloss_sum) else {
-            return;
-        };
+        let Some((gloss, lobes)) = self.images.gloss_sum.zip(self.lobes()) else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Some(sweeping) = &self.sweeping else { return };
         let ids = [sweeping.lane_heights(batch), sum, gloss];
         let begins = !std::mem::replace(&mut self.gloss_is_begun, true);
         let field = (batch.axis, border, cell_m);
-        passes::sun_gloss::plan(&mut self.builder, field, name, (sun, phong.exponent), ids, begins);
+        let thrown = self.thrown_by_direction();
+        passes::sun_gloss::plan(
+            &mut self.builder,
+            field,
+            name,
+            (sun, lobes),
+            ids,
+            (begins, thrown),
+        );
+    }
+
+    /// What arrives of sky and environment, where lobes throw it on by direction.
+    pub(super) fn seen_around(&mut self) {
+        let Some((glossy, h)) = self.thrown_by_direction().zip(self.harmonics.as_ref()) else {
+            return;
+        };
+        let Some(seen) = &h.gloss else { return };
+        let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
+        let ids = [h.visibility, seen.light_matrix];
+        passes::gloss_seen::plan(&mut self.builder, size, &glossy, ids);
+    }
+
+    /// What lobes throw on as series.
+    fn thrown_by_direction(&self) -> Option<Glossy> {
+        let glossy = self.bouncing.as_ref().and_then(|bouncing| bouncing.glossy);
+        glossy.filter(|glossy| matches!(glossy.thrown, Thrown::Vectors(_)))
+    }
+
+    /// What lobes make of bounce `k`, 0 of direct light, and throw on.
+    pub(super) fn throw(&mut self, bouncing: &Bouncing, k: usize) {
+        let (Some(glossy), Some(lobes)) = (bouncing.glossy, self.lobes()) else { return };
+        let (Some(blocks), Some(gloss_direct)) = (&self.blocks, self.images.gloss_sum) else {
+            return;
+        };
+        let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
+        let leaving = gloss_exit::Leaving {
+            name: if k == 0 { "direct".to_owned() } else { bounce_name(k) },
+            bounce: k,
+            diffuse: bouncing.diffuse(k, self.images.radiance),
+            gloss_direct,
+        };
+        let ground = blocks.images.ground;
+        gloss_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &leaving);
+    }
+
+    /// What lobes have made of all bounces.
+    pub(super) fn glossy(&mut self, bouncing: &Bouncing) {
+        let Some(glossy) = bouncing.glossy else { return };
+        self.gloss_resolve("bounces glossy", glossy.bounced, glossy.layer);
+    }
+
+    /// The lobe, as passes are told of it.
+    pub(super) fn lobes(&self) -> Option<Lobes> {
+        let constant = match self.shining.gloss? {
+            Lobe::Constant(phong) => *phong,
+            Lobe::Map(_) => Phong { exponent: 0.0, scale: 0.0 },
+        };
+        Some(Lobes { constant, map: self.images.phong_map })
     }
 
     /// The lobe's share of the picture.
     pub(super) fn gloss(&mut self) {
-        let (Some(phong), Some(sum)) = (self.shining.gloss, self.images.gloss_sum) else { return };
-        if !self.gloss_is_begun {
-            return;
+        let Some(sum) = self.images.gloss_sum else { return };
+        if self.gloss_is_begun {
+            self.gloss_resolve("glossy", sum, self.images.gloss_layer);
         }
+    }
+
+    fn gloss_resolve(&mut self, name: &str, sum: ResourceId, layer: Option<ResourceId>) {
         let is_first = !std::mem::replace(&mut self.is_begun, true);
         let light = light_resolve::Light {
             sum,
             has_colour: true,
-            colour: [phong.scale; 3],
+            colour: [1.0; 3],
             albedo_map: None,
             radiance: Some((self.images.radiance, is_first)),
-            layer: self.images.gloss_layer,
+            layer,
             grey: self.shining.is_grey,
             edited: self.edited,
         };
-        self.light_resolve("glossy", &light);
+        self.light_resolve(name, &light);
     }
 }
 
@@ -101,15 +188,15 @@ mod tests {
     use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan};
     use crate::scene::{
-        Albedo, Basis, Border, Environment, KeyLight, Lights, Phong, Quality, Scene, SphereLight,
-        Sun, Surface,
+        Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Phong, Quality, Scene,
+        SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
         let surface = Surface {
             albedo: Albedo::Constant([0.5; 3]),
             border: Border::Plane,
-            phong: Some(Phong { exponent: 9.0, scale }),
+            phong: Some(Lobe::Constant(Phong { exponent: 9.0, scale })),
         };
         let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
         let quality = Quality { azimuths: 8, basis, ..Quality::default() };

@@ -6,13 +6,15 @@ use super::super::shining::Shining;
 use super::super::spheres::light_name;
 use super::super::{Builder, Format, Owner, ResourceId};
 use super::Picture;
-use crate::scene::{Albedo, Border, Environment, Quality, Scene, Wedges};
+use crate::scene::{Albedo, Border, Environment, Lobe, Quality, Scene, Wedges};
 
 /// Images of the field's size, and the environment.
 pub(super) struct Images {
     pub heights: ResourceId,
     pub environment: Option<ResourceId>,
     pub albedo_map: Option<ResourceId>,
+    /// Exponent and scale of each sample's lobe.
+    pub phong_map: Option<ResourceId>,
     pub radiance: ResourceId,
     pub sky_layer: Option<ResourceId>,
     pub env_layer: Option<ResourceId>,
@@ -25,7 +27,7 @@ pub(super) struct Images {
     pub env_sum: Option<ResourceId>,
     pub sun_sum: Option<ResourceId>,
     pub sphere_sum: Option<ResourceId>,
-    /// What a lobe reflects of all lights that it is lit by, for scale 1.
+    /// What a lobe reflects of all lights that it is lit by.
     pub gloss_sum: Option<ResourceId>,
     pub gloss_layer: Option<ResourceId>,
 }
@@ -49,6 +51,8 @@ impl Images {
         });
         let has_map = matches!(scene.surface.albedo, Albedo::Map(_));
         let albedo_map = has_map.then(|| image("albedo", Owner::Input, Format::Rgba32Float, flat));
+        let has_lobes = matches!(shining.gloss, Some(Lobe::Map(_)));
+        let phong_map = has_lobes.then(|| image("phong", Owner::Input, Format::Rgba32Float, flat));
         let radiance = image("radiance", Owner::Output, colour, flat);
         let mut layer = |shines: bool, light: &str| {
             let name = format!("direct.{light}");
@@ -75,6 +79,7 @@ impl Images {
             heights,
             environment,
             albedo_map,
+            phong_map,
             radiance,
             sky_layer,
             env_layer,
@@ -153,18 +158,18 @@ impl Seen {
 }
 
 impl Harmonics {
-    /// For an environment, for a lobe of an exponent, or for both.
+    /// For an environment, for a lobe, or for both.
     pub fn make(
         builder: &mut Builder,
         size: [u32; 2],
         (environment, border): (Option<&Environment>, Border),
-        (quality, exponent): (&Quality, Option<f32>),
+        (quality, has_gloss): (&Quality, bool),
         circle: &[Azimuth],
     ) -> Self {
         let mut constants = Vec::new();
         let diffuse =
-            environment.map(|_| Sh::of(environment, border, quality, None, &mut constants));
-        let gloss = exponent.map(|s| Sh::of(environment, border, quality, Some(s), &mut constants));
+            environment.map(|_| Sh::of(environment, border, quality, false, &mut constants));
+        let gloss = has_gloss.then(|| Sh::of(environment, border, quality, true, &mut constants));
         let sh = diffuse.or(gloss).expect("an environment or a lobe");
         let by_table = quality.wedges == Wedges::Table;
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));

@@ -20,7 +20,7 @@ use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
     /// The pyramid of exit radiance.
-    fn shade(&self) -> Pyramid {
+    pub(super) fn shade(&self) -> Pyramid {
         let bounces = self.quality.bounces;
         let heights = Pyramid::new(&self.quality, self.plan.size, self.border());
         Pyramid { level_step: bounces.level_step, level_offset: bounces.level_offset, ..heights }
@@ -36,7 +36,7 @@ impl Run<'_> {
         }
     }
 
-    fn land(&self) -> Land {
+    pub(super) fn land(&self) -> Land {
         Land::of(&self.scene.field, self.border())
     }
 

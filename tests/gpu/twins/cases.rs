@@ -2,9 +2,9 @@
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, LightBasis, Lights, Lines, Method, Phong, Precision, Quality, Receiver, Scene,
-    SphereLight, Sun, Surface, Wedges, Window,
+    Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Environment, Fuse, HeightField,
+    Hull, KeyLight, Levels, LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality,
+    Receiver, Scene, SphereLight, Sun, Surface, Wedges, Window,
 };
 
 use crate::{field, random};
@@ -57,6 +57,9 @@ impl Case {
             all.extend(self.scene.lights.environment.as_ref().map(|e| four(e.texels())));
             if let Albedo::Map(map) = &self.scene.surface.albedo {
                 all.push(four(map));
+            }
+            if let Some(Lobe::Map(map)) = &self.scene.surface.phong {
+                all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
             }
         }
         all
@@ -342,13 +345,15 @@ pub(super) fn pictures() -> Vec<Case> {
         let surface = Surface {
             border: Border::Plane,
             albedo: Albedo::Constant([0.5; 3]),
-            phong: Some(Phong { exponent: 20.0, scale: 0.4 }),
+            phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
         };
         Scene { field: rough(14, 11, 42), surface, lights }
     };
     let mirrored_sky = {
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-        let phong = Some(Phong { exponent: 3.0, scale: 1.0 });
+        let mut next = random(45);
+        let map = (0..9 * 14).map(|i| Phong { exponent: (79 * i) as f32, scale: next() as f32 });
+        let phong = Some(Lobe::Map(map.collect()));
         let surface = Surface { border: Border::Open, albedo: Albedo::Constant([0.0; 3]), phong };
         Scene { field: rough(9, 14, 43), surface, lights }
     };
@@ -531,8 +536,74 @@ pub(super) fn nodes() -> Vec<Case> {
     vec![
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
         case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
+    ]
+}
+
+/// Light thrown by lobes: series of odd and even orders, colours and grey, as f32 and f16, and one number a texel.
+pub(super) fn glosses() -> Vec<Case> {
+    let case = |name, field: HeightField, border, gloss, sh_order, levels, lights| {
+        let samples = field.heights_m().len();
+        let is_map = gloss == BounceGloss::Vector;
+        let lobe = |i: usize| Phong { exponent: (i % 40) as f32, scale: (i % 3) as f32 * 0.2 };
+        let albedo = |i: usize| [0.5, (i % 5) as f32 / 10.0, 0.3];
+        let (albedo, phong) = if is_map {
+            (
+                Albedo::Map((0..samples).map(albedo).collect()),
+                Lobe::Map((0..samples).map(lobe).collect()),
+            )
+        } else {
+            (Albedo::Constant([0.5; 3]), Lobe::Constant(Phong { exponent: 6.0, scale: 0.5 }))
+        };
+        let bounces = Bounces {
+            count: 2,
+            engine: BounceEngine::Pyramid,
+            // None along the field's edge, where a hair decides what is left.
+            azimuths: 8,
+            cutoff: 0.0,
+            level_step: 2,
+            level_offset: 0,
+            gloss,
+        };
+        let base = Quality { azimuths: 8, level_step: 3, level_offset: 0, ..Quality::default() };
+        Case {
+            name,
+            scene: Scene { field, surface: Surface { border, albedo, phong: Some(phong) }, lights },
+            quality: Quality { basis: Basis::Sh, sh_order, levels, bounces, ..base },
+            wanted: Wanted::Picture(Picture { light_layers: true, ..Picture::default() }),
+            loses_lines: false,
+        }
+    };
+    let sun = |azimuth_rad, diameter_rad, irradiance| Sun {
+        azimuth_rad,
+        elevation_rad: 0.6,
+        diameter_rad,
+        irradiance,
+    };
+    let sky = || Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let all = Lights {
+        environment: Some(noisy_environment(51)),
+        suns: vec![sun(2.0, 0.2, [3.0, 2.5, 2.0]), sun(-1.1, 0.0, [2.0; 3])],
+        ..sky()
+    };
+    let alone = Lights { suns: vec![sun(0.4, 0.0, [2.0; 3])], ..Lights::default() };
+    use BounceGloss::{Scalar, Vector, VectorF16};
+    let (stack, levels) = (Levels::Stack, Levels::Pyramid);
+    vec![
+        case("by direction", rough(9, 11, 52), Border::Plane, Vector, 3, stack, all.clone()),
+        case(
+            "by direction, f16, periodic",
+            rough(8, 10, 53),
+            Border::Periodic,
+            VectorF16,
+            4,
+            levels,
+            sky(),
+        ),
+        case("as seen from above", rough(10, 9, 54), Border::Open, Scalar, 2, levels, all),
+        case("as seen from above, grey", rough(7, 9, 55), Border::Plane, Scalar, 3, stack, alone),
     ]
 }
 
@@ -550,11 +621,7 @@ pub(super) fn references() -> Vec<Case> {
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
     let all = Scene {
         field: rough(7, 9, 22),
-        surface: Surface {
-            border: Border::Open,
-            albedo: Albedo::Map(map),
-            phong: Some(Phong { exponent: 6.0, scale: 0.2 }),
-        },
+        surface: Surface { border: Border::Open, albedo: Albedo::Map(map), phong: None },
         lights: Lights {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
@@ -584,5 +651,13 @@ pub(super) fn references() -> Vec<Case> {
         wanted: Wanted::Reference(bounces),
         loses_lines: false,
     };
-    vec![reference("all lights", all, 1), reference("periodic", repeated, 2)]
+    // The quadrature knows of no lobes that are met.
+    let mut lobes = all.clone();
+    let lobe = |i: usize| Phong { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.1 };
+    lobes.surface.phong = Some(Lobe::Map((0..7 * 9).map(lobe).collect()));
+    vec![
+        reference("all lights", all, 1),
+        reference("lobes in all lights", lobes, 0),
+        reference("periodic", repeated, 2),
+    ]
 }

@@ -6,18 +6,19 @@ use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::shared::gather::Swept;
+use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::cpu::sky_shade as sky_twin;
 use ridgelight::cpu::sphere_shade as sphere_twin;
 use ridgelight::cpu::sun_gloss as gloss_twin;
 use ridgelight::cpu::sun_shade as sun_twin;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{
-    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_gloss, twin_table,
-    twin_wedge_row,
+    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_arriving,
+    twin_sun_gloss, twin_table, twin_wedge_row,
 };
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Environment};
+use ridgelight::scene::{Albedo, Border, Environment, Sun};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 
@@ -127,7 +128,13 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let at = |i: usize| [range.len(), i / cols, i % cols];
     let mut pairs = Vec::new();
     if let Some(got) = run.floats(pass, "sky_sum") {
-        let want = run.swept(range.clone(), fuse_of(pass), sky_twin::sky_shade);
+        // Shares of ground for bounces take no horizontal for the least.
+        let is_open = constant(pass, 3) == Border::Open as u32;
+        let want = run.swept(range.clone(), fuse_of(pass), |swept| {
+            let border = if is_open { Border::Open } else { swept.heights.border };
+            let heights = Heights { border, ..swept.heights };
+            sky_twin::sky_shade(&Swept { heights, ..*swept })
+        });
         let tolerance = error.sky();
         pairs.extend(got.iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
             got: (*got).into(),
@@ -189,7 +196,6 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 /// From the device's own sun, added to what is there.
 pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::sun_gloss_push::COLOUR;
-    let exponent = f64::from(run.scene.surface.phong.expect("a lobe").exponent);
     let number: usize =
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
@@ -205,11 +211,12 @@ pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let (up, along) = sun.elevation_rad.sin_cos();
         glam::DVec3::new(cos * along, sin * along, up)
     };
-    let mut pairs = Vec::new();
+    let mut pairs = sun_arriving(run, pass, &sun, towards);
     for (i, got) in got.chunks_exact(4).enumerate() {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
-        let light = gloss_twin::gloss_on(normal, &sun, exponent, sums[i].into());
-        let tolerance = twin_sun_gloss(exponent, error.normal(), normal.dot(towards));
+        let phong = run.lobe(i);
+        let light = gloss_twin::gloss_on(normal, &sun, phong, sums[i].into());
+        let tolerance = twin_sun_gloss(phong.exponent.into(), error.normal(), normal.dot(towards));
         for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;
@@ -218,6 +225,37 @@ pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             pairs.push(Pair { got: *sum, want, tolerance, at: [c, i / cols, i % cols] });
         }
     }
+    pairs
+}
+
+/// What the same pass leaves of what arrives, where it is thrown on.
+fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair> {
+    let order = constant(pass, 3) as usize;
+    if order == 0 {
+        return Vec::new();
+    }
+    let sums = run.floats(pass, "sun_sum").expect("read");
+    let got = run.all_series(pass, "arriving", order);
+    if f32::from_bits(pushed(pass, offsets::sun_gloss_push::COLOUR + 12)) > 0.0 {
+        run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
+    }
+    let (heights, error) = (run.heights(), run.sample_error());
+    let [cols, _] = run.size();
+    let mut pairs = Vec::new();
+    for (i, (got, before)) in got.iter().zip(&run.arriving).enumerate() {
+        let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
+        let more = gloss_twin::arriving(normal, sun, order, sums[i].into());
+        let want: Vec<_> = before
+            .iter()
+            .zip(&more)
+            .map(|(b, y)| [0, 1, 2].map(|c| b[c] + f64::from(sun.irradiance[c]) * y))
+            .collect();
+        let largest = sun.irradiance.iter().fold(0.0, |m: f32, v| m.max(*v));
+        let off = f64::from(largest) * twin_sun_arriving(error.normal(), normal.dot(towards));
+        let tolerance = |want: f64| off + 2.0 * EPSILON * want.abs();
+        pairs.extend(super::gloss::paired((got, &want), tolerance, [i / cols, i % cols]));
+    }
+    run.arriving = got;
     pairs
 }
 

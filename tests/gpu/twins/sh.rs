@@ -64,12 +64,11 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut series = matrix_twin::series(&turns, height, light_order, fitted);
     let sky = [0, 4, 8].map(|at| f32::from_bits(pushed(pass, SKY + at)));
     matrix_twin::add_sky(&mut series, sky);
-    let exponent = run.scene.surface.phong.filter(|_| pass.part == "glossy").map(|p| p.exponent);
-    let want = match exponent {
+    let gloss = (pass.part == "glossy").then_some(sky);
+    let want = match gloss {
         None => matrix_twin::light_matrix(&quality, &series),
-        Some(exponent) => matrix_twin::gloss_matrix(&quality, &series, exponent),
+        Some(_) => matrix_twin::gloss_matrix(&quality, &series),
     };
-    let gloss = exponent.map(|e| (e, sky));
     let summed = matrix_magnitudes(&quality, run.border(), height, &turns, gloss);
     let got = texels(run, pass, "light_matrix");
     assert_eq!(got.len(), want.len() * order * order);
@@ -83,7 +82,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// Coefficients of every sample, as the device left them.
-fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec<f64>> {
+pub(super) fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec<f64>> {
     let floats = run.floats(pass, "visibility").expect("bound");
     let [cols, rows] = run.extent(pass, "visibility");
     let at = |i: usize, k: usize| floats[((k / 4) * cols * rows + i) * 4 + k % 4];
@@ -221,7 +220,7 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let is_gloss = constant(pass, 3) == 2;
         let want = if is_gloss {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
-            gloss_on(normal, &seen.values, &matrix)
+            gloss_on(normal, run.lobe(i), &seen.values, &matrix)
         } else {
             light_at(&heights, &seen.values, &matrix, place)
         };

@@ -1,6 +1,6 @@
 use clap::{Args, ValueEnum};
 use ridgelight::Result;
-use ridgelight::scene::{BounceEngine, Bounces};
+use ridgelight::scene::{BounceEngine, BounceGloss, Bounces};
 
 use super::values::whole;
 
@@ -26,6 +26,9 @@ pub struct BounceArgs {
     /// Doublings of resolution by which its levels are finer than distance asks for, 0..4; with --bounce-engine pyramid
     #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
     pub bounce_level_offset: u32,
+    /// What is kept of the light that lobes throw on; with --bounces and --phong
+    #[arg(long, default_value = "vector")]
+    pub bounce_gloss: BounceGlossName,
 }
 
 impl BounceArgs {
@@ -43,9 +46,25 @@ impl BounceArgs {
             cutoff: self.bounce_cutoff,
             level_step: self.bounce_level_step,
             level_offset: self.bounce_level_offset,
+            gloss: match self.bounce_gloss {
+                BounceGlossName::Vector => BounceGloss::Vector,
+                BounceGlossName::VectorF16 => BounceGloss::VectorF16,
+                BounceGlossName::Scalar => BounceGloss::Scalar,
+            },
         };
         bounces.check().map(|()| bounces)
     }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BounceGlossName {
+    /// Radiance by direction, spherical harmonics of --sh-order at every texel
+    Vector,
+    /// The same in half the memory, as f16
+    #[value(name = "vector-f16")]
+    VectorF16,
+    /// Radiance as seen from above, one colour a texel: as if it were diffuse
+    Scalar,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -6,7 +6,7 @@ use super::values::whole;
 use crate::scene_file::SceneFile;
 
 /// Flags of quality, as plans name what they really used.
-pub const SETTINGS: [&str; 25] = [
+pub const SETTINGS: [&str; 26] = [
     "azimuths",
     "sun_azimuths",
     "light_cutoff",
@@ -32,6 +32,7 @@ pub const SETTINGS: [&str; 25] = [
     "bounce_cutoff",
     "bounce_level_step",
     "bounce_level_offset",
+    "bounce_gloss",
 ];
 
 #[derive(Args)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{ball, cell, colour, key, phong, sun};
+use super::values::{PhongArg, ball, cell, colour, key, phong, sun};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
@@ -67,15 +67,16 @@ pub struct SurfaceArgs {
     )]
     pub albedo: String,
     /// A lobe about the mirror direction of the view from above: exponent 0..10000, and its share 0..1, no
-    /// more than 1 with --albedo. `render` mirrors sky, environment (--basis sh) and suns; `reference` all
+    /// more than 1 with --albedo; or a file of the field's size with both (.exr R and G, .npy [2, rows, cols]).
+    /// `render` mirrors sky, environment (--basis sh) and suns; `reference` all
     #[arg(
         long,
-        value_name = "EXPONENT,SCALE",
+        value_name = "EXPONENT,SCALE|FILE",
         value_parser = phong,
         allow_hyphen_values = true,
         help_heading = "Surface"
     )]
-    pub phong: Option<ridgelight::scene::Phong>,
+    pub phong: Option<PhongArg>,
 }
 
 #[derive(Args)]

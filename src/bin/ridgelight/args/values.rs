@@ -23,12 +23,32 @@ pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
     colour(text).ok()
 }
 
-pub fn phong(text: &str) -> Result<ridgelight::scene::Phong, String> {
-    match numbers(text)?.as_slice() {
-        [exponent, scale] => {
-            Ok(ridgelight::scene::Phong { exponent: *exponent as f32, scale: *scale as f32 })
+/// A lobe as it is asked for.
+#[derive(Clone)]
+pub enum PhongArg {
+    Constant(ridgelight::scene::Phong),
+    File(std::path::PathBuf),
+}
+
+/// What is no list of numbers is a file.
+pub fn phong(text: &str) -> Result<PhongArg, String> {
+    match numbers(text).as_deref() {
+        Ok([exponent, scale]) => Ok(PhongArg::Constant(ridgelight::scene::Phong {
+            exponent: *exponent as f32,
+            scale: *scale as f32,
+        })),
+        Ok(other) => Err(format!("{} numbers, expected EXPONENT,SCALE or a file", other.len())),
+        Err(_) => Ok(PhongArg::File(text.into())),
+    }
+}
+
+pub fn pixels(text: &str) -> Result<[u32; 2], String> {
+    let parts: Option<Vec<u32>> = text.split('x').map(|part| part.parse().ok()).collect();
+    match parts.unwrap_or_default().as_slice() {
+        [width, height] if (1..=16384).contains(width) && (1..=16384).contains(height) => {
+            Ok([*width, *height])
         }
-        other => Err(format!("{} numbers, expected EXPONENT,SCALE", other.len())),
+        _ => Err("expected WxH, two whole numbers from 1 to 16384".into()),
     }
 }
 

@@ -309,7 +309,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
             field.cell_m(),
             None,
         )?,
-        surface: Surface { albedo, ..scene.surface },
+        surface: Surface { albedo, border: scene.surface.border, phong: None },
         lights,
     })
 }

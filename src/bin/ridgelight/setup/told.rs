@@ -6,7 +6,7 @@ use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
-use crate::args::{FieldArgs, LightArgs, SurfaceArgs};
+use crate::args::{FieldArgs, LightArgs, PhongArg, SurfaceArgs};
 
 /// What was used and how long it took, for files' metadata and --json.
 pub fn metadata(
@@ -53,9 +53,11 @@ pub fn asked(
     }
     let Some((args, surface, scene)) = lit else { return all };
     all.push(("albedo".to_owned(), surface.albedo.clone()));
-    if let Some(phong) = scene.surface.phong {
-        all.push(("phong".to_owned(), format!("{},{}", phong.exponent, phong.scale)));
-    }
+    let phong = surface.phong.as_ref().map(|phong| match phong {
+        PhongArg::Constant(phong) => format!("{},{}", phong.exponent, phong.scale),
+        PhongArg::File(path) => path.display().to_string(),
+    });
+    all.extend(phong.map(|phong| ("phong".to_owned(), phong)));
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
     }

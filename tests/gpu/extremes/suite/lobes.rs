@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use ridgelight::basis::zonal::{cap, phong};
 use ridgelight::measure::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_gloss};
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Phong, Sun};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Phong, Sun};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light, probe};
 use super::{About, Case, Found, Probe, field};
@@ -53,7 +53,7 @@ fn case(
     let mut case = light(name, about, (ground, border, lights), probes);
     case.about = About::Lobes;
     case.scene.surface.albedo = Albedo::Constant([0.0; 3]);
-    case.scene.surface.phong = Some(Phong { exponent, scale: SCALE });
+    case.scene.surface.phong = Some(Lobe::Constant(Phong { exponent, scale: SCALE }));
     case
 }
 
@@ -98,7 +98,7 @@ fn none() -> Case {
             assert!(!found.has("direct.glossy"), "{}", found.method.name);
             PLACES.map(|[r, c]| probe(found.light("radiance", r, c), 0.0, 0.0, [0, r, c])).into()
         });
-    case.scene.surface.phong = Some(Phong { exponent: 20.0, scale: 0.0 });
+    case.scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.0 }));
     case
 }
 

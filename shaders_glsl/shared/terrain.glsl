@@ -1,0 +1,14 @@
+// What the mesh of a field is told: src/passes/terrain_draw.rs.
+layout(push_constant) uniform TerrainDrawPush {
+    vec4 clip_per_col;
+    vec4 clip_per_row;
+    vec4 clip_per_metre;
+    vec4 clip_at_origin;
+    int origin_col;
+    int origin_row;
+    float origin_m;
+    int cols;
+    int rows;
+    int step_samples;
+    int tiles_across;
+};

@@ -1,0 +1,59 @@
+// Computes: one level of the pyramid of exit radiance's series from the level an octave finer (from the samples'
+// own for the first octave), as shade_reduce.
+// Reads: exit_vectors, vector_source. Writes: vector_levels (the same image), shade_table (one texel for this level).
+// One invocation is one texel of one layer of the level.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const bool PERIODIC = false;
+layout(constant_id = 1) const bool FROM_FIELD = false;
+
+layout(binding = 0) uniform texture2DArray exit_vectors;
+layout(binding = 1) uniform texture2DArray vector_source;
+// f32 or f16.
+layout(binding = 2) uniform writeonly image2DArray vector_levels;
+layout(binding = 3, rgba32ui) uniform writeonly uimage2D shade_table;
+
+layout(push_constant) uniform VectorReducePush {
+    int cols;
+    int rows;
+    int first;
+    int source_cols;
+    int source_rows;
+    int source_first;
+    float ratio_x;  // texels of the source a texel
+    float ratio_y;
+    float per_sample_x;
+    float per_sample_y;
+    int level;
+    int width_shift;
+};
+
+const bool HOLDS_ENDS = true;
+#define TEXEL vec4
+#include "shared/reduce.glsl"
+
+int layer;
+
+vec4 source_at(int x, int y) {
+    if (FROM_FIELD) {
+        return texelFetch(exit_vectors, ivec3(x, y, layer), 0);
+    }
+    return texelFetch(vector_source, ivec3(level_texel(source_first + y * source_cols + x, width_shift), layer), 0);
+}
+
+void main() {
+    int x = int(gl_GlobalInvocationID.x);
+    int y = int(gl_GlobalInvocationID.y);
+    layer = int(gl_GlobalInvocationID.z);
+    if (x >= cols || y >= rows) {
+        return;
+    }
+    vec4 mean = reduced(ivec2(x, y), vec2(ratio_x, ratio_y));
+    imageStore(vector_levels, ivec3(level_texel(first + y * cols + x, width_shift), layer), mean);
+    if (x == 0 && y == 0 && layer == 0) {
+        Level made = Level(first, cols, rows, vec2(per_sample_x, per_sample_y));
+        imageStore(shade_table, ivec2(level - 1, 0), words_of(made));
+    }
+}

@@ -1,0 +1,209 @@
+//! Pictures of a frame before a camera, on a device of our own.
+
+use ash::vk;
+
+use super::allocator::MemoryUse;
+use super::failed;
+use super::frame::Owned;
+use super::memory::{Backed, DEPTH, whole_attachment};
+use super::{Frame, Headless, ImageArg, ImageState, Timing, ViewInputs, ViewOutputs, ViewRenderer};
+use crate::plan::{Format, View};
+use crate::{Error, Result};
+
+/// A picture of a lit field before a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Radiance, linear RGB, row after row from the top.
+    pub radiance: Vec<[f32; 3]>,
+    /// Distance along the direction of view, of the first sample of each pixel, in the field's length unit; infinite
+    /// where no ground is seen.
+    pub distances_m: Vec<f32>,
+    /// GPU time by pass, where the device has timestamps.
+    pub timings: Vec<Timing>,
+}
+
+/// Images that are drawn into, and their bytes.
+struct Drawn {
+    picture: Vec<u8>,
+    depths: Vec<f32>,
+    timings: Vec<Timing>,
+}
+
+/// Where copies leave what they read.
+const COPIED: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::COPY,
+    access: vk::AccessFlags2::TRANSFER_READ,
+    layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+};
+
+/// Nobody has used it.
+const NEW: ImageState = ImageState {
+    stage: vk::PipelineStageFlags2::NONE,
+    access: vk::AccessFlags2::NONE,
+    layout: vk::ImageLayout::UNDEFINED,
+};
+
+impl Headless {
+    /// Draws a frame that has been drawn as a camera sees it, and waits. `voids` are the field's, where it has any.
+    ///
+    /// # Errors
+    /// A view of another plan's field, samples that the device does not have, or a device out of memory.
+    pub fn look(&mut self, frame: &Frame, view: &View, voids: Option<&[bool]>) -> Result<Seen> {
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        let drawn = self.look_as(frame, (view, 1.0), format, voids)?;
+        let texels: Vec<f32> = bytemuck::pod_collect_to_vec(&drawn.picture);
+        Ok(Seen {
+            radiance: texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),
+            distances_m: drawn.depths.iter().map(|d| view.distance_m(*d) as f32).collect(),
+            timings: drawn.timings,
+        })
+    }
+
+    /// The same as for a screen of four bytes a pixel: radiance times `exposure`, clipped and sRGB-encoded, in the
+    /// format's order of channels.
+    ///
+    /// # Errors
+    /// As [`look`](Self::look), and a format of another kind.
+    pub fn look_encoded(
+        &mut self,
+        frame: &Frame,
+        (view, exposure): (&View, f32),
+        format: vk::Format,
+        voids: Option<&[bool]>,
+    ) -> Result<Vec<[u8; 4]>> {
+        let drawn = self.look_as(frame, (view, exposure), format, voids)?;
+        Ok(drawn.picture.as_chunks::<4>().0.to_vec())
+    }
+
+    fn look_as(
+        &mut self,
+        frame: &Frame,
+        of: (&View, f32),
+        format: vk::Format,
+        voids: Option<&[bool]>,
+    ) -> Result<Drawn> {
+        let mut renderer = ViewRenderer::new(self.host(), of.0, format, 1)?;
+        let mut made = Vec::new();
+        let drawn = self.draw_view(&mut renderer, &mut made, frame, of, format, voids);
+        made.iter_mut().for_each(|backed| self.memory.free(backed));
+        renderer.destroy();
+        drawn
+    }
+
+    /// `made` are the caller's to free.
+    fn draw_view(
+        &mut self,
+        renderer: &mut ViewRenderer,
+        made: &mut Vec<Backed>,
+        frame: &Frame,
+        of: (&View, f32),
+        format: vk::Format,
+        voids: Option<&[bool]>,
+    ) -> Result<Drawn> {
+        let view = of.0;
+        let one = vk::SampleCountFlags::TYPE_1;
+        let pixels = view.size[0] as usize * view.size[1] as usize;
+        let wide = format == vk::Format::R32G32B32A32_SFLOAT;
+        let sizes = [pixels * if wide { 16 } else { 4 }, pixels * 4];
+        for (name, format) in [("picture", format), ("depth", DEPTH)] {
+            made.push(self.memory.attachment(name, format, view.size, one)?);
+        }
+        for bytes in sizes {
+            let usage = vk::BufferUsageFlags::TRANSFER_DST;
+            made.push(self.memory.buffer("staging", bytes as u64, usage, MemoryUse::Readback)?);
+        }
+        let [picture, depth] = [(0, format), (1, DEPTH)].map(|(i, format)| ImageArg {
+            image: made[i].image,
+            view: made[i].view,
+            format,
+            extent: [view.size[0], view.size[1], 1],
+            before: NEW,
+            after: COPIED,
+        });
+        let voids = voids.filter(|_| view.has_voids).map(|v| self.mask(made, view, v));
+        let inputs = view_inputs(frame, voids.transpose()?)?;
+        let outputs = ViewOutputs { picture, depth: Some(depth) };
+        let buffers = [made[2].buffer, made[3].buffer];
+        self.run(|commands| {
+            renderer.record(commands, 0, of, &inputs, &outputs)?;
+            for (image, buffer) in [picture, depth].iter().zip(buffers) {
+                self.copy_to_host(commands, image, buffer);
+            }
+            Ok(())
+        })?;
+        let bytes = |backed: &mut Backed, count: usize| {
+            let bytes = backed.mapped().map(|m| m[..count].to_vec());
+            bytes.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))
+        };
+        Ok(Drawn {
+            picture: bytes(&mut made[2], sizes[0])?,
+            depths: bytemuck::pod_collect_to_vec(&bytes(&mut made[3], sizes[1])?),
+            timings: renderer.timings(0).unwrap_or_default(),
+        })
+    }
+
+    /// An image of the field's voids.
+    pub(super) fn mask(
+        &mut self,
+        made: &mut Vec<Backed>,
+        view: &View,
+        voids: &[bool],
+    ) -> Result<ImageArg> {
+        let (format, name) = (Format::R32Float, "voids".to_owned());
+        let extent = [view.field[0], view.field[1], 1];
+        let backed = self.memory.image(&name, format, extent, false)?;
+        let image = Owned { backed, format, extent, name };
+        let marks: Vec<f32> = voids.iter().map(|v| f32::from(u8::from(*v))).collect();
+        let filled = self.upload(&image, &marks);
+        let arg = image.arg();
+        made.push(image.backed);
+        filled.map(|()| arg)
+    }
+
+    fn copy_to_host(&self, commands: vk::CommandBuffer, image: &ImageArg, buffer: vk::Buffer) {
+        let [width, height, _] = image.extent;
+        let range = whole_attachment(image.format);
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: range.aspect_mask,
+                mip_level: 0,
+                base_array_layer: 0,
+                layer_count: 1,
+            })
+            .image_extent(vk::Extent3D { width, height, depth: 1 })];
+        let written = [vk::MemoryBarrier2::default()
+            .src_stage_mask(vk::PipelineStageFlags2::COPY)
+            .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+            .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+            .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+        let info = vk::DependencyInfo::default().memory_barriers(&written);
+        let device = &self.host().device;
+        // SAFETY: the image is left for copies by the view's recording; the buffer holds all its texels.
+        unsafe {
+            let layout = COPIED.layout;
+            device.cmd_copy_image_to_buffer(commands, image.image, layout, buffer, &region);
+            device.cmd_pipeline_barrier2(commands, &info);
+        }
+    }
+}
+
+/// What a view reads of a frame.
+pub(super) fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
+    let plan = frame.plan();
+    let found = |name: &str, images: Vec<ImageArg>, names: Vec<&str>| {
+        let at = names.iter().position(|n| *n == name);
+        at.and_then(|at| images.get(at).copied())
+    };
+    let input =
+        |name| found(name, frame.inputs(), plan.inputs().map(|r| r.1.name.as_str()).collect());
+    let output =
+        |name| found(name, frame.outputs(), plan.outputs().map(|r| r.1.name.as_str()).collect());
+    let missing =
+        || Error::setting("the frame before a camera", "no radiance", "that of a picture");
+    Ok(ViewInputs {
+        heights: input("heights").ok_or_else(missing)?,
+        radiance: output("radiance").ok_or_else(missing)?,
+        environment: input("environment"),
+        voids,
+    })
+}

@@ -1,0 +1,48 @@
+use ash::vk;
+
+use super::{Backed, Memory};
+use crate::Result;
+
+/// Depth, farthest 0.
+pub(crate) const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+
+/// All of an image that is drawn into.
+pub(crate) fn whole_attachment(format: vk::Format) -> vk::ImageSubresourceRange {
+    let aspect =
+        if format == DEPTH { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
+    vk::ImageSubresourceRange { aspect_mask: aspect, ..super::whole(1) }
+}
+
+impl Memory {
+    /// An image to draw into, of `samples` a pixel; also to copy from where that is one, and, of colour, to sample.
+    pub fn attachment(
+        &mut self,
+        name: &str,
+        format: vk::Format,
+        [width, height]: [u32; 2],
+        samples: vk::SampleCountFlags,
+    ) -> Result<Backed> {
+        let mut usage = if format == DEPTH {
+            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
+        } else {
+            vk::ImageUsageFlags::COLOR_ATTACHMENT
+        };
+        if samples == vk::SampleCountFlags::TYPE_1 {
+            usage |= vk::ImageUsageFlags::TRANSFER_SRC;
+            if format != DEPTH {
+                usage |= vk::ImageUsageFlags::SAMPLED;
+            }
+        }
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(samples)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(usage);
+        let range = whole_attachment(format);
+        self.image_of(name, &info, (vk::ImageViewType::TYPE_2D, range))
+    }
+}

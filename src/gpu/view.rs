@@ -1,0 +1,246 @@
+//! Pictures of a lit field before a camera: the graphics passes, recorded after the compute passes or instead of
+//! them, into a command buffer of the caller's.
+
+mod checks;
+mod pipelines;
+mod recording;
+mod resources;
+
+use ash::vk;
+
+use super::allocator::{Allocator, Blocks};
+use super::memory::{Backed, Memory};
+use super::renderer::{ImageArg, Timing};
+use super::{Host, requirements};
+use crate::plan::View;
+use crate::{Error, Result};
+
+use pipelines::Drawing;
+
+/// Images that a [`ViewRenderer`] reads, in any state; they are left as they came.
+///
+/// Of the plan that lit the field: its input "heights", its output "radiance", its input "environment"; also in
+/// another of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewInputs {
+    /// Heights above the field's base, one texel a sample.
+    pub heights: ImageArg,
+    /// Exit radiance, one texel a sample, one channel or four.
+    pub radiance: ImageArg,
+    /// The environment behind the field, where the view has one.
+    pub environment: Option<ImageArg>,
+    /// One channel, one texel a sample, where the view has voids: 0 where there is ground, 1 where there is none.
+    pub voids: Option<ImageArg>,
+}
+
+/// Images that a [`ViewRenderer`] draws into, of one sample a pixel and the picture's size; what they held is lost.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewOutputs {
+    /// Of the format that the renderer was made for, with usage COLOR_ATTACHMENT: an image of one's own, or of a
+    /// swapchain.
+    pub picture: ImageArg,
+    /// D32_SFLOAT with usage DEPTH_STENCIL_ATTACHMENT: [`View::distance_m`] tells metres. Of several samples a pixel
+    /// it holds the first one's.
+    pub depth: Option<ImageArg>,
+}
+
+/// Records a [`View`] into command buffers of a device that it borrows: dynamic rendering of a mesh without vertex
+/// buffers, the sky behind it, and where the picture is for a screen, the tone curve.
+///
+/// As [`Renderer`](super::Renderer): makes every resource when it is made; recording takes nothing from the device,
+/// submits nothing and waits for nothing; internal images serve all slots in turn. Beside what
+/// [`missing`](super::missing) asks for, the device needs `dynamicRendering` (1.3 features) enabled, and the host's
+/// queue family graphics.
+pub struct ViewRenderer {
+    host: Host,
+    /// What it was made for.
+    shape: View,
+    format: vk::Format,
+    memory: Memory,
+    /// Formats that inputs may have.
+    readable: Vec<vk::Format>,
+    samples: vk::SampleCountFlags,
+    /// Of several samples a pixel.
+    many: Option<Backed>,
+    /// Of the view's samples.
+    depth: Option<Backed>,
+    /// What the tone curve reads.
+    linear: Option<Backed>,
+    indices: Option<Backed>,
+    terrain: Drawing,
+    sky: Drawing,
+    tone: Option<Drawing>,
+    descriptor_pool: vk::DescriptorPool,
+    slots: Vec<Slot>,
+    timestamps: Option<(f64, u64)>,
+    destroyed: bool,
+}
+
+/// One frame in flight.
+struct Slot {
+    /// Of terrain, sky and tone.
+    sets: [vk::DescriptorSet; 3],
+    /// Null where there are no timestamps.
+    queries: vk::QueryPool,
+    is_recorded: bool,
+}
+
+const fn is_send<T: Send>() {}
+const _: () = is_send::<ViewRenderer>();
+
+/// How radiance gets into a picture of a format.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Curve {
+    /// As it is: the image holds floats.
+    None,
+    /// Exposure and clip; the image encodes by itself.
+    Clip,
+    /// Exposure, clip, sRGB.
+    Encode,
+}
+
+impl Curve {
+    fn of(format: vk::Format) -> Option<Self> {
+        Some(match format {
+            vk::Format::R32G32B32A32_SFLOAT | vk::Format::R16G16B16A16_SFLOAT => Self::None,
+            vk::Format::R8G8B8A8_SRGB
+            | vk::Format::B8G8R8A8_SRGB
+            | vk::Format::A8B8G8R8_SRGB_PACK32 => Self::Clip,
+            vk::Format::R8G8B8A8_UNORM
+            | vk::Format::B8G8R8A8_UNORM
+            | vk::Format::A8B8G8R8_UNORM_PACK32
+            | vk::Format::A2B10G10R10_UNORM_PACK32
+            | vk::Format::A2R10G10B10_UNORM_PACK32 => Self::Encode,
+            _ => return None,
+        })
+    }
+}
+
+/// Of images before the tone curve.
+const LINEAR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// What is timed, in order.
+const LABELS: [&str; 3] = ["terrain_draw", "sky_draw", "picture_tone"];
+
+impl ViewRenderer {
+    /// Makes what views shaped like `view` need, for pictures of a format and `slots` frames in flight (1 or more).
+    ///
+    /// `format` is R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen: R8G8B8A8,
+    /// B8G8R8A8 or A8B8G8R8_PACK32, UNORM or SRGB, or 10 bits a colour, which get radiance times exposure, clipped
+    /// and sRGB-encoded, as in a PNG.
+    ///
+    /// # Errors
+    /// A device that lacks something (named): samples a pixel, graphics; or is out of memory.
+    pub fn new(host: &Host, view: &View, format: vk::Format, slots: usize) -> Result<Self> {
+        Self::with_memory(host, (view, format), slots, Box::new(Blocks::new(host)?))
+    }
+
+    /// [`new`](Self::new) with memory from an engine's own allocator, dropped after all has been freed.
+    ///
+    /// # Errors
+    /// As there, and the allocator's own.
+    pub fn with_memory(
+        host: &Host,
+        (view, format): (&View, vk::Format),
+        slots: usize,
+        allocator: Box<dyn Allocator>,
+    ) -> Result<Self> {
+        let curve = checks::check_device(host, view, format)?;
+        let timestamps = requirements::timestamps(host);
+        let mut renderer = Self {
+            host: host.clone(),
+            shape: view.clone(),
+            format,
+            memory: Memory::new(host, allocator),
+            readable: requirements::readable(host),
+            samples: vk::SampleCountFlags::from_raw(view.samples),
+            many: None,
+            depth: None,
+            linear: None,
+            indices: None,
+            terrain: Drawing::default(),
+            sky: Drawing::default(),
+            tone: None,
+            descriptor_pool: vk::DescriptorPool::null(),
+            slots: Vec::new(),
+            timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
+            destroyed: false,
+        };
+        match renderer.make(curve, slots.max(1)) {
+            Ok(()) => Ok(renderer),
+            Err(error) => {
+                renderer.destroy();
+                Err(error)
+            }
+        }
+    }
+
+    /// Bytes of memory that it has taken from the device.
+    pub fn device_bytes(&self) -> u64 {
+        self.memory.bytes()
+    }
+
+    /// Appends the drawing of `view` to `commands`, which is being recorded outside rendering for the host's family.
+    ///
+    /// `slot` is the frame in flight (0..slots); its last command buffer must have run. The camera may be another
+    /// each time, and the light. `exposure` is the factor before the tone curve, where the format has one. Checks
+    /// everything first: after an error nothing has been recorded.
+    ///
+    /// # Errors
+    /// An argument that is not what the view says, by name; a view of another shape.
+    pub fn record(
+        &mut self,
+        commands: vk::CommandBuffer,
+        slot: usize,
+        (view, exposure): (&View, f32),
+        inputs: &ViewInputs,
+        outputs: &ViewOutputs,
+    ) -> Result<()> {
+        self.check(slot, (view, exposure), inputs, outputs)?;
+        self.append(commands, slot, (view, exposure), inputs, outputs);
+        Ok(())
+    }
+
+    /// GPU times of what `slot` recorded last; none while they are not all in, and where the host's queue family has
+    /// no timestamps. Never waits.
+    pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {
+        let slot = self.slots.get(slot).filter(|s| s.is_recorded)?;
+        let (tick_ns, mask) = self.timestamps?;
+        let count = if self.tone.is_some() { 3 } else { 2 };
+        // Each a value and whether it is there.
+        let mut ticks = vec![[0_u64; 2]; count + 1];
+        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
+        // SAFETY: the pool holds at least this many queries; two words a query are asked for and given.
+        let got =
+            unsafe { self.host.device.get_query_pool_results(slot.queries, 0, &mut ticks, flags) };
+        if got.is_err() || ticks.iter().any(|t| t[1] == 0) {
+            return None;
+        }
+        let timed = LABELS.iter().zip(ticks.windows(2)).map(|(label, pair)| Timing {
+            label: (*label).to_owned(),
+            ns: (pair[1][0].wrapping_sub(pair[0][0]) & mask) as f64 * tick_ns,
+        });
+        Some(timed.collect())
+    }
+
+    /// Frees everything. The device must be done with all that was recorded.
+    pub fn destroy(mut self) {
+        self.free();
+    }
+}
+
+impl Drop for ViewRenderer {
+    fn drop(&mut self) {
+        if !self.destroyed {
+            eprintln!(
+                "ridgelight: a view renderer was dropped without destroy(): its Vulkan objects stay"
+            );
+            self.memory.leak();
+        }
+    }
+}
+
+/// A setting that is not what was asked for.
+fn wrong<T>(name: &str, found: impl Into<String>, expected: impl Into<String>) -> Result<T> {
+    Err(Error::setting(name, found, expected))
+}

@@ -1,0 +1,177 @@
+//! What is refused before anything is made or recorded.
+
+use ash::vk;
+
+use super::super::Host;
+use super::super::memory::DEPTH;
+use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
+use crate::gpu::ImageArg;
+use crate::plan::{Format, View};
+use crate::{Error, Result};
+
+/// What a device must offer for a view, and how its radiance gets into a picture.
+pub(super) fn check_device(host: &Host, view: &View, format: vk::Format) -> Result<Curve> {
+    let Some(curve) = Curve::of(format) else {
+        let known = "one of 8 or 10 bits, UNORM or SRGB, or four floats";
+        return wrong("picture: format", format!("{format:?}"), known);
+    };
+    let lacks =
+        |reason: String| Err(Error::Device { doing: "making a renderer of views".into(), reason });
+    // SAFETY: the physical device is the instance's.
+    let families =
+        unsafe { host.instance.get_physical_device_queue_family_properties(host.physical_device) };
+    let family = families.get(host.queue_family as usize);
+    if !family.is_some_and(|f| f.queue_flags.contains(vk::QueueFlags::GRAPHICS)) {
+        return lacks(format!("queue family {} has no graphics", host.queue_family));
+    }
+    let drawn = if curve == Curve::None { format } else { LINEAR };
+    let colour = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+    let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    let [of_colour, of_depth] = [(drawn, colour), (DEPTH, depth)].map(|(format, usage)| {
+        // SAFETY: as above.
+        unsafe {
+            host.instance.get_physical_device_image_format_properties(
+                host.physical_device,
+                format,
+                vk::ImageType::TYPE_2D,
+                vk::ImageTiling::OPTIMAL,
+                usage,
+                vk::ImageCreateFlags::empty(),
+            )
+        }
+    });
+    let (Ok(of_colour), Ok(of_depth)) = (of_colour, of_depth) else {
+        return lacks(format!("the device draws no images of {drawn:?} and {DEPTH:?}"));
+    };
+    let samples = of_colour.sample_counts & of_depth.sample_counts;
+    if !samples.contains(vk::SampleCountFlags::from_raw(view.samples)) {
+        let all = [1, 2, 4, 8].map(|n| (n, vk::SampleCountFlags::from_raw(n)));
+        let has = all.iter().filter(|(_, flag)| samples.contains(*flag));
+        let has: Vec<_> = has.map(|(n, _)| n.to_string()).collect();
+        return wrong(
+            "samples a pixel",
+            view.samples.to_string(),
+            format!("{}, which this device has", has.join(" or ")),
+        );
+    }
+    let extents = [of_colour.max_extent, of_depth.max_extent];
+    let [width, height] = view.size;
+    if extents.iter().any(|e| width > e.width || height > e.height) {
+        return lacks(format!("the device draws no pictures of {width} × {height}"));
+    }
+    Ok(curve)
+}
+
+impl ViewRenderer {
+    pub(super) fn check(
+        &self,
+        slot: usize,
+        (view, exposure): (&View, f32),
+        inputs: &ViewInputs,
+        outputs: &ViewOutputs,
+    ) -> Result<()> {
+        if slot >= self.slots.len() {
+            return wrong("slot", slot.to_string(), format!("less than {}", self.slots.len()));
+        }
+        if !view.is_shaped_like(&self.shape) {
+            return wrong("view", "another shape", "the sizes and images that it was made for");
+        }
+        if self.tone.is_some() && !(exposure.is_finite() && exposure >= 0.0) {
+            return wrong("exposure", exposure.to_string(), "a number, 0 or more");
+        }
+        let single = Format::R32Float.vk_read();
+        let light = view.radiance.vk_read();
+        self.check_read("heights", &inputs.heights, single, view.field)?;
+        self.check_read("radiance", &inputs.radiance, light, view.field)?;
+        let environment = view.environment.map(|size| (Format::Rgba32Float.vk_read(), size));
+        let voids = view.has_voids.then_some((single, view.field));
+        for (name, arg, wanted) in
+            [("environment", &inputs.environment, environment), ("voids", &inputs.voids, voids)]
+        {
+            match (arg, wanted) {
+                (Some(arg), Some((formats, size))) => self.check_read(name, arg, formats, size)?,
+                (None, Some(_)) => return wrong(name, "no image", "one"),
+                (_, None) => {}
+            }
+        }
+        check_image("picture", &outputs.picture, &[self.format], view.size)?;
+        check_left("picture", &outputs.picture)?;
+        if let Some(depth) = &outputs.depth {
+            check_image("depth", depth, &[DEPTH], view.size)?;
+            check_left("depth", depth)?;
+        }
+        self.check_apart(inputs, outputs)
+    }
+
+    /// An image that is fetched from.
+    fn check_read(
+        &self,
+        name: &str,
+        arg: &ImageArg,
+        formats: &[vk::Format],
+        size: [u32; 2],
+    ) -> Result<()> {
+        let is_readable = |format: &vk::Format| self.readable.contains(format);
+        let formats: Vec<_> = formats.iter().copied().filter(is_readable).collect();
+        check_image(name, arg, &formats, size)?;
+        if is_without_contents(arg.before.layout) {
+            let name = format!("{name}: layout before");
+            return wrong(&name, format!("{:?}", arg.before.layout), "a layout with contents");
+        }
+        Ok(())
+    }
+
+    /// No image is handed in twice: it could not be in two states.
+    fn check_apart(&self, inputs: &ViewInputs, outputs: &ViewOutputs) -> Result<()> {
+        let all = [
+            ("heights", Some(&inputs.heights)),
+            ("radiance", Some(&inputs.radiance)),
+            ("environment", inputs.environment.as_ref()),
+            ("voids", inputs.voids.as_ref()),
+            ("picture", Some(&outputs.picture)),
+            ("depth", outputs.depth.as_ref()),
+        ];
+        let all: Vec<_> = all.iter().filter_map(|(name, arg)| Some((*name, (*arg)?))).collect();
+        for (later, (name, arg)) in all.iter().enumerate() {
+            if let Some((earlier, _)) = all[..later].iter().find(|(_, e)| e.image == arg.image) {
+                return wrong(name, format!("the image of {earlier}"), "an image of its own");
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_without_contents(layout: vk::ImageLayout) -> bool {
+    matches!(layout, vk::ImageLayout::UNDEFINED | vk::ImageLayout::PREINITIALIZED)
+}
+
+fn check_image(
+    name: &str,
+    arg: &ImageArg,
+    formats: &[vk::Format],
+    [width, height]: [u32; 2],
+) -> Result<()> {
+    if arg.image == vk::Image::null() || arg.view == vk::ImageView::null() {
+        return wrong(name, "a null image or view", "an image");
+    }
+    if !formats.contains(&arg.format) {
+        let name = format!("{name}: format");
+        let names: Vec<_> = formats.iter().map(|f| format!("{f:?}")).collect();
+        return wrong(&name, format!("{:?}", arg.format), names.join(" or "));
+    }
+    let extent = [width, height, 1];
+    if arg.extent != extent {
+        let name = format!("{name}: extent");
+        let expected = format!("{extent:?} (columns, rows, layers)");
+        return wrong(&name, format!("{:?}", arg.extent), expected);
+    }
+    Ok(())
+}
+
+fn check_left(name: &str, arg: &ImageArg) -> Result<()> {
+    if is_without_contents(arg.after.layout) {
+        let name = format!("{name}: layout after");
+        return wrong(&name, format!("{:?}", arg.after.layout), "a layout to be left in");
+    }
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! Graphics pipelines of a view.
+
+use ash::vk;
+
+use super::super::memory::DEPTH;
+use super::super::shaders::{BindingKind, Shader};
+use super::super::specialise::specialised;
+use super::super::{Host, failed};
+use crate::Result;
+
+/// A pipeline and its layouts; null until it is made.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Drawing {
+    pub pipeline: vk::Pipeline,
+    pub layout: vk::PipelineLayout,
+    pub set_layout: vk::DescriptorSetLayout,
+    pub push_bytes: u32,
+}
+
+/// What a pipeline is made from.
+pub(super) struct Recipe<'a> {
+    /// Vertex, fragment.
+    pub shaders: [&'a Shader; 2],
+    /// Of the fragment shader.
+    pub constants: &'a [(u32, u32)],
+    pub format: vk::Format,
+    pub samples: vk::SampleCountFlags,
+    /// How depths must compare to what is there, and whether they are kept.
+    pub depth: Option<(vk::CompareOp, bool)>,
+}
+
+/// Stages that read what is bound and pushed.
+pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
+
+impl Drawing {
+    /// Makes layouts and pipeline; what is made before an error is this one's to [`free`](Self::free).
+    pub fn make(&mut self, host: &Host, recipe: &Recipe<'_>) -> Result<()> {
+        let device = &host.device;
+        let doing = || format!("making the pipeline of {}", recipe.shaders[1].name);
+        let bindings: Vec<_> = recipe
+            .shaders
+            .iter()
+            .flat_map(|s| s.bindings)
+            .map(|binding| {
+                assert!(matches!(binding.kind, BindingKind::SampledImage { .. }));
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding.binding)
+                    .descriptor_type(vk::DescriptorType::SAMPLED_IMAGE)
+                    .descriptor_count(1)
+                    .stage_flags(STAGES)
+            })
+            .collect();
+        let set_info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is alive; the bindings are those that reflection found.
+        self.set_layout = unsafe { device.create_descriptor_set_layout(&set_info, None) }
+            .map_err(failed(doing()))?;
+        self.push_bytes = recipe.shaders.iter().map(|s| s.push_bytes).max().unwrap_or(0);
+        let push =
+            [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: self.push_bytes }];
+        let layouts = [self.set_layout];
+        let layout_info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&layouts)
+            .push_constant_ranges(&push);
+        // SAFETY: as above.
+        self.layout = unsafe { device.create_pipeline_layout(&layout_info, None) }
+            .map_err(failed(doing()))?;
+        let mut modules = [vk::ShaderModule::null(); 2];
+        // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types; modules are
+        // destroyed once, whatever came of it.
+        let made = unsafe {
+            let made = recipe.modules(device, &mut modules);
+            let made = made.and_then(|()| recipe.pipeline(host, self.layout, modules));
+            modules.into_iter().for_each(|module| device.destroy_shader_module(module, None));
+            made
+        };
+        self.pipeline = made.map_err(failed(doing()))?;
+        host.name(self.pipeline, recipe.shaders[1].name);
+        host.name(self.layout, recipe.shaders[1].name);
+        host.name(self.set_layout, recipe.shaders[1].name);
+        Ok(())
+    }
+
+    /// Destroys what has been made.
+    pub fn free(&mut self, host: &Host) {
+        // SAFETY: made by this device or null; whoever calls says that nothing in flight uses them.
+        unsafe {
+            host.device.destroy_pipeline(self.pipeline, None);
+            host.device.destroy_pipeline_layout(self.layout, None);
+            host.device.destroy_descriptor_set_layout(self.set_layout, None);
+        }
+        *self = Self::default();
+    }
+}
+
+impl Recipe<'_> {
+    /// # Safety
+    /// The device is alive; the modules are the caller's to destroy, after an error, too.
+    unsafe fn modules(
+        &self,
+        device: &ash::Device,
+        modules: &mut [vk::ShaderModule; 2],
+    ) -> std::result::Result<(), vk::Result> {
+        for (module, (shader, constants)) in
+            modules.iter_mut().zip(self.shaders.iter().zip([&[], self.constants]))
+        {
+            let words = specialised(shader.words, constants);
+            let info = vk::ShaderModuleCreateInfo::default().code(&words);
+            // SAFETY: as the caller says.
+            *module = unsafe { device.create_shader_module(&info, None) }?;
+        }
+        Ok(())
+    }
+
+    /// # Safety
+    /// Device, layout and modules are alive.
+    unsafe fn pipeline(
+        &self,
+        host: &Host,
+        layout: vk::PipelineLayout,
+        modules: [vk::ShaderModule; 2],
+    ) -> std::result::Result<vk::Pipeline, vk::Result> {
+        let kinds = [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT];
+        let stages = [0, 1].map(|i| {
+            vk::PipelineShaderStageCreateInfo::default()
+                .stage(kinds[i])
+                .module(modules[i])
+                .name(c"main")
+        });
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        let triangles = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport =
+            vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        // Both sides of the ground are seen.
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(vk::CullModeFlags::NONE)
+            .line_width(1.0);
+        let samples =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(self.samples);
+        let (compare, keeps) = self.depth.unwrap_or((vk::CompareOp::ALWAYS, false));
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(self.depth.is_some())
+            .depth_write_enable(keeps)
+            .depth_compare_op(compare);
+        let all = [vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&all);
+        let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
+        let formats = [self.format];
+        let mut rendering =
+            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(&formats);
+        if self.depth.is_some() {
+            rendering = rendering.depth_attachment_format(DEPTH);
+        }
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertices)
+            .input_assembly_state(&triangles)
+            .viewport_state(&viewport)
+            .rasterization_state(&raster)
+            .multisample_state(&samples)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(layout)
+            .push_next(&mut rendering);
+        // SAFETY: as the caller says; what the info points to lives across the call.
+        let made =
+            unsafe { host.device.create_graphics_pipelines(host.pipeline_cache, &[info], None) };
+        made.map(|all| all[0]).map_err(|(_, result)| result)
+    }
+}

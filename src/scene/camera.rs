@@ -1,0 +1,176 @@
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
+
+use super::HeightField;
+use crate::{Error, Result};
+
+/// Where a picture is seen from: on a sphere around the place that it looks at, north up on the map.
+///
+/// Places are in the field's length unit: x east of the westernmost column, y north of the southernmost row, z up,
+/// absolute like the file's heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// What stands in the middle of the picture.
+    pub target_m: [f64; 3],
+    /// Where the eye stands as seen from there: in the plane, radians counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// And above horizontal, radians, [-π/2..π/2]. At π/2 the picture is a map whose upper edge lies towards the
+    /// azimuth's opposite: north for an eye in the south.
+    pub elevation_rad: f64,
+    /// From there to the eye, [1e-9..1e15].
+    pub distance_m: f64,
+    /// How much is seen.
+    pub lens: Lens,
+}
+
+/// How places become pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// All rays meet in the eye.
+    Perspective {
+        /// Angle between the lower and the upper edge of the picture, radians, [0.001..3].
+        fov_rad: f64,
+    },
+    /// All rays are parallel: what is farther away is not smaller.
+    Orthographic {
+        /// What the picture spans from its lower to its upper edge, [1e-9..1e15].
+        height_m: f64,
+    },
+}
+
+/// Lengths and coordinates of cameras.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-9..=1e15;
+
+impl Camera {
+    /// A camera that looks at a place, or the middle of a field, from an azimuth and an elevation, so near that all
+    /// of the field is just in a picture `aspect` times as wide as high. An orthographic lens's height is set to fit.
+    pub fn around(
+        field: &HeightField,
+        target_m: Option<[f64; 3]>,
+        [azimuth_rad, elevation_rad]: [f64; 2],
+        lens: Lens,
+        aspect: f64,
+    ) -> Self {
+        let corners = corners(field);
+        let target = target_m.map_or((corners[0] + corners[7]) / 2.0, DVec3::from);
+        let mut camera =
+            Self { target_m: target.to_array(), azimuth_rad, elevation_rad, distance_m: 1.0, lens };
+        let [right, up, back] = camera.axes();
+        let largest = |of: &dyn Fn(DVec3) -> f64| {
+            corners.iter().map(|c| of(*c - target)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        match &mut camera.lens {
+            Lens::Perspective { fov_rad } => {
+                let tan = (*fov_rad / 2.0).tan();
+                let needed =
+                    |p: DVec3| p.dot(back) + p.dot(up).abs().max(p.dot(right).abs() / aspect) / tan;
+                camera.distance_m = largest(&needed);
+            }
+            Lens::Orthographic { height_m } => {
+                *height_m = 2.0 * largest(&|p| p.dot(up).abs().max(p.dot(right).abs() / aspect));
+                // Anywhere outside the field will do.
+                camera.distance_m = 2.0 * largest(&DVec3::length);
+            }
+        }
+        camera
+    }
+
+    /// Unit vectors to the right, up and back, out of the picture: right-handed.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let (sin_phi, cos_phi) = self.azimuth_rad.sin_cos();
+        let (sin, cos) = self.elevation_rad.sin_cos();
+        let back = DVec3::new(cos_phi * cos, sin_phi * cos, sin);
+        let up = DVec3::new(-cos_phi * sin, -sin_phi * sin, cos);
+        [up.cross(back), up, back]
+    }
+
+    /// Where the eye is.
+    pub fn eye_m(&self) -> DVec3 {
+        DVec3::from(self.target_m) + self.distance_m * self.axes()[2]
+    }
+
+    /// # Errors
+    /// What is out of range, by name.
+    pub fn check(&self) -> Result<()> {
+        let bad = |what: &str, found: String, expected: &str| {
+            Err(Error::setting(format!("camera: {what}"), found, expected))
+        };
+        if !self.target_m.iter().all(|v| v.abs() <= *LENGTHS.end()) {
+            return bad("look-at point", format!("{:?}", self.target_m), "numbers within ±1e15");
+        }
+        if !self.azimuth_rad.is_finite() {
+            return bad("azimuth", self.azimuth_rad.to_string(), "a finite angle");
+        }
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&self.elevation_rad) {
+            let found = format!("{}°", self.elevation_rad.to_degrees());
+            return bad("elevation", found, "-90° to 90°");
+        }
+        match self.lens {
+            Lens::Perspective { fov_rad } if !(0.001..=3.0).contains(&fov_rad) => {
+                bad("field of view", format!("{}°", fov_rad.to_degrees()), "0.06° to 171°")
+            }
+            Lens::Orthographic { height_m } if !LENGTHS.contains(&height_m) => {
+                bad("height of the picture", height_m.to_string(), "a length from 1e-9 to 1e15")
+            }
+            _ if !LENGTHS.contains(&self.distance_m) => {
+                bad("distance", self.distance_m.to_string(), "a length from 1e-9 to 1e15")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Corners of the box around a field: first the lowest in the south-west, last the highest in the north-east.
+pub(crate) fn corners(field: &HeightField) -> [DVec3; 8] {
+    let [cell_x, cell_y] = field.cell_m();
+    let far = [(field.cols() - 1) as f64 * cell_x, (field.rows() - 1) as f64 * cell_y];
+    let (low, high) = field
+        .heights_m()
+        .iter()
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), z| (l.min(*z), h.max(*z)));
+    let heights = [low, high].map(|z| field.base_m() + f64::from(z));
+    std::array::from_fn(|i| {
+        let side = |bit: usize, length: f64| if i & bit == 0 { 0.0 } else { length };
+        DVec3::new(side(1, far[0]), side(2, far[1]), heights[i >> 2])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From the south, 90° up: a map with north up, east to the right.
+    #[test]
+    fn from_straight_above_east_is_right_and_north_up() {
+        let camera = Camera {
+            target_m: [0.0; 3],
+            azimuth_rad: -FRAC_PI_2,
+            elevation_rad: FRAC_PI_2,
+            distance_m: 5.0,
+            lens: Lens::Orthographic { height_m: 1.0 },
+        };
+        for (axis, want) in camera.axes().into_iter().zip([DVec3::X, DVec3::Y, DVec3::Z]) {
+            assert!((axis - want).length() < 1e-15, "{axis}");
+        }
+        assert!((camera.eye_m() - DVec3::new(0.0, 0.0, 5.0)).length() < 1e-14);
+    }
+
+    /// A level square of 2 by 2 seen from above under 90°: its edge is 45° off where the eye is 1 above it. As an
+    /// orthographic picture half as wide as high it needs 4.
+    #[test]
+    fn a_field_just_fits() {
+        let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
+        let above = [-FRAC_PI_2, FRAC_PI_2];
+        let lens = Lens::Perspective { fov_rad: FRAC_PI_2 };
+        let camera = Camera::around(&field, None, above, lens, 1.0);
+        assert_eq!(camera.target_m, [1.0, 1.0, 7.0]);
+        assert!((camera.distance_m - 1.0).abs() < 1e-14, "{}", camera.distance_m);
+        let lens = Lens::Orthographic { height_m: 1.0 };
+        let Lens::Orthographic { height_m } = Camera::around(&field, None, above, lens, 0.5).lens
+        else {
+            panic!("another lens")
+        };
+        assert!((height_m - 4.0).abs() < 1e-14, "{height_m}");
+    }
+}

@@ -1,0 +1,112 @@
+//! `render --camera`: what it refuses and what it writes.
+
+use crate::needs_vulkan::{attributes, done, json, plane, write_field};
+use crate::{Folder, read, refused};
+
+#[test]
+fn cameras_out_of_range_are_refused() {
+    let folder = Folder::new();
+    folder.write("line.asc", b"ncols 4 nrows 1 cellsize 1 0 1 2 3");
+    let cases = [
+        ("--camera 90", &["--camera", "expected AZ,EL"][..]),
+        ("--camera 1,2,3,4", &["--camera", "expected AZ,EL"]),
+        ("--camera x,45", &["--camera", "no number"]),
+        ("--camera nan,45", &["--camera: azimuth: found NaN"]),
+        ("--camera 0,91", &["--camera: elevation: found 91°", "-90° to 90°"]),
+        ("--camera 0,nan", &["--camera: elevation: found NaN"]),
+        ("--camera 0,45,0", &["--camera: distance: found 0", "1e-9 to 1e15"]),
+        ("--camera 0,45,-5", &["--camera: distance: found -5"]),
+        ("--camera 0,45,0 --ortho", &["--camera: height of the picture: found 0"]),
+        ("--camera 0,45 --fov 0", &["--fov: found 0°", "0.06° to 171°"]),
+        ("--camera 0,45 --fov 180", &["--fov: found 180°"]),
+        ("--camera 0,45 --fov nan", &["--fov: found NaN"]),
+        ("--camera 0,45 --fov 40 --ortho", &["--fov", "--ortho"]),
+        ("--camera 0,45 --look-at 1", &["--look-at", "expected X,Y"]),
+        ("--camera 0,45 --look-at 1,nan", &["--look-at: found [1.0, NaN"]),
+        ("--camera 0,45 --size 640", &["--size", "expected WIDTHxHEIGHT"]),
+        ("--camera 0,45 --size 0x480", &["--size: found 0 × 480", "1 × 1 or more"]),
+        ("--camera 0,45 --size 4x-4", &["--size", "expected WIDTHxHEIGHT"]),
+        ("--camera 0,45 --samples 3", &["--samples: found 3", "1, 2, 4 or 8"]),
+        ("--camera 0,45 --samples 16", &["--samples: found 16"]),
+        ("--camera 0,45 --samples two", &["--samples", "whole number"]),
+        ("--camera 0,45 --mesh-step 0", &["--mesh-step: found 0", "1 to 1024"]),
+        ("--camera 0,45 --background -1", &["--background: found [-1.0", "0 or more"]),
+        ("--camera 0,45 --layers lights", &["--layers: found layers of the map with --camera"]),
+        ("--layers depth", &["--layers: found depth without --camera"]),
+        ("--look-at 1,2", &["--camera"]),
+        ("--fov 30", &["--camera"]),
+        ("--ortho", &["--camera"]),
+        ("--size 640x480", &["--camera"]),
+        ("--samples 4", &["--camera"]),
+        ("--mesh-step 2", &["--camera"]),
+        ("--background 1", &["--camera"]),
+    ];
+    let all: Vec<(String, &[&str])> = cases
+        .iter()
+        .map(|(flags, says)| (format!("render a.asc -o out.exr {flags}"), *says))
+        .collect();
+    let cases: Vec<_> = all.iter().map(|(args, says)| (args.as_str(), 2, *says)).collect();
+    refused(&folder, &cases);
+    let line = "render line.asc -o out.exr --camera 0,45";
+    let layers = "render a.asc -o out.png --camera 0,45 --layers depth";
+    refused(
+        &folder,
+        &[
+            (line, 2, &["a field before a camera", "2 × 2 or more"]),
+            (layers, 2, &["--layers", ".exr output"]),
+            ("plan a.asc --camera 0,45", 2, &["--camera"]),
+            ("render a.asc -o out.exr --camera 0,45", 1, &["driver"]),
+        ],
+    );
+}
+
+/// A level field of 16 by 16 under the default sky, 1 white: from straight above, a pixel a sample, all within the
+/// edge is white, at one distance; and the file tells what was used.
+#[test]
+fn gpu_cameras_write_pictures_and_depth() {
+    let folder = Folder::new();
+    write_field(&folder, 16, |_, _| 3.0);
+    let above = "--camera 180,90,16 --ortho --size 16x16";
+    done(&folder, &format!("render field.npy -o v.exr --json v.json {above} --layers depth"));
+    let exr = read(&folder.path("v.exr"));
+    assert_eq!(exr.names, ["B", "G", "R", "Z"]);
+    let (green, far) = (plane(&exr, "G"), plane(&exr, "Z"));
+    let within = |i: &usize| (1..15).contains(&(i % 16)) && (1..15).contains(&(i / 16));
+    for i in (0..256).filter(within) {
+        assert!((green[i] - 1.0).abs() < 1e-6, "pixel {i}: {}", green[i]);
+        // f32: the eye stands twice the half diagonal of 15 by 15 above.
+        assert!((far[i] - 15.0 * 2_f32.sqrt()).abs() < 1e-4, "pixel {i}: {}", far[i]);
+    }
+    let told = attributes(&folder.path("v.exr"));
+    let is = |name: &str, value: &str| assert_eq!(told[name], value, "{name}");
+    is("lens", "orthographic 16");
+    is("picture_size", "16x16");
+    is("samples", "4");
+    is("look_at", "7.5,7.5,3");
+    let passes = json(&folder.path("v.json"))["passes"].clone();
+    let names: Vec<_> = passes.as_array().unwrap().iter().map(|p| p["pass"].clone()).collect();
+    assert!(names.ends_with(&["terrain_draw".into(), "sky_draw".into()]), "{names:?}");
+
+    // From the side, some of both; a .png of the size asked for, and what a reduced mesh is off by.
+    let aside = "--camera 200,20 --size 40x30 --background 0.2 --mesh-step 4 --quiet";
+    done(&folder, &format!("render field.npy -o v.png --json v.json --sky 0.5 {aside}"));
+    let png = read(&folder.path("v.png"));
+    assert_eq!((png.rows, png.cols), (30, 40));
+    assert_eq!(json(&folder.path("v.json"))["settings"]["mesh_error_m"], 0);
+}
+
+/// Samples that a device does not have are refused before anything is drawn, with those that it has.
+#[test]
+fn gpu_samples_are_the_devices() {
+    let folder = Folder::new();
+    let flags = "render a.asc -o out.exr --camera 0,45 --size 8x8 --quiet --samples";
+    for samples in ["1", "2", "4", "8"] {
+        let args: Vec<&str> = flags.split(' ').chain([samples]).collect();
+        let run = folder.run(&args);
+        let is_refused = run.status == Some(2)
+            && run.err.starts_with(&format!("ridgelight: --samples: found {samples}, expected 1"));
+        // Vulkan asks every device for these.
+        let must = ["1", "4"].contains(&samples);
+        assert!(run.status == Some(0) || (is_refused && !must), "{samples}: {}", run.err);
+    }
+}
