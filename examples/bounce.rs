@@ -202,8 +202,8 @@ fn run() -> Result<()> {
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     println!("{}, {}\n", gpu.report().name, gpu.report().driver);
     if asked.is_table {
-        nodes::run(&mut gpu)?;
-        return table::run(&mut gpu, asked.side.unwrap_or(512), asked.samples);
+        table::run(&mut gpu, asked.side.unwrap_or(512), asked.samples)?;
+        return nodes::run(&mut gpu);
     }
     pits(&mut gpu, asked.rim)?;
     let side = asked.side.unwrap_or(64);

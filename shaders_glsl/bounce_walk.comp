@@ -22,8 +22,8 @@ layout(constant_id = 3) const bool GREY = false;
 layout(constant_id = 4) const int NODE_STRIDE = 1;
 // Stretches that are kept of an azimuth, for later bounces.
 layout(constant_id = 5) const int CAST_SLOTS = 0;
-// How much farther a kept stretch ends than it begins, at most: about as wide as azimuths are apart. Measured on the
-// bundled mountain, of 1.25, 1.5 and 2.
+// How much farther a kept stretch ends than it begins, at most. Its radiance is taken from one place: across the line a
+// slice of 16 azimuths is 0.4 of the distance wide, whose radiance is one line's, too.
 const float CAST_GROWTH = 1.5;
 const int LANE_STRIDE = 1;
 

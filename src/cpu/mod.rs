@@ -33,6 +33,7 @@ pub mod light;
 pub mod light_matrix;
 pub mod light_resolve;
 pub mod lit;
+pub mod map_draw;
 pub mod oracle;
 pub mod profile;
 pub mod pyramid_march;

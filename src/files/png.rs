@@ -148,6 +148,22 @@ impl Tone {
         let light = f64::from(radiance) * f64::from(self.exposure);
         (255.0 * encoded(light.clamp(0.0, 1.0))).round() as u8
     }
+
+    /// The least radiance of each 8-bit code, 0 of the first; NaN where no radiance has a code so high. A radiance's
+    /// code is how many steps but the first it reaches.
+    pub fn steps(self) -> [f32; 256] {
+        std::array::from_fn(|code| {
+            // Bits of f32 from 0 up to infinity are in order.
+            let (mut below, mut reached) = (-1_i64, i64::from(f32::INFINITY.to_bits()) + 1);
+            while below + 1 < reached {
+                let middle = (below + reached) / 2;
+                let has = usize::from(self.code(f32::from_bits(middle as u32))) >= code;
+                if has { reached = middle } else { below = middle }
+            }
+            let light = f32::from_bits(reached as u32);
+            if light.is_nan() { f32::NAN } else { light }
+        })
+    }
 }
 
 /// Writes an 8-bit RGB picture of linear radiance, with alpha where `transparent` is given.
@@ -245,6 +261,22 @@ fn packed(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_are_where_codes_change() {
+        for exposure in [1.0, 0.37, 1e-3, 250.0] {
+            let tone = Tone { exposure };
+            let steps = tone.steps();
+            assert_eq!(steps[0], 0.0);
+            for (code, step) in steps.iter().enumerate().skip(1) {
+                assert_eq!(usize::from(tone.code(*step)), code, "{exposure}");
+                assert_eq!(usize::from(tone.code(step.next_down())), code - 1, "{exposure}");
+            }
+        }
+        // No radiance has a code above 0, but at the least exposure infinity has every.
+        assert!(Tone { exposure: 0.0 }.steps()[1..].iter().all(|s| s.is_nan()));
+        assert!(Tone { exposure: 1e-45 }.steps()[1..].iter().all(|s| s.is_infinite()));
+    }
 
     #[test]
     fn every_code_survives_its_own_decoding() {

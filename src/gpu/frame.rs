@@ -52,7 +52,7 @@ pub struct Pixels {
 
 impl Headless {
     /// Makes an image for an input or output of a plan, in GENERAL layout after [`frame`](Self::frame).
-    fn image_for(&mut self, resource: &Resource) -> Result<Owned> {
+    pub(super) fn image_for(&mut self, resource: &Resource) -> Result<Owned> {
         let Kind::Image { format, width, height, layers, layered } = resource.kind else {
             return Err(Error::setting(&resource.name, "a buffer", "an image"));
         };
@@ -67,12 +67,22 @@ impl Headless {
     /// # Errors
     /// Contents that do not fit, or a device out of memory.
     pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+        self.frame_in_flight(plan, contents, 1)
+    }
+
+    /// The same for several frames in flight, `slots`.
+    pub(super) fn frame_in_flight(
+        &mut self,
+        plan: Plan,
+        contents: &[&[f32]],
+        slots: usize,
+    ) -> Result<Frame> {
         let inputs: Vec<Resource> = plan.inputs().map(|(_, r)| r.clone()).collect();
         let outputs: Vec<Resource> = plan.outputs().map(|(_, r)| r.clone()).collect();
         let (host, pipelines) = (self.host(), self.pipelines.clone());
         let blocks = Box::new(Blocks::new(host)?);
         let mut frame = Frame {
-            renderer: Some(Renderer::sharing(host, plan, 1, pipelines, blocks)?),
+            renderer: Some(Renderer::sharing(host, plan, slots, pipelines, blocks)?),
             inputs: Vec::new(),
             outputs: Vec::new(),
         };

@@ -1,9 +1,10 @@
-use ash::{ext, vk};
+use ash::{ext, khr, vk};
 
 use super::allocator::Blocks;
 use super::instance::{chosen, instance, load};
 use super::memory::Memory;
 use super::pipelines::Pipelines;
+use super::surface::{Handles, Surface, queue_family};
 use super::validation::{self, Listener, Messages};
 use super::{DeviceReport, Host, failed, requirements};
 use crate::Result;
@@ -20,27 +21,36 @@ pub struct HeadlessOptions {
 
 /// An instance and who listens to it; ends both.
 struct Started {
-    _entry: ash::Entry,
+    entry: ash::Entry,
     instance: ash::Instance,
     listener: Option<Listener>,
+    /// Of a window, where pictures are shown in one.
+    surface: Option<Surface>,
     /// Outlives the instance, which may speak while it ends.
     _messages: Messages,
 }
 
 impl Started {
-    fn new(validation: bool) -> Result<Self> {
+    fn new(validation: bool, window: Option<Handles>) -> Result<Self> {
         let entry = load()?;
+        let extensions = match window {
+            Some(window) => window.extensions(&entry)?,
+            None => &[],
+        };
         if validation {
             validation::require(&entry)?;
         }
         let messages = Messages::default();
         let mut during = validation::messenger(&messages);
-        let instance = instance(&entry, validation.then_some(&mut during))?;
+        let instance = instance(&entry, validation.then_some(&mut during), extensions)?;
         let mut started =
-            Self { _entry: entry, instance, listener: None, _messages: messages.clone() };
+            Self { entry, instance, listener: None, surface: None, _messages: messages.clone() };
         if validation {
-            let listener = Listener::new(&started._entry, &started.instance, messages)?;
+            let listener = Listener::new(&started.entry, &started.instance, messages)?;
             started.listener = Some(listener);
+        }
+        if let Some(window) = window {
+            started.surface = Some(Surface::new(&started.entry, &started.instance, window)?);
         }
         Ok(started)
     }
@@ -48,6 +58,9 @@ impl Started {
 
 impl Drop for Started {
     fn drop(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            surface.end();
+        }
         if let Some(listener) = &self.listener {
             listener.end();
         }
@@ -73,14 +86,12 @@ fn make_device(
     instance: &ash::Instance,
     physical_device: vk::PhysicalDevice,
     name: &str,
+    surface: Option<&Surface>,
 ) -> Result<(ash::Device, u32)> {
-    // SAFETY: the physical device is the instance's.
-    let families = unsafe { instance.get_physical_device_queue_family_properties(physical_device) };
-    let with = |flags| families.iter().position(|f| f.queue_flags.contains(flags));
-    // Graphics for views, where there are any.
-    let family = with(vk::QueueFlags::COMPUTE | vk::QueueFlags::GRAPHICS);
-    let family = family.or_else(|| with(vk::QueueFlags::COMPUTE));
-    let queue_family = family.expect("the report found one") as u32;
+    let family = queue_family(instance, physical_device, surface);
+    let queue_family = family.expect("the report found one");
+    let extensions = [khr::swapchain::NAME.as_ptr()];
+    let extensions = if surface.is_some() { &extensions[..] } else { &[] };
     let queues = [vk::DeviceQueueCreateInfo::default()
         .queue_family_index(queue_family)
         .queue_priorities(&[1.0])];
@@ -89,6 +100,7 @@ fn make_device(
     needed.features13 = needed.features13.dynamic_rendering(true);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
+        .enabled_extension_names(extensions)
         .enabled_features(&needed.features)
         .push_next(&mut needed.features12)
         .push_next(&mut needed.features13);
@@ -105,10 +117,16 @@ impl Headless {
     /// No loader, no driver, no device of that name, a device that lacks something, or no validation
     /// layer where it is required.
     pub fn new(options: &HeadlessOptions) -> Result<Self> {
-        let started = Started::new(options.validation)?;
-        let instance = started.instance.clone();
-        let (physical_device, report) = chosen(&instance, options.device.as_deref())?;
-        let (device, queue_family) = make_device(&instance, physical_device, &report.name)?;
+        Self::showing(options, None)
+    }
+
+    /// The same, able to show pictures in a window.
+    pub(super) fn showing(options: &HeadlessOptions, window: Option<Handles>) -> Result<Self> {
+        let started = Started::new(options.validation, window)?;
+        let (instance, surface) = (started.instance.clone(), started.surface.as_ref());
+        let (physical_device, report) = chosen(&instance, options.device.as_deref(), surface)?;
+        let (device, queue_family) =
+            make_device(&instance, physical_device, &report.name, surface)?;
         let names = || ext::debug_utils::Device::new(&instance, &device);
         let debug_utils = started.listener.is_some().then(names);
         let pipeline_cache = vk::PipelineCache::null();
@@ -136,6 +154,17 @@ impl Headless {
                 Err(error)
             }
         }
+    }
+
+    /// The surface of its window, and what makes another.
+    pub(super) fn surface(&mut self) -> Option<(&ash::Entry, &ash::Instance, &mut Surface)> {
+        let Started { entry, instance, surface, .. } = &mut self.started;
+        Some((entry, instance, surface.as_mut()?))
+    }
+
+    /// Where its commands go.
+    pub(super) fn queue(&self) -> vk::Queue {
+        self.queue
     }
 
     /// What a renderer borrows.

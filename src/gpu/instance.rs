@@ -1,6 +1,9 @@
+use std::ffi::c_char;
+
 use ash::{ext, vk};
 
 use super::requirements::{report, requirements};
+use super::surface::Surface;
 use super::{DeviceReport, failed, validation};
 use crate::{Error, Result};
 
@@ -25,6 +28,7 @@ fn no_driver() -> Error {
 pub(super) fn instance(
     entry: &ash::Entry,
     messenger: Option<&mut vk::DebugUtilsMessengerCreateInfoEXT<'_>>,
+    extensions: &[*const c_char],
 ) -> Result<ash::Instance> {
     let app = vk::ApplicationInfo::default()
         .application_name(c"ridgelight")
@@ -32,14 +36,16 @@ pub(super) fn instance(
     let settings = validation::settings();
     let mut layer_settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
     let layers = [validation::LAYER.as_ptr()];
-    let extensions = [ext::debug_utils::NAME.as_ptr()];
-    let mut info = vk::InstanceCreateInfo::default().application_info(&app);
+    let mut extensions = extensions.to_vec();
+    if messenger.is_some() {
+        extensions.push(ext::debug_utils::NAME.as_ptr());
+    }
+    let mut info = vk::InstanceCreateInfo::default()
+        .application_info(&app)
+        .enabled_extension_names(&extensions);
     if let Some(messenger) = messenger {
-        info = info
-            .enabled_layer_names(&layers)
-            .enabled_extension_names(&extensions)
-            .push_next(&mut layer_settings)
-            .push_next(messenger);
+        info =
+            info.enabled_layer_names(&layers).push_next(&mut layer_settings).push_next(messenger);
     }
     // SAFETY: names are nul-terminated and live across the call; so do the chained structs.
     unsafe { entry.create_instance(&info, None) }.map_err(|result| match result {
@@ -54,7 +60,7 @@ pub(super) fn instance(
 /// No loader, or no driver that answers.
 pub fn devices() -> Result<Vec<DeviceReport>> {
     let entry = load()?;
-    let instance = instance(&entry, None)?;
+    let instance = instance(&entry, None, &[])?;
     // SAFETY: the instance is alive; it is destroyed after its last use.
     unsafe {
         let found = instance.enumerate_physical_devices().map_err(failed("listing devices"));
@@ -68,11 +74,15 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
 pub(super) fn chosen(
     instance: &ash::Instance,
     wanted: Option<&str>,
+    surface: Option<&Surface>,
 ) -> Result<(vk::PhysicalDevice, DeviceReport)> {
     // SAFETY: the instance is alive.
     let all =
         unsafe { instance.enumerate_physical_devices() }.map_err(failed("listing devices"))?;
     let mut reports: Vec<_> = all.iter().map(|d| report(instance, *d)).collect();
+    for (report, device) in reports.iter_mut().zip(&all) {
+        report.missing.extend(surface.and_then(|s| s.missing(instance, *device)));
+    }
     let index = choose(&reports, wanted)?;
     Ok((all[index], reports.swap_remove(index)))
 }

@@ -143,7 +143,12 @@ impl Headless {
     }
 
     /// An image of the field's voids.
-    fn mask(&mut self, made: &mut Vec<Backed>, view: &View, voids: &[bool]) -> Result<ImageArg> {
+    pub(super) fn mask(
+        &mut self,
+        made: &mut Vec<Backed>,
+        view: &View,
+        voids: &[bool],
+    ) -> Result<ImageArg> {
         let (format, name) = (Format::R32Float, "voids".to_owned());
         let extent = [view.field[0], view.field[1], 1];
         let backed = self.memory.image(&name, format, extent, false)?;
@@ -183,7 +188,7 @@ impl Headless {
 }
 
 /// What a view reads of a frame.
-fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
+pub(super) fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
     let plan = frame.plan();
     let found = |name: &str, images: Vec<ImageArg>, names: Vec<&str>| {
         let at = names.iter().position(|n| *n == name);

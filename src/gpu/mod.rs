@@ -12,8 +12,10 @@ mod pipelines;
 mod read;
 mod renderer;
 mod requirements;
+mod screen;
 pub mod shaders;
 mod specialise;
+mod surface;
 mod validation;
 mod view;
 
@@ -25,6 +27,7 @@ pub use lend::Lent;
 pub use look::Seen;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
+pub use screen::{Panel, Screen, Shot, Shown, Sight};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;

@@ -23,6 +23,7 @@ pub(crate) mod horizon_resweep;
 pub(crate) mod horizon_sweep;
 pub(crate) mod light_matrix;
 pub(crate) mod light_resolve;
+pub(crate) mod map_draw;
 pub(crate) mod path_trace;
 pub(crate) mod picture_tone;
 pub(crate) mod pyramid_march;

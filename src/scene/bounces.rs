@@ -87,8 +87,8 @@ impl Bounces {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BounceEngine {
     /// The planner's choice: [`Sweep`](Self::Sweep) where horizons come from a sweep along lines, else
-    /// [`Brute`](Self::Brute). On four real fields the former took 0.2 to 0.4 of the latter's time and was as near to
-    /// light paths (`examples/bounce`).
+    /// [`Brute`](Self::Brute). On four real fields under two environments the former took 0.1 to 0.4 of the latter's
+    /// time and was as near to light paths (`examples/bounce`).
     #[default]
     Auto,
     /// Every stretch of the surface that a sample sees along each azimuth, in closed form: exact but for the

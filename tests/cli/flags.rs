@@ -231,10 +231,27 @@ fn not_yet() {
         &folder,
         &[
             ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
-            ("view a.asc", 2, &["view", "not yet"]),
             ("nosuch a.asc", 2, &["nosuch"]),
             ("render", 2, &["<INPUT>", "--output"]),
             ("render a.asc", 2, &["--output"]),
+        ],
+    );
+}
+
+#[test]
+fn view() {
+    let folder = Folder::new();
+    folder.write("script", b"key m\n# what follows is none\njump\n");
+    refused(
+        &folder,
+        &[
+            ("view a.asc --exposure 0", 2, &["--exposure: found 0"]),
+            ("view a.asc --size 0x5", 2, &["--size", "1 to 16384"]),
+            ("view a.asc --size 640", 2, &["--size", "WxH"]),
+            ("view a.asc --azimuths 3", 2, &["--azimuths"]),
+            ("view none.asc", 1, &["none.asc"]),
+            ("view a.asc --script script", 1, &["script: line 3: found jump"]),
+            ("view a.asc --json a.asc", 2, &["--json"]),
         ],
     );
 }

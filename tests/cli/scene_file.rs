@@ -67,6 +67,38 @@ fn files_are_sought_beside_the_scene_file() {
     );
 }
 
+/// A camera is `render`'s; `plan` has none.
+#[test]
+fn gpu_cameras_stand_in_scene_files() {
+    let folder = Folder::new();
+    let text = r#"{
+      "field": { "file": "a.asc" },
+      "camera": { "from": { "azimuth_deg": 200, "elevation_deg": 40 }, "look_at_m": [45, 30], "ortho": true,
+                  "size": "9x7", "samples": 1, "background": [0.1, 0.2, 0.3] },
+      "quality": { "azimuths": 8 }
+    }"#;
+    folder.write("seen.json", text.as_bytes());
+    let render = |out: &str, args: &str| {
+        let args: Vec<&str> = ["render", "-o", out].into_iter().chain(args.split(' ')).collect();
+        let run = folder.run(&args);
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args:?}");
+    };
+    render("a.exr", "--scene seen.json --quiet");
+    let flags =
+        "--camera 200,40 --look-at 45,30 --ortho --size 9x7 --samples 1 --background 0.1,0.2,0.3";
+    render("b.exr", &format!("a.asc {flags} --azimuths 8 --quiet"));
+    let read = |name: &str| ridgelight::files::read_planes(&folder.path(name)).unwrap();
+    let [a, b] = [read("a.exr"), read("b.exr")];
+    assert_eq!((a.cols, a.rows), (9, 7));
+    assert_eq!(a, b);
+    planned(&folder, "--scene seen.json");
+    folder.write("off.json", text.replace("\"ortho\": true", "\"ortho\": 1").as_bytes());
+    refused(
+        &folder,
+        &[("render -o c.exr --scene off.json", 1, &["line 3, camera.ortho", "true or false"])],
+    );
+}
+
 /// A command takes what it has flags for; settings that it makes no use of are not complained of.
 #[test]
 fn a_command_takes_what_it_knows() {
@@ -98,7 +130,7 @@ fn what_is_wrong_is_told_by_line_and_key() {
     case(String::new(), &["line 1", "JSON"]);
     case(with("\"sky\": 0.5,", "\"sky\": 0.5"), &["line 7, column", "JSON"]);
     case("[]".into(), &["line 1", "found []", "an object"]);
-    case(with("\"lights\"", "\"light\""), &["line 5, light", "lights, quality"]);
+    case(with("\"lights\"", "\"light\""), &["line 5, light", "lights, camera, quality"]);
     case(with("\"fuse\"", "\"fuze\""), &["line 14, quality.fuze", "fuse"]);
     case(
         with("\"sky\": 0.5", "\"sky\": \"blue\""),

@@ -1,13 +1,12 @@
-//! What an engine lends besides a device: images in formats of its own, memory, a pipeline cache, and the
-//! names that its debugger shows.
+//! What an engine lends besides a device: images in formats of its own, memory, a pipeline cache.
 
-use std::ffi::{CStr, c_char, c_void};
+use std::ffi::c_void;
 use std::ptr::NonNull;
 use std::sync::Mutex;
 
-use ash::{ext, vk};
+use ash::vk;
 use ridgelight::gpu::{
-    Allocation, Allocator, Headless, Host, ImageArg, MemoryRequest, MemoryUse, Renderer,
+    Allocation, Allocator, Frame, Headless, Host, ImageArg, MemoryRequest, MemoryUse, Renderer,
 };
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Quality, Scene, Sun};
@@ -28,7 +27,7 @@ fn heights() -> Vec<f64> {
 }
 
 /// Under a sky, a sun and an environment, on ground of 0 and 1 in each channel.
-fn scene() -> Scene {
+pub(crate) fn scene() -> Scene {
     let lone = field(ROWS, COLS, [0.5, 1.0], |r, c| heights()[r * COLS + c]);
     let mut scene = under_sky(lone, Border::Plane);
     scene.lights.suns =
@@ -40,8 +39,15 @@ fn scene() -> Scene {
     scene
 }
 
-fn planned(gpu: &Headless, scene: &Scene) -> Plan {
+pub(crate) fn planned(gpu: &Headless, scene: &Scene) -> Plan {
     plan::picture(scene, &quality(), &gpu.report().limits, Picture::default()).expect("a plan")
+}
+
+pub(crate) fn framed(gpu: &mut Headless, scene: &Scene) -> Frame {
+    let contents = plan::picture_inputs(scene);
+    let texels: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let plan = planned(gpu, scene);
+    gpu.frame(plan, &texels).expect("a frame")
 }
 
 /// Texels of 0 and 1 as a format packs them.
@@ -190,11 +196,9 @@ unsafe impl Allocator for Pieces {
 fn an_engines_own_memory_does_as_well() {
     let mut device = Device::new();
     let scene = scene();
-    let contents = plan::picture_inputs(&scene);
-    let texels: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, &scene);
-    let mut frame = gpu.frame(plan.clone(), &texels).expect("a frame");
+    let mut frame = framed(gpu, &scene);
     gpu.draw(&mut frame).expect("drawn");
     let right = gpu.pixels(&frame, 0).expect("pixels");
     let held = std::sync::Arc::new(Mutex::new(Vec::new()));
@@ -217,118 +221,6 @@ fn an_engines_own_memory_does_as_well() {
     renderer.destroy();
     assert_eq!(*held.lock().expect("no panic"), []);
     gpu.end(frame);
-}
-
-/// What a debugger is told: objects by type and name, and labels that begin and end (an empty one).
-static TOLD: Mutex<Vec<(vk::ObjectType, String)>> = Mutex::new(Vec::new());
-
-unsafe fn text(name: *const c_char) -> String {
-    // SAFETY: Vulkan's names end with a nul.
-    unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned()
-}
-
-unsafe extern "system" fn keep_name(
-    _device: vk::Device,
-    info: *const vk::DebugUtilsObjectNameInfoEXT<'_>,
-) -> vk::Result {
-    // SAFETY: whoever names hands in a whole struct.
-    let (kind, name) = unsafe { ((*info).object_type, text((*info).p_object_name)) };
-    TOLD.lock().expect("no panic").push((kind, name));
-    vk::Result::SUCCESS
-}
-
-unsafe extern "system" fn keep_label(
-    _commands: vk::CommandBuffer,
-    info: *const vk::DebugUtilsLabelEXT<'_>,
-) {
-    // SAFETY: as above.
-    let name = unsafe { text((*info).p_label_name) };
-    TOLD.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, name));
-}
-
-unsafe extern "system" fn keep_end(_commands: vk::CommandBuffer) {
-    TOLD.lock().expect("no panic").push((vk::ObjectType::COMMAND_BUFFER, String::new()));
-}
-
-unsafe extern "system" fn debugger(
-    _device: vk::Device,
-    name: *const c_char,
-) -> vk::PFN_vkVoidFunction {
-    // SAFETY: the loader's names end with a nul; each function is returned for its own.
-    unsafe {
-        let function: *const c_void = match text(name).as_str() {
-            "vkSetDebugUtilsObjectNameEXT" => keep_name as *const c_void,
-            "vkCmdBeginDebugUtilsLabelEXT" => keep_label as *const c_void,
-            "vkCmdEndDebugUtilsLabelEXT" => keep_end as *const c_void,
-            _ => std::ptr::null(),
-        };
-        std::mem::transmute::<*const c_void, vk::PFN_vkVoidFunction>(function)
-    }
-}
-
-/// A host whose debugger is this test.
-fn told(host: &Host) -> Host {
-    // SAFETY: of this instance only the debugger's functions are looked up.
-    let instance = unsafe {
-        ash::Instance::load_with(
-            |name| match name.to_bytes() {
-                b"vkGetDeviceProcAddr" => debugger as *const c_void,
-                _ => std::ptr::null(),
-            },
-            host.instance.handle(),
-        )
-    };
-    let debug_utils = Some(ext::debug_utils::Device::new(&instance, &host.device));
-    Host { debug_utils, ..host.clone() }
-}
-
-#[test]
-fn a_debugger_is_told_what_everything_is() {
-    use vk::ObjectType as Type;
-    let mut device = Device::new();
-    let scene = scene();
-    let contents = plan::picture_inputs(&scene);
-    let texels: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let gpu = device.gpu.as_mut().expect("alive");
-    let plan = planned(gpu, &scene);
-    let frame = gpu.frame(plan.clone(), &texels).expect("a frame");
-    TOLD.lock().expect("no panic").clear();
-    let mut renderer = Renderer::new(&told(gpu.host()), plan.clone(), 2).expect("a renderer");
-    let names = std::mem::take(&mut *TOLD.lock().expect("no panic"));
-    let (inputs, outputs) = (frame.inputs(), frame.outputs());
-    gpu.run(|commands| renderer.record(commands, 0, &inputs, &outputs)).expect("recorded and run");
-    renderer.destroy();
-    gpu.end(frame);
-
-    let has = |kind, name: &str| names.iter().any(|n| n.0 == kind && n.1 == name);
-    let internal = plan.resources.iter().filter(|r| r.owner == plan::Owner::Internal);
-    for resource in internal {
-        let kinds: &[Type] = match resource.kind {
-            plan::Kind::Image { .. } => &[Type::IMAGE, Type::IMAGE_VIEW],
-            plan::Kind::Buffer { texels: true, .. } => &[Type::BUFFER, Type::BUFFER_VIEW],
-            plan::Kind::Buffer { .. } => &[Type::BUFFER],
-        };
-        kinds.iter().for_each(|kind| assert!(has(*kind, &resource.name), "{kind:?} {resource:?}"));
-    }
-    for pass in &plan.passes {
-        for kind in [Type::PIPELINE, Type::PIPELINE_LAYOUT, Type::DESCRIPTOR_SET_LAYOUT] {
-            assert!(has(kind, pass.name()), "{kind:?} {}", pass.name());
-        }
-        for slot in 0..2 {
-            let name = format!("{}, slot {slot}", pass.label());
-            assert!(has(Type::DESCRIPTOR_SET, &name), "{name}");
-        }
-    }
-    assert!(has(Type::DESCRIPTOR_POOL, "ridgelight"));
-    if device.report().timestamp_period_ns > 0.0 {
-        assert!(has(Type::QUERY_POOL, "ridgelight, slot 1"));
-    }
-    // Each pass in a label of its own.
-    let labels = std::mem::take(&mut *TOLD.lock().expect("no panic"));
-    let labels: Vec<&str> = labels.iter().map(|l| l.1.as_str()).collect();
-    let passes: Vec<String> = plan.passes.iter().map(plan::Pass::label).collect();
-    let around: Vec<&str> = passes.iter().flat_map(|label| [label.as_str(), ""]).collect();
-    assert_eq!(labels, around);
 }
 
 type CreatePipelines = vk::PFN_vkCreateComputePipelines;
@@ -377,11 +269,9 @@ fn heard(host: &Host, pipeline_cache: vk::PipelineCache) -> Host {
 fn pipelines_are_made_through_the_callers_cache() {
     let mut device = Device::new();
     let scene = scene();
-    let contents = plan::picture_inputs(&scene);
-    let texels: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, &scene);
-    let mut frame = gpu.frame(plan.clone(), &texels).expect("a frame");
+    let mut frame = framed(gpu, &scene);
     gpu.draw(&mut frame).expect("drawn");
     let right = gpu.pixels(&frame, 0).expect("pixels");
     let (inputs, outputs): (Vec<ImageArg>, Vec<ImageArg>) = (frame.inputs(), frame.outputs());

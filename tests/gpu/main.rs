@@ -9,6 +9,7 @@ mod bounce_nodes;
 mod bounces;
 mod change;
 mod contract;
+mod debugger;
 mod edits;
 mod embedding;
 mod extremes;
@@ -20,8 +21,12 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
+<<<<<<< HEAD
+mod map;
+=======
 #[path = "../naive/mod.rs"]
 mod naive;
+>>>>>>> 50f00bde3cc825197ee821e8d020886fb5083ef4
 mod pits;
 mod pruned;
 mod pyramid;

@@ -42,6 +42,10 @@ fn the_header_is_what_the_source_says() {
     }
     let kept = std::fs::read_to_string(&path).expect("include/ridgelight.h");
     assert!(kept == made, "include/ridgelight.h is another: RIDGELIGHT_BLESS=1 writes it");
+    let mut cpp = Command::new("c++");
+    cpp.args(["-x", "c++", "-std=c++11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]);
+    let (done, said) = run(cpp.args(["-include"]).arg(&path).arg("/dev/null"));
+    assert!(done.status.success(), "{said}");
 }
 
 /// Every function of the header, and no symbol besides.

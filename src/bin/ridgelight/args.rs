@@ -8,6 +8,7 @@ mod quality;
 mod reference;
 mod scene;
 mod values;
+mod view;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -25,7 +26,12 @@ pub use quality::{
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
+<<<<<<< HEAD
+pub use values::{albedo_colour, sun};
+pub use view::ViewArgs;
+=======
 pub use values::{PhongArg, albedo_colour};
+>>>>>>> 50f00bde3cc825197ee821e8d020886fb5083ef4
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
@@ -76,6 +82,12 @@ impl Cli {
             Command::Horizon(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
+            Command::View(args) => {
+                if let Some((_, matches)) = matches.subcommand() {
+                    args.remember(matches);
+                }
+                Some(&mut args.quality)
+            }
             _ => None,
         };
         if let (Some(quality), Some((_, matches))) = (quality, matches.subcommand()) {
@@ -105,9 +117,8 @@ pub enum Command {
     /// Maps for engines (not yet)
     #[command(hide = true)]
     Bake(NotYet),
-    /// A window (not yet)
-    #[command(hide = true)]
-    View(NotYet),
+    /// A window: look around, move the sun, try methods
+    View(ViewArgs),
 }
 
 #[derive(Args)]

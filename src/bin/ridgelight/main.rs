@@ -37,6 +37,11 @@ mod render;
 mod scene_file;
 mod setup;
 mod trade;
+#[cfg(feature = "window")]
+mod view;
+#[cfg(not(feature = "window"))]
+#[path = "view/none.rs"]
+mod view;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -80,7 +85,7 @@ fn main() -> ExitCode {
         args::Command::Reference(args) => reference::run(args),
         args::Command::Trade(args) => trade::run(args),
         args::Command::Bake(_) => not_yet("bake"),
-        args::Command::View(_) => not_yet("view"),
+        args::Command::View(args) => view::run(args),
     };
     match done {
         Ok(setup::Outcome::Done) => ExitCode::SUCCESS,

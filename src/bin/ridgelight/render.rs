@@ -177,7 +177,7 @@ pub fn check_finite(pixels: &Pixels, field: &HeightField) -> Result<()> {
     Ok(())
 }
 
-fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
+pub fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
     match pixels.channels {
         1 => pixels.values.iter().map(|v| [*v; 3]).collect(),
         _ => pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),

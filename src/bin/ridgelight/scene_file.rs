@@ -1,10 +1,11 @@
-//! Scene files: a JSON of field, surface, lights and quality. Each of its keys is a flag of the command line, which
+//! Scene files: a JSON of field, surface, lights, camera and quality. Each of its keys is a flag of the command line, which
 //! it becomes where the user wrote none of that name; a mistake is told by line and key.
 
 mod json;
 mod keys;
 #[cfg(test)]
 mod schema;
+mod write;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -15,12 +16,15 @@ use ridgelight::{Error, Result};
 
 use json::Found;
 use keys::{GROUPS, Kind};
+pub use write::Asked;
 
 /// A flag that a scene file gave.
 struct Given {
     /// As the parser calls it.
     id: &'static str,
     value: OsString,
+    /// A flag that takes nothing.
+    is_switch: bool,
     line: usize,
     key: String,
 }
@@ -53,6 +57,9 @@ impl SceneFile {
         let mut scene = Self { path: path.clone(), given: all(parser, path)? };
         let input = command.get_positionals().next().map(|arg| arg.get_id().as_str());
         scene.given.retain(|given| {
+            if given.is_switch && given.value == "false" {
+                return false;
+            }
             let id = if given.id == keys::INPUT { input } else { Some(given.id) };
             let known = id.filter(|id| command.get_arguments().any(|arg| arg.get_id() == id));
             known.is_some_and(|id| matches.value_source(id) != Some(ValueSource::CommandLine))
@@ -61,8 +68,11 @@ impl SceneFile {
         let new = scene.given.iter().map(|given| match given.id {
             keys::INPUT => given.value.clone(),
             id => {
-                let mut word = OsString::from(format!("--{}=", id.replace('_', "-")));
-                word.push(&given.value);
+                let mut word = OsString::from(format!("--{}", id.replace('_', "-")));
+                if !given.is_switch {
+                    word.push("=");
+                    word.push(&given.value);
+                }
                 word
             }
         });
@@ -159,6 +169,7 @@ fn all(parser: &clap::Command, path: &Path) -> Result<Vec<Given>> {
             };
             given.extend(values.into_iter().map(|(line, place, value)| Given {
                 id: key.id,
+                is_switch: matches!(key.kind, Kind::Switch),
                 value,
                 line,
                 key: place,

@@ -246,7 +246,8 @@ impl Gathered {
     /// those of the nearest sample that a spline looks at.
     ///
     /// Weights as [`march_error`]'s. Three bands: four polynomials of an end, 8 ε of √2 each, times weights of
-    /// at most 1. Radiance: a spline, an octave's levels where they are the twins', and places.
+    /// at most 1. Radiance: a spline, an octave's levels where they are the twins', and its place: two samples farther,
+    /// 4 times as far at most, but no more than 16 texels of its level, as offsets of 4 octaves at most have it.
     pub fn error(&self, cast: &Cast) -> CastError {
         let Land { largest_m, relief_m, steepest, .. } = self.land;
         let octaves = 1.0 + cast.distance.log2().max(0.0);
@@ -258,7 +259,8 @@ impl Gathered {
         let steep = (relief_m / self.step_m).min(1.0);
         let angle = rise + 130.0 * EPSILON * steepest + ARC_TANGENT * steep + 19.0 * EPSILON;
         let width = cast.high_rad - cast.low_rad;
-        let places = 130.0 * EPSILON * cast.distance * self.spread;
+        let texels = (4.0 * cast.distance).min(20.0);
+        let places = 130.0 * EPSILON * texels * self.spread;
         let radiance = twin_spline(self.brightest) + levels * twin_level(self.brightest) + places;
         let (end, weight) = match self.receiver {
             Receiver::Plane => (0.0, EPSILON * (2.0 + 24.0 * width)),

@@ -536,6 +536,7 @@ pub(super) fn nodes() -> Vec<Case> {
     vec![
         case("walks at nodes, colours", (14, 17), Border::Open, (Sweep, 3, 2)),
         case("walks at nodes, grey", (12, 8), Border::Periodic, (Sweep, 2, 4)),
+        case("walks at nodes, outside black", (9, 11), Border::Plane, (Sweep, 1, 2)),
         case("every stretch at nodes", (6, 7), Border::Open, (Brute, 1, 2)),
         case("pyramids at nodes", (10, 13), Border::Plane, (Pyramid, 1, 4)),
     ]
@@ -620,11 +621,7 @@ pub(super) fn references() -> Vec<Case> {
     let map = (0..7 * 9).map(|_| [0.8 * next() as f32, 0.5, 0.1]).collect();
     let all = Scene {
         field: rough(7, 9, 22),
-        surface: Surface {
-            border: Border::Open,
-            albedo: Albedo::Map(map),
-            phong: Some(Lobe::Constant(Phong { exponent: 6.0, scale: 0.2 })),
-        },
+        surface: Surface { border: Border::Open, albedo: Albedo::Map(map), phong: None },
         lights: Lights {
             sky: Some([0.3, 0.5, 0.9]),
             environment: Some(noisy_environment(23)),
@@ -654,5 +651,13 @@ pub(super) fn references() -> Vec<Case> {
         wanted: Wanted::Reference(bounces),
         loses_lines: false,
     };
-    vec![reference("all lights", all, 1), reference("periodic", repeated, 2)]
+    // The quadrature knows of no lobes that are met.
+    let mut lobes = all.clone();
+    let lobe = |i: usize| Phong { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.1 };
+    lobes.surface.phong = Some(Lobe::Map((0..7 * 9).map(lobe).collect()));
+    vec![
+        reference("all lights", all, 1),
+        reference("lobes in all lights", lobes, 0),
+        reference("periodic", repeated, 2),
+    ]
 }

@@ -6,6 +6,7 @@ use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::shared::field::{field_slope, normal_of};
 use ridgelight::cpu::shared::gather::Swept;
+use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::cpu::sky_shade as sky_twin;
 use ridgelight::cpu::sphere_shade as sphere_twin;
 use ridgelight::cpu::sun_gloss as gloss_twin;
@@ -17,7 +18,7 @@ use ridgelight::measure::tolerance::{
 };
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
-use ridgelight::scene::{Albedo, Environment, Sun};
+use ridgelight::scene::{Albedo, Border, Environment, Sun};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 
@@ -127,7 +128,13 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let at = |i: usize| [range.len(), i / cols, i % cols];
     let mut pairs = Vec::new();
     if let Some(got) = run.floats(pass, "sky_sum") {
-        let want = run.swept(range.clone(), fuse_of(pass), sky_twin::sky_shade);
+        // Shares of ground for bounces take no horizontal for the least.
+        let is_open = constant(pass, 3) == Border::Open as u32;
+        let want = run.swept(range.clone(), fuse_of(pass), |swept| {
+            let border = if is_open { Border::Open } else { swept.heights.border };
+            let heights = Heights { border, ..swept.heights };
+            sky_twin::sky_shade(&Swept { heights, ..*swept })
+        });
         let tolerance = error.sky();
         pairs.extend(got.iter().zip(want).enumerate().map(|(i, (got, want))| Pair {
             got: (*got).into(),

@@ -42,6 +42,16 @@ pub fn phong(text: &str) -> Result<PhongArg, String> {
     }
 }
 
+pub fn pixels(text: &str) -> Result<[u32; 2], String> {
+    let parts: Option<Vec<u32>> = text.split('x').map(|part| part.parse().ok()).collect();
+    match parts.unwrap_or_default().as_slice() {
+        [width, height] if (1..=16384).contains(width) && (1..=16384).contains(height) => {
+            Ok([*width, *height])
+        }
+        _ => Err("expected WxH, two whole numbers from 1 to 16384".into()),
+    }
+}
+
 pub fn cell(text: &str) -> Result<[f64; 2], String> {
     match numbers(text)?.as_slice() {
         [both] => Ok([*both; 2]),

@@ -126,16 +126,18 @@ impl<'t> Found<'t> {
 
     /// Numbers with commas between them.
     fn numbers(&self, numbers: Numbers) -> Result<String> {
-        let (count, expected) = match numbers {
-            Numbers::One => (0, "a number"),
-            Numbers::Pair => (2, "a number, or 2 in a list"),
-            Numbers::Colour => (3, "a number, or 3 in a list"),
-            Numbers::Three => (3, "3 numbers in a list"),
+        let (counts, expected): (&[usize], _) = match numbers {
+            Numbers::One => (&[], "a number"),
+            Numbers::Pair => (&[2], "a number, or 2 in a list"),
+            Numbers::Colour => (&[3], "a number, or 3 in a list"),
+            Numbers::Three => (&[3], "3 numbers in a list"),
+            Numbers::TwoOrThree => (&[2, 3], "2 or 3 numbers in a list"),
         };
-        if let Some(number) = self.number().filter(|_| numbers != Numbers::Three) {
+        let is_list = matches!(numbers, Numbers::Three | Numbers::TwoOrThree);
+        if let Some(number) = self.number().filter(|_| !is_list) {
             return Ok(number);
         }
-        let items = self.items().ok().filter(|all| count > 0 && all.len() == count);
+        let items = self.items().ok().filter(|all| counts.contains(&all.len()));
         let all = items.and_then(|all| all.iter().map(Self::number).collect::<Option<Vec<_>>>());
         all.map(|all| all.join(",")).ok_or_else(|| self.wrong(expected))
     }
@@ -158,7 +160,9 @@ impl<'t> Found<'t> {
                 part.default.map(str::to_owned).ok_or_else(missing)
             }
         };
-        Ok(parts.iter().map(value).collect::<Result<Vec<_>>>()?.join(","))
+        let mut all = parts.iter().map(value).collect::<Result<Vec<_>>>()?;
+        all.retain(|text| !text.is_empty());
+        Ok(all.join(","))
     }
 
     /// As a flag's text; files from `folder`.
@@ -182,7 +186,15 @@ impl<'t> Found<'t> {
                     .map(OsString::from)
                     .map_err(|_| self.wrong("a number, 3 in a list, or a file's name")),
             },
+            Kind::PartsOrFile(parts) => match file() {
+                Some(file) => Ok(file),
+                None => Ok(self.parts(parts)?.into()),
+            },
             Kind::Parts(parts) | Kind::List(parts) => Ok(self.parts(parts)?.into()),
+            Kind::Switch => match serde_json::from_str(self.raw.get()) {
+                Ok(is_on) => Ok(if is_on { "true" } else { "false" }.into()),
+                Err(_) => Err(self.wrong("true or false")),
+            },
         }
     }
 }

@@ -13,10 +13,14 @@ pub enum Kind {
     /// A path from the scene file's folder.
     File,
     Numbers(Numbers),
+    /// True for a flag that takes nothing, false for none.
+    Switch,
     /// A colour, or a path.
     ColourOrFile,
     /// An object: what a flag holds between commas.
     Parts(&'static [Part]),
+    /// The same, or a path.
+    PartsOrFile(&'static [Part]),
     /// A list of such objects, each a flag.
     List(&'static [Part]),
 }
@@ -30,13 +34,14 @@ pub enum Numbers {
     /// One for grey, or three.
     Colour,
     Three,
+    TwoOrThree,
 }
 
 /// A member of an object.
 pub struct Part {
     pub name: &'static str,
     pub numbers: Numbers,
-    /// What stands for a member that is not there; none where it must be.
+    /// What stands for a member that is not there, nothing for the last; none where it must be.
     pub default: Option<&'static str>,
 }
 
@@ -89,7 +94,7 @@ const FIELD: [Key; 5] = [
     key("nodata", "nodata", Kind::Word),
 ];
 const SURFACE: [Key; 2] =
-    [key("albedo", "albedo", Kind::ColourOrFile), key("phong", "phong", Kind::Parts(&LOBE))];
+    [key("albedo", "albedo", Kind::ColourOrFile), key("phong", "phong", Kind::PartsOrFile(&LOBE))];
 const LIGHTS: [Key; 6] = [
     key("sky", "sky", Kind::Numbers(Numbers::Colour)),
     key("environment", "env", Kind::File),
@@ -99,9 +104,25 @@ const LIGHTS: [Key; 6] = [
     key("balls", "light", Kind::List(&BALL)),
 ];
 
+const EYE: [Part; 3] = [
+    part("azimuth_deg", Numbers::One),
+    part("elevation_deg", Numbers::One),
+    or(part("distance_m", Numbers::One), ""),
+];
+const CAMERA: [Key; 8] = [
+    key("from", "camera", Kind::Parts(&EYE)),
+    key("look_at_m", "look_at", Kind::Numbers(Numbers::TwoOrThree)),
+    key("fov_deg", "fov", NUMBER),
+    key("ortho", "ortho", Kind::Switch),
+    key("size", "size", Kind::Word),
+    key("samples", "samples", NUMBER),
+    key("mesh_step", "mesh_step", NUMBER),
+    key("background", "background", Kind::Numbers(Numbers::Colour)),
+];
+
 /// All groups but quality, whose keys are the settings themselves.
-pub const GROUPS: [(&str, &[Key]); 3] =
-    [("field", &FIELD), ("surface", &SURFACE), ("lights", &LIGHTS)];
+pub const GROUPS: [(&str, &[Key]); 4] =
+    [("field", &FIELD), ("surface", &SURFACE), ("lights", &LIGHTS), ("camera", &CAMERA)];
 
 /// The settings, as `render` has them.
 pub fn quality(parser: &clap::Command) -> Vec<Key> {

@@ -6,24 +6,25 @@ use serde_json::{Value, json};
 use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
 use crate::args::Cli;
 
-fn list(least: usize) -> Value {
-    json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": least })
+fn list(least: usize, most: usize) -> Value {
+    json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": most })
 }
 
 fn numbers(numbers: Numbers) -> Value {
     let one = json!({ "type": "number" });
     match numbers {
         Numbers::One => one,
-        Numbers::Pair => json!({ "anyOf": [one, list(2)] }),
-        Numbers::Colour => json!({ "anyOf": [one, list(3)] }),
-        Numbers::Three => list(3),
+        Numbers::Pair => json!({ "anyOf": [one, list(2, 2)] }),
+        Numbers::Colour => json!({ "anyOf": [one, list(3, 3)] }),
+        Numbers::Three => list(3, 3),
+        Numbers::TwoOrThree => list(2, 3),
     }
 }
 
 fn object(parts: &[Part]) -> Value {
     let with_default = |part: &Part| {
         let mut value = numbers(part.numbers);
-        if let Some(default) = part.default {
+        if let Some(default) = part.default.filter(|text| !text.is_empty()) {
             value["default"] = serde_json::from_str(default).expect("a number");
         }
         (part.name.to_owned(), value)
@@ -57,9 +58,11 @@ fn value(key: &Key, render: &clap::Command) -> Value {
         Kind::File => json!({ "type": "string" }),
         Kind::Numbers(count) => numbers(count),
         Kind::ColourOrFile => {
-            json!({ "anyOf": [{ "type": "string" }, { "type": "number" }, list(3)] })
+            json!({ "anyOf": [{ "type": "string" }, { "type": "number" }, list(3, 3)] })
         }
+        Kind::PartsOrFile(parts) => json!({ "anyOf": [{ "type": "string" }, object(parts)] }),
         Kind::Parts(parts) => object(parts),
+        Kind::Switch => json!({ "type": "boolean" }),
         Kind::List(parts) => json!({ "type": "array", "items": object(parts) }),
     };
     value["description"] = arg.get_help().map(ToString::to_string).unwrap_or_default().into();

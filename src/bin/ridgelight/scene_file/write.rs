@@ -1,0 +1,97 @@
+//! Flags as a scene file: what reading it turns back into them.
+
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use serde_json::{Map, Value};
+
+use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
+
+/// Flags that were given, on the command line or by a scene file, as the parser calls them, and the words of each.
+#[derive(Clone, Debug, Default)]
+pub struct Asked(Vec<(String, Vec<String>)>);
+
+impl Asked {
+    pub fn of(matches: &ArgMatches) -> Self {
+        let given = matches.ids().map(clap::Id::as_str).filter_map(|id| {
+            let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);
+            let words = matches.get_raw(id).filter(|_| is_given)?;
+            Some((id.to_owned(), words.map(|w| w.to_string_lossy().into_owned()).collect()))
+        });
+        Self(given.collect())
+    }
+
+    /// Other words for a flag; none where it is to be left away.
+    pub fn set(&mut self, id: &str, words: Vec<String>) {
+        self.0.retain(|(known, _)| known != id);
+        self.0.push((id.to_owned(), words));
+    }
+
+    /// The words of a scene file, whose files stand where they do for the command.
+    pub fn to_json(&self, parser: &clap::Command) -> Value {
+        let mut groups = Map::new();
+        let quality = quality(parser);
+        let known = GROUPS.iter().map(|(name, keys)| (*name, *keys));
+        for (name, keys) in known.chain([("quality", quality.as_slice())]) {
+            let group: Map<_, _> = keys.iter().filter_map(|key| self.member(key)).collect();
+            if !group.is_empty() {
+                groups.insert(name.to_owned(), group.into());
+            }
+        }
+        groups.into()
+    }
+
+    fn member(&self, key: &Key) -> Option<(String, Value)> {
+        let id = if key.id == INPUT { "path" } else { key.id };
+        let (_, words) = self.0.iter().find(|(known, _)| known == id)?;
+        let first = words.first()?;
+        let value = match key.kind {
+            Kind::Word | Kind::File => first.as_str().into(),
+            Kind::Numbers(count) => numbers(first, count)?,
+            Kind::ColourOrFile => {
+                numbers(first, Numbers::Colour).unwrap_or_else(|| first.as_str().into())
+            }
+            Kind::Parts(parts) => object(first, parts)?,
+            Kind::List(parts) => words.iter().map(|w| object(w, parts)).collect::<Option<_>>()?,
+        };
+        Some((key.name.to_owned(), value))
+    }
+}
+
+fn parsed(text: &str) -> Option<Vec<Value>> {
+    // As it was written, where JSON writes it so.
+    let kept = |t: &str| Some(Value::Number(serde_json::from_str(t).ok()?));
+    let number = |t: &str| kept(t.trim()).or_else(|| Some(t.trim().parse::<f64>().ok()?.into()));
+    text.split(',').map(number).collect()
+}
+
+fn numbers(text: &str, count: Numbers) -> Option<Value> {
+    let all = parsed(text)?;
+    match (all.as_slice(), count) {
+        ([one], _) => Some(one.clone()),
+        (_, Numbers::One) => None,
+        _ => Some(all.into()),
+    }
+}
+
+/// Colours stand last and take what is left.
+fn object(text: &str, parts: &[Part]) -> Option<Value> {
+    let all = parsed(text)?;
+    let mut left = all.as_slice();
+    let mut members = Map::new();
+    for part in parts {
+        let count = match part.numbers {
+            Numbers::One => 1,
+            Numbers::Pair => 2,
+            Numbers::Three => 3,
+            Numbers::Colour => left.len(),
+        };
+        if left.is_empty() || count > left.len() {
+            break;
+        }
+        let (own, after) = left.split_at(count);
+        let value = if let [one] = own { one.clone() } else { own.to_vec().into() };
+        members.insert(part.name.to_owned(), value);
+        left = after;
+    }
+    Some(members.into())
+}

@@ -1,0 +1,67 @@
+//! `ridgelight view`: a lit field in a window.
+
+mod app;
+mod panel;
+mod script;
+mod state;
+mod waves;
+
+use std::collections::VecDeque;
+
+use ridgelight::plan::{self, Limits};
+use ridgelight::{Error, Result};
+use winit::event_loop::EventLoop;
+
+use crate::args::ViewArgs;
+use crate::idle;
+use crate::setup::{self, Outcome};
+use app::App;
+use state::State;
+
+pub fn run(args: &ViewArgs) -> Result<Outcome> {
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+        let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+        setup::check_distinct(&[("--json", Some(json.as_path()))], &inputs)?;
+    }
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
+    }
+    let quality = setup::quality(&args.quality)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let still = setup::wanted(&[]);
+    let picture = |limits: &Limits| plan::picture(&scene, &quality, limits, still);
+    setup::check_plan(&args.global, picture)?;
+    let used = picture(&Limits::boundless(true, 1 << 50))
+        .or_else(|_| picture(&Limits::boundless(false, 1 << 50)))?;
+    idle::say(args.global.quiet, &args.quality.written, &used.settings);
+    let steps = args.script.as_deref().map(script::read).transpose()?.map(VecDeque::from);
+    let no_display = |e: winit::error::EventLoopError| {
+        let text = e.to_string();
+        // Behind the place in winit's source where it was found.
+        let why = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+        let why = why.map_or(text.as_str(), |(_, why)| why).trim_end_matches('.');
+        Error::Device { doing: "view".into(), reason: format!("needs a display: {why}") }
+    };
+    check_keyboard()?;
+    let events = EventLoop::new().map_err(no_display)?;
+    let mut app = App::new(args, State::new(args, scene, quality), steps);
+    let ended = events.run_app(&mut app).map_err(no_display);
+    app.end().and(ended).map(|()| Outcome::Done)
+}
+
+/// Refuses where winit would panic: it loads the library when it opens a window on X.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn check_keyboard() -> Result<()> {
+    let is_there = xkbcommon_dl::xkbcommon_option().is_some()
+        && xkbcommon_dl::x11::xkbcommon_x11_option().is_some();
+    let reason = "needs libxkbcommon-x11.so.0 (Debian: libxkbcommon-x11-0)";
+    let missing = || Error::Device { doing: "view".into(), reason: reason.into() };
+    is_there.then_some(()).ok_or_else(missing)
+}
+
+#[cfg(not(all(unix, not(target_vendor = "apple"))))]
+fn check_keyboard() -> Result<()> {
+    Ok(())
+}

@@ -1,0 +1,121 @@
+//! A turn of the loop: frames that are due, and the steps of a script.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::{Error, Result};
+use winit::dpi::PhysicalSize;
+
+use super::super::script::Step;
+use super::App;
+
+/// How long a window may take to become as large as a script wants it.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+impl App<'_> {
+    /// False where it ends.
+    pub(super) fn turn(&mut self) -> Result<bool> {
+        if self.shown.is_none() {
+            return Ok(true);
+        }
+        if self.steps.is_none() {
+            if self.due > 0 || self.state.is_moving() {
+                self.draw(false)?;
+            }
+            return Ok(true);
+        }
+        let Some(step) = self.steps.as_mut().and_then(|steps| steps.pop_front()) else {
+            return Ok(false);
+        };
+        let again = match step {
+            Step::Key(name) => return self.key(&name),
+            Step::Drag(button, from, way) => {
+                self.cursor = from;
+                return self.drag(button, way);
+            }
+            Step::Wheel(notches, at) => return self.wheel(notches, at),
+            Step::Frames(0) => None,
+            Step::Frames(left) => {
+                let is_drawn = self.draw(false)?.is_some();
+                Some(Step::Frames(left - u32::from(is_drawn)))
+            }
+            Step::Size(wanted) => self.resize(wanted, PATIENCE)?,
+            Step::Resizing(wanted, until) => {
+                let left = until.saturating_duration_since(Instant::now());
+                self.resize(wanted, left)?
+            }
+            Step::Lose => {
+                if let Some(shown) = &mut self.shown {
+                    shown.screen.renew()?;
+                }
+                None
+            }
+            Step::Picture(path) => self.save_picture(Some(&path)).map(|()| None)?,
+            Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
+            Step::Screenshot(path) => match self.draw(true)? {
+                Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
+                None => Some(Step::Screenshot(path)),
+            },
+            Step::Report => {
+                self.report();
+                None
+            }
+            Step::Wait(seconds) => {
+                let until = Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 600.0));
+                Some(Step::Waiting(until))
+            }
+            Step::Waiting(until) => {
+                if self.due > 0 || self.state.is_moving() {
+                    self.draw(false)?;
+                } else {
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+                (Instant::now() < until).then_some(Step::Waiting(until))
+            }
+        };
+        if let (Some(again), Some(steps)) = (again, &mut self.steps) {
+            steps.push_front(again);
+        }
+        Ok(true)
+    }
+
+    /// Asks for a size until pictures have it.
+    fn resize(&mut self, wanted: [u32; 2], left: Duration) -> Result<Option<Step>> {
+        let Some(shown) = &self.shown else { return Ok(None) };
+        if shown.size == wanted {
+            return Ok(None);
+        }
+        if left.is_zero() {
+            let found = format!("{} × {}", shown.size[0], shown.size[1]);
+            let expected = format!("{} × {}", wanted[0], wanted[1]);
+            return Err(Error::setting("--script: size", found, expected));
+        }
+        let until = Instant::now() + left;
+        if left == PATIENCE {
+            let _ = shown.window.request_inner_size(PhysicalSize::new(wanted[0], wanted[1]));
+        }
+        self.draw(false)?;
+        Ok(Some(Step::Resizing(wanted, until)))
+    }
+
+    fn report(&mut self) {
+        let spent = std::mem::take(&mut self.spent);
+        let mut sorted = spent.clone();
+        sorted.sort_by(f64::total_cmp);
+        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let ns = self.shown.iter().flat_map(|s| &s.times).map(|t| t.ns).sum::<f64>();
+        let resident = resident_kib().map_or_else(|| "unknown".into(), |kib| kib.to_string());
+        crate::say!(
+            "frames {}, median of {} {middle:.3} ms, passes {:.3} ms, resident KiB {resident}",
+            self.frames,
+            spent.len(),
+            ns / 1e6
+        );
+    }
+}
+
+/// Memory of this process, where the system tells it as Linux does.
+fn resident_kib() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    line.trim().trim_end_matches("kB").trim().parse().ok()
+}

@@ -1,0 +1,398 @@
+//! Pictures of a lit field in a window.
+
+mod chain;
+mod drawer;
+mod recording;
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ash::{khr, vk};
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+
+use super::allocator::MemoryUse;
+use super::memory::Backed;
+use super::surface::Handles;
+use super::{Frame, Headless, HeadlessOptions, Timing, failed};
+use crate::files::Tone;
+use crate::plan::{Map, Plan, View};
+use crate::{Error, Result};
+
+use chain::Chain;
+use drawer::Drawer;
+
+/// Frames in flight.
+const SLOTS: usize = 2;
+
+/// A device that shows pictures in a window: its swapchain, and two frames in flight.
+pub struct Screen {
+    gpu: Headless,
+    swapchains: khr::swapchain::Device,
+    /// None before the first picture and where the last is of no use any more.
+    chain: Option<Chain>,
+    slots: Vec<Slot>,
+    next: usize,
+    drawer: Option<Drawer>,
+    /// Outlives its surface, which goes with the device.
+    _window: Arc<dyn Any>,
+}
+
+/// One frame in flight.
+struct Slot {
+    pool: vk::CommandPool,
+    commands: vk::CommandBuffer,
+    /// Signalled when its commands have run.
+    done: vk::Fence,
+    /// Signalled when its picture may be drawn into.
+    acquired: vk::Semaphore,
+    /// Heights, text, and what is read back: made when first needed.
+    heights: Option<Backed>,
+    panel: Option<Backed>,
+    readback: Option<Backed>,
+}
+
+/// Text over a picture: opaque, in its upper left corner.
+#[derive(Clone, Copy, Debug)]
+pub struct Panel<'a> {
+    /// Columns and rows, pixels; what does not fit is cut off.
+    pub size: [u32; 2],
+    /// Red, green, blue and 255, row after row.
+    pub pixels: &'a [[u8; 4]],
+}
+
+/// How a lit field is seen.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// From straight above, to the byte as in a PNG; its order of bytes is [`Screen::swaps`].
+    Map(&'a Map),
+    /// From a camera.
+    Camera(&'a View),
+}
+
+/// What one frame shows, and what is done before.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot<'a> {
+    /// New heights above the field's base, one a sample; else as they are.
+    pub heights: Option<&'a [f32]>,
+    /// Passes that light the field anew, by position in its plan.
+    pub passes: &'a [usize],
+    /// What is seen of it; the size is [`Screen::size`].
+    pub sight: Sight<'a>,
+    /// How radiance looks.
+    pub tone: Tone,
+    /// The field's, where it has any.
+    pub voids: Option<&'a [bool]>,
+    /// Over the picture.
+    pub panel: Option<Panel<'a>>,
+    /// Whether the picture is read back, which waits for it.
+    pub keeps: bool,
+}
+
+/// What became of a frame that has been handed to the window.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// GPU times of the frame before the last, by pass, where they are in.
+    pub timings: Vec<Timing>,
+    /// Red, green, blue, 255 of each pixel, row after row, where they were to be kept.
+    pub pixels: Option<Vec<[u8; 4]>>,
+}
+
+impl Screen {
+    /// A device for a window, the one that `options` name or the first that shows pictures in it.
+    ///
+    /// # Errors
+    /// As [`Headless::new`]; a window or a device that takes no pictures.
+    pub fn new<W>(window: Arc<W>, options: &HeadlessOptions) -> Result<Self>
+    where
+        W: HasDisplayHandle + HasWindowHandle + 'static,
+    {
+        let unknown = |e: raw_window_handle::HandleError| Error::Device {
+            doing: "showing pictures in a window".into(),
+            reason: e.to_string(),
+        };
+        let handles = Handles {
+            display: window.display_handle().map_err(unknown)?.as_raw(),
+            window: window.window_handle().map_err(unknown)?.as_raw(),
+        };
+        let gpu = Headless::showing(options, Some(handles))?;
+        let host = gpu.host();
+        let swapchains = khr::swapchain::Device::new(&host.instance, &host.device);
+        let (slots, _window) = (Vec::new(), window as Arc<dyn Any>);
+        let mut screen =
+            Self { gpu, swapchains, chain: None, slots, next: 0, drawer: None, _window };
+        for _ in 0..SLOTS {
+            let slot = Slot::new(&screen.gpu)?;
+            screen.slots.push(slot);
+        }
+        Ok(screen)
+    }
+
+    /// Its device.
+    pub fn gpu(&mut self) -> &mut Headless {
+        &mut self.gpu
+    }
+
+    /// A frame whose light it can show: as [`Headless::frame`], for frames in flight. To be ended by
+    /// [`end`](Self::end).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+        self.gpu.frame_in_flight(plan, contents, SLOTS)
+    }
+
+    /// Frees a frame, once the device is done with it.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn end(&mut self, frame: Frame) -> Result<()> {
+        self.wait()?;
+        self.gpu.end(frame);
+        Ok(())
+    }
+
+    /// Waits for all that was handed to the device.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn wait(&self) -> Result<()> {
+        // SAFETY: one thread alone, the one that owns this, hands commands to the device.
+        unsafe { self.gpu.host().device.device_wait_idle() }.map_err(failed("waiting"))
+    }
+
+    /// Columns and rows of the next picture, made ready; none while the window has no area. `wanted` is the
+    /// window's, for systems where a surface has no size of its own.
+    ///
+    /// # Errors
+    /// A device that is out of memory or lost, or that takes no pictures in 8 bits a colour.
+    pub fn size(&mut self, wanted: [u32; 2]) -> Result<Option<[u32; 2]>> {
+        let known = match chain::capabilities(&mut self.gpu) {
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                self.renew()?;
+                chain::capabilities(&mut self.gpu)
+            }
+            known => known,
+        };
+        let known = known.map_err(failed("asking a window for its size"))?;
+        let size = chain::size(&known, wanted);
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        if self.chain.as_ref().is_none_or(|c| c.is_stale || c.size != size) {
+            self.wait()?;
+            let old = self.chain.take();
+            let made = Chain::new(&mut self.gpu, &self.swapchains, (&known, size), old.as_ref());
+            if let Some(old) = old {
+                old.end(&self.gpu, &self.swapchains);
+            }
+            self.chain = Some(made?);
+        }
+        Ok(Some(size))
+    }
+
+    /// Whether blue comes first in the bytes of its pictures; known once there is one.
+    pub fn swaps(&self) -> bool {
+        self.chain.as_ref().is_some_and(Chain::swaps)
+    }
+
+    /// Begins anew with another surface of the window, as after the loss of one.
+    ///
+    /// # Errors
+    /// A device that is lost, a window that is gone.
+    pub fn renew(&mut self) -> Result<()> {
+        self.wait()?;
+        if let Some(chain) = self.chain.take() {
+            chain.end(&self.gpu, &self.swapchains);
+        }
+        match self.gpu.surface() {
+            Some((entry, instance, surface)) => surface.renew(entry, instance),
+            None => Ok(()),
+        }
+    }
+
+    /// Lights a frame as the shot says, draws its picture and hands it to the window. None where there was no
+    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the shot was done.
+    ///
+    /// The first shot of a frame must run all its passes.
+    ///
+    /// # Errors
+    /// A shot that does not fit, or a device out of memory or lost.
+    pub fn draw(&mut self, frame: &mut Frame, shot: &Shot<'_>) -> Result<Option<Shown>> {
+        let slot = self.next;
+        let Some(image) = self.acquire(slot)? else { return Ok(None) };
+        let mut timings = frame.renderer().timings(slot).unwrap_or_default();
+        timings.extend(self.drawer.iter().flat_map(|d| d.timings(slot)));
+        self.prepare(slot, frame, shot)?;
+        self.record(slot, image, frame, shot)?;
+        self.submit(slot, image)?;
+        self.present(slot, image)?;
+        self.next = (slot + 1) % SLOTS;
+        let pixels = if shot.keeps { Some(self.read_back(slot)?) } else { None };
+        Ok(Some(Shown { timings, pixels }))
+    }
+
+    /// The number of the picture to draw into, once the slot is free.
+    fn acquire(&mut self, slot: usize) -> Result<Option<usize>> {
+        let Slot { done, acquired, .. } = self.slots[slot];
+        // SAFETY: the fence is this slot's.
+        let waited = unsafe { self.gpu.host().device.wait_for_fences(&[done], true, u64::MAX) };
+        waited.map_err(failed("waiting for a frame"))?;
+        let Some(chain) = &mut self.chain else { return Ok(None) };
+        /// Compositors may hold pictures of windows that nobody sees.
+        const PATIENCE_NS: u64 = 500_000_000;
+        let none = vk::Fence::null();
+        // SAFETY: the semaphore is this slot's, whose commands, which waited for it, have run.
+        let got = unsafe {
+            self.swapchains.acquire_next_image(chain.swapchain, PATIENCE_NS, acquired, none)
+        };
+        match got {
+            Ok((image, is_suboptimal)) => {
+                chain.is_stale |= is_suboptimal;
+                Ok(Some(image as usize))
+            }
+            Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => Ok(None),
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
+                chain.is_stale = true;
+                Ok(None)
+            }
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew().map(|()| None),
+            Err(other) => Err(failed("taking a picture of the window's")(other)),
+        }
+    }
+
+    fn submit(&self, slot: usize, image: usize) -> Result<()> {
+        let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
+        let chain = self.chain.as_ref().expect("acquired from");
+        let stage = vk::PipelineStageFlags2::ALL_TRANSFER;
+        let wait = [vk::SemaphoreSubmitInfo::default().semaphore(slot.acquired).stage_mask(stage)];
+        let signal = [vk::SemaphoreSubmitInfo::default()
+            .semaphore(chain.finished[image])
+            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.commands)];
+        let submit = [vk::SubmitInfo2::default()
+            .wait_semaphore_infos(&wait)
+            .command_buffer_infos(&commands)
+            .signal_semaphore_infos(&signal)];
+        // SAFETY: everything is this device's; the fence was waited for.
+        unsafe {
+            device
+                .reset_fences(&[slot.done])
+                .and_then(|()| device.queue_submit2(self.gpu.queue(), &submit, slot.done))
+        }
+        .map_err(failed("running a frame"))
+    }
+
+    fn present(&mut self, slot: usize, image: usize) -> Result<()> {
+        let chain = self.chain.as_mut().expect("acquired from");
+        let (finished, swapchains) = ([chain.finished[image]], [chain.swapchain]);
+        let images = [image as u32];
+        let info = vk::PresentInfoKHR::default()
+            .wait_semaphores(&finished)
+            .swapchains(&swapchains)
+            .image_indices(&images);
+        // SAFETY: the picture was acquired, and is left for presenting by the commands of this slot.
+        let shown = unsafe { self.swapchains.queue_present(self.gpu.queue(), &info) };
+        match shown {
+            Ok(is_suboptimal) => chain.is_stale |= is_suboptimal,
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => chain.is_stale = true,
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew()?,
+            Err(other) => return Err(failed(format!("showing frame {slot}"))(other)),
+        }
+        Ok(())
+    }
+}
+
+impl Slot {
+    fn new(gpu: &Headless) -> Result<Self> {
+        let host = gpu.host();
+        let pool = vk::CommandPoolCreateInfo::default()
+            .queue_family_index(host.queue_family)
+            .flags(vk::CommandPoolCreateFlags::TRANSIENT);
+        let done = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+        let acquired = vk::SemaphoreCreateInfo::default();
+        let mut slot = Self {
+            pool: vk::CommandPool::null(),
+            commands: vk::CommandBuffer::null(),
+            done: vk::Fence::null(),
+            acquired: vk::Semaphore::null(),
+            heights: None,
+            panel: None,
+            readback: None,
+        };
+        // SAFETY: the device is alive; what was made before a failure is destroyed below.
+        let made = unsafe {
+            (|| {
+                slot.pool = host.device.create_command_pool(&pool, None)?;
+                slot.done = host.device.create_fence(&done, None)?;
+                slot.acquired = host.device.create_semaphore(&acquired, None)?;
+                let commands = vk::CommandBufferAllocateInfo::default()
+                    .command_pool(slot.pool)
+                    .command_buffer_count(1);
+                slot.commands = host.device.allocate_command_buffers(&commands)?[0];
+                Ok(())
+            })()
+        };
+        match made {
+            Ok(()) => Ok(slot),
+            Err(result) => {
+                slot.end(gpu);
+                Err(failed("making a frame in flight")(result))
+            }
+        }
+    }
+
+    /// Its objects; its buffers go with [`free`](Self::free).
+    fn end(&self, gpu: &Headless) {
+        let device = &gpu.host().device;
+        // SAFETY: made by this device, or null; the caller says that the device is done with them.
+        unsafe {
+            device.destroy_command_pool(self.pool, None);
+            device.destroy_fence(self.done, None);
+            device.destroy_semaphore(self.acquired, None);
+        }
+    }
+
+    fn free(&mut self, gpu: &mut Headless) {
+        let all = [&mut self.heights, &mut self.panel, &mut self.readback];
+        for mut backed in all.into_iter().filter_map(Option::take) {
+            gpu.memory.free(&mut backed);
+        }
+    }
+}
+
+/// A buffer of at least so many bytes in the place of one that is none or smaller.
+fn fitting<'b>(
+    gpu: &mut Headless,
+    place: &'b mut Option<Backed>,
+    (name, bytes): (&str, u64),
+    used_by: MemoryUse,
+) -> Result<&'b mut Backed> {
+    if place.as_mut().and_then(Backed::mapped).is_none_or(|m| (m.len() as u64) < bytes) {
+        if let Some(mut old) = place.take() {
+            gpu.memory.free(&mut old);
+        }
+        let usage = match used_by {
+            MemoryUse::Readback => vk::BufferUsageFlags::TRANSFER_DST,
+            _ => vk::BufferUsageFlags::TRANSFER_SRC,
+        };
+        *place = Some(gpu.memory.buffer(name, bytes, usage, used_by)?);
+    }
+    Ok(place.as_mut().expect("made above"))
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // A lost device is done with everything.
+        let _ = self.wait();
+        if let Some(drawer) = self.drawer.take() {
+            drawer.end(&mut self.gpu);
+        }
+        if let Some(chain) = self.chain.take() {
+            chain.end(&self.gpu, &self.swapchains);
+        }
+        for mut slot in self.slots.drain(..) {
+            slot.free(&mut self.gpu);
+            slot.end(&self.gpu);
+        }
+    }
+}

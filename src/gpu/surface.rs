@@ -1,0 +1,113 @@
+//! What pictures in a window need of instance and device.
+
+use std::ffi::{CStr, c_char};
+
+use ash::{khr, vk};
+use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
+
+use super::failed;
+use crate::{Error, Result};
+
+/// A window as its system knows it; alive as long as this is used.
+#[derive(Clone, Copy)]
+pub(super) struct Handles {
+    pub display: RawDisplayHandle,
+    pub window: RawWindowHandle,
+}
+
+impl Handles {
+    /// Instance extensions that surfaces of its system need.
+    ///
+    /// # Errors
+    /// A system that Vulkan does not know, or that no driver here shows pictures on.
+    pub fn extensions(self, entry: &ash::Entry) -> Result<&'static [*const c_char]> {
+        let doing = "showing pictures in a window";
+        let needed =
+            ash_window::enumerate_required_extensions(self.display).map_err(failed(doing))?;
+        // SAFETY: a query without preconditions.
+        let known = unsafe { entry.enumerate_instance_extension_properties(None) };
+        let known = known.map_err(failed("listing extensions"))?;
+        let is_known = |name: &CStr| known.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
+        // SAFETY: constants of ash, nul-terminated.
+        let mut names = needed.iter().map(|name| unsafe { CStr::from_ptr(*name) });
+        match names.find(|name| !is_known(name)) {
+            Some(name) => {
+                let reason = format!("no Vulkan driver here has {}", name.to_string_lossy());
+                Err(Error::Device { doing: doing.into(), reason })
+            }
+            None => Ok(needed),
+        }
+    }
+}
+
+/// A window's surface; not destroyed but by [`Surface::end`].
+pub(super) struct Surface {
+    pub loader: khr::surface::Instance,
+    pub surface: vk::SurfaceKHR,
+    handles: Handles,
+}
+
+impl Surface {
+    pub fn new(entry: &ash::Entry, instance: &ash::Instance, handles: Handles) -> Result<Self> {
+        let loader = khr::surface::Instance::new(entry, instance);
+        let mut made = Self { loader, surface: vk::SurfaceKHR::null(), handles };
+        made.renew(entry, instance)?;
+        Ok(made)
+    }
+
+    /// Another of the same window, where the first was lost. No swapchain of it may be alive.
+    pub fn renew(&mut self, entry: &ash::Entry, instance: &ash::Instance) -> Result<()> {
+        self.end();
+        let Handles { display, window } = self.handles;
+        // SAFETY: the instance was made with what the system's surfaces need; the window is alive.
+        self.surface =
+            unsafe { ash_window::create_surface(entry, instance, display, window, None) }
+                .map_err(failed("making the surface of a window"))?;
+        Ok(())
+    }
+
+    /// What a device lacks to show pictures on it.
+    pub fn missing(&self, instance: &ash::Instance, device: vk::PhysicalDevice) -> Option<String> {
+        // SAFETY: the physical device is the instance's.
+        let known = unsafe { instance.enumerate_device_extension_properties(device) };
+        let mut known = known.iter().flatten();
+        let name = khr::swapchain::NAME;
+        if !known.any(|e| e.extension_name_as_c_str() == Ok(name)) {
+            return Some(name.to_string_lossy().into_owned());
+        }
+        let has_family = queue_family(instance, device, Some(self)).is_some();
+        (!has_family).then(|| "a queue that computes and shows pictures in this window".into())
+    }
+
+    /// Destroys it: before the instance, after its swapchains. Nothing where there is none.
+    pub fn end(&mut self) {
+        // SAFETY: made by this loader's instance, or null; the caller says that no swapchain is left.
+        unsafe { self.loader.destroy_surface(std::mem::take(&mut self.surface), None) };
+    }
+}
+
+/// The family of the one queue of a device: with compute, and with pictures on the surface where there is one.
+pub(super) fn queue_family(
+    instance: &ash::Instance,
+    device: vk::PhysicalDevice,
+    surface: Option<&Surface>,
+) -> Option<u32> {
+    // SAFETY: the physical device is the instance's.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(device) };
+    let shows = |family: u32| {
+        surface.is_none_or(|s| {
+            // SAFETY: the family is one of the device's, the surface is alive.
+            let shows =
+                unsafe { s.loader.get_physical_device_surface_support(device, family, s.surface) };
+            shows.unwrap_or(false)
+        })
+    };
+    let with = |flags| {
+        let mut all = families.iter().zip(0_u32..);
+        let found = all.find(|(f, index)| f.queue_flags.contains(flags) && shows(*index));
+        found.map(|(_, index)| index)
+    };
+    // Graphics for views, where there are any.
+    let compute = vk::QueueFlags::COMPUTE;
+    with(compute | vk::QueueFlags::GRAPHICS).or_else(|| with(compute))
+}
