@@ -50,7 +50,11 @@ impl Asked {
             Kind::ColourOrFile => {
                 numbers(first, Numbers::Colour).unwrap_or_else(|| first.as_str().into())
             }
+            Kind::Switch => true.into(),
             Kind::Parts(parts) => object(first, parts)?,
+            Kind::PartsOrFile(parts) => {
+                object(first, parts).unwrap_or_else(|| first.as_str().into())
+            }
             Kind::List(parts) => words.iter().map(|w| object(w, parts)).collect::<Option<_>>()?,
         };
         Some((key.name.to_owned(), value))
@@ -83,7 +87,7 @@ fn object(text: &str, parts: &[Part]) -> Option<Value> {
             Numbers::One => 1,
             Numbers::Pair => 2,
             Numbers::Three => 3,
-            Numbers::Colour => left.len(),
+            Numbers::Colour | Numbers::TwoOrThree => left.len(),
         };
         if left.is_empty() || count > left.len() {
             break;
