@@ -314,3 +314,52 @@ fn settings(camera: &Camera, options: &ViewOptions) -> Vec<(String, String)> {
     .map(|(name, value)| (name.to_owned(), value))
     .into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Picture, picture};
+    use crate::scene::{HeightField, Lights, Quality, Surface};
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Level ground of 3 by 3 samples at height 7, the eye 4 above its middle. The north-western sample is 1 west and 1
+    /// north of it. Under 90° the picture spans 8 there from below to above and, twice as wide as high, 16 across: the
+    /// sample is 1/8 to the left and 1/4 up. A parallel picture 5 high and 10 wide: 1/5 and 2/5.
+    #[test]
+    fn samples_are_where_they_are_derived() {
+        let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let limits = Limits::lavapipe();
+        let lit = picture(&scene, &Quality::default(), &limits, Picture::default()).unwrap();
+        let options = ViewOptions { size: [200, 100], ..ViewOptions::default() };
+        for (lens, want) in [
+            (Lens::Perspective { fov_rad: FRAC_PI_2 }, [-0.125, -0.25]),
+            (Lens::Orthographic { height_m: 5.0 }, [-0.2, -0.4]),
+        ] {
+            let camera = Camera {
+                target_m: [1.0, 1.0, 7.0],
+                azimuth_rad: -FRAC_PI_2,
+                elevation_rad: FRAC_PI_2,
+                distance_m: 4.0,
+                lens,
+            };
+            let view = View::new(&scene, &lit, &camera, &options, &limits).unwrap();
+            let t = view.terrain;
+            let away = [-t.origin_col as f32, -t.origin_row as f32, 0.0 - t.origin_m];
+            let clip: [f32; 4] = std::array::from_fn(|k| {
+                t.clip_at_origin[k]
+                    + away[0] * t.clip_per_col[k]
+                    + away[1] * t.clip_per_row[k]
+                    + away[2] * t.clip_per_metre[k]
+            });
+            // A few roundings of numbers up to 4.
+            let is = |got: f32, want: f64| assert!((f64::from(got) - want).abs() < 4e-6, "{got}");
+            is(clip[0] / clip[3], want[0]);
+            is(clip[1] / clip[3], want[1]);
+            let distance = view.distance_m(clip[2] / clip[3]);
+            assert!((distance - 4.0).abs() < 4e-6, "{distance}");
+            assert_eq!(view.distance_m(0.0), f64::INFINITY);
+        }
+    }
+}
