@@ -21,12 +21,9 @@ mod goldens;
 mod harmonics;
 mod keys;
 mod many_lights;
-<<<<<<< HEAD
 mod map;
-=======
 #[path = "../naive/mod.rs"]
 mod naive;
->>>>>>> 50f00bde3cc825197ee821e8d020886fb5083ef4
 mod pits;
 mod pruned;
 mod pyramid;

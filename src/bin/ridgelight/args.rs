@@ -26,12 +26,8 @@ pub use quality::{
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
-<<<<<<< HEAD
-pub use values::{albedo_colour, sun};
+pub use values::{PhongArg, albedo_colour, sun};
 pub use view::ViewArgs;
-=======
-pub use values::{PhongArg, albedo_colour};
->>>>>>> 50f00bde3cc825197ee821e8d020886fb5083ef4
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
 #[derive(Parser)]
