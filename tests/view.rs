@@ -134,13 +134,15 @@ fn gpu_a_window_shows_what_render_writes() {
 fn gpu_a_camera_sees_what_render_does() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nkey v\nframes 2\nscreenshot shot.png\npicture saved.png\n\
-        key left\nkey up\nkey +\nkey k\ndrag middle 9,9 5,3\nframes 1\nscreenshot other.png\nkey home\nlose\n\
+        key left\nkey up\nkey +\nkey k\ndrag middle 9,9 5,3\nframes 1\nscreenshot other.png\npicture other_p.png\nscene other.json\nkey home\nlose\n\
         frames 1\nscreenshot again.png\nkey v\nframes 1\nscreenshot map.png\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 96x60"), script);
     let camera = "--camera 180,45 --fov 40 --samples 1 --size 96x60";
     folder.done(None, &format!("render hills.asc {LIT} {camera} -o camera.png --quiet"));
     assert_same(&folder, "saved.png", "camera.png");
     assert_same(&folder, "again.png", "shot.png");
+    folder.done(None, "render --scene other.json -o other_r.png --quiet");
+    assert_same(&folder, "other_p.png", "other_r.png");
     let [shot, saved, other] = ["shot.png", "saved.png", "other.png"].map(|n| folder.picture(n));
     let apart = |a: &Planes| {
         let pairs = colours(a).concat().into_iter().zip(colours(&saved).concat());

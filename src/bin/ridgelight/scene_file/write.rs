@@ -20,10 +20,15 @@ impl Asked {
         Self(given.collect())
     }
 
-    /// Other words for a flag; none where it is to be left away.
+    /// Other words for a flag.
     pub fn set(&mut self, id: &str, words: Vec<String>) {
-        self.0.retain(|(known, _)| known != id);
+        self.clear(id);
         self.0.push((id.to_owned(), words));
+    }
+
+    /// Nothing for a flag.
+    pub fn clear(&mut self, id: &str) {
+        self.0.retain(|(known, _)| known != id);
     }
 
     /// The words of a scene file, whose files stand where they do for the command.
@@ -87,7 +92,7 @@ fn object(text: &str, parts: &[Part]) -> Option<Value> {
             Numbers::One => 1,
             Numbers::Pair => 2,
             Numbers::Three => 3,
-            Numbers::Colour | Numbers::TwoOrThree => left.len(),
+            Numbers::TwoOrThree | Numbers::Colour => left.len(),
         };
         if left.is_empty() || count > left.len() {
             break;

@@ -26,6 +26,9 @@ pub const KEYS: [&str; 11] = [
     "H    Q Esc        this list, the figures, nothing; end",
 ];
 
+/// Angle between the lower and the upper edge of what a camera sees, degrees.
+const FOV_DEG: f64 = 40.0;
+
 /// Cells of the mesh along a side, at most: larger fields are drawn through fewer samples.
 const MOST_CELLS: u32 = 1024;
 
@@ -110,9 +113,23 @@ impl State {
         self.waves.is_some()
     }
 
-    /// What was given and what has been changed since, for a scene file.
-    pub fn asked(&self) -> &Asked {
-        &self.asked
+    /// What was given and what has been changed since, for a scene file; of a picture of this size.
+    pub fn asked(&self, [width, height]: [u32; 2], limits: &Limits) -> Asked {
+        let mut asked = self.asked.clone();
+        // The window's, where there is no camera.
+        asked.clear("size");
+        let Some(camera) = &self.camera else { return asked };
+        let Camera { target_m: [x, y, z], azimuth_rad, elevation_rad, distance_m, .. } = camera;
+        let compass = hundredths(90.0 - azimuth_rad.to_degrees());
+        let elevation = hundredths(elevation_rad.to_degrees());
+        asked.set("camera", vec![format!("{compass},{elevation},{distance_m}")]);
+        asked.set("look_at", vec![format!("{x},{y},{z}")]);
+        let options = self.options([width, height], limits);
+        asked.set("fov", vec![FOV_DEG.to_string()]);
+        asked.set("size", vec![format!("{width}x{height}")]);
+        asked.set("samples", vec![options.samples.to_string()]);
+        asked.set("mesh_step", vec![options.mesh_step.to_string()]);
+        asked
     }
 
     /// As `render` would, while nothing moves.
@@ -185,13 +202,12 @@ impl State {
 
     /// Turns the first sun, degrees; makes one where there is none.
     fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
-        let rounded = |deg: f64| (deg * 100.0).round() / 100.0;
         let lights = &mut self.scene.lights;
         let words = match lights.suns.first() {
             Some(sun) => {
                 let (azimuth, elevation) = compass(sun);
-                let azimuth = rounded((azimuth + clockwise).rem_euclid(360.0)) % 360.0;
-                sun_words(sun, azimuth, rounded((elevation + up).clamp(0.0, 90.0)))
+                let azimuth = hundredths((azimuth + clockwise).rem_euclid(360.0)) % 360.0;
+                sun_words(sun, azimuth, hundredths((elevation + up).clamp(0.0, 90.0)))
             }
             None => "315,30".to_owned(),
         };
@@ -216,21 +232,25 @@ impl State {
     /// What a camera sees, where there is one.
     pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
         let Some(camera) = &self.camera else { return Ok(None) };
-        let field = &self.scene.field;
-        let options = ViewOptions {
+        let options = self.options(size, limits);
+        View::new(&self.scene, lit, camera, &options, limits).map(Some)
+    }
+
+    fn options(&self, size: [u32; 2], limits: &Limits) -> ViewOptions {
+        let longest = self.scene.field.rows().max(self.scene.field.cols()) as u32;
+        ViewOptions {
             size,
             // Processors pay for each.
             samples: if limits.is_cpu { 1 } else { 4 },
-            mesh_step: (field.rows().max(field.cols()) as u32).div_ceil(MOST_CELLS).min(1024),
+            mesh_step: longest.div_ceil(MOST_CELLS).min(1024),
             ..ViewOptions::default()
-        };
-        View::new(&self.scene, lit, camera, &options, limits).map(Some)
+        }
     }
 
     /// From the south, all of the field in the picture.
     fn begin_camera(&mut self, size: [u32; 2]) -> Wish {
         let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
-        let lens = Lens::Perspective { fov_rad: 40_f64.to_radians() };
+        let lens = Lens::Perspective { fov_rad: FOV_DEG.to_radians() };
         let angles = [-90_f64, 45.0].map(f64::to_radians);
         if self.scene.field.rows().min(self.scene.field.cols()) < 2 {
             self.message = Some("a camera needs two rows and two columns".into());
@@ -257,10 +277,12 @@ impl State {
     /// Turns the camera, degrees; moves the map where there is none.
     fn turn(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
         let Some(camera) = &mut self.camera else { return self.shift(size, pixels) };
-        let per_pixel = 180.0_f64.to_radians() / f64::from(size[1].max(1));
-        camera.azimuth_rad -= pixels[0] * per_pixel;
-        let elevation = camera.elevation_rad + pixels[1] * per_pixel;
-        camera.elevation_rad = elevation.clamp(1_f64.to_radians(), 90_f64.to_radians());
+        let per_pixel = 180.0 / f64::from(size[1].max(1));
+        // Hundredths of degrees, which files keep.
+        let azimuth = camera.azimuth_rad.to_degrees() - pixels[0] * per_pixel;
+        camera.azimuth_rad = (90.0 - hundredths(90.0 - azimuth) % 360.0).to_radians();
+        let elevation = camera.elevation_rad.to_degrees() + pixels[1] * per_pixel;
+        camera.elevation_rad = hundredths(elevation).clamp(1.0, 90.0).to_radians();
         Wish::Show
     }
 
@@ -434,6 +456,10 @@ fn method(quality: &Quality) -> &'static str {
 fn compass(sun: &Sun) -> (f64, f64) {
     let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
     ((90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad))
+}
+
+fn hundredths(degrees: f64) -> f64 {
+    (degrees * 100.0).round() / 100.0
 }
 
 /// As `--sun` takes it.

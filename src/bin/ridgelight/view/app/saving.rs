@@ -37,10 +37,11 @@ impl App<'_> {
         self.say(saved, &path)
     }
 
-    /// What `render --scene` takes. Neither waves nor a camera are in it.
+    /// What `render --scene` takes. Waves are not in it.
     pub(super) fn save_scene(&mut self, path: Option<&Path>) -> Result<()> {
         let path = path.map_or_else(|| self.free_name("json"), Path::to_owned);
-        let scene = self.state.asked().to_json(&Cli::command());
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let scene = self.state.asked(shown.size, &shown.limits).to_json(&Cli::command());
         let saved = files::write_json(&path, &scene);
         self.say(saved, &path)?;
         if let (true, Some(said)) = (self.state.is_moving(), &mut self.state.message) {
