@@ -217,17 +217,26 @@ fn auto() -> Result<String> {
     let whole = |key| figures.number(&figures.all, key);
     let of = |key| figures.number(&figures.all["summary"], key);
     let (held, chosen) = (of("held")?, of("chosen")?);
+    let mut different: Vec<(&str, &str)> = figures
+        .rows()
+        .iter()
+        .filter_map(|row| Some((row["scene"].as_str()?, row["settings"].as_str()?)))
+        .collect();
+    different.sort_unstable();
+    different.dedup();
     let mut out = String::new();
     writeln!(
         out,
         "5, 2, 1, 0.5 and 0.2 % asked of {} pairs of a field (its middle {}²) and lights that nothing was \
-         fitted on (other pairs of each were): {held} of {chosen} choices hold ({:.1} %; {} are within the bound that they state), {} of {} are refused ({} of them though \
+         fitted on (other pairs of each were): {held} of {chosen} choices hold ({:.1} %; {} of them differ, \
+         {} are within the bound that they state), {} of {} are refused ({} of them though \
          settings that hold were drawn). Time over the cheapest that truly holds of all that a `trade` walk of {} s \
          and the choices drew, in turn: \
          median {:.2}, 90 % {:.2}, worst {:.2}; at most 1.3 in {} of {}.",
         whole("pairs")?,
         whole("side")?,
         100.0 * held / chosen,
+        different.len(),
         of("within_stated_bound")?,
         of("refused")?,
         of("asked")?,
@@ -257,6 +266,21 @@ fn with(readme: &str, name: &str, new: &str) -> Result<String> {
         return Err(missing());
     }
     Ok(format!("{before}{begin}\n{new}\n{end}{after}"))
+}
+
+/// What `readme` links to here and is not there.
+fn broken(readme: &str) -> Option<&str> {
+    let links = readme.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0));
+    let headings: Vec<String> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("## "))
+        .map(|title| title.to_lowercase().replace(' ', "-"))
+        .collect();
+    let is_there = |link: &&str| match link.strip_prefix('#') {
+        Some(anchor) => headings.iter().any(|h| h == anchor),
+        None => link.starts_with("http") || Path::new(link).exists(),
+    };
+    links.into_iter().find(|link| !is_there(link))
 }
 
 fn run(check: bool) -> Result<bool> {
@@ -289,6 +313,10 @@ fn run(check: bool) -> Result<bool> {
     }
     if !check {
         files::write_text(path, &readme).map_err(|e| e.to_string())?;
+    }
+    if let Some(link) = broken(&readme) {
+        eprintln!("README.md links to {link}, which is not there");
+        return Ok(false);
     }
     Ok(true)
 }

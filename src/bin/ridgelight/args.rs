@@ -29,7 +29,8 @@ use values::bytes;
 pub use values::{PhongArg, albedo_colour, sun};
 pub use view::ViewArgs;
 
-/// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
+/// Lights height fields: exact horizons under sky, environment, suns, key lights and balls of light, and what the
+/// ground throws back, as Vulkan passes.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Cli {
@@ -123,7 +124,15 @@ pub struct NotYet {
     pub rest: Vec<String>,
 }
 
+const RENDER_HELP: &str = "\
+Examples:
+  ridgelight render dem.tif --sun 315,30 --sky 0.3 -o relief.png
+  ridgelight render heights.png --cell 30 --env sky.hdr --bounces 2 --layers lights -o lit.exr
+  ridgelight render dem.tif --sun 250,15 --camera 150,12 -o seen.png
+  ridgelight render dem.tif --sun 250,15 --max-error 0.01 -o within_a_percent.exr";
+
 #[derive(Args)]
+#[command(after_help = RENDER_HELP)]
 pub struct RenderArgs {
     #[command(flatten)]
     pub input: Input,

@@ -17,8 +17,9 @@ pub struct BounceArgs {
     /// Azimuths of bounces, 4..1024; with --bounces
     #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true)]
     pub bounce_azimuths: u32,
-    /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1; with --bounces
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
+    /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1, default 1/65536; with
+    /// --bounces
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true)]
     pub bounce_cutoff: f64,
     /// Levels a doubling of distance of the pyramid of light, 1..16; with --bounce-engine pyramid
     #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]

@@ -5,7 +5,7 @@ use clap::Args;
 const AFTER_HELP: &str = "\
 Every channel that both files have is compared by name, in linear light (a .png is decoded from sRGB); \
 channels that only one has are named, and one that A lacks is beyond any bound, given or not (but for an \
-alpha that is 1 everywhere). Voids are NaN, or alpha 0: a void in both is masked and counted; \
+alpha that is 1 everywhere and a reference's own standard_error). Voids are NaN, or alpha 0: a void in both is masked and counted; \
 a void in one only is counted and is beyond any bound, given or not.
 
 FLIP (Andersson et al. 2020) is how different two pictures look when one takes the other's place: 0 \

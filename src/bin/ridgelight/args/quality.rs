@@ -48,9 +48,9 @@ pub struct QualityArgs {
     /// wide light needs more
     #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
     pub sun_azimuths: u32,
-    /// What a sample may lose of the brightest light of a ball, 0..1, so that each ball is looked for at fewer
-    /// samples: more, faster
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, allow_negative_numbers = true)]
+    /// What a sample may lose of the brightest light of a ball, 0..1, default 1/65536, so that each ball is looked for
+    /// at fewer samples: more, faster
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true)]
     pub light_cutoff: f64,
     /// What balls of light are lit by; sh takes --sh-order, --wedges, --receiver and --window as an environment
     /// does, and horizons from --method pyramid
