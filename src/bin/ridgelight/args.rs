@@ -26,7 +26,9 @@ pub use quality::{
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
-pub use values::{PhongArg, albedo_colour, sun};
+#[cfg(feature = "window")]
+pub use values::sun;
+pub use values::{PhongArg, albedo_colour};
 pub use view::ViewArgs;
 
 /// Lights height fields: exact horizons, sky, environment, suns and key lights, as Vulkan compute passes.
