@@ -26,7 +26,9 @@ pub use quality::{
 pub use reference::ReferenceArgs;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
-pub use values::{PhongArg, albedo_colour, sun};
+#[cfg(feature = "window")]
+pub use values::sun;
+pub use values::{PhongArg, albedo_colour};
 pub use view::ViewArgs;
 
 /// Lights height fields: exact horizons under sky, environment, suns, key lights and balls of light, and what the

@@ -5,6 +5,7 @@ mod json;
 mod keys;
 #[cfg(test)]
 mod schema;
+#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "windows save scenes"))]
 mod write;
 
 use std::ffi::OsString;
