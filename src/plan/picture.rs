@@ -14,7 +14,7 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
-use crate::scene::{Albedo, Basis, Border, LightBasis, Lobe, Quality, Scene, Wedges};
+use crate::scene::{Albedo, Basis, Border, Environment, LightBasis, Lobe, Quality, Scene, Wedges};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -107,6 +107,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let (mut tables, mut harmonics) = (None, None);
     let has_gloss = shining.has_gloss_around();
     if has_gloss || shining.environment.is_some() && quality.basis == Basis::Sh {
+        shining.environment.map_or(Ok(()), Environment::check_series)?;
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
             return Err(Error::setting(
                 "--wedges table with --lines exact",

@@ -38,11 +38,11 @@ impl Environment {
         if !is_angle(rotation_rad) {
             return Err(Error::setting("environment rotation", rotation_rad.to_string(), ANGLE));
         }
-        if let Some(i) = texels.iter().position(|t| !shines(t)) {
+        if let Some(i) = texels.iter().position(|t| !t.iter().all(|v| v.is_finite() && *v >= 0.0)) {
             return Err(Error::setting(
                 format!("environment at row {}, column {}", i / width, i % width),
                 format!("{:?}", texels[i]),
-                RADIANCES,
+                "finite radiance, 0 or more",
             ));
         }
         Ok(Self { width, height, texels, rotation_rad })
@@ -71,6 +71,19 @@ impl Environment {
         &self.texels
     }
 
+    /// Refuses radiances whose series would not be within f32.
+    ///
+    /// # Errors
+    /// The first texel above 1e36.
+    pub(crate) fn check_series(&self) -> Result<()> {
+        let Some(i) = self.texels.iter().position(|t| !shines(t)) else { return Ok(()) };
+        Err(Error::setting(
+            format!("environment at row {}, column {}", i / self.width, i % self.width),
+            format!("{:?}", self.texels[i]),
+            format!("{RADIANCES} where harmonics are made of them"),
+        ))
+    }
+
     /// Counter-clockwise turn about the vertical, radians.
     pub fn rotation_rad(&self) -> f64 {
         self.rotation_rad
@@ -83,5 +96,21 @@ impl Environment {
             Border::Open => self.height(),
             Border::Plane | Border::Periodic => self.height().div_ceil(2),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radiances_beyond_series_are_named() {
+        let of = |radiance: f32| {
+            let texels = vec![[0.0; 3], [0.0, radiance, 0.0]];
+            Environment::new(2, 1, texels, 0.0).unwrap().check_series()
+        };
+        assert!(of(1e36).is_ok());
+        let said = of(1.1e36).unwrap_err().to_string();
+        assert!(said.starts_with("environment at row 0, column 1: "), "{said}");
     }
 }
