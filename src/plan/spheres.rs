@@ -15,8 +15,8 @@ const HALVINGS: u32 = 32;
 /// The threshold lies at most this far below what may be lost: more lights are in no plan.
 const MOST_LIGHTS: f64 = 1e18;
 
-/// The least radius over the distance to the nearest sample: both limbs' elevations err by 6e-8.
-const NARROWEST: f64 = 0.99e-6;
+/// The least radius over the distance to the nearest sample: both limbs' elevations err by 6e-8, an eighth of it.
+const NARROWEST: f64 = 5e-7;
 
 /// Balls that any sample is to get light from.
 pub(super) struct Spheres<'a> {
@@ -45,7 +45,7 @@ impl<'a> Spheres<'a> {
                 return Err(Error::setting(
                     format!("light {}: radius", i + 1),
                     ball.radius_m.to_string(),
-                    format!("{} at least: a millionth of the way to the nearest sample", {
+                    format!("{} at least: half a millionth of the way to the nearest sample", {
                         ball.radius_m * NARROWEST / seems
                     }),
                 ));
@@ -260,6 +260,19 @@ mod tests {
         let run = after.passes_after(&before, &[]);
         let names: Vec<&str> = run.iter().map(|i| after.passes[*i].name()).collect();
         assert_eq!(names, ["sphere_shade", "light_resolve"]);
+    }
+
+    #[test]
+    fn a_ball_too_narrow_for_f32_is_refused() {
+        let field = fractal(64, 1).unwrap();
+        let of = |radius: f64| {
+            let far = ball(10.0, 20.0, radius);
+            let far = SphereLight { position_m: [10.0, 20.0, 1e6], ..far };
+            Spheres::of(&field, vec![(0, &far)], 0.0, &mut Vec::new()).map(drop)
+        };
+        assert!(of(0.51).is_ok());
+        let said = of(0.49).unwrap_err().to_string();
+        assert!(said.starts_with("light 1: radius: found 0.49, expected 0.4999"), "{said}");
     }
 
     #[test]
