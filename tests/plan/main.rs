@@ -9,7 +9,8 @@ mod walks;
 use ridgelight::plan::{self, Kind, Limits, Owner, Picture, Plan, missing_barriers};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, Bounces, Environment, Fuse, HeightField, Hull, KeyLight,
-    Levels, Lights, Lines, Method, Precision, Quality, Receiver, Scene, Sun, Surface,
+    Levels, LightBasis, Lights, Lines, Method, Precision, Quality, Receiver, Scene, SphereLight,
+    Sun, Surface, Wedges,
 };
 
 fn flat(rows: usize, cols: usize) -> HeightField {
@@ -21,7 +22,7 @@ fn under_sky(field: HeightField) -> Scene {
     Scene { field, surface: Surface::default(), lights }
 }
 
-/// Sky, environment, a point and a disc over a map of colours.
+/// Sky, environment, a point and a disc, a key light over a map of colours.
 fn under_everything(field: HeightField, border: Border) -> Scene {
     let map = vec![[0.5, 0.4, 0.3]; field.rows() * field.cols()];
     let sun = |diameter_rad| Sun {
@@ -35,6 +36,12 @@ fn under_everything(field: HeightField, border: Border) -> Scene {
         sky: Some([1.0; 3]),
         environment: Some(environment.expect("an environment")),
         suns: vec![sun(0.0), sun(0.02)],
+        keys: vec![KeyLight {
+            azimuth_rad: 4.0,
+            width_rad: 0.4,
+            elevations_rad: [0.2, 0.5],
+            radiance: [2.0; 3],
+        }],
         ..Lights::default()
     };
     Scene {
@@ -78,6 +85,11 @@ fn is(plan: &Plan, text: &str) {
 /// Plans of every form of every pass, at sizes that make groups, lanes and layers odd.
 fn plans() -> Vec<Plan> {
     let base = Quality { azimuths: 12, ..Quality::default() };
+    let soft = Quality { basis: Basis::Sh, ..base };
+    let bounced = |engine| {
+        let bounces = Bounces { count: 3, engine, azimuths: 8, cutoff: 0.0, ..Bounces::default() };
+        Quality { bounces, ..base }
+    };
     let qualities = [
         base,
         Quality { hull: Hull::Shared, fuse: Fuse::Slopes, ..base },
@@ -89,6 +101,15 @@ fn plans() -> Vec<Plan> {
         Quality { lines: Lines::Exact, ..base },
         Quality { method: Method::Pyramid, ..base },
         Quality { method: Method::Pyramid, levels: Levels::Pyramid, level_offset: 0, ..base },
+        soft,
+        Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..soft },
+        Quality { wedges: Wedges::Table, light_basis: LightBasis::Sh, ..soft },
+        Quality { method: Method::Pyramid, light_basis: LightBasis::Sh, subsample: 4, ..soft },
+        bounced(BounceEngine::Brute),
+        bounced(BounceEngine::Sweep),
+        bounced(BounceEngine::Pyramid),
+        Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::Sweep) },
+        Quality { subsample: 2, basis: Basis::Sh, ..bounced(BounceEngine::Brute) },
     ];
     let graphics = Limits { is_cpu: false, ..Limits::lavapipe() };
     let mut all = Vec::new();
@@ -98,8 +119,15 @@ fn plans() -> Vec<Plan> {
             all.push(plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan"));
             for quality in &qualities {
                 let mut scene = under_everything(flat(rows, cols), border);
+                // Balls take no edits, which others do.
+                if quality.basis == Basis::Sh || quality.bounces.count > 0 {
+                    let (position_m, radius_m) = ([1.0, 1.0, 2.0], 0.5);
+                    scene.lights.spheres =
+                        vec![SphereLight { position_m, radius_m, radiance: [3.0; 3] }];
+                }
                 if quality.lines == Lines::Exact {
                     scene.lights.suns.clear();
+                    scene.lights.keys.clear();
                 }
                 let wanted = Picture { light_layers: true, sky_view: true, ..Picture::default() };
                 let mut plan = |limits: &Limits| {
