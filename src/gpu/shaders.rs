@@ -55,6 +55,15 @@ include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 /// Checks at compile time that a host struct lies in memory as the shaders read it.
 macro_rules! same_layout {
+    ($host:ty, [$($shader:ident),+ $(,)?], { $($fields:tt)+ }) => {
+        $crate::gpu::shaders::same_layout!(@each $host, [$($shader),+], { $($fields)+ });
+    };
+    (@each $host:ty, [$($shader:ident),+], $fields:tt) => {
+        $($crate::gpu::shaders::same_layout!(@one $host, $shader, $fields);)+
+    };
+    (@one $host:ty, $shader:ident, { $($fields:tt)+ }) => {
+        $crate::gpu::shaders::same_layout!($host, $shader, $($fields)+);
+    };
     ($host:ty, $shader:ident, $($field:ident = $member:ident),+ $(,)?) => {
         const _: () = {
             $(assert!(std::mem::offset_of!($host, $field) == $crate::gpu::shaders::offsets::$shader::$member);)+

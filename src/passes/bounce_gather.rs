@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use super::pyramid_march;
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
@@ -6,9 +8,10 @@ use crate::plan::sweep::WARM_UP_PERIODS;
 use crate::plan::{Bounce, Builder, ResourceId};
 use crate::scene::{HeightField, Levels, Receiver};
 
+/// Of this pass and of `gloss_gather`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct BounceGatherPush {
+pub(super) struct GatherPush {
     cols: i32,
     rows: i32,
     cell_x_m: f32,
@@ -27,24 +30,50 @@ struct BounceGatherPush {
 }
 
 same_layout!(
-    BounceGatherPush,
-    bounce_gather_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    azimuths = AZIMUTHS,
-    first_azimuth = FIRST_AZIMUTH,
-    last_azimuth = LAST_AZIMUTH,
-    warm_up = WARM_UP,
-    fine_samples = FINE_SAMPLES,
-    width_shift = WIDTH_SHIFT,
-    growth = GROWTH,
-    shade_fine = SHADE_FINE,
-    shade_shift = SHADE_SHIFT,
-    step_shade = STEP_SHADE,
-    step_height = STEP_HEIGHT,
+    GatherPush,
+    [bounce_gather_push, gloss_gather_push],
+    {
+        cols = COLS,
+        rows = ROWS,
+        cell_x_m = CELL_X_M,
+        cell_y_m = CELL_Y_M,
+        azimuths = AZIMUTHS,
+        first_azimuth = FIRST_AZIMUTH,
+        last_azimuth = LAST_AZIMUTH,
+        warm_up = WARM_UP,
+        fine_samples = FINE_SAMPLES,
+        width_shift = WIDTH_SHIFT,
+        growth = GROWTH,
+        shade_fine = SHADE_FINE,
+        shade_shift = SHADE_SHIFT,
+        step_shade = STEP_SHADE,
+        step_height = STEP_HEIGHT,
+    }
 );
+
+impl GatherPush {
+    /// Of some of so many azimuths.
+    pub fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
+        let [cell_x, cell_y] = field.cell_m();
+        Self {
+            cols: field.cols() as i32,
+            rows: field.rows() as i32,
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+            azimuths: azimuths as i32,
+            first_azimuth: range.start as i32,
+            last_azimuth: range.end as i32,
+            warm_up: if of.heights.periodic { WARM_UP_PERIODS as i32 } else { 0 },
+            fine_samples: of.heights.fine_samples() as i32,
+            width_shift: of.heights.width_shift() as i32,
+            growth: of.heights.growth(),
+            shade_fine: of.shade.fine_samples() as i32,
+            shade_shift: of.shade.width_shift() as i32,
+            step_shade: of.shade.level_step as i32,
+            step_height: of.heights.level_step as i32,
+        }
+    }
+}
 
 /// Levels of exit radiance.
 #[derive(Clone, Copy)]
@@ -63,6 +92,30 @@ pub(crate) struct Pyramids {
     pub shade: Pyramid,
     pub shade_images: Option<ShadeImages>,
     pub receiver: Receiver,
+}
+
+impl Pyramids {
+    /// Levels of heights, as shaders call them.
+    pub fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+        match self.height_images {
+            Some(pyramid_march::Images { stack: Some(stack), .. }) => vec![("height_stack", stack)],
+            Some(pyramid_march::Images { levels, table, stack: None }) => {
+                vec![("height_levels", levels), ("level_table", table)]
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// Levels of exit radiance, as shaders call them.
+    pub fn shade_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+        match self.shade_images {
+            Some(ShadeImages { stack: Some(stack), .. }) => vec![("shade_stack", stack)],
+            Some(ShadeImages { levels, table, stack: None }) => {
+                vec![("shade_levels", levels), ("shade_table", table)]
+            }
+            None => Vec::new(),
+        }
+    }
 }
 
 /// What every sample, or every node, sees of the surface by its pyramids, in as many dispatches as its azimuths need.
@@ -85,22 +138,8 @@ pub(crate) fn plan(
         ("exit_radiance", bounce.exit),
         ("bounce_sum", sum),
     ];
-    match of.height_images {
-        Some(pyramid_march::Images { stack: Some(stack), .. }) => {
-            bound.push(("height_stack", stack));
-        }
-        Some(pyramid_march::Images { levels, table, stack: None }) => {
-            bound.extend([("height_levels", levels), ("level_table", table)]);
-        }
-        None => {}
-    }
-    match of.shade_images {
-        Some(ShadeImages { stack: Some(stack), .. }) => bound.push(("shade_stack", stack)),
-        Some(ShadeImages { levels, table, stack: None }) => {
-            bound.extend([("shade_levels", levels), ("shade_table", table)]);
-        }
-        None => {}
-    }
+    bound.extend(of.height_bindings());
+    bound.extend(of.shade_bindings());
     // The march, and inside it samples that round to one distance.
     let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);
     for first in (0..azimuths).step_by(at_once as usize) {
@@ -134,23 +173,7 @@ pub(crate) fn plan(
                 (5, u32::from(of.receiver == Receiver::Plane)),
                 (6, nodes.stride),
             ],
-            &BounceGatherPush {
-                cols: cols as i32,
-                rows: rows as i32,
-                cell_x_m: field.cell_m()[0] as f32,
-                cell_y_m: field.cell_m()[1] as f32,
-                azimuths: azimuths as i32,
-                first_azimuth: first as i32,
-                last_azimuth: last as i32,
-                warm_up: if of.heights.periodic { WARM_UP_PERIODS as i32 } else { 0 },
-                fine_samples: of.heights.fine_samples() as i32,
-                width_shift: of.heights.width_shift() as i32,
-                growth: of.heights.growth(),
-                shade_fine: of.shade.fine_samples() as i32,
-                shade_shift: of.shade.width_shift() as i32,
-                step_shade: of.shade.level_step as i32,
-                step_height: of.heights.level_step as i32,
-            },
+            &GatherPush::of(field, of, azimuths, first..last),
             &bound,
             samples * (2 * 16 + looked_at * (4 + 16)),
             samples * u64::from(count),

@@ -1,51 +1,9 @@
-use super::bounce_gather::{Pyramids, ShadeImages};
-use super::pyramid_march;
+use super::bounce_gather::{GatherPush, Pyramids};
 use super::sphere_shade::MOST_TURNS;
-use crate::gpu::shaders::{self, same_layout};
+use crate::gpu::shaders;
 use crate::plan::glossy::{Glossy, Thrown, Vectors};
-use crate::plan::sweep::WARM_UP_PERIODS;
 use crate::plan::{Bounce, Builder, ResourceId};
 use crate::scene::{HeightField, Levels};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct GlossGatherPush {
-    cols: i32,
-    rows: i32,
-    cell_x_m: f32,
-    cell_y_m: f32,
-    azimuths: i32,
-    first_azimuth: i32,
-    last_azimuth: i32,
-    warm_up: i32,
-    fine_samples: i32,
-    width_shift: i32,
-    growth: f32,
-    shade_fine: i32,
-    shade_shift: i32,
-    step_shade: i32,
-    step_height: i32,
-}
-
-same_layout!(
-    GlossGatherPush,
-    gloss_gather_push,
-    cols = COLS,
-    rows = ROWS,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-    azimuths = AZIMUTHS,
-    first_azimuth = FIRST_AZIMUTH,
-    last_azimuth = LAST_AZIMUTH,
-    warm_up = WARM_UP,
-    fine_samples = FINE_SAMPLES,
-    width_shift = WIDTH_SHIFT,
-    growth = GROWTH,
-    shade_fine = SHADE_FINE,
-    shade_shift = SHADE_SHIFT,
-    step_shade = STEP_SHADE,
-    step_height = STEP_HEIGHT,
-);
 
 /// What every sample sees of the surface by its pyramids, for diffuse ground and for its lobe.
 pub(crate) fn plan(
@@ -64,31 +22,17 @@ pub(crate) fn plan(
         ("bounce_sum", bounce.sum),
         ("arriving", glossy.arriving),
     ];
-    match of.height_images {
-        Some(pyramid_march::Images { stack: Some(stack), .. }) => {
-            bound.push(("height_stack", stack));
-        }
-        Some(pyramid_march::Images { levels, table, stack: None }) => {
-            bound.extend([("height_levels", levels), ("level_table", table)]);
-        }
-        None => {}
-    }
-    match (glossy.thrown, of.shade_images) {
-        (Thrown::Vectors(Vectors { exit, levels, .. }), _) => {
+    bound.extend(of.height_bindings());
+    match glossy.thrown {
+        Thrown::Vectors(Vectors { exit, levels, .. }) => {
             bound.push(("exit_vectors", exit));
             let of_levels =
                 levels.into_iter().flat_map(|[l, t]| [("vector_levels", l), ("shade_table", t)]);
             bound.extend(of_levels);
         }
-        (Thrown::Seen(exit), shade) => {
+        Thrown::Seen(exit) => {
             bound.push(("exit_radiance", exit));
-            match shade {
-                Some(ShadeImages { stack: Some(stack), .. }) => bound.push(("shade_stack", stack)),
-                Some(ShadeImages { levels, table, stack: None }) => {
-                    bound.extend([("shade_levels", levels), ("shade_table", table)]);
-                }
-                None => {}
-            }
+            bound.extend(of.shade_bindings());
         }
     }
     let has_vectors = matches!(glossy.thrown, Thrown::Vectors(_));
@@ -133,23 +77,7 @@ pub(crate) fn plan(
                 (6, glossy.order),
                 (7, knots),
             ],
-            &GlossGatherPush {
-                cols: cols as i32,
-                rows: rows as i32,
-                cell_x_m: field.cell_m()[0] as f32,
-                cell_y_m: field.cell_m()[1] as f32,
-                azimuths: azimuths as i32,
-                first_azimuth: first as i32,
-                last_azimuth: last as i32,
-                warm_up: if of.heights.periodic { WARM_UP_PERIODS as i32 } else { 0 },
-                fine_samples: of.heights.fine_samples() as i32,
-                width_shift: of.heights.width_shift() as i32,
-                growth: of.heights.growth(),
-                shade_fine: of.shade.fine_samples() as i32,
-                shade_shift: of.shade.width_shift() as i32,
-                step_shade: of.shade.level_step as i32,
-                step_height: of.heights.level_step as i32,
-            },
+            &GatherPush::of(field, of, azimuths, first..last),
             &bound,
             samples * (2 * 16 + 2 * 16 * u64::from(layers) + looks * (4 + of_look)),
             samples * u64::from(count),

@@ -146,39 +146,17 @@ struct LandPush {
 
 same_layout!(
     LandPush,
-    sphere_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-);
-same_layout!(
-    LandPush,
-    sphere_sh_shade_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
-);
-same_layout!(
-    LandPush,
-    bounce_march_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
+    [sphere_shade_push, sphere_sh_shade_push, bounce_march_push],
+    {
+        cols = COLS,
+        rows = ROWS,
+        cells_x = CELLS_X,
+        cells_y = CELLS_Y,
+        padded_rows = PADDED_ROWS,
+        top_level = TOP_LEVEL,
+        cell_x_m = CELL_X_M,
+        cell_y_m = CELL_Y_M,
+    }
 );
 
 impl LandPush {
@@ -213,40 +191,17 @@ struct ReducePush {
 
 same_layout!(
     ReducePush,
-    height_reduce_push,
-    size = COLS,
-    first = FIRST,
-    source_size = SOURCE_COLS,
-    source_first = SOURCE_FIRST,
-    ratio = RATIO_X,
-    per_sample = PER_SAMPLE_X,
-    level = LEVEL,
-    width_shift = WIDTH_SHIFT,
-);
-same_layout!(
-    ReducePush,
-    shade_reduce_push,
-    size = COLS,
-    first = FIRST,
-    source_size = SOURCE_COLS,
-    source_first = SOURCE_FIRST,
-    ratio = RATIO_X,
-    per_sample = PER_SAMPLE_X,
-    level = LEVEL,
-    width_shift = WIDTH_SHIFT,
-);
-
-same_layout!(
-    ReducePush,
-    vector_reduce_push,
-    size = COLS,
-    first = FIRST,
-    source_size = SOURCE_COLS,
-    source_first = SOURCE_FIRST,
-    ratio = RATIO_X,
-    per_sample = PER_SAMPLE_X,
-    level = LEVEL,
-    width_shift = WIDTH_SHIFT,
+    [height_reduce_push, shade_reduce_push, vector_reduce_push],
+    {
+        size = COLS,
+        first = FIRST,
+        source_size = SOURCE_COLS,
+        source_first = SOURCE_FIRST,
+        ratio = RATIO_X,
+        per_sample = PER_SAMPLE_X,
+        level = LEVEL,
+        width_shift = WIDTH_SHIFT,
+    }
 );
 
 impl ReducePush {
