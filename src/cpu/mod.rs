@@ -35,6 +35,7 @@ pub mod light_resolve;
 pub mod lit;
 pub mod map_draw;
 pub mod oracle;
+pub mod picture_tone;
 pub mod profile;
 pub mod pyramid_march;
 pub mod sh_shade;

@@ -3,6 +3,7 @@
 use super::atomic::Temporary;
 use super::heights::Raster;
 use super::open;
+use crate::cpu::picture_tone::picture_tone;
 use crate::{Error, Result};
 use ::png::{BitDepth, ColorType as Kind, Encoder, EncodingError};
 use image::codecs::png::PngDecoder;
@@ -122,11 +123,6 @@ fn decoded(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Linear light to sRGB (IEC 61966-2-1), both in [0..1].
-fn encoded(l: f64) -> f64 {
-    if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 }
-}
-
 /// How radiance becomes a picture: times `exposure`, clipped to [0..1], sRGB-encoded.
 ///
 /// No shoulder: what is not clipped can be decoded back to radiance, to the step of 8 bits.
@@ -145,8 +141,7 @@ impl Default for Tone {
 impl Tone {
     /// The 8-bit code of a radiance. Negative is black, infinity white; NaN is the caller's to catch.
     pub fn code(self, radiance: f32) -> u8 {
-        let light = f64::from(radiance) * f64::from(self.exposure);
-        (255.0 * encoded(light.clamp(0.0, 1.0))).round() as u8
+        (255.0 * picture_tone(radiance, self.exposure)).round() as u8
     }
 
     /// The least radiance of each 8-bit code, 0 of the first; NaN where no radiance has a code so high. A radiance's
