@@ -6,7 +6,8 @@ use std::sync::Mutex;
 
 use ash::vk;
 use ridgelight::gpu::{
-    Allocation, Allocator, Frame, Headless, Host, ImageArg, MemoryRequest, MemoryUse, Renderer,
+    Allocation, Allocator, Frame, Headless, Host, ImageArg, MemoryRequest, MemoryUse, Pixels,
+    Renderer,
 };
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Quality, Scene, Sun};
@@ -192,15 +193,21 @@ unsafe impl Allocator for Pieces {
     }
 }
 
-#[test]
-fn an_engines_own_memory_does_as_well() {
-    let mut device = Device::new();
+/// A plan, its frame, and what it has drawn.
+fn drawn(gpu: &mut Headless) -> (Plan, Frame, Pixels) {
     let scene = scene();
-    let gpu = device.gpu.as_mut().expect("alive");
     let plan = planned(gpu, &scene);
     let mut frame = framed(gpu, &scene);
     gpu.draw(&mut frame).expect("drawn");
     let right = gpu.pixels(&frame, 0).expect("pixels");
+    (plan, frame, right)
+}
+
+#[test]
+fn an_engines_own_memory_does_as_well() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let (plan, frame, right) = drawn(gpu);
     let held = std::sync::Arc::new(Mutex::new(Vec::new()));
     let pieces =
         |fault| Box::new(Pieces { host: gpu.host().clone(), held: held.clone(), next: 0, fault });
@@ -268,12 +275,8 @@ fn heard(host: &Host, pipeline_cache: vk::PipelineCache) -> Host {
 #[test]
 fn pipelines_are_made_through_the_callers_cache() {
     let mut device = Device::new();
-    let scene = scene();
     let gpu = device.gpu.as_mut().expect("alive");
-    let plan = planned(gpu, &scene);
-    let mut frame = framed(gpu, &scene);
-    gpu.draw(&mut frame).expect("drawn");
-    let right = gpu.pixels(&frame, 0).expect("pixels");
+    let (plan, frame, right) = drawn(gpu);
     let (inputs, outputs): (Vec<ImageArg>, Vec<ImageArg>) = (frame.inputs(), frame.outputs());
     let mut kept = Vec::new();
     for run in 0..2 {

@@ -16,6 +16,7 @@ use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 
 use super::nodes::{casts, places};
+use super::pyramid::told;
 use super::{Pair, Run, constant, pushed};
 
 impl Run<'_> {
@@ -102,15 +103,7 @@ pub(super) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let tolerance = twin_level(brightest(&exit));
     let at = [number as usize, level.size[0] as usize];
     let mut pairs = paired(&texels[level.first as usize..], &want, tolerance, at);
-    let [x, y] = level.per_sample.map(f32::to_bits);
-    let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
-    let row = &table[4 * (number as usize - 1)..];
-    pairs.extend(want.iter().zip(row).enumerate().map(|(i, (want, got))| Pair {
-        got: (*got).into(),
-        want: (*want).into(),
-        tolerance: 0.0,
-        at: [number as usize, 0, i],
-    }));
+    pairs.extend(told(&level, number, &table));
     pairs
 }
 

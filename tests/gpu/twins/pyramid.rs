@@ -7,7 +7,7 @@ use ridgelight::cpu::shared::sweep::March;
 use ridgelight::cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
-use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::pyramid::{Level, Pyramid};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 
 use super::sweep::marched;
@@ -36,16 +36,21 @@ pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             Pair { got: (*got).into(), want: (*want).into(), tolerance, at }
         })
         .collect();
+    pairs.extend(told(&level, number, &table));
+    pairs
+}
+
+/// What a pyramid's table says of a level.
+pub(super) fn told(level: &Level, number: u32, table: &[u32]) -> Vec<Pair> {
     let [x, y] = level.per_sample.map(f32::to_bits);
     let want = [level.first as u32, level.size[0] | level.size[1] << 16, x, y];
-    let row = &table[4 * (number as usize - 1)..];
-    pairs.extend(want.iter().zip(row).enumerate().map(|(i, (want, got))| Pair {
+    let pair = |(i, (want, got)): (usize, (&u32, &u32))| Pair {
         got: (*got).into(),
         want: (*want).into(),
         tolerance: 0.0,
         at: [number as usize, 0, i],
-    }));
-    pairs
+    };
+    want.iter().zip(&table[4 * (number as usize - 1)..]).enumerate().map(pair).collect()
 }
 
 pub(super) fn height_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
