@@ -47,7 +47,8 @@ layout(push_constant) uniform GlossGatherPush {
     int azimuths;       // of the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
     int last_azimuth;   // not itself
-    int warm_up;        // periods marched beyond the field, or 0
+    int warm_up_cols;   // samples marched beyond the field, along columns: whole periods, or 0
+    int warm_up_rows;
     int fine_samples;   // that look at the field itself
     int width_shift;
     float growth;       // of distances: 2^(1/k)

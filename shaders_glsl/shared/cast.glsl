@@ -4,7 +4,7 @@
 //
 // The including shader declares the constants PERIODIC, STACK, LEVELS, SHADE_LEVELS and GREY, the images heights,
 // height_levels, level_table, height_stack, exit_radiance, shade_levels, shade_table and shade_stack, the numbers
-// cols, rows, warm_up, fine_samples, width_shift, growth, shade_fine, shade_shift, step_shade and step_height, and
+// cols, rows, warm_up_cols, warm_up_rows, fine_samples, width_shift, growth, shade_fine, shade_shift, step_shade and step_height, and
 // defines cast_light.
 #include "shared/angle.glsl"
 #include "shared/cosine.glsl"
@@ -154,8 +154,7 @@ void march(bool exists) {
     // A hair more, so that rounding decides no last step; beyond any step where it runs along the grid.
     float beside_it = min(room / max(abs(shear), 1e-9) + 1e-3, 1e6);
     float across = mix(beside_it, 1e6, shear == 0.0);
-    int length_of = by_x ? size.x : size.y;
-    int far = reach + warm_up * length_of;
+    int far = reach + (by_x ? warm_up_cols : warm_up_rows);
     int bounded = min(reach, int(across));
     reach = PERIODIC ? far : bounded;
     bool meets = exists && reach > 0;

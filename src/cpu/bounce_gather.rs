@@ -11,7 +11,7 @@ use super::shared::sweep::{Heights, wrapped};
 use super::shared::thrown::{Along, Cast, NEARLY_RAD, radiance};
 use crate::basis::legendre::{nlp, occlusion};
 use crate::plan::pyramid::Pyramid;
-use crate::plan::sweep::WARM_UP_PERIODS;
+use crate::plan::sweep::warm_up;
 use crate::scene::{HeightField, Receiver};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -146,14 +146,15 @@ impl BounceGather<'_> {
         let [along, across] = if by_x { cells } else { [cells[1], cells[0]] };
         let shear = across / along.abs();
         let of_axis = |x: bool| match x {
-            true => (col as f64, f64::from(self.pyramid.size[0])),
-            false => (row as f64, f64::from(self.pyramid.size[1])),
+            true => (col as f64, self.pyramid.size[0]),
+            false => (row as f64, self.pyramid.size[1]),
         };
-        let room = |(at, n): (f64, f64), onward: bool| if onward { n - 1.0 - at } else { at };
+        let room =
+            |(at, n): (f64, u32), onward: bool| if onward { f64::from(n) - 1.0 - at } else { at };
         let ahead = room(of_axis(by_x), along > 0.0);
         let beside = room(of_axis(!by_x), shear > 0.0) / shear.abs().max(1e-9) + 1e-3;
         let reach = match self.pyramid.periodic {
-            true => ahead + f64::from(WARM_UP_PERIODS) * of_axis(by_x).1,
+            true => ahead + f64::from(warm_up(of_axis(by_x).1)),
             // Along the grid, along the field's edge too.
             false if shear == 0.0 => ahead,
             false => ahead.min(beside.floor()),

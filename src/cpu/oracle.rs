@@ -9,13 +9,22 @@
 use crate::scene::{Border, HeightField};
 use std::f64::consts::FRAC_PI_2;
 
-/// Periods of the longer side of a periodic field after which a ray is given up.
+/// Periods of the longer side of a periodic field after which a ray is given up, where they are a
+/// thousand cells or more ([`cap_m`]).
 ///
 /// A slope s > 0 can only be met within D = (highest - own height) / s, so a ray ends by itself once
 /// two places are known that nothing beyond can beat. What never ends so are rays that have met
 /// nothing above their own height; past this cap they can only miss an elevation of at most
 /// atan((highest - own height) / (64 · longer side)).
 pub const PERIOD_CAP: usize = 64;
+
+/// The distance after which a ray over a periodic field is given up, in metres: farther than any march goes
+/// ([`crate::plan::sweep::warm_up`]).
+pub fn cap_m(field: &HeightField) -> f64 {
+    let [cell_x, cell_y] = field.cell_m();
+    let side_m = (field.cols() as f64 * cell_x).max(field.rows() as f64 * cell_y);
+    (PERIOD_CAP as f64 * side_m).max(1024.0 * cell_x.max(cell_y))
+}
 
 /// Two vertices of the profile closer than this are one place, in cells: a ray a hair beside a
 /// sample crosses its column, its row and its diagonal at almost one point.
@@ -109,8 +118,7 @@ impl<'a> Oracle<'a> {
         );
         let (row, col) = (row as f64, col as f64);
         let own_m = self.vertex(row, col);
-        let cap_m = PERIOD_CAP as f64
-            * (self.field.cols() as f64 * cell_x).max(self.field.rows() as f64 * cell_y);
+        let cap_m = cap_m(self.field);
         let mut best = Best::default();
         // Columns, rows, diagonals: crossing j of a family lies at t = j / |its lines per t|.
         // Multiplying before dividing keeps crossings of integer directions on their vertices.

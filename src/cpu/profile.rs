@@ -5,7 +5,7 @@
 //! rises above the largest slope so far: one interval of elevations a piece, and the intervals of all
 //! pieces fill the elevations from straight down to the horizon without gap or overlap.
 
-use super::oracle::{Oracle, PERIOD_CAP, grid_direction};
+use super::oracle::{Oracle, cap_m, grid_direction};
 use crate::scene::Border;
 use std::f64::consts::FRAC_PI_2;
 
@@ -75,7 +75,7 @@ impl Oracle<'_> {
     /// Writes what is seen along an azimuth into `seen`, from below upwards.
     ///
     /// Nothing where the ray leaves the field at once. Under `periodic` a ray that has met nothing at
-    /// its own height after [`PERIOD_CAP`] periods goes on seeing its last stretch up to horizontal.
+    /// its own height after [`cap_m`] goes on seeing its last stretch up to horizontal.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -99,12 +99,11 @@ impl Oracle<'_> {
         let field = self.field();
         let (rows, cols) = (field.rows(), field.cols());
         assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
-        let [cell_x, cell_y] = field.cell_m();
         let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
         let here = [row as f64, col as f64];
         let above_m = self.highest_m - self.vertex(here[0], here[1]);
         let periodic = self.border() == Border::Periodic;
-        let cap_m = PERIOD_CAP as f64 * (cols as f64 * cell_x).max(rows as f64 * cell_y);
+        let cap_m = cap_m(field);
         // Crossing j with columns, rows, diagonals lies at j metres a line.
         let per_line = [cols_per_m, rows_per_m, rows_per_m - cols_per_m].map(|p| 1.0 / p.abs());
         let mut lines = [1.0; 3];

@@ -4,7 +4,7 @@ use super::pyramid_march;
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::pyramid::Pyramid;
-use crate::plan::sweep::WARM_UP_PERIODS;
+use crate::plan::sweep::warm_up;
 use crate::plan::{Bounce, Builder, ResourceId};
 use crate::scene::{HeightField, Levels, Receiver};
 
@@ -19,7 +19,8 @@ pub(super) struct GatherPush {
     azimuths: i32,
     first_azimuth: i32,
     last_azimuth: i32,
-    warm_up: i32,
+    warm_up_cols: i32,
+    warm_up_rows: i32,
     fine_samples: i32,
     width_shift: i32,
     growth: f32,
@@ -40,7 +41,8 @@ same_layout!(
         azimuths = AZIMUTHS,
         first_azimuth = FIRST_AZIMUTH,
         last_azimuth = LAST_AZIMUTH,
-        warm_up = WARM_UP,
+        warm_up_cols = WARM_UP_COLS,
+        warm_up_rows = WARM_UP_ROWS,
         fine_samples = FINE_SAMPLES,
         width_shift = WIDTH_SHIFT,
         growth = GROWTH,
@@ -55,6 +57,8 @@ impl GatherPush {
     /// Of some of so many azimuths.
     pub fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
         let [cell_x, cell_y] = field.cell_m();
+        let [warm_up_cols, warm_up_rows] =
+            of.heights.size.map(|n| if of.heights.periodic { warm_up(n) as i32 } else { 0 });
         Self {
             cols: field.cols() as i32,
             rows: field.rows() as i32,
@@ -63,7 +67,8 @@ impl GatherPush {
             azimuths: azimuths as i32,
             first_azimuth: range.start as i32,
             last_azimuth: range.end as i32,
-            warm_up: if of.heights.periodic { WARM_UP_PERIODS as i32 } else { 0 },
+            warm_up_cols,
+            warm_up_rows,
             fine_samples: of.heights.fine_samples() as i32,
             width_shift: of.heights.width_shift() as i32,
             growth: of.heights.growth(),

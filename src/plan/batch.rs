@@ -1,6 +1,6 @@
 use super::azimuths::Azimuth;
 use super::sweep::Sweep;
-use super::{Limits, sweep::WARM_UP_PERIODS};
+use super::{Limits, sweep};
 use crate::scene::Border;
 use crate::{Error, Result};
 
@@ -21,7 +21,7 @@ impl Axis {
     /// The axis of an azimuth in a field of `cols` × `rows`.
     pub fn of(marches_rows: bool, [cols, rows]: [u32; 2], border: Border) -> Self {
         let (lanes, steps) = if marches_rows { (cols, rows) } else { (rows, cols) };
-        let warm_up = if border == Border::Periodic { WARM_UP_PERIODS * steps } else { 0 };
+        let warm_up = if border == Border::Periodic { sweep::warm_up(steps) } else { 0 };
         Self { marches_rows, lanes, steps, warm_up }
     }
 

@@ -1,6 +1,6 @@
 //! The levels of a height pyramid: how many a scene needs, how large each is, where it lies.
 
-use super::sweep::WARM_UP_PERIODS;
+use super::sweep;
 use super::{Builder, Format, Owner, ResourceId};
 use crate::passes::{self, pyramid_march::Images};
 use crate::scene::{Border, Levels, Quality};
@@ -55,7 +55,7 @@ impl Pyramid {
 
     /// Samples of the longest march: the last stands where the march leaves the field.
     pub fn samples(&self) -> u32 {
-        let longest = |n: u32| if self.periodic { n * (1 + WARM_UP_PERIODS) } else { n };
+        let longest = |n: u32| if self.periodic { n + sweep::warm_up(n) } else { n };
         let reach = self.size.map(longest).into_iter().max().unwrap_or(1) - 1;
         // As the march counts them.
         let (mut samples, mut back) = (u32::from(reach > 0), 1.0_f32);

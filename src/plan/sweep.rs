@@ -93,10 +93,17 @@ pub enum Sweep {
     Pyramid(Pyramid),
 }
 
-/// Periods of a periodic field that are marched before the one whose horizons are kept.
+/// Samples of a periodic field that are marched before the period whose horizons are kept: whole periods,
+/// two or more, and as many as make [`LEAST_WARM_UP`] samples.
 ///
-/// What lies farther is not seen: an error of at most atan(relief / (2 · side)).
-pub const WARM_UP_PERIODS: u32 = 2;
+/// What lies farther is not seen: an error of at most atan(relief / their length).
+pub fn warm_up(steps: u32) -> u32 {
+    LEAST_WARM_UP.div_ceil(steps).max(2) * steps
+}
+
+/// A tile as high as it is wide, of 16 cells, is not seen only where it would rise by a slope of 16/512 at most:
+/// sin² of that angle, 0.1 % of what a sky sends to level ground. Two periods alone would miss a slope of 1/2.
+const LEAST_WARM_UP: u32 = 512;
 
 // Entries kept in private memory. Real terrain needs about 30, smooth hills a thousand; what is
 // deeper is done again with the hull in the occluders. Measured on lavapipe: 128 compile in 0.1 s,
@@ -119,9 +126,17 @@ impl Sweep {
         distances: bool,
         notes: &mut Vec<String>,
     ) -> Result<Self> {
-        let longest = field.cols().max(field.rows()) as u32;
-        let total =
-            if border == Border::Periodic { longest * (1 + WARM_UP_PERIODS) } else { longest };
+        let sides = [field.cols() as u32, field.rows() as u32];
+        let marched =
+            |steps| if border == Border::Periodic { steps + warm_up(steps) } else { steps };
+        let total = sides.map(marched).into_iter().max().unwrap_or(1);
+        if border == Border::Periodic {
+            let [cols, rows] = sides.map(warm_up);
+            notes.push(format!(
+                "border periodic: nothing is seen beyond {cols} columns and {rows} rows; at distance d it would \
+                 raise a horizon by atan(relief / d) at most"
+            ));
+        }
         if quality.method == Method::Pyramid {
             if distances {
                 return Err(Error::setting(
@@ -130,8 +145,7 @@ impl Sweep {
                     "a method that knows its occluders: sweep or brute",
                 ));
             }
-            let size = [field.cols() as u32, field.rows() as u32];
-            return Ok(Sweep::Pyramid(Pyramid::new(quality, size, border)));
+            return Ok(Sweep::Pyramid(Pyramid::new(quality, sides, border)));
         }
         if quality.method == Method::Brute {
             if total > MARCH_STEPS_LIMIT {
@@ -148,7 +162,7 @@ impl Sweep {
                 return Err(Error::Limit {
                     what: "--lines exact".into(),
                     needs: format!(
-                        "{total} steps a line (periodic fields are marched three times)"
+                        "{total} steps a line (a periodic field is marched three times at least)"
                     ),
                     limit: format!("{SURFACE_STEPS_LIMIT} steps"),
                 });
@@ -193,7 +207,7 @@ impl Sweep {
         if total > limits.image_side {
             return Err(Error::Limit {
                 what: "--border periodic".into(),
-                needs: format!("{total} steps a line (three periods)"),
+                needs: format!("{total} steps a line (three periods at least)"),
                 limit: format!("{} on this device", limits.image_side),
             });
         }

@@ -9,7 +9,7 @@ use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::measure::fractal::fractal;
 use ridgelight::measure::tolerance::EPSILON;
 use ridgelight::plan::azimuths::even;
-use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::plan::{self, Axis, Limits, Picture};
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Lines, Method, Quality, Scene,
 };
@@ -31,8 +31,8 @@ fn drawn(gpu: &mut Device, scene: &Scene, quality: &Quality) -> Vec<f64> {
 fn ground_shares(field: &HeightField, border: Border, count: u32) -> Vec<f64> {
     let mut azimuths = even(count, field.cell_m());
     number_layers(&mut azimuths);
-    let periods = if border == Border::Periodic { 2 } else { 0 };
-    let warm_up = [field.cols(), field.rows()].map(|n| (n * periods) as i32);
+    let size = [field.cols() as u32, field.rows() as u32];
+    let warm_up = [false, true].map(|by_row| Axis::of(by_row, size, border).warm_up as i32);
     let heights = Heights::of(field, border);
     let mut lattices = Lattices::new(&azimuths, [field.cols(), field.rows()], 15, border);
     for azimuth in &azimuths {

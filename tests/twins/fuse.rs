@@ -28,7 +28,7 @@ fn each_mode(
     options: SweepOptions,
     mut check: impl FnMut(&Swept, Fuse),
 ) {
-    let warm_up = warm_ups(field, border, 2);
+    let warm_up = warm_ups(field, border);
     let lattices = swept(field, border, azimuths, warm_up, options);
     for fuse in FUSES {
         let swept = Swept {
@@ -97,7 +97,7 @@ fn on_axes_and_diagonals_every_mode_is_the_march() {
             azimuths.extend(
                 along_grid_vectors(8, [1.0, 1.0]).expect("vectors").iter().skip(1).step_by(2),
             );
-            let warm_up = warm_ups(&rough, border, 2);
+            let warm_up = warm_ups(&rough, border);
             let unit = marched(&rough, border, &mut azimuths, warm_up, false);
             let all = marched(&rough, border, &mut azimuths.clone(), warm_up, true);
             each_mode(&rough, border, &mut azimuths, SweepOptions::default(), |swept, fuse| {

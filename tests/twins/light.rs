@@ -26,7 +26,7 @@ fn lit<T>(
     azimuths: &mut [Azimuth],
     of: impl Fn(&Swept) -> T,
 ) -> T {
-    let warm_up = warm_ups(field, border, 2);
+    let warm_up = warm_ups(field, border);
     let lattices = marched(field, border, azimuths, warm_up, true);
     let heights = Heights::of(field, border);
     of(&Swept { heights, azimuths, lattices: &lattices, fuse: None, line_shift: 15, warm_up })
@@ -79,8 +79,8 @@ fn the_sky_is_the_closed_form_over_the_oracles_horizons() {
         let sky = lit(&rough, border, &mut azimuths, sky_shade);
         let (_, relief) = extent(&rough);
         let tolerance = 2.0 * march_slope(relief, 2.0) + 16.0 * EPSILON;
-        // What lies beyond two periods is missed by a march: at most relief / their length.
-        let unseen = if border == Border::Periodic { relief / (2.0 * 8.0 * 2.0) } else { 0.0 };
+        // What lies beyond 512 cells, two metres wide or more, is missed by a march.
+        let unseen = if border == Border::Periodic { relief / (512.0 * 2.0) } else { 0.0 };
         for (i, sky) in sky.into_iter().enumerate() {
             let (row, col) = (i / 8, i % 8);
             let n = light::normal(&rough, border, row, col);

@@ -13,6 +13,7 @@ use ridgelight::cpu::horizon_sweep::{SweepOptions, horizon_sweep};
 use ridgelight::cpu::lattice::{Lattices, number_layers};
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::plan::Axis;
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 use ridgelight::scene::{Border, HeightField};
 
@@ -62,9 +63,9 @@ pub(crate) fn grid_vector(azimuth: &Azimuth) -> [f64; 2] {
 }
 
 /// Whole periods before the field, where it repeats: for marches along columns and along rows.
-pub(crate) fn warm_ups(field: &HeightField, border: Border, periods: usize) -> [i32; 2] {
-    let periods = if border == Border::Periodic { periods } else { 0 };
-    [field.cols(), field.rows()].map(|n| (n * periods) as i32)
+pub(crate) fn warm_ups(field: &HeightField, border: Border) -> [i32; 2] {
+    let size = [field.cols() as u32, field.rows() as u32];
+    [false, true].map(|by_row| Axis::of(by_row, size, border).warm_up as i32)
 }
 
 fn warm_up_of(warm_up: [i32; 2], azimuth: &Azimuth) -> i32 {

@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 
 fn check(field: &HeightField, border: Border, count: u32) -> Result<(), String> {
     let mut azimuths = even(count, field.cell_m());
-    let warm_up = warm_ups(field, border, 4);
+    let warm_up = warm_ups(field, border);
     let lattices = marched(field, border, &mut azimuths, warm_up, true);
     let oracle = Oracle::new(field, border);
     let (_, relief) = extent(field);
@@ -56,7 +56,7 @@ fn flat_ground_is_at_slope_0_and_outside_is_nothing() {
     for border in BORDERS {
         for all in [false, true] {
             let mut azimuths = even(24, flat.cell_m());
-            let warm_up = warm_ups(&flat, border, 2);
+            let warm_up = warm_ups(&flat, border);
             let lattices = marched(&flat, border, &mut azimuths, warm_up, all);
             for slope in lattices.cols.slopes.iter().chain(&lattices.rows.slopes) {
                 assert!(*slope == 0.0 || (*slope == -1e9 && border != Border::Periodic));

@@ -31,7 +31,7 @@ fn check(
     azimuths: &mut [Azimuth],
     stride: usize,
 ) -> Result<f64, String> {
-    let warm_up = warm_ups(field, border, 4);
+    let warm_up = warm_ups(field, border);
     let lattices = swept_surface(field, border, azimuths, warm_up);
     let oracle = Oracle::new(field, border);
     let (largest, _) = extent(field);

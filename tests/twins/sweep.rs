@@ -25,7 +25,7 @@ fn every_texel(
     options: SweepOptions,
     mut check: impl FnMut(&Azimuth, &[(i32, f32)], i32, f32) -> Result<(), String>,
 ) -> Result<(), String> {
-    let warm_up = warm_ups(field, border, 2);
+    let warm_up = warm_ups(field, border);
     let lattices = swept(field, border, azimuths, warm_up, options);
     for azimuth in azimuths.iter() {
         let march = March::new(Heights::of(field, border), azimuth);

@@ -21,7 +21,7 @@ fn with_swept<T>(
     azimuths: &mut [Azimuth],
     of: impl FnOnce(&Swept) -> T,
 ) -> T {
-    let warm_up = warm_ups(field, border, 2);
+    let warm_up = warm_ups(field, border);
     let lattices = swept(field, border, azimuths, warm_up, SweepOptions::default());
     of(&Swept {
         heights: Heights::of(field, border),
@@ -148,7 +148,7 @@ fn walks_come_to_the_truth() {
 /// A valley between two planes of slope 1, white on one side up to the ridge: a sample on the dark side at s from the
 /// bottom sees the whole white side, of length a, with ½ (1 - s/√(s² + a²)) of its hemisphere, 1/8 s² less, as between
 /// the bottom and the first white sample radiance is linear. The rule over azimuths is smooth and periodic; beyond
-/// three periods of 128 rows nothing is seen: at most 1 - cos of the angle at which the wall ends there, tan = 2a/256.
+/// 512 rows nothing is seen: at most 1 - cos of the angle at which the wall ends there, tan = 2a/512.
 #[test]
 fn a_white_wall_lights_a_black_one() {
     let (rows, half) = (128, 24);
@@ -167,7 +167,7 @@ fn a_white_wall_lights_a_black_one() {
         for away in [4, 8, 12, 20] {
             let (s, wall) = (away as f64, half as f64);
             let (got, want) = (lit(&white(1.0), away), 0.5 * (1.0 - s / s.hypot(wall)));
-            let bound = 1.0 / (8.0 * s * s) + 1.0 - (2.0 * wall / 256.0_f64).atan().cos();
+            let bound = 1.0 / (8.0 * s * s) + 1.0 - (2.0 * wall / 512.0_f64).atan().cos();
             println!("{away}: {got:.5} {want:.5}, {bound:.5}");
             assert!((got - want).abs() < bound, "{away}: {got} {want} {bound}");
         }
