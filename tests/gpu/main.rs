@@ -7,6 +7,7 @@ mod borrowed;
 mod bounce_edges;
 mod bounce_nodes;
 mod bounces;
+mod buffers;
 mod change;
 mod contract;
 mod debugger;
@@ -39,6 +40,8 @@ mod scenes;
 mod soft_spheres;
 mod spheres;
 mod subsampled;
+#[path = "../target/mod.rs"]
+mod target;
 mod twins;
 mod view;
 mod view_flight;
