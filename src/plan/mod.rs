@@ -78,7 +78,7 @@ pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
-pub use view::{View, ViewOptions, surface_error_m};
+pub use view::{Draw, Drawn, View, ViewOptions, surface_error_m};
 
 use crate::{Error, Result};
 
