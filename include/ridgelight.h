@@ -62,11 +62,15 @@ typedef enum RidgelightResult {
     RIDGELIGHT_RESULT_INTERNAL = 5,
 } RidgelightResult;
 
-// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it.
+// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it,
+// but for ridgelight_plan_take_buffer.
 typedef struct RidgelightPlan RidgelightPlan;
 
 // A plan on a device. One thread at a time uses it, any thread.
 typedef struct RidgelightRenderer RidgelightRenderer;
+
+// Pictures of a lit field before a camera, on a device. One thread at a time uses it, any thread.
+typedef struct RidgelightView RidgelightView;
 
 // What a device must be made with. No extension, of instance or device.
 typedef struct RidgelightRequirements {
@@ -279,7 +283,7 @@ typedef struct RidgelightImageInfo {
     VkFormat format;
     // Columns, rows and layers.
     uint32_t extent[3];
-    // What it must be made for: SAMPLED or STORAGE.
+    // What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     VkImageUsageFlags usage;
     // "heights", "environment", "albedo"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
     char name[32];
@@ -355,6 +359,15 @@ typedef struct RidgelightImage {
     struct RidgelightImageState before;
     // How it is left. Inputs are left as they came, whatever stands here.
     struct RidgelightImageState after;
+    // Instead of image and view, for an input that ridgelight_plan_take_buffer said it of: its texels, row after
+    // row, of usage TRANSFER_SRC. Of `before` stage and access count; it is left so.
+    VkBuffer buffer;
+    // How long all of the buffer is, bytes: nothing beyond is read.
+    uint64_t buffer_bytes;
+    // Where its first texel stands, bytes: whole texels.
+    uint64_t buffer_offset;
+    // From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    uint64_t row_bytes;
 } RidgelightImage;
 
 // A rectangle of a field's samples.
@@ -378,6 +391,52 @@ typedef struct RidgelightTiming {
     // Nanoseconds.
     double ns;
 } RidgelightTiming;
+
+// From where a lit field is seen, and how. North is up on the map.
+typedef struct RidgelightCamera {
+    // sizeof(RidgelightCamera).
+    uint32_t struct_size;
+    // Samples a pixel, 1, 2, 4 or 8, where the device has them; 0: 4.
+    uint32_t samples;
+    // Columns and rows of the picture.
+    uint32_t size[2];
+    // Where the eye stands as seen from what it looks at: in the plane, radians counter-clockwise from east.
+    double azimuth_rad;
+    // And above horizontal, radians, [-pi/2..pi/2].
+    double elevation_rad;
+    // What stands in the middle of the picture: x east of the westernmost column, y north of the southernmost row,
+    // z as heights.
+    double target_m[3];
+    // From there to the eye, [1e-9..1e15]. 0: so far that all of a level field at height 0 is just seen, about its
+    // middle, whatever target_m.
+    double distance_m;
+    // Angle between the lower and the upper edge of the picture, radians, [0.001..3]; 0: 40 degrees.
+    double fov_rad;
+    // Above 0, [1e-9..1e15]: parallel rays, and what the picture spans from its lower to its upper edge.
+    double ortho_height_m;
+    // The mesh has a vertex at every so many samples, [1..1024], default 1. Larger: faster, coarser.
+    uint32_t mesh_step;
+    // Factor before the tone curve, where the picture is of codes; 0: 1.
+    float exposure;
+    // Radiance, linear RGB, where neither ground nor sky is seen.
+    float background[3];
+} RidgelightCamera;
+
+// Images of one picture. Those that are read are left as they came.
+typedef struct RidgelightViewImages {
+    // sizeof(RidgelightViewImages).
+    uint32_t struct_size;
+    // Heights: the plan's input, or what ridgelight_taken says of a buffer.
+    const struct RidgelightImage *heights;
+    // Exit radiance: the plan's output "radiance", of usage SAMPLED too.
+    const struct RidgelightImage *radiance;
+    // The environment, where the scene has one.
+    const struct RidgelightImage *environment;
+    // Drawn into, of the format of ridgelight_view_create, of usage COLOR_ATTACHMENT. What it held is lost.
+    const struct RidgelightImage *picture;
+    // D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
+    const struct RidgelightImage *depth;
+} RidgelightViewImages;
 
 #ifdef __cplusplus
 extern "C" {
@@ -454,6 +513,19 @@ enum RidgelightResult ridgelight_plan_input(const struct RidgelightPlan *plan,
                                             uint32_t index,
                                             struct RidgelightImageInfo *info);
 
+// Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
+// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment and albedo RGBA32F, RGBA16F,
+// RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own. Before a renderer
+// is made; nobody else uses the plan meanwhile.
+//
+// Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
+//
+// # Safety
+// `plan` is alive or null.
+enum RidgelightResult ridgelight_plan_take_buffer(struct RidgelightPlan *plan,
+                                                  uint32_t index,
+                                                  VkFormat format);
+
 // Describes output number `index` of a plan.
 //
 // Returns OK; ARGUMENT, beyond the last too.
@@ -469,7 +541,7 @@ enum RidgelightResult ridgelight_plan_output(const struct RidgelightPlan *plan,
 //
 // Internal images serve all slots: command buffers of different slots run one after the other on one queue.
 //
-// Returns OK, ARGUMENT or DEVICE.
+// Returns OK, ARGUMENT, SETTING or DEVICE.
 //
 // # Safety
 // Pointers are null, or to structs whose struct_size is set, and whose handles are alive until the renderer is
@@ -522,8 +594,8 @@ enum RidgelightResult ridgelight_record_edit(struct RidgelightRenderer *renderer
                                              const struct RidgelightRectangle *rectangle);
 
 // Goes over to a plan that differs in what its passes are told, not in which there are nor in images and
-// buffers: another colour of a light, a sun that has moved a little. The device must be done with all that was
-// recorded; what is recorded next is a whole recording.
+// buffers: another colour of a light, a sun that has moved a little. What is in flight goes on with the plan that
+// it was recorded with, and need not be waited for; what is recorded next is a whole recording.
 //
 // Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 //
@@ -545,6 +617,80 @@ enum RidgelightResult ridgelight_timings(const struct RidgelightRenderer *render
                                          uint32_t slot,
                                          struct RidgelightTiming *timings,
                                          uint32_t *count);
+
+// Makes what pictures of a scene's light need, for `slots` frames in flight (0: 1): `plan` lights it. `format` is
+// R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen, 8 or 10 bits a colour, UNORM or SRGB,
+// which get exposure, clip and sRGB. `allocator` may be null.
+//
+// The device needs dynamicRendering of Vulkan 1.3 besides what ridgelight_requirements asks for, and the host's family
+// graphics.
+//
+// Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
+//
+// # Safety
+// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s pointers
+// what their fields say.
+enum RidgelightResult ridgelight_view_create(const struct RidgelightHost *host,
+                                             const struct RidgelightScene *scene,
+                                             const struct RidgelightPlan *plan,
+                                             const struct RidgelightCamera *camera,
+                                             VkFormat format,
+                                             uint32_t slots,
+                                             const struct RidgelightAllocator *allocator,
+                                             struct RidgelightView **view);
+
+// Frees everything. The device must be done with all that was recorded. Null is allowed.
+//
+// # Safety
+// It came from ridgelight_view_create and is not used again.
+void ridgelight_view_destroy(struct RidgelightView *view);
+
+// Appends a picture to `commands`, which is being recorded outside rendering for the host's family: a second call,
+// after ridgelight_record. `camera` may be another each time, of the same picture size and samples; null: the last.
+// Checks everything first: after an error nothing has been recorded.
+//
+// Returns OK, ARGUMENT or SETTING.
+//
+// # Safety
+// As ridgelight_record: of `images` and `camera`, which are null or structs whose struct_size is set.
+enum RidgelightResult ridgelight_view_record(struct RidgelightView *view,
+                                             VkCommandBuffer commands,
+                                             uint32_t slot,
+                                             const struct RidgelightCamera *camera,
+                                             const struct RidgelightViewImages *images);
+
+// What a value of the depth image stands for: distance along the direction of view from the plane of the eye, infinite
+// where no ground is seen; of the camera that was recorded last.
+//
+// Returns OK, or ARGUMENT.
+//
+// # Safety
+// `view` is alive or null; `distance_m` is null or may be written to.
+enum RidgelightResult ridgelight_view_distance(const struct RidgelightView *view,
+                                               float depth,
+                                               double *distance_m);
+
+// GPU times of the passes of a picture, as ridgelight_timings.
+//
+// Returns OK, or ARGUMENT.
+//
+// # Safety
+// As there.
+enum RidgelightResult ridgelight_view_timings(const struct RidgelightView *view,
+                                              uint32_t slot,
+                                              struct RidgelightTiming *timings,
+                                              uint32_t *count);
+
+// The image that input number `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves it:
+// for passes of one's own, and for ridgelight_view_record. It is to be left so.
+//
+// Returns OK; ARGUMENT, for an input in an image too.
+//
+// # Safety
+// `renderer` is alive or null; `image` is null or points at a struct whose struct_size is set.
+enum RidgelightResult ridgelight_taken(const struct RidgelightRenderer *renderer,
+                                       uint32_t index,
+                                       struct RidgelightImage *image);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -2,6 +2,22 @@
 //! difference are left to be looked at.
 //!
 //! `RIDGELIGHT_BLESS=1` keeps what is got instead; refused where `CI` is set.
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use ridgelight::golden;
+//! # use ridgelight::gpu::Pixels;
+//! # fn test(pixels: Pixels) -> ridgelight::Result<()> {
+//! // Of `Headless::pixels`, 64 rows of 64 texels.
+//! let lit = golden::planes(&pixels, [64, 64])?;
+//! let off = golden::hold(&lit, Path::new("tests/goldens/lit.exr"), 1e-5, Path::new("target/goldens"))?;
+//! assert!(off <= 1.0, "the worst value, in tolerances");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Results of another driver differ by roundings: a tolerance above them ([`tolerance`](crate::measure::tolerance)
+//! has those of single passes) is better than a golden for each.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

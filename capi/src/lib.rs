@@ -11,6 +11,7 @@ mod read;
 mod renderer;
 mod scene;
 mod types;
+mod view;
 
 /// Under the name that C has for it; null is none.
 #[expect(non_camel_case_types, reason = "C's name")]
@@ -22,3 +23,4 @@ pub use plan::*;
 pub use renderer::*;
 pub use scene::*;
 pub use types::*;
+pub use view::*;

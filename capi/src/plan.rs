@@ -2,14 +2,15 @@ use std::ffi::c_char;
 
 use ash::vk;
 use ridgelight::gpu;
-use ridgelight::plan::{self, Kind, Picture, Plan, Resource};
+use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Resource};
 
 use crate::errors::{Done, Failure, RidgelightResult, done};
-use crate::read::{SizeFirst, hand_out, handle, write};
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, write};
 use crate::scene::{RidgelightQuality, RidgelightScene, quality, scene};
 use crate::types::{RidgelightHost, host};
 
-/// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it.
+/// The passes that light one scene, in order, and everything that they touch: data alone. Threads may share it,
+/// but for ridgelight_plan_take_buffer.
 pub struct RidgelightPlan(pub(crate) Plan);
 
 impl RidgelightPlan {
@@ -138,7 +139,7 @@ pub struct RidgelightImageInfo {
     pub format: vk::Format,
     /// Columns, rows and layers.
     pub extent: [u32; 3],
-    /// What it must be made for: SAMPLED or STORAGE.
+    /// What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     pub usage: vk::ImageUsageFlags,
     /// "heights", "environment", "albedo"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
     pub name: [c_char; 32],
@@ -163,6 +164,48 @@ pub unsafe extern "C" fn ridgelight_plan_input(
     done(|| unsafe {
         let image = handle(plan, "plan")?.0.inputs().nth(index as usize);
         describe(image.map(|(_, r)| r), index, vk::ImageUsageFlags::SAMPLED, info)
+    })
+}
+
+/// Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
+/// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment and albedo RGBA32F, RGBA16F,
+/// RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own. Before a renderer
+/// is made; nobody else uses the plan meanwhile.
+///
+/// Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
+///
+/// # Safety
+/// `plan` is alive or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_plan_take_buffer(
+    plan: *mut RidgelightPlan,
+    index: u32,
+    format: vk::Format,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let plan = &mut handle_mut(plan, "plan")?.0;
+        let input = plan.inputs().nth(index as usize).map(|(_, r)| r.clone());
+        let input = input
+            .ok_or_else(|| Failure::argument("index", index, "less than the plan has of them"))?;
+        let known = [
+            Format::R32Float,
+            Format::R16Float,
+            Format::R16Unorm,
+            Format::Rgba32Float,
+            Format::Rgba16Float,
+            Format::Rgba8Unorm,
+            Format::Rgba8Srgb,
+        ];
+        let texels = match format {
+            vk::Format::UNDEFINED => input.format(),
+            _ => known.into_iter().find(|known| known.vk() == format),
+        };
+        let found = format!("{format:?}");
+        let texels = texels.ok_or_else(|| {
+            Failure::argument("format", found, "R32F, R16F, R16_UNORM, RGBA32F, RGBA16F or RGBA8")
+        })?;
+        Ok(plan.take_buffer(&input.name, texels)?)
     })
 }
 
@@ -196,6 +239,8 @@ unsafe fn describe(
     let Kind::Image { format, width, height, layers, .. } = resource.kind else {
         return Err(Failure(RidgelightResult::Internal, "a buffer, where images are".to_owned()));
     };
+    let is_buffer = resource.owner == Owner::InputBuffer;
+    let usage = if is_buffer { vk::ImageUsageFlags::empty() } else { usage };
     let mut value = RidgelightImageInfo {
         struct_size: 0,
         format: format.vk(),

@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use std::ffi::c_char;
 
 use ash::vk;
-use ridgelight::gpu::{ImageArg, Renderer};
+use ridgelight::gpu::{ImageArg, InputArg, Renderer, Timing};
 use ridgelight::plan::{Rectangle, Resource};
 
 use crate::allocator::{Callbacks, RidgelightAllocator};
@@ -14,12 +14,18 @@ use crate::types::{RidgelightHost, RidgelightImage, host};
 /// A plan on a device. One thread at a time uses it, any thread.
 pub struct RidgelightRenderer(Renderer);
 
+impl RidgelightRenderer {
+    pub(crate) fn get(&self) -> &Renderer {
+        &self.0
+    }
+}
+
 /// Makes all that a plan needs on a host's device, for `slots` frames in flight (0: 1): recording takes nothing
 /// more of it. `allocator` may be null: memory is then taken in blocks of 4 MiB.
 ///
 /// Internal images serve all slots: command buffers of different slots run one after the other on one queue.
 ///
-/// Returns OK, ARGUMENT or DEVICE.
+/// Returns OK, ARGUMENT, SETTING or DEVICE.
 ///
 /// # Safety
 /// Pointers are null, or to structs whose struct_size is set, and whose handles are alive until the renderer is
@@ -47,7 +53,7 @@ pub unsafe extern "C" fn ridgelight_renderer_create(
     })
 }
 
-unsafe fn callbacks(from: *const RidgelightAllocator) -> Done<Option<Callbacks>> {
+pub(crate) unsafe fn callbacks(from: *const RidgelightAllocator) -> Done<Option<Callbacks>> {
     if from.is_null() {
         return Ok(None);
     }
@@ -162,31 +168,33 @@ unsafe fn images(
     renderer: &Renderer,
     inputs: Images,
     outputs: Images,
-) -> Done<(Vec<ImageArg>, Vec<ImageArg>)> {
+) -> Done<(Vec<InputArg>, Vec<ImageArg>)> {
     let plan = renderer.plan();
+    let (read, written) = (plan.inputs().map(|(_, r)| r), plan.outputs().map(|(_, r)| r));
     // SAFETY: as the caller of the caller says.
     unsafe {
         Ok((
-            args(inputs, plan.inputs().map(|(_, r)| r), "input")?,
-            args(outputs, plan.outputs().map(|(_, r)| r), "output")?,
+            args(inputs, read, "input", RidgelightImage::input)?,
+            args(outputs, written, "output", RidgelightImage::arg)?,
         ))
     }
 }
 
-unsafe fn args<'a>(
+unsafe fn args<'a, T>(
     (images, count): Images,
     mut wanted: impl Iterator<Item = &'a Resource>,
     name: &str,
-) -> Done<Vec<ImageArg>> {
+    arg: fn(RidgelightImage, Option<&Resource>) -> T,
+) -> Done<Vec<T>> {
     // SAFETY: as the caller of the caller says.
     let images = unsafe { read_all(images, count, name) }?;
     // More than the plan has are for `record` to refuse, by their number.
-    Ok(images.into_iter().map(|image| image.arg(wanted.next())).collect())
+    Ok(images.into_iter().map(|image| arg(image, wanted.next())).collect())
 }
 
 /// Goes over to a plan that differs in what its passes are told, not in which there are nor in images and
-/// buffers: another colour of a light, a sun that has moved a little. The device must be done with all that was
-/// recorded; what is recorded next is a whole recording.
+/// buffers: another colour of a light, a sun that has moved a little. What is in flight goes on with the plan that
+/// it was recorded with, and need not be waited for; what is recorded next is a whole recording.
 ///
 /// Returns OK, ARGUMENT; SETTING where the plan needs a renderer of its own: the old one stays.
 ///
@@ -238,10 +246,22 @@ pub unsafe extern "C" fn ridgelight_timings(
 ) -> RidgelightResult {
     // SAFETY: as the caller says.
     done(|| unsafe {
-        let renderer = &handle(renderer, "renderer")?.0;
+        let times = handle(renderer, "renderer")?.0.timings(slot as usize).unwrap_or_default();
+        write_timings(&times, timings, count)
+    })
+}
+
+/// # Safety
+/// `count` is null or says how many structs `timings` has, each with its struct_size set.
+pub(crate) unsafe fn write_timings(
+    times: &[Timing],
+    timings: *mut RidgelightTiming,
+    count: *mut u32,
+) -> Done {
+    // SAFETY: as the caller says.
+    unsafe {
         let count = handle_mut(count, "count")?;
         let room = read_all(timings.cast_const(), *count, "timing")?;
-        let times = renderer.timings(slot as usize).unwrap_or_default();
         *count = times.len() as u32;
         let mut at = timings;
         for (timing, room) in times.iter().zip(room) {
@@ -251,5 +271,5 @@ pub unsafe extern "C" fn ridgelight_timings(
             at = at.byte_add(room.struct_size as usize);
         }
         Ok(())
-    })
+    }
 }

@@ -1,5 +1,5 @@
 use ash::{ext, vk};
-use ridgelight::gpu::{self, Host, ImageArg, ImageState};
+use ridgelight::gpu::{self, BufferArg, Host, ImageArg, ImageState, InputArg};
 use ridgelight::plan::{Kind, Resource};
 
 use crate::PFN_vkGetInstanceProcAddr;
@@ -157,6 +157,10 @@ pub struct RidgelightImageState {
 }
 
 impl RidgelightImageState {
+    fn of(state: ImageState) -> Self {
+        Self { stage: state.stage, access: state.access, layout: state.layout }
+    }
+
     fn state(self) -> ImageState {
         ImageState { stage: self.stage, access: self.access, layout: self.layout }
     }
@@ -181,12 +185,54 @@ pub struct RidgelightImage {
     pub before: RidgelightImageState,
     /// How it is left. Inputs are left as they came, whatever stands here.
     pub after: RidgelightImageState,
+    /// Instead of image and view, for an input that ridgelight_plan_take_buffer said it of: its texels, row after
+    /// row, of usage TRANSFER_SRC. Of `before` stage and access count; it is left so.
+    pub buffer: vk::Buffer,
+    /// How long all of the buffer is, bytes: nothing beyond is read.
+    pub buffer_bytes: u64,
+    /// Where its first texel stands, bytes: whole texels.
+    pub buffer_offset: u64,
+    /// From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    pub row_bytes: u64,
 }
 
 // SAFETY: numbers and handles, which are checked for null; the size is first.
 unsafe impl SizeFirst for RidgelightImage {}
 
 impl RidgelightImage {
+    /// What C is told of an image.
+    pub(crate) fn of(arg: &ImageArg) -> Self {
+        Self {
+            struct_size: 0,
+            format: arg.format,
+            image: arg.image,
+            view: arg.view,
+            extent: arg.extent,
+            before: RidgelightImageState::of(arg.before),
+            after: RidgelightImageState::of(arg.after),
+            buffer: vk::Buffer::null(),
+            buffer_bytes: 0,
+            buffer_offset: 0,
+            row_bytes: 0,
+        }
+    }
+
+    /// The same of what is read: a buffer, where there is one.
+    pub(crate) fn input(self, resource: Option<&Resource>) -> InputArg {
+        if self.buffer == vk::Buffer::null() {
+            return self.arg(resource).into();
+        }
+        BufferArg {
+            buffer: self.buffer,
+            bytes: self.buffer_bytes,
+            offset: self.buffer_offset,
+            row_bytes: self.row_bytes,
+            stage: self.before.stage,
+            access: self.before.access,
+        }
+        .into()
+    }
+
     /// What fields of 0 leave to the plan is `resource`'s.
     pub(crate) fn arg(self, resource: Option<&Resource>) -> ImageArg {
         let mut arg = ImageArg {

@@ -4,6 +4,9 @@
 //! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
 //! bits; light is summed in f64 and compared within a tolerance. The twin of `path_trace` is [`bounce`],
 //! which finds the same light without chance.
+//!
+//! To be judged by: [`oracle`], brute force over every triangle, and [`bounce`]. To read a shader with its twin
+//! beside it: `shaders_glsl/NAME.comp` and `cpu::NAME`, the same names in both.
 
 pub mod bounce;
 pub mod bounce_gather;

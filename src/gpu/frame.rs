@@ -1,7 +1,7 @@
 use super::allocator::Blocks;
 use super::memory::Backed;
 use super::{Headless, ImageArg, ImageState, Renderer, Timing};
-use crate::plan::{Format, Kind, Plan, Rectangle, Resource};
+use crate::plan::{Format, Kind, Owner, Plan, Rectangle, Resource};
 use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; given back with [`Headless::end`].
@@ -77,6 +77,10 @@ impl Headless {
         contents: &[&[f32]],
         slots: usize,
     ) -> Result<Frame> {
+        if let Some((_, taken)) = plan.inputs().find(|(_, r)| r.owner == Owner::InputBuffer) {
+            let expected = "images alone: a frame has its own";
+            return Err(Error::setting(&taken.name, "an input in a buffer", expected));
+        }
         let inputs: Vec<Resource> = plan.inputs().map(|(_, r)| r.clone()).collect();
         let outputs: Vec<Resource> = plan.outputs().map(|(_, r)| r.clone()).collect();
         let (host, pipelines) = (self.host(), self.pipelines.clone());

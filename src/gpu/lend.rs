@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::allocator::MemoryUse;
 use super::memory::Backed;
-use super::{Headless, ImageArg, ImageState};
+use super::{BufferArg, Headless, ImageArg, ImageState};
 use crate::{Error, Result};
 
 /// An image beside those of frames, in GENERAL; given back with [`Headless::take_back`].
@@ -28,7 +28,52 @@ impl Lent {
     }
 }
 
+/// A buffer of texels, given back with [`Headless::take_back_buffer`].
+pub struct LentBuffer {
+    backed: Backed,
+    bytes: u64,
+}
+
+impl LentBuffer {
+    /// To be read by a renderer whose plan takes a buffer, from its begin, rows one after the other.
+    pub fn arg(&self) -> BufferArg {
+        BufferArg {
+            buffer: self.backed.buffer,
+            bytes: self.bytes,
+            offset: 0,
+            row_bytes: 0,
+            stage: ImageState::ANY_USE.stage,
+            access: ImageState::ANY_USE.access,
+        }
+    }
+
+    /// Its bytes, which the device must not be at work on.
+    pub fn contents(&mut self) -> &mut [u8] {
+        self.backed.mapped().expect("uploads are mapped")
+    }
+}
+
 impl Headless {
+    /// Makes a buffer that the host writes and a renderer copies from, and fills it.
+    ///
+    /// # Errors
+    /// No bytes, or the device's.
+    pub fn lend_buffer(&mut self, name: &str, contents: &[u8]) -> Result<LentBuffer> {
+        if contents.is_empty() {
+            return Err(Error::setting(name, "no bytes", "at least one texel"));
+        }
+        let (usage, bytes) = (vk::BufferUsageFlags::TRANSFER_SRC, contents.len() as u64);
+        let backed = self.memory.buffer(name, bytes, usage, MemoryUse::Upload)?;
+        let mut lent = LentBuffer { backed, bytes };
+        lent.contents().copy_from_slice(contents);
+        Ok(lent)
+    }
+
+    /// Frees a buffer that was lent.
+    pub fn take_back_buffer(&mut self, mut lent: LentBuffer) {
+        self.memory.free(&mut lent.backed);
+    }
+
     /// Makes an image of a colour format that the device samples, and fills it: rows of texels as Vulkan
     /// packs them.
     ///

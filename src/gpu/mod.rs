@@ -1,4 +1,65 @@
 //! Vulkan: device, memory, pipelines, barriers, recording, timing. All of the crate's `unsafe`.
+//!
+//! Three ways in, by whose device it is:
+//!
+//! - **an engine's**: [`Renderer`] records a [plan](crate::plan), [`ViewRenderer`] a [view](crate::plan::View) of what
+//!   it has lit, into the engine's command buffers;
+//! - **one of its own**, for tools and tests: [`Headless`] makes images for a plan's inputs and outputs
+//!   ([`Frame`]), fills, draws and reads them, and [`look`](Headless::look)s at them before a camera;
+//! - **a window's**: [`Screen`].
+//!
+//! # Before there is a device
+//!
+//! [`requirements`] says what to enable: Vulkan 1.3, four features, no extension, a queue with compute. [`missing`]
+//! names what a physical device lacks, [`devices`] lists all, [`limits`] is what a plan may count on.
+//!
+//! # States
+//!
+//! Each image comes with the [state](ImageState) that it is in: stages and accesses that used it last, and its
+//! layout. [`Renderer::record`] begins with the barriers from there and ends with those to where it is to be left:
+//!
+//! | image | comes as | is used as | is left as |
+//! |---|---|---|---|
+//! | inputs | any state with contents | SHADER_READ_ONLY_OPTIMAL, compute | as it came |
+//! | inputs in buffers | any stage and access | copied from | as it came |
+//! | outputs | any, UNDEFINED too | GENERAL, compute | the state asked for |
+//!
+//! What cannot be is refused by a sentence that names image and field ("heights: layout before: found …"), and
+//! then nothing has been recorded. Images of exclusive sharing belong to the host's queue family throughout.
+//!
+//! # Formats, and buffers
+//!
+//! Heights come as R32F, R16F or R16 UNORM, an environment or an albedo as RGBA32F, RGBA16F, RGBA8 UNORM or SRGB
+//! ([`Format::vk_read`]): an [`ImageArg`] is read where it is. Each may also come as rows of texels in a buffer
+//! ([`BufferArg`]), where the plan was told so
+//! ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)): shaders fetch from images, so that each recording begins
+//! with one vkCmdCopyBufferToImage per buffer, into an image of the renderer's
+//! ([`Renderer::taken`]); an [edit](Renderer::record_edit) copies the edited rectangle alone.
+//!
+//! # Lights that change
+//!
+//! What of the light is a frame's own, and what is the plan's:
+//!
+//! | what | how it changes |
+//! |---|---|
+//! | texels of an environment, an albedo, a lobe's map | on the device: they are inputs of each recording |
+//! | colours of sky, suns, keys and balls; directions, positions, sizes | [`Renderer::replace_plan`], a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
+//! | number and kind of lights, a sun into another octant, grey to coloured | a renderer of its own, beside the old one |
+//!
+//! Directions decide which lines a sweep follows and how many, so that they are the host's to know. Where only the
+//! device knows a colour, plan it white with [`light_layers`](crate::plan::Picture::light_layers): each light's own
+//! image times its colour is its share of the picture.
+//!
+//! # Frames in flight
+//!
+//! A renderer has as many slots as it was made for. A slot's last command buffer must have run before it is recorded
+//! again; those of other slots may be in flight. Internal images serve all slots, in turn on one queue. Recording
+//! may move to another thread ([`Renderer`] is `Send`); [`Renderer::timings`] never waits.
+//!
+//! # Memory
+//!
+//! By [`Blocks`] of 4 MiB, or an engine's own [`Allocator`]; all of it taken when a renderer is made, given back by
+//! `destroy`. A renderer that is dropped leaks and says so: what was recorded may still run.
 
 mod allocator;
 mod copy;
@@ -23,9 +84,9 @@ pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 pub use frame::{Frame, Pixels};
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
-pub use lend::Lent;
+pub use lend::{Lent, LentBuffer};
 pub use look::Seen;
-pub use renderer::{ImageArg, ImageState, Renderer, Timing};
+pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
 pub use screen::{Panel, Screen, Shot, Shown, Sight};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
@@ -82,10 +143,14 @@ impl Format {
             Format::R32Uint => vk::Format::R32_UINT,
             Format::Rg32Uint => vk::Format::R32G32_UINT,
             Format::Rgba32Uint => vk::Format::R32G32B32A32_UINT,
+            Format::R16Float => vk::Format::R16_SFLOAT,
+            Format::R16Unorm => vk::Format::R16_UNORM,
+            Format::Rgba8Unorm => vk::Format::R8G8B8A8_UNORM,
+            Format::Rgba8Srgb => vk::Format::R8G8B8A8_SRGB,
         }
     }
 
-    /// What a caller's image may have where a plan says this format and only fetches from it: itself first.
+    /// Formats that a caller's image may have where a plan says this format and only fetches from it: itself first.
     /// Texels are what Vulkan makes of them: UNORM from 0 to 1, SRGB decoded to linear light.
     pub fn vk_read(self) -> &'static [vk::Format] {
         match self {
@@ -102,6 +167,10 @@ impl Format {
             Format::R32Uint => &[vk::Format::R32_UINT],
             Format::Rg32Uint => &[vk::Format::R32G32_UINT],
             Format::Rgba32Uint => &[vk::Format::R32G32B32A32_UINT],
+            Format::R16Float => &[vk::Format::R16_SFLOAT],
+            Format::R16Unorm => &[vk::Format::R16_UNORM],
+            Format::Rgba8Unorm => &[vk::Format::R8G8B8A8_UNORM],
+            Format::Rgba8Srgb => &[vk::Format::R8G8B8A8_SRGB],
         }
     }
 }

@@ -29,7 +29,7 @@ impl Frame {
     fn handles(&self, id: ResourceId) -> Option<(vk::Image, vk::Buffer)> {
         let owner = self.plan().resources.get(id.0)?.owner;
         let backed = match owner {
-            Owner::Internal => self.renderer.as_ref()?.internal(id)?,
+            Owner::Internal | Owner::InputBuffer => self.renderer.as_ref()?.internal(id)?,
             Owner::Input | Owner::Output => {
                 let before = &self.plan().resources[..id.0];
                 let n = before.iter().filter(|r| r.owner == owner).count();

@@ -1,5 +1,6 @@
 //! A plan on a device: what it makes, what it records, how long that took.
 
+mod buffers;
 mod checks;
 mod images;
 mod recording;
@@ -15,6 +16,8 @@ use super::{Host, requirements};
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
 use crate::{Error, Result};
 
+pub use buffers::{BufferArg, InputArg};
+pub(super) use checks::{check_stage, check_state};
 pub(super) use images::transition;
 pub use images::{ImageArg, ImageState};
 
@@ -58,6 +61,10 @@ pub struct Renderer {
 
 struct Slot {
     sets: Vec<vk::DescriptorSet>,
+    /// What the host tells passes beside push constants: of frames in flight each has its own.
+    tables: Vec<(ResourceId, Backed)>,
+    /// Whether they hold what the plan says.
+    is_told: bool,
     /// Null where there are no timestamps.
     queries: vk::QueryPool,
     recorded: Vec<usize>,
@@ -137,8 +144,10 @@ impl Renderer {
     /// Goes over to a plan that differs in what its passes are told, not in which there are nor in
     /// images and buffers: another colour of a light, a sun that has moved a little. Returns the
     /// passes that must run next for inputs that are as they were ([`Plan::passes_after`]), with those
-    /// that earlier calls returned and that have not been recorded since. The device must be done with
-    /// all that was recorded.
+    /// that earlier calls returned and that have not been recorded since.
+    ///
+    /// Waits for nothing, and need not be waited for: what is in flight goes on with the plan that it was
+    /// recorded with. So lights may change each frame.
     ///
     /// # Errors
     /// A plan that needs a renderer of its own; the old one stays.
@@ -154,34 +163,44 @@ impl Renderer {
             self.pending[pass] = true;
         }
         self.plan = plan;
-        self.write_tables()?;
+        self.slots.iter_mut().for_each(|slot| slot.is_told = false);
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
     }
 
-    /// Bytes of memory that the renderer has taken from the device: [`Plan::internal_bytes`], and what
-    /// drivers round up to and blocks of 4 MiB leave over.
+    /// Bytes of memory that the renderer has taken from the device: [`Plan::internal_bytes`], the few that
+    /// the host writes once more for each further slot, and what drivers round up to and blocks of 4 MiB
+    /// leave over.
     pub fn device_bytes(&self) -> u64 {
         self.memory.bytes()
     }
 
-    /// An image or buffer of the renderer's own.
+    /// An image or buffer of the renderer's own; of those that each slot has, the first's.
     pub(crate) fn internal(&self, id: ResourceId) -> Option<&Backed> {
-        self.resources.get(id.0)?.as_ref()
+        self.internal_of(0, id)
+    }
+
+    /// The same, a slot's.
+    fn internal_of(&self, slot: usize, id: ResourceId) -> Option<&Backed> {
+        let tables = self.slots.get(slot).map_or(&[][..], |slot| &slot.tables);
+        let table = tables.iter().find(|table| table.0 == id).map(|table| &table.1);
+        table.or(self.resources.get(id.0)?.as_ref())
     }
 
     /// Appends the plan to `commands`.
     ///
     /// `slot` is the frame in flight (0..slots); its last command buffer must have run. `inputs` and
-    /// `outputs` are the plan's, in its order. Checks everything first: after an error nothing has
-    /// been recorded. `commands` is being recorded, outside a render pass, for the host's family.
+    /// `outputs` are the plan's, in its order: inputs are [images](ImageArg), or [buffers](BufferArg) where
+    /// [`Plan::take_buffer`] said so ([`InputArg`] where there are both). Checks everything first: after an
+    /// error nothing has been recorded. `commands` is being recorded, outside a render pass, for the host's
+    /// family.
     ///
     /// # Errors
     /// An argument that is not what the plan says, by name.
-    pub fn record(
+    pub fn record<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
         slot: usize,
-        inputs: &[ImageArg],
+        inputs: &[I],
         outputs: &[ImageArg],
     ) -> Result<()> {
         let all: Vec<usize> = (0..self.plan.passes.len()).collect();
@@ -196,23 +215,25 @@ impl Renderer {
     /// # Errors
     /// As [`record`](Self::record); a pass that does not exist, twice the same, or one before another
     /// that precedes it in the plan; fewer than all by a renderer that has not yet recorded all.
-    pub fn record_passes(
+    pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
         slot: usize,
-        inputs: &[ImageArg],
+        inputs: &[I],
         outputs: &[ImageArg],
         passes: &[usize],
     ) -> Result<()> {
-        self.check(slot, inputs, outputs)?;
+        let inputs: Vec<InputArg> = inputs.iter().map(|input| (*input).into()).collect();
+        self.check(slot, &inputs, outputs)?;
         self.check_passes(passes)?;
-        self.append(commands, slot, inputs, outputs, passes, None);
+        self.append(commands, slot, &inputs, outputs, passes, None);
         self.is_drawn = true;
         passes.iter().for_each(|pass| self.pending[*pass] = false);
         self.plan.add_followers(&mut self.pending);
         Ok(())
     }
 
+    /// Appends what an edit needs, a rectangle of heights in which alone the input differs from the last
     /// recording: the lines that can reach it, from where they meet it to where it no longer stands on
     /// their hulls, and the light of the samples that see it ([`Plan::edit_passes`]). Leaves the same
     /// bits in every output as [`record`](Self::record) would.
@@ -224,20 +245,21 @@ impl Renderer {
     /// As [`record`](Self::record); a plan without passes for edits; a rectangle beyond the field; a
     /// renderer that has not yet recorded all, or not all since its plan was replaced; an output whose
     /// contents are not kept.
-    pub fn record_edit(
+    pub fn record_edit<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
         slot: usize,
-        inputs: &[ImageArg],
+        inputs: &[I],
         outputs: &[ImageArg],
         rectangle: Rectangle,
     ) -> Result<()> {
         self.plan.check_edit(rectangle)?;
-        self.check(slot, inputs, outputs)?;
+        let inputs: Vec<InputArg> = inputs.iter().map(|input| (*input).into()).collect();
+        self.check(slot, &inputs, outputs)?;
         self.check_drawn(outputs)?;
         let first = self.plan.passes.len();
         let passes: Vec<usize> = (first..first + self.plan.edit_passes.len()).collect();
-        self.append(commands, slot, inputs, outputs, &passes, Some(rectangle));
+        self.append(commands, slot, &inputs, outputs, &passes, Some(rectangle));
         Ok(())
     }
 
@@ -246,6 +268,7 @@ impl Renderer {
         let all = self.plan.passes.len();
         if index < all { &self.plan.passes[index] } else { &self.plan.edit_passes[index - all] }
     }
+
     /// GPU times of the passes that `slot` recorded last, in order; none while they are not all in, and
     /// where the host's queue family has no timestamps. Never waits.
     pub fn timings(&self, slot: usize) -> Option<Vec<Timing>> {

@@ -1,5 +1,37 @@
 //! Scene and quality to passes: pure, without a Vulkan call. What is decided here is all that is
 //! ever recorded; [`Plan`] prints it.
+//!
+//! | function | what its passes make |
+//! |---|---|
+//! | [`picture()`] | exit radiance of every sample, and a layer for each light and bounce where asked ([`Picture`]) |
+//! | [`horizons()`] | elevations of the horizon of every sample along every azimuth |
+//! | [`reference()`] | the same light by paths, slowly, with its standard error |
+//! | [`map()`] | a lit field as a screen shows it, from above |
+//! | [`View::new`] | what a camera sees of a lit field; not compute passes: [`ViewRenderer`](crate::gpu::ViewRenderer)'s |
+//!
+//! Each takes [`Limits`], of a device ([`gpu::limits`](crate::gpu::limits)) or of none:
+//!
+//! ```
+//! use ridgelight::plan::{self, Limits, Picture};
+//! use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
+//!
+//! let field = HeightField::new(64, 64, &[0.0; 64 * 64], [1.0, 1.0], None)?;
+//! let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+//! let scene = Scene { field, surface: Surface::default(), lights };
+//! let plan = plan::picture(&scene, &Quality::default(), &Limits::lavapipe(), Picture::default())?;
+//! println!("{plan}"); // passes with groups, traffic and reasons; images and buffers with bytes
+//! for pass in &plan.passes {
+//!     println!("{}: {}", pass.label(), pass.why);
+//! }
+//! let [inputs, outputs] =
+//!     [plan.inputs().count(), plan.outputs().count()];
+//! assert_eq!((inputs, outputs), (1, 1)); // "heights" in, "radiance" out
+//! # Ok::<(), ridgelight::Error>(())
+//! ```
+//!
+//! A scene that has changed is a new plan: [`Plan::passes_after`] says which passes a frame needs then, and
+//! [`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan) goes over to it where images and passes are the same.
+//! A rectangle of heights that has changed needs [`Plan::edit_passes`] alone.
 
 pub mod azimuths;
 mod batch;
@@ -46,7 +78,9 @@ pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
-pub use view::{View, ViewOptions, surface_error_m};
+pub use view::{Draw, Drawn, View, ViewOptions, surface_error_m};
+
+use crate::{Error, Result};
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]
@@ -73,9 +107,10 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Bytes of all internal images and buffers.
+    /// Bytes of all images and buffers that a renderer makes.
     pub fn internal_bytes(&self) -> u64 {
-        self.resources.iter().filter(|r| r.owner == Owner::Internal).map(Resource::bytes).sum()
+        let is_own = |r: &&Resource| matches!(r.owner, Owner::Internal | Owner::InputBuffer);
+        self.resources.iter().filter(is_own).map(Resource::bytes).sum()
     }
 
     /// Bytes of everything, inputs and outputs too: what counts against the memory budget.
@@ -93,18 +128,56 @@ impl Plan {
         self.resources.iter().position(|r| r.name == name).map(ResourceId)
     }
 
-    /// Names of the images that a caller hands in, in the order of the inputs.
+    /// The images, and buffers of texels, that a caller hands in, in the order of the inputs.
     pub fn inputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
-        self.owned(Owner::Input)
+        self.owned(|owner| matches!(owner, Owner::Input | Owner::InputBuffer))
     }
 
     /// The images that a caller has written to, in the order of the outputs.
     pub fn outputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
-        self.owned(Owner::Output)
+        self.owned(|owner| owner == Owner::Output)
     }
 
-    fn owned(&self, owner: Owner) -> impl Iterator<Item = (ResourceId, &Resource)> {
+    fn owned(&self, is: fn(Owner) -> bool) -> impl Iterator<Item = (ResourceId, &Resource)> {
         let all = self.resources.iter().enumerate();
-        all.filter(move |(_, r)| r.owner == owner).map(|(i, r)| (ResourceId(i), r))
+        all.filter(move |(_, r)| is(r.owner)).map(|(i, r)| (ResourceId(i), r))
+    }
+
+    /// Has an input come in a buffer of the caller's instead of an image: rows of `texels`, the input's own
+    /// format or another that holds as many channels (one: [`Format::R32Float`], [`Format::R16Float`],
+    /// [`Format::R16Unorm`]; four: [`Format::Rgba32Float`], [`Format::Rgba16Float`], [`Format::Rgba8Unorm`],
+    /// [`Format::Rgba8Srgb`]). Shaders fetch from images: each recording begins with one copy from the buffer to
+    /// an image that the renderer makes, of `texels`; it counts among [`internal_bytes`](Self::internal_bytes).
+    ///
+    /// # Errors
+    /// An input that the plan does not have, or texels of another kind: of a
+    /// [`reference`](crate::plan::reference()) any but its own.
+    pub fn take_buffer(&mut self, input: &str, texels: Format) -> Result<()> {
+        let names: Vec<_> = self.inputs().map(|(_, r)| r.name.clone()).collect();
+        let is_traced = self.find("environment_cdf").is_some() || self.find("batch_mean").is_some();
+        let found = self
+            .resources
+            .iter_mut()
+            .find(|r| r.name == input && matches!(r.owner, Owner::Input | Owner::InputBuffer));
+        let Some(resource) = found else {
+            return Err(Error::setting("input", input, names.join(" or ")));
+        };
+        let Kind::Image { format, .. } = &mut resource.kind else {
+            return Err(Error::setting(input, "a buffer of words", "an image"));
+        };
+        let one = [Format::R32Float, Format::R16Float, Format::R16Unorm];
+        let four =
+            [Format::Rgba32Float, Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8Srgb];
+        let alike = [&one[..], &four[..]].into_iter().find(|all| all.contains(format));
+        let may_differ = !is_traced && matches!(input, "heights" | "environment" | "albedo");
+        let alike = alike.filter(|_| may_differ).map_or(vec![*format], <[Format]>::to_vec);
+        if !alike.contains(&texels) {
+            let all: Vec<_> = alike.iter().map(|f| format!("{f:?}")).collect();
+            let found = format!("{texels:?}");
+            return Err(Error::setting(format!("{input}: texels"), found, all.join(" or ")));
+        }
+        *format = texels;
+        resource.owner = Owner::InputBuffer;
+        Ok(())
     }
 }

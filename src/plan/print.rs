@@ -37,6 +37,7 @@ impl fmt::Display for Plan {
             let whose = match resource.owner {
                 Owner::Internal => "ours",
                 Owner::Input => "input",
+                Owner::InputBuffer => "buffer",
                 Owner::Output => "output",
             };
             writeln!(

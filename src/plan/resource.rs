@@ -15,13 +15,23 @@ pub enum Format {
     Rg32Uint,
     /// Four u32: four lines' f32 bits.
     Rgba32Uint,
+    /// One f16: heights in a caller's buffer.
+    R16Float,
+    /// One u16, 0 to 1: heights in a caller's buffer.
+    R16Unorm,
+    /// Four u8, 0 to 1: colours in a caller's buffer.
+    Rgba8Unorm,
+    /// The same, sRGB-encoded but for the last.
+    Rgba8Srgb,
 }
 
 impl Format {
     /// Bytes a texel.
     pub fn bytes(self) -> u64 {
         match self {
+            Format::R16Float | Format::R16Unorm => 2,
             Format::R32Float | Format::R32Uint => 4,
+            Format::Rgba8Unorm | Format::Rgba8Srgb => 4,
             Format::Rg32Uint | Format::Rgba16Float => 8,
             Format::Rgba32Float | Format::Rgba32Uint => 16,
         }
@@ -32,7 +42,7 @@ impl Format {
         matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
     }
 
-    /// SPIR-V's name.
+    /// SPIR-V's name; of sRGB, which it has none for, Vulkan's in its manner.
     pub fn spirv(self) -> &'static str {
         match self {
             Format::R32Float => "R32f",
@@ -41,6 +51,10 @@ impl Format {
             Format::R32Uint => "R32ui",
             Format::Rg32Uint => "Rg32ui",
             Format::Rgba32Uint => "Rgba32ui",
+            Format::R16Float => "R16f",
+            Format::R16Unorm => "R16",
+            Format::Rgba8Unorm => "Rgba8",
+            Format::Rgba8Srgb => "Rgba8srgb",
         }
     }
 }
@@ -77,6 +91,9 @@ pub enum Owner {
     Internal,
     /// Handed in with each frame, left as it came.
     Input,
+    /// Handed in with each frame as a buffer of texels, left as it came: copied to an image that the renderer
+    /// makes ([`Plan::take_buffer`](super::Plan::take_buffer)).
+    InputBuffer,
     /// Handed in with each frame, written.
     Output,
 }

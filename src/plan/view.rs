@@ -1,5 +1,6 @@
 //! A lit field as a camera sees it: what its passes are told, as pure data.
 
+mod passes;
 mod reduced;
 
 use std::f64::consts::TAU;
@@ -13,6 +14,7 @@ use crate::passes::terrain_draw::{TILE, TerrainDrawPush};
 use crate::scene::{Border, Camera, Lens, Scene, corners};
 use crate::{Error, Result};
 
+pub use passes::{Draw, Drawn};
 pub use reduced::surface_error_m;
 
 /// How a picture is drawn.

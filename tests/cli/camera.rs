@@ -54,7 +54,8 @@ fn cameras_out_of_range_are_refused() {
         &[
             (line, 2, &["a field before a camera", "2 × 2 or more"]),
             (layers, 2, &["--layers", ".exr output"]),
-            ("plan a.asc --camera 0,45", 2, &["--camera"]),
+            ("plan a.asc --camera 0,45 --samples 3", 2, &["--samples: found 3"]),
+            ("plan line.asc --camera 0,45", 2, &["a field before a camera"]),
             ("render a.asc -o out.exr --camera 0,45", 1, &["driver"]),
         ],
     );

@@ -54,9 +54,59 @@ fn json_is_whole_and_refers_to_what_is_there() {
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&file).unwrap(), plan);
 }
 
+const SEEN: [&str; 6] = ["--camera", "200,30", "--size", "20x10", "--samples", "4"];
+
+/// Of 20 × 10 pixels of 4 samples: 16 bytes a colour and 4 a depth of each sample, and of each pixel. The field of
+/// 4 × 3 is one tile of 17 × 17 vertices.
+#[test]
+fn a_camera_adds_its_passes_and_their_memory() {
+    let folder = Folder::new();
+    let run = |more: &[&str]| {
+        let run = folder.run_without_driver(&[&LIT[..], &SEEN, more].concat());
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        run.out
+    };
+    let text = run(&[]);
+    for said in
+        ["terrain_draw", "sky_draw", "no picture_tone", "289", "lens perspective 40", "depth"]
+    {
+        assert!(text.contains(said), "{said:?} in\n{text}");
+    }
+    let plan: serde_json::Value = serde_json::from_str(&run(&["--format", "json"])).unwrap();
+    let all = |key: &str| plan[key].as_array().unwrap().clone();
+    let names: HashSet<String> =
+        all("resources").iter().map(|r| r["name"].as_str().unwrap().to_owned()).collect();
+    let passes = all("passes");
+    let drawn: Vec<_> = passes.iter().filter(|p| p["vertices"].is_u64()).collect();
+    assert_eq!(drawn.iter().map(|p| &p["pass"]).collect::<Vec<_>>(), ["terrain_draw", "sky_draw"]);
+    assert_eq!((&drawn[0]["vertices"], &drawn[1]["vertices"]), (&289.into(), &3.into()));
+    for used in drawn.iter().flat_map(|p| [&p["reads"], &p["writes"]]) {
+        for name in used.as_array().unwrap() {
+            assert!(names.contains(name.as_str().unwrap()), "{name} in {names:?}");
+        }
+    }
+    // Colour and depth of 800 samples, 289 heights of 4 bytes, radiance of 12 samples, one channel.
+    assert_eq!(drawn[0]["bytes"], 800 * 20 + 289 * 4 + 12 * 4);
+    let bytes = |v: &serde_json::Value| v["bytes"].as_u64().unwrap();
+    assert_eq!(bytes(&plan), all("resources").iter().map(bytes).sum::<u64>());
+    let of = |name: &str| all("resources").iter().find(|r| r["name"] == name).map(bytes);
+    assert_eq!((of("picture"), of("depth")), (Some(200 * 16), Some(200 * 4)));
+    assert_eq!((of("picture_samples"), of("picture_depth")), (Some(800 * 16), Some(800 * 4)));
+    assert_eq!(plan["settings"]["picture_size"], "20x10");
+    assert!(all("notes").iter().any(|n| n.as_str().unwrap().contains("picture_tone")));
+    let dot = run(&["--format", "dot"]);
+    for label in ["terrain_draw", "sky_draw", "picture_samples"] {
+        assert!(dot.contains(&format!("label=\"{label}\"")), "{label} in\n{dot}");
+    }
+    is_graph(&dot);
+}
+
 #[test]
 fn dot_is_a_graph_of_declared_nodes() {
-    let dot = planned(&Folder::new(), "dot");
+    is_graph(&planned(&Folder::new(), "dot"));
+}
+
+fn is_graph(dot: &str) {
     let mut lines = dot.lines();
     assert_eq!(lines.next(), Some("digraph plan {"));
     assert_eq!(lines.next_back(), Some("}"));

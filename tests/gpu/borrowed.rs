@@ -52,7 +52,7 @@ pub(crate) fn framed(gpu: &mut Headless, scene: &Scene) -> Frame {
 }
 
 /// Texels of 0 and 1 as a format packs them.
-fn packed(texels: &[f32], format: vk::Format) -> Vec<u8> {
+pub(crate) fn packed(texels: &[f32], format: vk::Format) -> Vec<u8> {
     let one: &[u8] = match format {
         vk::Format::R32_SFLOAT | vk::Format::R32G32B32A32_SFLOAT => &[0, 0, 0x80, 0x3f],
         vk::Format::R16_SFLOAT | vk::Format::R16G16B16A16_SFLOAT => &[0, 0x3c],

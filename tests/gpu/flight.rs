@@ -6,7 +6,7 @@ use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless, Host, Renderer};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
-use ridgelight::scene::{Border, Quality, Scene, Sun};
+use ridgelight::scene::{Basis, Border, Environment, Quality, Scene, Sun};
 
 use crate::{Device, under_sky};
 
@@ -74,6 +74,55 @@ fn two_slots_in_flight_draw_what_each_draws_alone() {
             if gpu.report().timestamp_period_ns > 0.0 {
                 assert_eq!(renderer.timings(slot).map(|t| t.len()), Some(passes), "slot {slot}");
             }
+        }
+    }
+    renderer.destroy();
+    frames.into_iter().for_each(|frame| gpu.end(frame));
+}
+
+/// A sun that moves and an environment that turns from frame to frame, none of them waited for: what is in flight
+/// keeps what it was recorded with. Of the host's two tables the sun's azimuths are in one, the turn in the other.
+#[test]
+fn lights_change_while_frames_are_in_flight() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let quality = Quality { azimuths: 8, sun_azimuths: 2, basis: Basis::Sh, ..Quality::default() };
+    let limits = gpu.report().limits;
+    let mut texels = Vec::new();
+    let plans = [0.0, 0.1].map(|turn| {
+        let mut scene = scene(24, 1);
+        let light = (0..128).map(|i| [1.0, (i % 16) as f32, 0.5]).collect();
+        scene.lights.environment = Some(Environment::new(16, 8, light, turn).expect("light"));
+        scene.lights.suns[0].azimuth_rad += turn;
+        texels = plan::picture_inputs(&scene);
+        plan::picture(&scene, &quality, &limits, Picture::default()).expect("a plan")
+    });
+    assert!(plans[0].azimuths != plans[1].azimuths && plans[0].constants != plans[1].constants);
+    let contents: Vec<&[f32]> = texels.iter().map(Vec::as_slice).collect();
+    let mut frames = plans.each_ref().map(|p| gpu.frame(p.clone(), &contents).expect("a frame"));
+    let alone = frames.each_mut().map(|frame| {
+        gpu.draw(frame).expect("drawn");
+        bits(gpu, frame)
+    });
+    assert!(alone[0] != alone[1]);
+    let mut renderer = Renderer::new(gpu.host(), plans[1].clone(), 2).expect("a renderer");
+    for turn in [0, 1] {
+        // Either plan from either slot.
+        let order = [turn, 1 - turn];
+        let renderer = std::cell::RefCell::new(&mut renderer);
+        let records = [0, 1].map(|slot| {
+            let which = order[slot];
+            let (inputs, outputs) = (frames[which].inputs(), frames[which].outputs());
+            let (renderer, plan) = (&renderer, plans[which].clone());
+            move |commands| {
+                let mut renderer = renderer.borrow_mut();
+                renderer.replace_plan(plan)?;
+                renderer.record(commands, slot, &inputs, &outputs)
+            }
+        });
+        gpu.run_all(records).expect("recorded and run");
+        for (which, (frame, alone)) in frames.iter().zip(&alone).enumerate() {
+            assert!(bits(gpu, frame) == *alone, "light {which}");
         }
     }
     renderer.destroy();

@@ -7,12 +7,16 @@ mod borrowed;
 mod bounce_edges;
 mod bounce_nodes;
 mod bounces;
+mod buffers;
 mod change;
 mod contract;
 mod debugger;
 mod edits;
 mod embedding;
 mod extremes;
+#[expect(dead_code, reason = "its main, which prints")]
+#[path = "../../examples/first_light.rs"]
+mod first_light;
 mod flight;
 mod forms;
 mod gloss;
@@ -39,6 +43,8 @@ mod scenes;
 mod soft_spheres;
 mod spheres;
 mod subsampled;
+#[path = "../target/mod.rs"]
+mod target;
 mod twins;
 mod view;
 mod view_flight;
@@ -138,6 +144,27 @@ impl Drop for Device {
             }
         }
     }
+}
+
+/// What the documentation begins with. A sky of 0.3 and a sun of irradiance 2 facing a sample, albedo 1: exit radiance
+/// is at most 0.3 + 2/π, and of samples in shadow at most 0.3.
+#[test]
+fn the_first_program_of_the_documentation_lights_its_field() {
+    let lines = include_str!("../../examples/first_light.rs").lines().map(str::trim);
+    let code = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count();
+    assert!(code <= 30, "{code} lines for a newcomer");
+    // Its device is its own: this one hears nothing, but keeps others away.
+    let _one = ONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let light = first_light::light().expect("light");
+    assert_eq!(
+        (light.name.as_str(), light.channels, light.values.len()),
+        ("radiance", 1, 128 * 128)
+    );
+    let most = 0.3 + 2.0 / std::f32::consts::PI;
+    assert!(light.values.iter().all(|v| *v > 0.0 && *v < most * 1.000_1));
+    let shadowed = light.values.iter().filter(|v| **v < 0.3).count();
+    // Slopes of up to 1/2 under a sun of tan 12° = 0.21: some are in shadow, and the crests are not.
+    assert!(shadowed > 1000 && shadowed < 128 * 96, "{shadowed}");
 }
 
 fn field(

@@ -8,9 +8,11 @@ use std::ptr;
 use ash::vk;
 use ash::vk::Handle;
 use ridgelight::gpu::{Headless, HeadlessOptions, ImageArg};
-use ridgelight::plan::{self, Picture};
-use ridgelight::scene::{HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::plan::{self, Picture, View, ViewOptions};
+use ridgelight::scene::{Camera, HeightField, Lens, Lights, Quality, Scene, Surface};
 use ridgelight_c::*;
+
+use crate::target::{FORMAT, SIZE, Target};
 
 const SIDE: usize = 24;
 
@@ -242,6 +244,188 @@ fn an_engine_in_c_lends_its_memory_and_reads_times() {
         ridgelight_renderer_destroy(renderer);
         assert!((*user).held.is_empty());
     }
+    gpu.end(frame);
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
+
+/// Heights in a buffer of C's, with rows apart: the light of the same heights in an image.
+#[test]
+fn a_buffer_of_c_is_lit_as_an_image_is() {
+    let (mut gpu, host) = device();
+    let heights = heights();
+    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None).expect("a field");
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    let of_rust = Scene { field, surface: Surface::default(), lights };
+    let limits = gpu.report().limits;
+    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+    let texels = of_rust.field.heights_m();
+    let mut frame = gpu.frame(planned.expect("a plan"), &[texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let right = gpu.pixels(&frame, 0).expect("pixels");
+    gpu.refill(&frame, 0, &vec![0.0; texels.len()]).expect("level ground");
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(gpu.pixels(&frame, 0).expect("pixels") != right);
+    // Two texels between rows, one before the first.
+    let mut rows = vec![f32::NAN; 1];
+    texels.chunks(SIDE).for_each(|row| rows.extend(row.iter().chain(&[f32::NAN; 2])));
+    let bytes: Vec<u8> = rows.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let lent = gpu.lend_buffer("heights", &bytes).expect("a buffer");
+    let given = lent.arg();
+    let (mut plan, mut renderer) = (ptr::null_mut(), ptr::null_mut());
+    let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        good(ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 0, &mut plan));
+        let take = |index, format| ridgelight_plan_take_buffer(plan, index, format);
+        refused(take(1, vk::Format::UNDEFINED), argument, "index: found 1");
+        refused(take(0, vk::Format::R8_UINT), argument, "format: found R8_UINT");
+        refused(take(0, vk::Format::R8G8B8A8_UNORM), setting, "heights: texels");
+        good(take(0, vk::Format::UNDEFINED));
+        let mut info: RidgelightImageInfo = zeroed();
+        good(ridgelight_plan_input(plan, 0, &mut info));
+        assert!(info.usage.is_empty() && info.format == vk::Format::R32_SFLOAT);
+        good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
+        let output = image(&frame.outputs()[0]);
+        let state = RidgelightImageState {
+            stage: given.stage,
+            access: given.access,
+            layout: vk::ImageLayout::UNDEFINED,
+        };
+        let input = RidgelightImage {
+            buffer: given.buffer,
+            buffer_bytes: given.bytes,
+            buffer_offset: 4,
+            row_bytes: 4 * (SIDE as u64 + 2),
+            before: state,
+            ..zeroed()
+        };
+        gpu.run(|commands| {
+            let record = |input: &RidgelightImage| {
+                ridgelight_record(renderer, commands, 0, input, 1, &output, 1)
+            };
+            let of_image = image(&frame.inputs()[0]);
+            refused(record(&of_image), setting, "heights: found an image");
+            let far = RidgelightImage { buffer_offset: 16, ..input };
+            refused(record(&far), setting, "heights: bytes");
+            good(record(&input));
+            Ok(())
+        })
+        .expect("run");
+        assert!(gpu.pixels(&frame, 0).expect("pixels") == right);
+        ridgelight_renderer_destroy(renderer);
+        ridgelight_plan_destroy(plan);
+    }
+    gpu.take_back_buffer(lent);
+    gpu.end(frame);
+    assert_eq!(gpu.take_messages(), [""; 0]);
+}
+
+/// A picture before a camera, heights from a buffer and from an image: the library's own, byte for byte.
+#[test]
+fn a_camera_of_c_sees_what_rusts_does() {
+    let (mut gpu, host) = device();
+    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
+    let of_rust = Scene { field, surface: Surface::default(), lights };
+    let limits = gpu.report().limits;
+    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+    let planned = planned.expect("a plan");
+    let texels = of_rust.field.heights_m();
+    let mut frame = gpu.frame(planned.clone(), &[texels]).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let at = Camera {
+        target_m: [11.0, 12.0, 1.0],
+        azimuth_rad: 0.7,
+        elevation_rad: 0.5,
+        distance_m: 30.0,
+        lens: Lens::Perspective { fov_rad: 0.8 },
+    };
+    let options = ViewOptions { size: SIZE, samples: 1, ..ViewOptions::default() };
+    let view_of_rust = View::new(&of_rust, &planned, &at, &options, &limits).expect("a view");
+    let right = gpu.look(&frame, &view_of_rust, None).expect("a picture").radiance;
+    let lent = gpu.host().clone();
+    let target = Target::new(&lent);
+    let bytes: Vec<u8> = texels.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let buffer = gpu.lend_buffer("heights", &bytes).expect("a buffer");
+    let camera = RidgelightCamera {
+        samples: 1,
+        size: SIZE,
+        azimuth_rad: at.azimuth_rad,
+        elevation_rad: at.elevation_rad,
+        target_m: at.target_m,
+        distance_m: at.distance_m,
+        fov_rad: 0.8,
+        ..zeroed()
+    };
+    let [of_heights, of_light, of_picture] =
+        [&frame.inputs()[0], &frame.outputs()[0], &target.arg()].map(image);
+    let (mut plan, mut view, mut renderer) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
+    let (argument, setting) = (RidgelightResult::Argument, RidgelightResult::Setting);
+    // SAFETY: structs and handles of this function, alive until its end.
+    unsafe {
+        good(ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 0, &mut plan));
+        good(ridgelight_plan_take_buffer(plan, 0, vk::Format::UNDEFINED));
+        good(ridgelight_renderer_create(&host, plan, 1, ptr::null(), &mut renderer));
+        let mut make = |camera: &RidgelightCamera, format| {
+            let (scene, none) = (scene(), ptr::null());
+            ridgelight_view_create(&host, &scene, plan, camera, format, 2, none, &mut view)
+        };
+        let low = RidgelightCamera { elevation_rad: 2.0, ..camera };
+        refused(make(&low, FORMAT), setting, "elevation");
+        let none = RidgelightCamera { size: [0, 12], ..camera };
+        refused(make(&none, FORMAT), setting, "picture size");
+        refused(make(&camera, vk::Format::R8_UINT), setting, "picture: format");
+        good(make(&camera, FORMAT));
+
+        let input = RidgelightImage {
+            image: vk::Image::null(),
+            view: vk::ImageView::null(),
+            buffer: buffer.arg().buffer,
+            buffer_bytes: buffer.arg().bytes,
+            ..of_heights
+        };
+        let mut taken: RidgelightImage = zeroed();
+        refused(ridgelight_taken(renderer, 1, &mut taken), argument, "index: found 1");
+        good(ridgelight_taken(renderer, 0, &mut taken));
+        let images = RidgelightViewImages {
+            heights: &of_heights,
+            radiance: &of_light,
+            picture: &of_picture,
+            ..zeroed()
+        };
+        for (slot, heights) in [(0, &of_heights), (1, &taken)] {
+            gpu.run(|commands| {
+                let record = |camera: *const RidgelightCamera, images: &RidgelightViewImages| {
+                    ridgelight_view_record(view, commands, slot, camera, images)
+                };
+                let lost = RidgelightViewImages { picture: ptr::null(), ..images };
+                refused(record(&camera, &lost), argument, "picture: found a null pointer");
+                let of_buffer = RidgelightViewImages { heights: &input, ..images };
+                refused(record(&camera, &of_buffer), argument, "heights: found a buffer");
+                let wide = RidgelightCamera { size: [64, 64], ..camera };
+                refused(record(&wide, &images), setting, "view: found another shape");
+                good(ridgelight_record(renderer, commands, 0, &input, 1, &of_light, 1));
+                let of = RidgelightViewImages { heights, ..images };
+                good(record(if slot == 0 { ptr::null() } else { &camera }, &of));
+                target.copy(&lent, commands);
+                Ok(())
+            })
+            .expect("run");
+            assert!(target.texels(&lent) == right, "slot {slot}");
+            let mut times: Vec<RidgelightTiming> = (0..3).map(|_| zeroed()).collect();
+            let mut count = 3;
+            good(ridgelight_view_timings(view, slot, times.as_mut_ptr(), &mut count));
+            assert!(count == 2 || gpu.report().timestamp_period_ns == 0.0, "{count}");
+        }
+        let mut distance_m = 0.0;
+        good(ridgelight_view_distance(view, 0.25, &mut distance_m));
+        assert_eq!(distance_m, view_of_rust.distance_m(0.25));
+        ridgelight_view_destroy(view);
+        ridgelight_renderer_destroy(renderer);
+        ridgelight_plan_destroy(plan);
+    }
+    target.end(&lent);
+    gpu.take_back_buffer(buffer);
     gpu.end(frame);
     assert_eq!(gpu.take_messages(), [""; 0]);
 }

@@ -1,6 +1,8 @@
 //! The C ABI as C meets it: its header, its symbols, and a program.
 
 mod abi;
+#[path = "../../../tests/target/mod.rs"]
+mod target;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -30,7 +32,7 @@ fn the_header_is_what_the_source_says() {
     let config =
         cbindgen::Config::from_file(Path::new(env!("CARGO_MANIFEST_DIR")).join("cbindgen.toml"));
     let mut builder = cbindgen::Builder::new().with_config(config.expect("cbindgen.toml"));
-    for file in ["errors", "types", "allocator", "scene", "plan", "renderer"] {
+    for file in ["errors", "types", "allocator", "scene", "plan", "renderer", "view"] {
         builder = builder.with_src(source.join(file).with_extension("rs"));
     }
     let mut made = Vec::new();
@@ -67,6 +69,32 @@ fn the_shared_library_exports_the_header_alone() {
     exported.sort_unstable();
     assert_eq!(exported, declared);
     assert!(declared.len() > 10, "{declared:?}");
+}
+
+/// Each function that can fail says with which codes: names that the header has.
+#[test]
+fn every_function_lists_its_codes() {
+    let header = std::fs::read_to_string(Path::new(ROOT).join("include/ridgelight.h")).expect("it");
+    let codes = ["OK", "ARGUMENT", "SETTING", "LIMIT", "DEVICE"];
+    let mut functions = 0;
+    for (at, _) in header.match_indices("\nenum RidgelightResult ridgelight_") {
+        let comment: Vec<&str> =
+            header[..at].lines().rev().take_while(|line| line.starts_with("//")).collect();
+        let name = header[at..].lines().nth(1).expect("its line");
+        let returns = comment.iter().find_map(|line| line.strip_prefix("// Returns "));
+        let returns = returns.unwrap_or_else(|| panic!("{name} says nothing of codes"));
+        let named: Vec<&str> = returns
+            .split(|c: char| !c.is_ascii_uppercase())
+            .filter(|word| word.len() > 1)
+            .collect();
+        assert!(named.len() > 1 && named[0] == "OK", "{name}: {returns}");
+        assert!(named.iter().all(|word| codes.contains(word)), "{name}: {returns}");
+        functions += 1;
+    }
+    for code in codes {
+        assert!(header.contains(&format!("RIDGELIGHT_RESULT_{code} =")), "{code}");
+    }
+    assert!(functions >= 12, "{functions}");
 }
 
 /// What a program is linked with.

@@ -55,6 +55,9 @@ int main(void) {
     shorter->struct_size = sizeof *shorter;
     ridgelight_requirements(shorter);
 #endif
+    refuses(ridgelight_view_record(NULL, NULL, 0, NULL, NULL), RIDGELIGHT_RESULT_ARGUMENT, "commands: found null");
+    refuses(ridgelight_taken(NULL, 0, NULL), RIDGELIGHT_RESULT_ARGUMENT, "renderer: found a null");
+    ridgelight_view_destroy(NULL);
     ridgelight_plan_destroy(NULL);
     ridgelight_renderer_destroy(NULL);
     return failures != 0;

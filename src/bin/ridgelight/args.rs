@@ -190,6 +190,8 @@ pub struct PlanArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
+    #[command(flatten)]
+    pub camera: CameraArgs,
     /// text for people, json for machines, dot for graphviz
     #[arg(long, default_value = "text")]
     pub format: PlanFormat,

@@ -2,7 +2,8 @@
 
 use ash::vk;
 
-use super::{ImageArg, ImageState, Renderer};
+use super::buffers::check_buffer;
+use super::{ImageArg, ImageState, InputArg, Renderer};
 use crate::plan::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
 
@@ -11,7 +12,7 @@ impl Renderer {
     pub(super) fn check(
         &self,
         slot: usize,
-        inputs: &[ImageArg],
+        inputs: &[InputArg],
         outputs: &[ImageArg],
     ) -> Result<()> {
         if slot >= self.slots.len() {
@@ -21,21 +22,41 @@ impl Renderer {
                 format!("less than {}", self.slots.len()),
             ));
         }
-        let check_all = |what: &str, args: &[ImageArg], wanted: Vec<(ResourceId, &Resource)>| {
-            if args.len() != wanted.len() {
-                let names: Vec<_> = wanted.iter().map(|w| w.1.name.as_str()).collect();
-                return Err(Error::setting(
-                    what,
-                    format!("{} images", args.len()),
-                    format!("{}: {}", names.len(), names.join(", ")),
-                ));
+        let check_count = |what: &str, count: usize, wanted: Vec<(ResourceId, &Resource)>| {
+            let names: Vec<_> = wanted.iter().map(|w| w.1.name.as_str()).collect();
+            if count == wanted.len() {
+                return Ok(());
             }
-            args.iter().zip(wanted).try_for_each(|(arg, (_, resource))| {
-                check_image(arg, resource, &self.formats(resource))
-            })
+            let found = format!("{count} images");
+            Err(Error::setting(what, found, format!("{}: {}", names.len(), names.join(", "))))
         };
-        check_all("inputs", inputs, self.plan.inputs().collect())?;
-        check_all("outputs", outputs, self.plan.outputs().collect())?;
+        check_count("inputs", inputs.len(), self.plan.inputs().collect())?;
+        for (arg, (_, resource)) in inputs.iter().zip(self.plan.inputs()) {
+            match (arg, resource.owner == Owner::InputBuffer) {
+                (InputArg::Image(image), false) => {
+                    check_image(image, resource, &self.formats(resource))?;
+                }
+                (InputArg::Buffer(buffer), true) => {
+                    check_buffer(buffer, resource)?;
+                }
+                (InputArg::Image(_), true) => {
+                    let found = "an image";
+                    return Err(Error::setting(
+                        &resource.name,
+                        found,
+                        "a buffer, as the plan says",
+                    ));
+                }
+                (InputArg::Buffer(_), false) => {
+                    let expected = "an image, or a plan that takes a buffer";
+                    return Err(Error::setting(&resource.name, "a buffer", expected));
+                }
+            }
+        }
+        check_count("outputs", outputs.len(), self.plan.outputs().collect())?;
+        for (arg, (_, resource)) in outputs.iter().zip(self.plan.outputs()) {
+            check_image(arg, resource, &self.formats(resource))?;
+        }
         self.check_apart(inputs, outputs)
     }
 
@@ -51,9 +72,14 @@ impl Renderer {
     }
 
     /// No image is handed in twice: it could not be in two states.
-    fn check_apart(&self, inputs: &[ImageArg], outputs: &[ImageArg]) -> Result<()> {
+    fn check_apart(&self, inputs: &[InputArg], outputs: &[ImageArg]) -> Result<()> {
         let names = || self.plan.inputs().chain(self.plan.outputs()).map(|(_, r)| &r.name);
-        let all: Vec<_> = names().zip(inputs.iter().chain(outputs)).collect();
+        let inputs = inputs.iter().map(|input| match input {
+            InputArg::Image(image) => Some(image),
+            InputArg::Buffer(_) => None,
+        });
+        let all = names().zip(inputs.chain(outputs.iter().map(Some)));
+        let all: Vec<_> = all.filter_map(|(name, image)| Some((name, image?))).collect();
         for (later, (name, arg)) in all.iter().enumerate() {
             let same = all[..later].iter().find(|(_, earlier)| earlier.image == arg.image);
             if let Some((earlier, _)) = same {
@@ -158,9 +184,9 @@ fn check_image(arg: &ImageArg, resource: &Resource, formats: &[vk::Format]) -> R
     if resource.owner == Owner::Output { check_state(name, "after", arg.after) } else { Ok(()) }
 }
 
-/// What no image of colours can be in, or no barrier can name.
-fn check_state(name: &str, when: &str, state: ImageState) -> Result<()> {
-    let ImageState { stage, access, layout } = state;
+/// What no barrier can name.
+pub(in crate::gpu) fn check_stage(name: &str, when: &str, state: ImageState) -> Result<()> {
+    let ImageState { stage, access, .. } = state;
     if stage == vk::PipelineStageFlags2::NONE && access != vk::AccessFlags2::NONE {
         return Err(Error::setting(
             format!("{name}: stage {when}"),
@@ -168,6 +194,13 @@ fn check_state(name: &str, when: &str, state: ImageState) -> Result<()> {
             "the stages that use it so",
         ));
     }
+    Ok(())
+}
+
+/// The same, and what no image of colours can be in.
+pub(in crate::gpu) fn check_state(name: &str, when: &str, state: ImageState) -> Result<()> {
+    check_stage(name, when, state)?;
+    let layout = state.layout;
     let of_depth = [
         vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,

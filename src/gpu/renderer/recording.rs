@@ -5,8 +5,9 @@ use ash::vk;
 use super::super::memory::Backed;
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
+use super::buffers::Taken;
 use super::images::transition;
-use super::{ImageArg, ImageState, Renderer};
+use super::{BufferArg, ImageArg, ImageState, InputArg, Renderer};
 use crate::plan::{Owner, Pass, Rectangle, ResourceId};
 
 impl Renderer {
@@ -15,13 +16,15 @@ impl Renderer {
         &mut self,
         commands: vk::CommandBuffer,
         slot: usize,
-        inputs: &[ImageArg],
+        inputs: &[InputArg],
         outputs: &[ImageArg],
         passes: &[usize],
         edited: Option<Rectangle>,
     ) {
         let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
-        let bound = self.bind(inputs, outputs);
+        let (bound, buffers) = self.bind(inputs, outputs);
+        let taken = self.takes(&buffers, edited);
+        self.write_tables(slot);
         self.write_sets(slot, &bound);
         let device = self.host.device.clone();
         let queries = self.slots[slot].queries;
@@ -36,8 +39,14 @@ impl Renderer {
             .dst_stage_mask(stages)
             .dst_access_mask(ImageState::WRITTEN.access | vk::AccessFlags2::INDIRECT_COMMAND_READ)];
         let between = vk::DependencyInfo::default().memory_barriers(&memory);
-        let first =
-            vk::DependencyInfo::default().image_memory_barriers(&entry).memory_barriers(&memory);
+        let filled: Vec<_> = taken.iter().map(Taken::filled).collect();
+        let filled = vk::DependencyInfo::default().image_memory_barriers(&filled);
+        let [lent, given_back] =
+            [Taken::entry, Taken::exit].map(|to| taken.iter().map(to).collect::<Vec<_>>());
+        let first = vk::DependencyInfo::default()
+            .image_memory_barriers(&entry)
+            .buffer_memory_barriers(&lent)
+            .memory_barriers(&memory);
         let timestamp = |query: usize| {
             if queries != vk::QueryPool::null() {
                 // SAFETY: `commands` is being recorded for a family with timestamps; the pool has a
@@ -57,6 +66,10 @@ impl Renderer {
                 device.cmd_reset_query_pool(commands, queries, 0, count);
             }
             device.cmd_pipeline_barrier2(commands, &first);
+            if !taken.is_empty() {
+                taken.iter().for_each(|taken| taken.copy(&device, commands));
+                device.cmd_pipeline_barrier2(commands, &filled);
+            }
             timestamp(0);
             for (query, &index) in passes.iter().enumerate() {
                 if query > 0 && self.must_wait(passes[query - 1], index) {
@@ -65,7 +78,9 @@ impl Renderer {
                 self.dispatch(commands, slot, index, edited);
                 timestamp(query + 1);
             }
-            let last = vk::DependencyInfo::default().image_memory_barriers(&exit);
+            let last = vk::DependencyInfo::default()
+                .image_memory_barriers(&exit)
+                .buffer_memory_barriers(&given_back);
             device.cmd_pipeline_barrier2(commands, &last);
         }
         self.slots[slot].recorded = passes.to_vec();
@@ -78,16 +93,20 @@ impl Renderer {
         bound: &[Option<&ImageArg>],
         whole_plan: bool,
     ) -> Vec<vk::ImageMemoryBarrier2<'static>> {
-        let own = |backed: &Backed, layout| {
+        let own_to = |backed: &Backed, layout, to| {
             let from = ImageState { layout, ..ImageState::WRITTEN };
-            transition(backed.image, backed.layers, from, ImageState::WRITTEN)
+            transition(backed.image, backed.layers, from, to)
         };
+        let own = |backed: &Backed, layout| own_to(backed, layout, ImageState::WRITTEN);
         let mut entry = Vec::new();
         for (i, backed) in self.resources.iter().enumerate() {
             if let Some(backed) = backed.as_ref().filter(|b| b.image != vk::Image::null()) {
                 let layout =
                     if whole_plan { vk::ImageLayout::UNDEFINED } else { vk::ImageLayout::GENERAL };
-                entry.push(own(backed, layout));
+                entry.push(match self.plan.resources[i].owner {
+                    Owner::InputBuffer => own_to(backed, layout, Taken::COPIED),
+                    _ => own(backed, layout),
+                });
             }
             if let Some(arg) = bound[i] {
                 let to = self.state_of(ResourceId(i));
@@ -173,20 +192,25 @@ impl Renderer {
         }
     }
 
+    /// The caller's image, or buffer, of each resource of the plan.
     fn bind<'a>(
         &self,
-        inputs: &'a [ImageArg],
+        inputs: &'a [InputArg],
         outputs: &'a [ImageArg],
-    ) -> Vec<Option<&'a ImageArg>> {
+    ) -> (Vec<Option<&'a ImageArg>>, Vec<Option<BufferArg>>) {
         let (mut inputs, mut outputs) = (inputs.iter(), outputs.iter());
         let owners = self.plan.resources.iter().map(|r| r.owner);
         owners
             .map(|owner| match owner {
-                Owner::Internal => None,
-                Owner::Input => inputs.next(),
-                Owner::Output => outputs.next(),
+                Owner::Internal => (None, None),
+                Owner::Input | Owner::InputBuffer => match inputs.next() {
+                    Some(InputArg::Image(image)) => (Some(image), None),
+                    Some(InputArg::Buffer(buffer)) => (None, Some(*buffer)),
+                    None => (None, None),
+                },
+                Owner::Output => (outputs.next(), None),
             })
-            .collect()
+            .unzip()
     }
 
     fn write_sets(&self, slot: usize, bound: &[Option<&ImageArg>]) {
@@ -196,7 +220,7 @@ impl Renderer {
             let mut texels = Vec::new();
             for (binding, id) in pass.shader.bindings.iter().zip(&pass.bindings) {
                 let backed = match id {
-                    Some(id) => self.resources[id.0].as_ref(),
+                    Some(id) => self.internal_of(slot, *id),
                     None => {
                         let writer = binding.written.then_some(index);
                         let fitting =

@@ -4,33 +4,30 @@ use ash::vk;
 
 use super::super::allocator::MemoryUse;
 use super::super::failed;
-use super::super::memory::Backed;
+use super::super::memory::{Backed, Memory};
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
 use super::{Renderer, Slot};
-use crate::plan::{Format, Kind, Owner, ResourceId};
+use crate::plan::{Format, Kind, Owner, Plan, Resource, ResourceId};
 use crate::{Error, Result};
+
+/// Buffers that the host writes, by name: the plan's azimuths, and its constants.
+const TABLES: [&str; 2] = ["azimuths", "constants"];
 
 impl Renderer {
     pub(super) fn make(&mut self, slots: usize) -> Result<()> {
         self.pipeline_of_pass = self.pipelines.of(&self.host, self.plan.every_pass())?;
-        let tables = ["azimuths", "constants"].map(|name| self.plan.find(name));
-        for (i, resource) in self.plan.resources.iter().enumerate() {
-            // Those that the host writes.
-            let used_by = if tables.contains(&Some(ResourceId(i))) {
-                MemoryUse::Upload
-            } else {
-                MemoryUse::Device
-            };
+        for resource in &self.plan.resources {
+            let is_slots = TABLES.contains(&resource.name.as_str());
             let backed = match resource.owner {
-                Owner::Internal => {
-                    Some(self.memory.make(&resource.name, resource.kind, used_by)?)
+                Owner::Internal if !is_slots => {
+                    Some(self.memory.make(&resource.name, resource.kind, MemoryUse::Device)?)
                 }
-                Owner::Input | Owner::Output => None,
+                Owner::InputBuffer => Some(Self::take(&mut self.memory, &self.readable, resource)?),
+                _ => None,
             };
             self.resources.push(backed);
         }
-        self.write_tables()?;
         // What a shader might write is its pass's alone: two passes that "write" one unused image
         // would need a barrier for nothing.
         for (index, pass) in self.plan.every_pass().enumerate() {
@@ -48,25 +45,54 @@ impl Renderer {
         self.make_slots(slots)
     }
 
-    /// What the host tells passes beside push constants.
-    pub(super) fn write_tables(&mut self) -> Result<()> {
-        let azimuths: &[u8] = bytemuck::cast_slice(&self.plan.azimuths);
-        let constants: &[u8] = bytemuck::cast_slice(&self.plan.constants);
-        for (name, bytes) in [("azimuths", azimuths), ("constants", constants)] {
-            let Some(id) = self.plan.find(name) else { continue };
-            let backed = self.resources[id.0].as_mut();
-            let mapped = backed.and_then(Backed::mapped);
-            let mapped = mapped.ok_or_else(|| Error::Device {
-                doing: format!("writing the {name}"),
-                reason: "the device has no memory that the host can write".into(),
-            })?;
-            mapped[..bytes.len()].copy_from_slice(bytes);
+    /// An image for what comes in a buffer: only copied to and fetched from, as no other format must be.
+    fn take(memory: &mut Memory, readable: &[vk::Format], resource: &Resource) -> Result<Backed> {
+        let Kind::Image { format, width, height, layers, layered } = resource.kind else {
+            return memory.make(&resource.name, resource.kind, MemoryUse::Device);
+        };
+        let format = format.vk();
+        if !readable.contains(&format) {
+            let (name, found) = (format!("{}: texels", resource.name), format!("{format:?}"));
+            return Err(Error::setting(name, found, "a format that the device samples"));
         }
-        Ok(())
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let usage = usage | vk::ImageUsageFlags::TRANSFER_SRC;
+        memory.image_for(&resource.name, (format, usage), [width, height, layers], layered)
+    }
+
+    fn make_tables(&mut self) -> Result<Vec<(ResourceId, Backed)>> {
+        let mut made = Vec::new();
+        for id in TABLES.into_iter().filter_map(|name| self.plan.find(name)) {
+            let resource = &self.plan.resources[id.0];
+            match self.memory.make(&resource.name, resource.kind, MemoryUse::Upload) {
+                Ok(backed) => made.push((id, backed)),
+                Err(error) => {
+                    made.iter_mut().for_each(|table| self.memory.free(&mut table.1));
+                    return Err(error);
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    /// What the host tells passes beside push constants, where the slot's last recording was told another.
+    pub(super) fn write_tables(&mut self, slot: usize) {
+        let Plan { azimuths, constants, .. } = &self.plan;
+        let contents: [&[u8]; 2] =
+            [bytemuck::cast_slice(azimuths), bytemuck::cast_slice(constants)];
+        let slot = &mut self.slots[slot];
+        if std::mem::replace(&mut slot.is_told, true) {
+            return;
+        }
+        for (id, backed) in &mut slot.tables {
+            let which = TABLES.iter().position(|name| self.plan.find(name) == Some(*id));
+            let (Some(which), Some(mapped)) = (which, backed.mapped()) else { continue };
+            mapped[..contents[which].len()].copy_from_slice(contents[which]);
+        }
     }
 
     fn make_slots(&mut self, slots: usize) -> Result<()> {
-        let device = &self.host.device;
+        let device = self.host.device.clone();
         let mut sizes: Vec<vk::DescriptorPoolSize> = Vec::new();
         for binding in self.plan.every_pass().flat_map(|p| p.shader.bindings) {
             let ty = descriptor_type(binding.kind);
@@ -98,7 +124,8 @@ impl Renderer {
                         Some(_) => device.create_query_pool(&queries_info, None)?,
                         None => vk::QueryPool::null(),
                     };
-                    Ok(Slot { sets, queries, recorded: Vec::new() })
+                    let (tables, recorded) = (Vec::new(), Vec::new());
+                    Ok(Slot { sets, tables, is_told: false, queries, recorded })
                 })
             };
             let slot = slot.map_err(failed("making a frame's descriptors"))?;
@@ -109,6 +136,8 @@ impl Renderer {
                 self.host.name(slot.queries, &format!("ridgelight, slot {number}"));
             }
             self.slots.push(slot);
+            let tables = self.make_tables()?;
+            self.slots[number].tables = tables;
         }
         Ok(())
     }
@@ -120,7 +149,8 @@ impl Renderer {
         for (_, _, mut backed) in self.unused.drain(..) {
             self.memory.free(&mut backed);
         }
-        for slot in self.slots.drain(..) {
+        for mut slot in self.slots.drain(..) {
+            slot.tables.iter_mut().for_each(|table| self.memory.free(&mut table.1));
             // SAFETY: made by this device; the caller of `destroy` says that nothing in flight uses it.
             // Null is allowed.
             unsafe { self.host.device.destroy_query_pool(slot.queries, None) };

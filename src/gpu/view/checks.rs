@@ -6,6 +6,7 @@ use super::super::Host;
 use super::super::memory::DEPTH;
 use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
 use crate::gpu::ImageArg;
+use crate::gpu::renderer::{check_stage, check_state};
 use crate::plan::{Format, View};
 use crate::{Error, Result};
 
@@ -96,9 +97,17 @@ impl ViewRenderer {
         }
         check_image("picture", &outputs.picture, &[self.format], view.size)?;
         check_left("picture", &outputs.picture)?;
+        check_state("picture", "before", outputs.picture.before)?;
+        check_state("picture", "after", outputs.picture.after)?;
         if let Some(depth) = &outputs.depth {
             check_image("depth", depth, &[DEPTH], view.size)?;
             check_left("depth", depth)?;
+            check_stage("depth", "before", depth.before)?;
+            check_stage("depth", "after", depth.after)?;
+            if depth.after.layout == vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL {
+                let found = "COLOR_ATTACHMENT_OPTIMAL";
+                return wrong("depth: layout after", found, "a layout of a depth image");
+            }
         }
         self.check_apart(inputs, outputs)
     }
@@ -118,7 +127,7 @@ impl ViewRenderer {
             let name = format!("{name}: layout before");
             return wrong(&name, format!("{:?}", arg.before.layout), "a layout with contents");
         }
-        Ok(())
+        check_state(name, "before", arg.before)
     }
 
     /// No image is handed in twice: it could not be in two states.

@@ -1,0 +1,309 @@
+use ash::vk;
+use ridgelight::gpu::{self, ImageArg, InputArg, ViewInputs, ViewOutputs, ViewRenderer};
+use ridgelight::plan::{Limits, Plan, Resource, View, ViewOptions};
+use ridgelight::scene::{Camera, Lens, Scene};
+
+use crate::allocator::RidgelightAllocator;
+use crate::errors::{Done, Failure, RidgelightResult, done};
+use crate::plan::RidgelightPlan;
+use crate::read::{SizeFirst, hand_out, handle, handle_mut, read, write};
+use crate::renderer::{RidgelightRenderer, RidgelightTiming, callbacks, write_timings};
+use crate::scene::{RidgelightScene, scene};
+use crate::types::{RidgelightHost, RidgelightImage, host};
+
+/// From where a lit field is seen, and how. North is up on the map.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightCamera {
+    /// sizeof(RidgelightCamera).
+    pub struct_size: u32,
+    /// Samples a pixel, 1, 2, 4 or 8, where the device has them; 0: 4.
+    pub samples: u32,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
+    /// Where the eye stands as seen from what it looks at: in the plane, radians counter-clockwise from east.
+    pub azimuth_rad: f64,
+    /// And above horizontal, radians, [-pi/2..pi/2].
+    pub elevation_rad: f64,
+    /// What stands in the middle of the picture: x east of the westernmost column, y north of the southernmost row,
+    /// z as heights.
+    pub target_m: [f64; 3],
+    /// From there to the eye, [1e-9..1e15]. 0: so far that all of a level field at height 0 is just seen, about its
+    /// middle, whatever target_m.
+    pub distance_m: f64,
+    /// Angle between the lower and the upper edge of the picture, radians, [0.001..3]; 0: 40 degrees.
+    pub fov_rad: f64,
+    /// Above 0, [1e-9..1e15]: parallel rays, and what the picture spans from its lower to its upper edge.
+    pub ortho_height_m: f64,
+    /// The mesh has a vertex at every so many samples, [1..1024], default 1. Larger: faster, coarser.
+    pub mesh_step: u32,
+    /// Factor before the tone curve, where the picture is of codes; 0: 1.
+    pub exposure: f32,
+    /// Radiance, linear RGB, where neither ground nor sky is seen.
+    pub background: [f32; 3],
+}
+
+// SAFETY: numbers; the size is first.
+unsafe impl SizeFirst for RidgelightCamera {}
+
+/// Pictures of a lit field before a camera, on a device. One thread at a time uses it, any thread.
+pub struct RidgelightView {
+    renderer: ViewRenderer,
+    scene: Scene,
+    lit: Plan,
+    limits: Limits,
+    /// What was recorded last.
+    view: View,
+    exposure: f32,
+    format: vk::Format,
+}
+
+/// # Safety
+/// As [`read`].
+unsafe fn seen(
+    from: *const RidgelightCamera,
+    scene: &Scene,
+    lit: &Plan,
+    limits: &Limits,
+) -> Done<(View, f32)> {
+    // SAFETY: as the caller says.
+    let given = unsafe { read(from, "camera") }?;
+    let or = |found: f64, default: f64| if found == 0.0 { default } else { found };
+    let options = ViewOptions {
+        size: given.size,
+        samples: if given.samples == 0 { 4 } else { given.samples },
+        mesh_step: given.mesh_step.max(1),
+        background: given.background,
+    };
+    options.check()?;
+    let lens = match given.ortho_height_m {
+        0.0 => Lens::Perspective { fov_rad: or(given.fov_rad, 40_f64.to_radians()) },
+        height_m => Lens::Orthographic { height_m },
+    };
+    let RidgelightCamera { target_m, azimuth_rad, elevation_rad, distance_m, .. } = given;
+    let angles = [azimuth_rad, elevation_rad];
+    let camera = match distance_m {
+        0.0 => {
+            Camera { lens, ..Camera::around(&scene.field, None, angles, lens, options.aspect()) }
+        }
+        _ => Camera { target_m, azimuth_rad, elevation_rad, distance_m, lens },
+    };
+    let exposure = if given.exposure == 0.0 { 1.0 } else { given.exposure };
+    Ok((View::new(scene, lit, &camera, &options, limits)?, exposure))
+}
+
+/// Makes what pictures of a scene's light need, for `slots` frames in flight (0: 1): `plan` lights it. `format` is
+/// R32G32B32A32 or R16G16B16A16 SFLOAT, which get linear radiance, or of a screen, 8 or 10 bits a colour, UNORM or SRGB,
+/// which get exposure, clip and sRGB. `allocator` may be null.
+///
+/// The device needs dynamicRendering of Vulkan 1.3 besides what ridgelight_requirements asks for, and the host's family
+/// graphics.
+///
+/// Returns OK, ARGUMENT, SETTING, LIMIT or DEVICE.
+///
+/// # Safety
+/// As ridgelight_renderer_create; `scene` and `camera` are null or structs whose struct_size is set, `scene`'s pointers
+/// what their fields say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_view_create(
+    host: *const RidgelightHost,
+    scene: *const RidgelightScene,
+    plan: *const RidgelightPlan,
+    camera: *const RidgelightCamera,
+    format: vk::Format,
+    slots: u32,
+    allocator: *const RidgelightAllocator,
+    view: *mut *mut RidgelightView,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        hand_out(view, || {
+            let host = self::host(host)?;
+            let (scene, lit) = (self::scene(scene)?, handle(plan, "plan")?.0.clone());
+            let limits = gpu::limits(&host.instance, host.physical_device);
+            let (view, exposure) = seen(camera, &scene, &lit, &limits)?;
+            let slots = slots.max(1) as usize;
+            let renderer = match callbacks(allocator)? {
+                Some(memory) => {
+                    ViewRenderer::with_memory(&host, (&view, format), slots, Box::new(memory))
+                }
+                None => ViewRenderer::new(&host, &view, format, slots),
+            }?;
+            Ok(RidgelightView { renderer, scene, lit, limits, view, exposure, format })
+        })
+    })
+}
+
+/// Frees everything. The device must be done with all that was recorded. Null is allowed.
+///
+/// # Safety
+/// It came from ridgelight_view_create and is not used again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_view_destroy(view: *mut RidgelightView) {
+    if !view.is_null() {
+        // SAFETY: as the caller says.
+        unsafe { Box::from_raw(view) }.renderer.destroy();
+    }
+}
+
+/// Images of one picture. Those that are read are left as they came.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct RidgelightViewImages {
+    /// sizeof(RidgelightViewImages).
+    pub struct_size: u32,
+    /// Heights: the plan's input, or what ridgelight_taken says of a buffer.
+    pub heights: *const RidgelightImage,
+    /// Exit radiance: the plan's output "radiance", of usage SAMPLED too.
+    pub radiance: *const RidgelightImage,
+    /// The environment, where the scene has one.
+    pub environment: *const RidgelightImage,
+    /// Drawn into, of the format of ridgelight_view_create, of usage COLOR_ATTACHMENT. What it held is lost.
+    pub picture: *const RidgelightImage,
+    /// D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
+    pub depth: *const RidgelightImage,
+}
+
+// SAFETY: pointers that may be null; the size is first.
+unsafe impl SizeFirst for RidgelightViewImages {}
+
+/// Appends a picture to `commands`, which is being recorded outside rendering for the host's family: a second call,
+/// after ridgelight_record. `camera` may be another each time, of the same picture size and samples; null: the last.
+/// Checks everything first: after an error nothing has been recorded.
+///
+/// Returns OK, ARGUMENT or SETTING.
+///
+/// # Safety
+/// As ridgelight_record: of `images` and `camera`, which are null or structs whose struct_size is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_view_record(
+    view: *mut RidgelightView,
+    commands: vk::CommandBuffer,
+    slot: u32,
+    camera: *const RidgelightCamera,
+    images: *const RidgelightViewImages,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        if commands == vk::CommandBuffer::null() {
+            return Err(Failure::argument("commands", "null", "a command buffer"));
+        }
+        let of = handle_mut(view, "view")?;
+        let given = read(images, "images")?;
+        let (view, exposure) = match camera.is_null() {
+            true => (of.view.clone(), of.exposure),
+            false => seen(camera, &of.scene, &of.lit, &of.limits)?,
+        };
+        let resource = |name: &str| of.lit.find(name).map(|id| &of.lit.resources[id.0]);
+        let inputs = ViewInputs {
+            heights: image(given.heights, "heights", resource("heights"))?,
+            radiance: image(given.radiance, "radiance", resource("radiance"))?,
+            environment: match given.environment.is_null() {
+                true => None,
+                false => Some(image(given.environment, "environment", resource("environment"))?),
+            },
+            voids: None,
+        };
+        let drawn = |from, name, format| -> Done<ImageArg> {
+            let mut arg = image(from, name, None)?;
+            if arg.format == vk::Format::UNDEFINED {
+                arg.format = format;
+            }
+            if arg.extent == [0; 3] {
+                arg.extent = [view.size[0], view.size[1], 1];
+            }
+            Ok(arg)
+        };
+        let outputs = ViewOutputs {
+            picture: drawn(given.picture, "picture", of.format)?,
+            depth: match given.depth.is_null() {
+                true => None,
+                false => Some(drawn(given.depth, "depth", vk::Format::D32_SFLOAT)?),
+            },
+        };
+        of.renderer.record(commands, slot as usize, (&view, exposure), &inputs, &outputs)?;
+        (of.view, of.exposure) = (view, exposure);
+        Ok(())
+    })
+}
+
+/// An image, never a buffer.
+///
+/// # Safety
+/// As [`read`].
+unsafe fn image(
+    from: *const RidgelightImage,
+    name: &str,
+    resource: Option<&Resource>,
+) -> Done<ImageArg> {
+    // SAFETY: as the caller says.
+    match unsafe { read(from, name) }?.input(resource) {
+        InputArg::Image(image) => Ok(image),
+        InputArg::Buffer(_) => Err(Failure::argument(name, "a buffer", "an image")),
+    }
+}
+
+/// What a value of the depth image stands for: distance along the direction of view from the plane of the eye, infinite
+/// where no ground is seen; of the camera that was recorded last.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// `view` is alive or null; `distance_m` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_view_distance(
+    view: *const RidgelightView,
+    depth: f32,
+    distance_m: *mut f64,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let told = handle(view, "view")?.view.distance_m(depth);
+        *handle_mut(distance_m, "distance_m")? = told;
+        Ok(())
+    })
+}
+
+/// GPU times of the passes of a picture, as ridgelight_timings.
+///
+/// Returns OK, or ARGUMENT.
+///
+/// # Safety
+/// As there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_view_timings(
+    view: *const RidgelightView,
+    slot: u32,
+    timings: *mut RidgelightTiming,
+    count: *mut u32,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let times = handle(view, "view")?.renderer.timings(slot as usize).unwrap_or_default();
+        write_timings(&times, timings, count)
+    })
+}
+
+/// The image that input number `index`, of a plan that takes a buffer for it, is copied to, as each recording leaves it:
+/// for passes of one's own, and for ridgelight_view_record. It is to be left so.
+///
+/// Returns OK; ARGUMENT, for an input in an image too.
+///
+/// # Safety
+/// `renderer` is alive or null; `image` is null or points at a struct whose struct_size is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ridgelight_taken(
+    renderer: *const RidgelightRenderer,
+    index: u32,
+    image: *mut RidgelightImage,
+) -> RidgelightResult {
+    // SAFETY: as the caller says.
+    done(|| unsafe {
+        let renderer = handle(renderer, "renderer")?.get();
+        let input = renderer.plan().inputs().nth(index as usize).map(|(_, r)| &r.name);
+        let taken = input.and_then(|name| renderer.taken(name));
+        let taken = taken
+            .ok_or_else(|| Failure::argument("index", index, "an input that comes in a buffer"))?;
+        write(image, &RidgelightImage::of(&taken), "image")
+    })
+}

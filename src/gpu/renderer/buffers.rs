@@ -1,0 +1,208 @@
+//! Inputs in buffers of the caller's, and the images that they are copied to.
+
+use ash::vk;
+
+use super::{ImageArg, ImageState, Renderer};
+use crate::plan::{Kind, Owner, Rectangle, Resource, ResourceId};
+use crate::{Error, Result};
+
+/// Texels in a buffer of the caller's, handed in for one recording where [`Plan::take_buffer`] said so: row after
+/// row, of the format that it said. They are copied where the recording begins, by one vkCmdCopyBufferToImage.
+///
+/// [`Plan::take_buffer`]: crate::plan::Plan::take_buffer
+#[derive(Clone, Copy, Debug)]
+pub struct BufferArg {
+    /// The buffer, of usage TRANSFER_SRC. Of exclusive sharing it belongs to the host's family.
+    pub buffer: vk::Buffer,
+    /// How long all of it is, bytes: nothing beyond is read.
+    pub bytes: u64,
+    /// Where the first texel stands, bytes: whole texels.
+    pub offset: u64,
+    /// From a row's begin to the next one's, bytes: whole texels, less than 2^31. 0: rows follow one another.
+    pub row_bytes: u64,
+    /// Stages that used it last, and are taken to use it next.
+    pub stage: vk::PipelineStageFlags2,
+    /// How they did, and will.
+    pub access: vk::AccessFlags2,
+}
+
+/// What is handed in for an input: an image, or a buffer where the plan says so.
+#[derive(Clone, Copy, Debug)]
+pub enum InputArg {
+    /// Read as it is.
+    Image(ImageArg),
+    /// Copied first.
+    Buffer(BufferArg),
+}
+
+impl From<ImageArg> for InputArg {
+    fn from(image: ImageArg) -> Self {
+        Self::Image(image)
+    }
+}
+
+impl From<BufferArg> for InputArg {
+    fn from(buffer: BufferArg) -> Self {
+        Self::Buffer(buffer)
+    }
+}
+
+/// How a renderer uses callers' buffers.
+const READ: (vk::PipelineStageFlags2, vk::AccessFlags2) =
+    (vk::PipelineStageFlags2::COPY, vk::AccessFlags2::TRANSFER_READ);
+
+/// An input in a buffer, and the renderer's image for it.
+pub(super) struct Taken {
+    pub arg: BufferArg,
+    image: vk::Image,
+    region: vk::BufferImageCopy,
+    /// From the first byte to behind the last that is read.
+    range: std::ops::Range<u64>,
+}
+
+/// Columns, rows, and bytes a texel of an image.
+fn measures(resource: &Resource) -> Option<[u64; 3]> {
+    match resource.kind {
+        Kind::Image { format, width, height, .. } => {
+            Some([width.into(), height.into(), format.bytes()])
+        }
+        Kind::Buffer { .. } => None,
+    }
+}
+
+/// What is read of a buffer, or why it cannot be.
+pub(super) fn check_buffer(arg: &BufferArg, resource: &Resource) -> Result<std::ops::Range<u64>> {
+    let name = &resource.name;
+    let wrong = |field: &str, found: String, expected: String| {
+        Err(Error::setting(format!("{name}: {field}"), found, expected))
+    };
+    let Some([cols, rows, texel]) = measures(resource) else { return Ok(0..0) };
+    if arg.buffer == vk::Buffer::null() {
+        return wrong("buffer", "null".into(), "a buffer".into());
+    }
+    let of_texels = format!("a multiple of {texel}, of a texel's bytes");
+    if !arg.offset.is_multiple_of(texel) {
+        return wrong("offset", format!("{} bytes", arg.offset), of_texels);
+    }
+    let row = if arg.row_bytes == 0 { cols * texel } else { arg.row_bytes };
+    if !row.is_multiple_of(texel) || row < cols * texel || row > i32::MAX as u64 {
+        let least = cols * texel;
+        let expected = format!("0, or {of_texels}, from {least} of {cols} columns to 2^31 - 1");
+        return wrong("row_bytes", format!("{row} bytes"), expected);
+    }
+    // No overflow: each factor is less than 2^32.
+    let end = arg.offset.saturating_add(row * (rows - 1) + cols * texel);
+    if end > arg.bytes {
+        let (offset, bytes) = (arg.offset, arg.bytes);
+        let expected = format!("{end} or more: {rows} rows of {row} from {offset} on");
+        return wrong("bytes", format!("{bytes}"), expected);
+    }
+    if arg.stage == vk::PipelineStageFlags2::NONE && arg.access != vk::AccessFlags2::NONE {
+        let found = format!("NONE, with access {:?}", arg.access);
+        return wrong("stage", found, "the stages that use it so".into());
+    }
+    Ok(arg.offset..end)
+}
+
+impl Renderer {
+    /// The image that an input in a buffer is copied to, as each recording leaves it, for passes of one's own
+    /// and a [`ViewRenderer`](crate::gpu::ViewRenderer): to be left so again. None for an input in an image.
+    pub fn taken(&self, input: &str) -> Option<ImageArg> {
+        let id = self.plan.find(input)?;
+        let resource = &self.plan.resources[id.0];
+        let Kind::Image { format, width, height, layers, .. } = resource.kind else { return None };
+        let backed = self.internal(id).filter(|_| resource.owner == Owner::InputBuffer)?;
+        let state = ImageState { access: ImageState::READ.access, ..ImageState::WRITTEN };
+        Some(ImageArg {
+            image: backed.image,
+            view: backed.view,
+            format: format.vk(),
+            extent: [width, height, layers],
+            before: state,
+            after: state,
+        })
+    }
+
+    /// What is to be copied: after an edit, of heights the edited rectangle.
+    pub(super) fn takes(
+        &self,
+        buffers: &[Option<BufferArg>],
+        edited: Option<Rectangle>,
+    ) -> Vec<Taken> {
+        let one = |(i, arg): (usize, &Option<BufferArg>)| {
+            let arg = (*arg)?;
+            let resource = &self.plan.resources[i];
+            let range = check_buffer(&arg, resource).ok()?;
+            let [cols, rows, texel] = measures(resource)?;
+            let row = if arg.row_bytes == 0 { cols * texel } else { arg.row_bytes };
+            let all = Rectangle { col: 0, row: 0, cols: cols as u32, rows: rows as u32 };
+            let part = edited.filter(|_| resource.name == "heights").unwrap_or(all);
+            let corner = u64::from(part.row) * row + u64::from(part.col) * texel;
+            let region = vk::BufferImageCopy::default()
+                .buffer_offset(arg.offset + corner)
+                .buffer_row_length((row / texel) as u32)
+                .image_subresource(vk::ImageSubresourceLayers {
+                    aspect_mask: vk::ImageAspectFlags::COLOR,
+                    mip_level: 0,
+                    base_array_layer: 0,
+                    layer_count: 1,
+                })
+                .image_offset(vk::Offset3D { x: part.col as i32, y: part.row as i32, z: 0 })
+                .image_extent(vk::Extent3D { width: part.cols, height: part.rows, depth: 1 });
+            let image = self.internal(ResourceId(i))?.image;
+            Some(Taken { arg, image, region, range })
+        };
+        buffers.iter().enumerate().filter_map(one).collect()
+    }
+}
+
+impl Taken {
+    /// The image between copy and passes.
+    pub const COPIED: ImageState = ImageState {
+        stage: vk::PipelineStageFlags2::COPY,
+        access: vk::AccessFlags2::TRANSFER_WRITE,
+        layout: vk::ImageLayout::GENERAL,
+    };
+
+    fn barrier(&self) -> vk::BufferMemoryBarrier2<'static> {
+        vk::BufferMemoryBarrier2::default()
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(self.arg.buffer)
+            .offset(self.range.start)
+            .size(self.range.end - self.range.start)
+    }
+
+    /// From what the buffer was used as to the copy.
+    pub fn entry(&self) -> vk::BufferMemoryBarrier2<'static> {
+        self.barrier()
+            .src_stage_mask(self.arg.stage)
+            .src_access_mask(self.arg.access)
+            .dst_stage_mask(READ.0)
+            .dst_access_mask(READ.1)
+    }
+
+    /// And back.
+    pub fn exit(&self) -> vk::BufferMemoryBarrier2<'static> {
+        self.barrier()
+            .src_stage_mask(READ.0)
+            .src_access_mask(READ.1)
+            .dst_stage_mask(self.arg.stage)
+            .dst_access_mask(self.arg.access)
+    }
+
+    /// From the copy to the passes.
+    pub fn filled(&self) -> vk::ImageMemoryBarrier2<'static> {
+        super::transition(self.image, 1, Self::COPIED, ImageState::WRITTEN)
+    }
+
+    /// # Safety
+    /// `commands` is being recorded outside a render pass; the image is in GENERAL, and both are alive.
+    pub unsafe fn copy(&self, device: &ash::Device, commands: vk::CommandBuffer) {
+        let (buffer, layout) = (self.arg.buffer, Self::COPIED.layout);
+        // SAFETY: as the caller says; the region lies within what was checked.
+        unsafe {
+            device.cmd_copy_buffer_to_image(commands, buffer, self.image, layout, &[self.region]);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! What drawing a view runs and takes, told before there is a device.
+
+use std::fmt;
+
+use super::View;
+use crate::passes::terrain_draw::{TILE, tile_indices};
+use crate::plan::Owner;
+use crate::plan::batch::bytes_text;
+
+/// A graphics pass of a [`View`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Draw {
+    /// Its name: its shaders', its debug label, its timing row.
+    pub pass: &'static str,
+    /// Why it is drawn.
+    pub why: String,
+    /// Vertices that it runs for.
+    pub vertices: u64,
+    /// Bytes that it reads and writes where it fills the picture, each once.
+    pub bytes: u64,
+    /// Images that it reads, by name.
+    pub reads: Vec<&'static str>,
+    /// Images that it writes.
+    pub writes: Vec<&'static str>,
+}
+
+/// An image or a buffer that drawing a [`View`] takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawn {
+    /// By content.
+    pub name: &'static str,
+    /// Whose it is: the caller's, or made by [`ViewRenderer`](crate::gpu::ViewRenderer).
+    pub owner: Owner,
+    /// Bytes that it takes on the device.
+    pub bytes: u64,
+}
+
+/// Of an RGBA32F pixel.
+const COLOUR_BYTES: u64 = 16;
+/// Of a D32 depth.
+const DEPTH_BYTES: u64 = 4;
+
+impl View {
+    fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    /// Passes in their order; `for_screen` where the picture is one of codes, which the tone curve makes.
+    pub fn passes(&self, for_screen: bool) -> Vec<Draw> {
+        let (pixels, samples) = (self.pixels(), u64::from(self.samples));
+        let field = u64::from(self.field[0]) * u64::from(self.field[1]);
+        let side = u64::from(TILE) + 1;
+        let vertices = u64::from(self.tiles) * side * side;
+        let step = self.terrain.step_samples;
+        let mesh = match step {
+            1 => "the ground: a vertex at every sample, two triangles a cell".to_owned(),
+            _ => format!("the ground: a vertex at every {step}th sample, two triangles a cell"),
+        };
+        let why_samples = match samples {
+            1 => String::new(),
+            _ => format!("; {samples} samples a pixel, whose mean is kept"),
+        };
+        let mut ground = vec!["heights", "radiance"];
+        let mut texels = vertices * 4 + field * self.radiance.bytes();
+        if self.has_voids {
+            ground.push("voids");
+            texels += field * 4;
+        }
+        let drawn = if for_screen { "picture_radiance" } else { "picture" };
+        let mut written = vec![drawn, "depth"];
+        if samples > 1 {
+            written.extend(["picture_samples", "picture_depth"]);
+        }
+        let terrain = Draw {
+            pass: "terrain_draw",
+            why: mesh + &why_samples,
+            vertices,
+            bytes: texels + pixels * samples * (COLOUR_BYTES + DEPTH_BYTES),
+            reads: ground,
+            writes: written.clone(),
+        };
+        let [width, height] = self.environment.unwrap_or([0, 0]);
+        let sky = Draw {
+            pass: "sky_draw",
+            why: match self.environment {
+                Some(_) => "behind the ground: sky and environment, where no ground is seen",
+                None => "behind the ground: the sky, or the background, where no ground is seen",
+            }
+            .to_owned(),
+            vertices: 3,
+            bytes: u64::from(width) * u64::from(height) * COLOUR_BYTES
+                + pixels * samples * (COLOUR_BYTES + DEPTH_BYTES)
+                + if samples > 1 { pixels * (COLOUR_BYTES + DEPTH_BYTES) } else { 0 },
+            reads: self.environment.map(|_| "environment").into_iter().collect(),
+            writes: written,
+        };
+        let tone = for_screen.then(|| Draw {
+            pass: "picture_tone",
+            why: "the picture is of codes: exposure, clip, sRGB".to_owned(),
+            vertices: 3,
+            bytes: pixels * (COLOUR_BYTES + 4),
+            reads: vec!["picture_radiance"],
+            writes: vec!["picture"],
+        });
+        [terrain, sky].into_iter().chain(tone).collect()
+    }
+
+    /// Images and buffers beside those of the plan that lights the field, whose "heights", "radiance" and
+    /// "environment" are read.
+    pub fn memory(&self, for_screen: bool) -> Vec<Drawn> {
+        let (pixels, samples) = (self.pixels(), u64::from(self.samples));
+        let own = |name, bytes| Drawn { name, owner: Owner::Internal, bytes };
+        let given = |name, owner, bytes| Drawn { name, owner, bytes };
+        let mut all = Vec::new();
+        if self.has_voids {
+            let field = u64::from(self.field[0]) * u64::from(self.field[1]);
+            all.push(given("voids", Owner::Input, field * 4));
+        }
+        let picture_bytes = if for_screen { 4 } else { COLOUR_BYTES };
+        all.push(given("picture", Owner::Output, pixels * picture_bytes));
+        all.push(given("depth", Owner::Output, pixels * DEPTH_BYTES));
+        if samples > 1 {
+            all.push(own("picture_samples", pixels * samples * COLOUR_BYTES));
+        }
+        all.push(own("picture_depth", pixels * samples * DEPTH_BYTES));
+        if for_screen {
+            all.push(own("picture_radiance", pixels * COLOUR_BYTES));
+        }
+        all.push(own("tile_indices", 2 * tile_indices().len() as u64));
+        all
+    }
+
+    /// Why [`picture_tone`](crate::cpu::picture_tone) is not among the passes of a file's picture, and what it
+    /// would take.
+    pub fn tone_note(&self) -> String {
+        let bytes = COLOUR_BYTES * self.pixels();
+        let text = bytes_text(bytes);
+        format!(
+            "no picture_tone: a file's picture is of radiance; a window's takes {text} more for it"
+        )
+    }
+}
+
+/// A table of passes, and of what they take: of a file's picture.
+impl fmt::Display for View {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        writeln!(f, "before a camera, {width} × {height}, after the passes above")?;
+        for (name, value) in &self.settings {
+            writeln!(f, "  {name} {value}")?;
+        }
+        writeln!(f, "\n{:<34} {:>18} {:>11}  why", "pass", "vertices", "traffic")?;
+        for draw in self.passes(false) {
+            let (vertices, traffic) = (draw.vertices, bytes_text(draw.bytes));
+            writeln!(f, "  {:<32} {vertices:>18} {traffic:>11}  {}", draw.pass, draw.why)?;
+        }
+        writeln!(f, "\n{:<24} {:>9} {:>26} {:>12}", "image or buffer", "whose", "", "memory")?;
+        let memory = self.memory(false);
+        let all = Drawn {
+            name: "all",
+            owner: Owner::Internal,
+            bytes: memory.iter().map(|drawn| drawn.bytes).sum(),
+        };
+        for drawn in memory.iter().chain([&all]) {
+            let whose = match drawn.owner {
+                _ if drawn.name == all.name => "",
+                Owner::Internal => "ours",
+                Owner::Input | Owner::InputBuffer => "input",
+                Owner::Output => "output",
+            };
+            writeln!(
+                f,
+                "{:<24} {whose:>9} {:>26} {:>12}",
+                drawn.name,
+                "",
+                bytes_text(drawn.bytes)
+            )?;
+        }
+        writeln!(f, "\nnote: {}", self.tone_note())
+    }
+}
