@@ -2,6 +2,7 @@
 
 mod bounces;
 mod camera;
+mod directions;
 mod environment;
 mod field;
 mod key;
@@ -12,6 +13,7 @@ mod surface;
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
+pub use directions::Directions;
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;
