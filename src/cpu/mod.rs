@@ -55,3 +55,4 @@ pub mod surface_sweep;
 pub mod sweep_fuse;
 pub mod terrain_draw;
 pub mod vector_reduce;
+pub mod visible_points;

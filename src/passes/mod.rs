@@ -42,6 +42,7 @@ pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
 pub(crate) mod terrain_draw;
 pub(crate) mod vector_reduce;
+pub(crate) mod visible_points;
 
 use crate::gpu::shaders::same_layout;
 use crate::plan::pyramid::Pyramid;

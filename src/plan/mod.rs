@@ -28,6 +28,7 @@ mod spheres;
 pub mod sweep;
 mod sweeping;
 mod view;
+mod visible_points;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
@@ -47,6 +48,7 @@ pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
 pub use view::{View, ViewOptions, surface_error_m};
+pub use visible_points::visible_points;
 
 /// The passes that light one scene, in order, and everything that they touch.
 #[derive(Clone, Debug)]

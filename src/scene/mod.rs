@@ -9,6 +9,7 @@ mod key;
 mod lights;
 mod quality;
 mod surface;
+mod visible;
 
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
@@ -23,6 +24,7 @@ pub use quality::{
     Window,
 };
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
+pub use visible::{VisiblePoint, VisiblePoints, field_hash};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

@@ -1,15 +1,17 @@
 //! What is run against the twins: small fields of odd sizes, every form of every pass at least once.
 
 mod bounces;
+mod points;
 
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, LightBasis,
-    Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun,
-    Surface, Wedges, Window,
+    Albedo, Basis, Border, Directions, Environment, Fuse, HeightField, Hull, KeyLight, Levels,
+    LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene,
+    SphereLight, Sun, Surface, Wedges, Window,
 };
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
+pub(super) use points::points;
 
 use crate::{field, random};
 
@@ -20,6 +22,7 @@ pub(super) enum Wanted {
     Picture(Picture),
     /// Bounces.
     Reference(u32),
+    Points(Directions),
 }
 
 pub(super) struct Case {
@@ -33,19 +36,32 @@ pub(super) struct Case {
 
 impl Case {
     pub fn plan(&self, limits: &Limits) -> Plan {
-        match self.wanted {
+        match &self.wanted {
             Wanted::Horizons { distances } => plan::horizons(
                 &self.scene.field,
                 self.scene.surface.border,
                 &self.quality,
                 limits,
                 (0, self.quality.azimuths),
-                distances,
+                *distances,
             ),
-            Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, wanted),
-            Wanted::Reference(bounces) => plan::reference(&self.scene, bounces, 1, limits),
+            Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, *wanted),
+            Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
+            Wanted::Points(directions) => plan::visible_points(
+                &self.scene.field,
+                self.scene.surface.border,
+                directions,
+                limits,
+            ),
         }
         .expect("a plan")
+    }
+
+    pub fn directions(&self) -> Option<Directions> {
+        match &self.wanted {
+            Wanted::Points(directions) => Some(directions.clone()),
+            _ => None,
+        }
     }
 
     /// Texels of the plan's inputs, in its order.
