@@ -38,6 +38,7 @@ pub mod oracle;
 pub mod picture_tone;
 pub mod profile;
 pub mod pyramid_march;
+pub mod scatter_gather;
 pub mod sh_shade;
 pub mod sh_visibility;
 pub mod sh_wedges;

@@ -27,6 +27,7 @@ pub(crate) mod map_draw;
 pub(crate) mod path_trace;
 pub(crate) mod picture_tone;
 pub(crate) mod pyramid_march;
+pub(crate) mod scatter_gather;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;

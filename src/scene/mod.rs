@@ -8,6 +8,7 @@ mod field;
 mod key;
 mod lights;
 mod quality;
+mod scatter;
 mod surface;
 mod visible;
 
@@ -23,6 +24,7 @@ pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,
 };
+pub use scatter::Scatter;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
 pub use visible::{VisiblePoint, VisiblePoints, field_hash};
 

@@ -3,15 +3,16 @@
 mod bounces;
 mod points;
 
+use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Basis, Border, Directions, Environment, Fuse, HeightField, Hull, KeyLight, Levels,
-    LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene,
-    SphereLight, Sun, Surface, Wedges, Window,
+    LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scatter, Scene,
+    SphereLight, Sun, Surface, VisiblePoints, Wedges, Window,
 };
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
-pub(super) use points::points;
+pub(super) use points::{points, scatters, towards};
 
 use crate::{field, random};
 
@@ -23,6 +24,8 @@ pub(super) enum Wanted {
     /// Bounces.
     Reference(u32),
     Points(Directions),
+    /// Whether images hold no more than two layers.
+    Scatter(Directions, Scatter, bool),
 }
 
 pub(super) struct Case {
@@ -53,6 +56,11 @@ impl Case {
                 directions,
                 limits,
             ),
+            Wanted::Scatter(directions, scatter, is_cut) => {
+                let image_layers = if *is_cut { 2 } else { limits.image_layers };
+                let limits = Limits { image_layers, ..*limits };
+                plan::scatter(&self.scene, directions, scatter, &limits)
+            }
         }
         .expect("a plan")
     }
@@ -60,14 +68,34 @@ impl Case {
     pub fn directions(&self) -> Option<Directions> {
         match &self.wanted {
             Wanted::Points(directions) => Some(directions.clone()),
+            Wanted::Scatter(..) => {
+                let e = self.scene.lights.suns.iter().map(towards).collect();
+                Directions::from_vectors(e, -1.0).ok()
+            }
             _ => None,
         }
+    }
+
+    /// What samples see, by the twin.
+    pub fn points(&self) -> Option<VisiblePoints> {
+        let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
+        let (field, border) = (&self.scene.field, self.scene.surface.border);
+        let seen = visible_points(field, border, directions);
+        let points = VisiblePoints::from_points(field, border, directions.clone(), &seen);
+        Some(points.expect("points of the field"))
     }
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
         if let Wanted::Reference(_) = self.wanted {
             return plan::reference_inputs(&self.scene);
+        }
+        if let Wanted::Scatter(..) = self.wanted {
+            let mut next = random(71);
+            let samples = self.scene.field.heights_m().len();
+            let direct: Vec<_> = (0..samples).map(|_| [next() as f32, 1.0, 0.2]).collect();
+            let (plan, points) = (self.plan(&Limits::lavapipe()), self.points().expect("points"));
+            return plan::scatter_inputs(&plan, &self.scene, &points, &direct).expect("inputs");
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::Picture(_) = self.wanted {

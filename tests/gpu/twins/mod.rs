@@ -10,6 +10,7 @@ mod nodes;
 mod paths;
 mod points;
 mod pyramid;
+mod scatter;
 mod sh;
 pub(crate) mod soft;
 mod sweep;
@@ -24,7 +25,7 @@ use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
 use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene};
+use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
 
 use crate::Device;
 use cases::Case;
@@ -72,6 +73,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
     ("visible_points", points::visible_points),
+    ("scatter_gather", scatter::scatter_gather),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
@@ -135,6 +137,10 @@ struct Run<'a> {
     edit: Option<edit::Edit>,
     /// Of visible points.
     directions: Option<Directions>,
+    /// Of scattered light.
+    points: Option<VisiblePoints>,
+    /// The mean so far, by the twin, and what it may be off by.
+    scattered: Vec<([f64; 3], [f64; 3])>,
 }
 
 impl<'a> Run<'a> {
@@ -159,6 +165,8 @@ impl<'a> Run<'a> {
             lost: 0,
             edit: None,
             directions: case.directions(),
+            points: case.points(),
+            scattered: Vec::new(),
             plan,
         }
     }
@@ -334,6 +342,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pictures(),
         cases::references(),
         cases::points(),
+        cases::scatters(),
         cases::walks(),
         cases::throws(),
         cases::glosses(),
@@ -462,6 +471,14 @@ fn a_value_beyond_its_tolerance_is_seen() {
 fn points_are_their_twins() {
     let mut device = Device::new();
     for case in cases::points() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn scattered_light_is_its_twins() {
+    let mut device = Device::new();
+    for case in cases::scatters() {
         check(&mut device, &case);
     }
 }

@@ -1,10 +1,13 @@
 //! What samples see: all borders, both kinds of words, lines and single samples, prime sides.
 
 use glam::DVec3;
-use ridgelight::scene::{Border, Directions, HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::scene::{
+    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter, Scene, Sun,
+    Surface,
+};
 
-use super::{Case, Wanted, rough};
-use crate::field;
+use super::{Case, Wanted, noisy_environment, rough};
+use crate::{field, random};
 
 fn on(name: &'static str, field: HeightField, border: Border, directions: Directions) -> Case {
     let surface = Surface { border, ..Surface::default() };
@@ -43,5 +46,67 @@ pub fn points() -> Vec<Case> {
         on("points of one sample that repeats", rough(1, 1, 68), Border::Periodic, sphere(6)),
         on("points in whole words", long(3, 257), Border::Plane, sphere(9)),
         on("points in whole words of a line", long(263, 1), Border::Periodic, sphere(8)),
+    ]
+}
+
+/// Towards a sun's middle.
+pub fn towards(sun: &Sun) -> DVec3 {
+    let (sin, cos) = sun.elevation_rad.sin_cos();
+    DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
+}
+
+/// `scatter_gather`: one bounce, and several in more paths than go side by side; images that are cut, whole words; lobes
+/// under all that they mirror, exponents of 1 and more.
+pub fn scatters() -> Vec<Case> {
+    let scatter = |bounces, paths| Scatter { bounces, paths, seed: 5, ..Scatter::default() };
+    let of = |name, field, surface, lights, wanted: (usize, Scatter, bool)| Case {
+        name,
+        scene: Scene { field, surface, lights },
+        quality: Quality::default(),
+        wanted: Wanted::Scatter(sphere(wanted.0), wanted.1, wanted.2),
+        loses_lines: false,
+    };
+    let mut next = random(72);
+    let map = Albedo::Map((0..72).map(|_| [next() as f32, 0.5, 0.9]).collect());
+    let grey = |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), phong: None };
+    let lobes = (0..72).map(|i| Phong { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
+    let mapped = Surface { border: Border::Open, albedo: map, phong: None };
+    let glossy = Surface {
+        border: Border::Plane,
+        albedo: Albedo::Constant([0.4, 0.3, 0.2]),
+        phong: Some(Lobe::Map(lobes.collect())),
+    };
+    let sun = |azimuth_rad, elevation_rad| Sun {
+        azimuth_rad,
+        elevation_rad,
+        diameter_rad: 0.0,
+        irradiance: [3.0, 2.0, 1.0],
+    };
+    let lights = Lights {
+        sky: Some([0.3, 0.5, 0.9]),
+        environment: Some(noisy_environment(73)),
+        suns: vec![sun(2.0, 0.4), sun(-1.0, 0.9), sun(0.3, 0.2)],
+        ..Lights::default()
+    };
+    let none = Lights::default;
+    let one = Surface {
+        border: Border::Periodic,
+        albedo: Albedo::Constant([0.5, 0.3, 0.2]),
+        phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
+    };
+    let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
+    vec![
+        of("one bounce", rough(9, 8, 74), mapped, none(), (11, scatter(1, 70), false)),
+        of(
+            "three bounces",
+            rough(7, 9, 75),
+            grey(Border::Periodic),
+            none(),
+            (13, scatter(3, 70), false),
+        ),
+        of("cut images", rough(8, 9, 76), grey(Border::Plane), none(), (9, scatter(2, 12), true)),
+        of("whole words", long, grey(Border::Plane), none(), (6, scatter(2, 4), false)),
+        of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
+        of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
     ]
 }
