@@ -24,6 +24,7 @@ pub mod light;
 pub mod product;
 pub mod quadrature;
 pub mod slice;
+pub mod triangles;
 pub mod wedge;
 pub mod window;
 pub mod zonal;

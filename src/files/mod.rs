@@ -26,6 +26,7 @@ mod png;
 mod room;
 mod size;
 mod tif;
+mod visible;
 
 pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
 pub use environment::{parse_environment, read_albedo, read_environment};
@@ -37,3 +38,4 @@ pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{Tone, encode_png, write_png};
 pub use room::check_room;
 pub use size::height_size;
+pub use visible::{read_visible_points, write_visible_points};

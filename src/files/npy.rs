@@ -80,6 +80,11 @@ impl<'a> Array<'a> {
         Ok(Self { shape, kind, size, big_endian, fortran, data })
     }
 
+    /// Bytes of a value, where values are unsigned.
+    pub fn unsigned(&self) -> Option<usize> {
+        (self.kind == b'u').then_some(self.size)
+    }
+
     /// Whether values are 16- or 32-bit floats.
     pub fn single(&self) -> bool {
         self.kind == b'f' && self.size < 8
@@ -164,6 +169,26 @@ pub(super) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster>
     Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
 }
 
+/// What stands before the data of an array of this type ("<f4") and shape, last index running fastest.
+///
+/// # Errors
+/// More dimensions than a header holds.
+pub(super) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
+    let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
+    let mut text = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
+        sizes.trim_end()
+    );
+    // The data begins at a multiple of 64 bytes, after a 10-byte preamble and a line feed.
+    let padded = (10 + text.len() + 1).next_multiple_of(64);
+    text.push_str(&" ".repeat(padded - 10 - text.len() - 1));
+    text.push('\n');
+    let length = u16::try_from(text.len()).map_err(|_| {
+        Error::setting("shape", format!("{} dimensions", shape.len()), "a few dimensions")
+    })?;
+    Ok([&b"\x93NUMPY\x01\x00"[..], &length.to_le_bytes(), text.as_bytes()].concat())
+}
+
 /// Writes an array of little-endian f32 piece by piece, so that it may be larger than memory.
 ///
 /// Nothing is at the destination until [`finish`](Self::finish); dropped before, it leaves nothing.
@@ -185,21 +210,7 @@ impl NpyWriter {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
         })?;
         let mut file = Temporary::create(path)?;
-        let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
-        let mut header = format!(
-            "{{'descr': '<f4', 'fortran_order': False, 'shape': ({}), }}",
-            sizes.trim_end()
-        );
-        // The data begins at a multiple of 64 bytes, after a 10-byte preamble and a line feed.
-        let padded = (10 + header.len() + 1).next_multiple_of(64);
-        header.push_str(&" ".repeat(padded - 10 - header.len() - 1));
-        header.push('\n');
-        let length = u16::try_from(header.len()).map_err(|_| {
-            Error::setting("shape", format!("{} dimensions", shape.len()), "a few dimensions")
-        })?;
-        file.write(b"\x93NUMPY\x01\x00")?;
-        file.write(&length.to_le_bytes())?;
-        file.write(header.as_bytes())?;
+        file.write(&header("<f4", shape)?)?;
         Ok(Self { file, shape: shape.to_vec(), left })
     }
 

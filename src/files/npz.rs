@@ -9,17 +9,23 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 use zip::ZipArchive;
 
-type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
+pub(super) type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 /// Members that hold heights, best first; failing these, the only 2-D array.
 const HEIGHTS: [&str; 4] = ["elevation", "heights", "height", "z"];
 
+/// # Errors
+/// Bytes that are no whole archive.
+pub(super) fn archive<'a>(path: &Path, bytes: &'a [u8]) -> Result<Archive<'a>> {
+    ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+        Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
+    })
+}
+
 /// Heights with the cell of the scalars `dx` and `dy`; `xmin` to `ymax` tell degrees from metres,
 /// and `ymin` may be the northern one.
 pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
-    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
-        Error::file(path, "archive", open::complaint(e), "a whole ZIP archive of arrays")
-    })?;
+    let mut archive = archive(path, bytes)?;
     let names: Vec<String> = archive
         .file_names()
         .filter_map(|n| n.ok().map(|n| n.into_owned()))
@@ -98,7 +104,12 @@ fn only_plane(path: &Path, archive: &mut Archive, held: usize, names: &[String])
 }
 
 /// A member's bytes, never more than it claims, never a claim beyond what the file could hold.
-fn member(path: &Path, archive: &mut Archive, held: usize, name: &str) -> Result<Vec<u8>> {
+pub(super) fn member(
+    path: &Path,
+    archive: &mut Archive,
+    held: usize,
+    name: &str,
+) -> Result<Vec<u8>> {
     let place = printable(name);
     let wrong =
         |found: String| Error::file(path, place.as_str(), found, "a stored or deflated array");

@@ -9,6 +9,7 @@
 mod bounce;
 mod gloss;
 mod light;
+mod points;
 
 use std::f64::consts::PI;
 
@@ -16,6 +17,7 @@ use crate::cpu::bounce_shade::LEAST_SHARE;
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
+pub use points::{MET_SHARE, gathered, seen_elevation};
 
 /// The largest relative error of one rounding to f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;

@@ -27,6 +27,7 @@ pub(crate) mod map_draw;
 pub(crate) mod path_trace;
 pub(crate) mod picture_tone;
 pub(crate) mod pyramid_march;
+pub(crate) mod scatter_gather;
 pub(crate) mod sh_shade;
 pub(crate) mod sh_visibility;
 pub(crate) mod sh_wedges;
@@ -42,6 +43,7 @@ pub(crate) mod surface_sweep;
 pub(crate) mod sweep_fuse;
 pub(crate) mod terrain_draw;
 pub(crate) mod vector_reduce;
+pub(crate) mod visible_points;
 
 use crate::gpu::shaders::same_layout;
 use crate::plan::pyramid::Pyramid;

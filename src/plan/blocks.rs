@@ -93,4 +93,4 @@ impl Blocks {
 }
 
 /// As in `walk.glsl`.
-const REACH_CELLS: u32 = 16384;
+pub(super) const REACH_CELLS: u32 = 16384;

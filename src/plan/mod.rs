@@ -53,6 +53,7 @@ mod print;
 pub mod pyramid;
 mod reference;
 mod resource;
+pub(crate) mod scatter;
 pub(crate) mod sh;
 mod shining;
 pub(crate) mod sphere_sh;
@@ -60,6 +61,7 @@ mod spheres;
 pub mod sweep;
 mod sweeping;
 mod view;
+mod visible_points;
 
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
@@ -76,9 +78,11 @@ pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
 pub use resource::{Format, Kind, Owner, Resource};
+pub use scatter::{scatter, scatter_inputs};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
 pub use view::{Draw, Drawn, View, ViewOptions, surface_error_m};
+pub use visible_points::visible_points;
 
 use crate::{Error, Result};
 

@@ -32,16 +32,20 @@
 
 mod bounces;
 mod camera;
+mod directions;
 mod environment;
 mod field;
 mod key;
 mod lights;
 mod quality;
+mod scatter;
 mod surface;
+mod visible;
 
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
+pub use directions::Directions;
 pub use environment::Environment;
 pub use field::HeightField;
 pub use key::KeyLight;
@@ -50,7 +54,9 @@ pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,
 };
+pub use scatter::Scatter;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
+pub use visible::{VisiblePoint, VisiblePoints, field_hash};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

@@ -9,6 +9,7 @@ mod legendre;
 mod light;
 mod product;
 mod slice;
+mod triangles;
 mod wedge;
 mod window;
 mod zonal;

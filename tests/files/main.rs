@@ -6,6 +6,7 @@ mod heights;
 mod light;
 mod malformed;
 mod real;
+mod visible;
 mod write;
 
 use common::HEIGHTS;

@@ -2,6 +2,7 @@
 
 mod bounces;
 mod gloss;
+mod points;
 mod reference;
 mod sizes;
 mod walks;

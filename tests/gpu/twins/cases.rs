@@ -1,15 +1,18 @@
 //! What is run against the twins: small fields of odd sizes, every form of every pass at least once.
 
 mod bounces;
+mod points;
 
+use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Environment, Fuse, HeightField, Hull, KeyLight, Levels, LightBasis,
-    Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scene, SphereLight, Sun,
-    Surface, Wedges, Window,
+    Albedo, Basis, Border, Directions, Environment, Fuse, HeightField, Hull, KeyLight, Levels,
+    LightBasis, Lights, Lines, Lobe, Method, Phong, Precision, Quality, Receiver, Scatter, Scene,
+    SphereLight, Sun, Surface, VisiblePoints, Wedges, Window,
 };
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
+pub(super) use points::{points, scatters, towards};
 
 use crate::{field, random};
 
@@ -20,6 +23,9 @@ pub(super) enum Wanted {
     Picture(Picture),
     /// Bounces.
     Reference(u32),
+    Points(Directions),
+    /// Whether images hold no more than two layers.
+    Scatter(Directions, Scatter, bool),
 }
 
 pub(super) struct Case {
@@ -33,25 +39,63 @@ pub(super) struct Case {
 
 impl Case {
     pub fn plan(&self, limits: &Limits) -> Plan {
-        match self.wanted {
+        match &self.wanted {
             Wanted::Horizons { distances } => plan::horizons(
                 &self.scene.field,
                 self.scene.surface.border,
                 &self.quality,
                 limits,
                 (0, self.quality.azimuths),
-                distances,
+                *distances,
             ),
-            Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, wanted),
-            Wanted::Reference(bounces) => plan::reference(&self.scene, bounces, 1, limits),
+            Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, *wanted),
+            Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
+            Wanted::Points(directions) => plan::visible_points(
+                &self.scene.field,
+                self.scene.surface.border,
+                directions,
+                limits,
+            ),
+            Wanted::Scatter(directions, scatter, is_cut) => {
+                let image_layers = if *is_cut { 2 } else { limits.image_layers };
+                let limits = Limits { image_layers, ..*limits };
+                plan::scatter(&self.scene, directions, scatter, &limits)
+            }
         }
         .expect("a plan")
+    }
+
+    pub fn directions(&self) -> Option<Directions> {
+        match &self.wanted {
+            Wanted::Points(directions) => Some(directions.clone()),
+            Wanted::Scatter(..) => {
+                let e = self.scene.lights.suns.iter().map(towards).collect();
+                Directions::from_vectors(e, -1.0).ok()
+            }
+            _ => None,
+        }
+    }
+
+    /// What samples see, by the twin.
+    pub fn points(&self) -> Option<VisiblePoints> {
+        let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
+        let (field, border) = (&self.scene.field, self.scene.surface.border);
+        let seen = visible_points(field, border, directions);
+        let points = VisiblePoints::from_points(field, border, directions.clone(), &seen);
+        Some(points.expect("points of the field"))
     }
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
         if let Wanted::Reference(_) = self.wanted {
             return plan::reference_inputs(&self.scene);
+        }
+        if let Wanted::Scatter(..) = self.wanted {
+            let mut next = random(71);
+            let samples = self.scene.field.heights_m().len();
+            let direct: Vec<_> = (0..samples).map(|_| [next() as f32, 1.0, 0.2]).collect();
+            let (plan, points) = (self.plan(&Limits::lavapipe()), self.points().expect("points"));
+            return plan::scatter_inputs(&plan, &self.scene, &points, &direct).expect("inputs");
         }
         let mut all = vec![self.scene.field.heights_m().to_vec()];
         if let Wanted::Picture(_) = self.wanted {

@@ -8,7 +8,9 @@ mod gloss;
 mod light;
 mod nodes;
 mod paths;
+mod points;
 mod pyramid;
+mod scatter;
 mod sh;
 pub(crate) mod soft;
 mod sweep;
@@ -23,7 +25,7 @@ use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
 use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Fuse, Phong, Quality, Scene};
+use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
 
 use crate::Device;
 use cases::Case;
@@ -70,6 +72,8 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_cells", paths::height_cells),
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
+    ("visible_points", points::visible_points),
+    ("scatter_gather", scatter::scatter_gather),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
     ("horizon_march", sweep::horizon_march),
@@ -131,6 +135,12 @@ struct Run<'a> {
     /// Groups of four lines whose hull was deeper than its memory.
     lost: usize,
     edit: Option<edit::Edit>,
+    /// Of visible points.
+    directions: Option<Directions>,
+    /// Of scattered light.
+    points: Option<VisiblePoints>,
+    /// The mean so far, by the twin, and what it may be off by.
+    scattered: Vec<([f64; 3], [f64; 3])>,
 }
 
 impl<'a> Run<'a> {
@@ -154,6 +164,9 @@ impl<'a> Run<'a> {
             arriving: Vec::new(),
             lost: 0,
             edit: None,
+            directions: case.directions(),
+            points: case.points(),
+            scattered: Vec::new(),
             plan,
         }
     }
@@ -208,6 +221,10 @@ impl<'a> Run<'a> {
 
     fn lobe(&self, sample: usize) -> Phong {
         self.scene.surface.phong.as_ref().expect("a lobe").at(sample)
+    }
+
+    fn directions(&self) -> Directions {
+        self.directions.clone().expect("a case with directions")
     }
 
     fn border(&self) -> Border {
@@ -324,6 +341,8 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pyramids(),
         cases::pictures(),
         cases::references(),
+        cases::points(),
+        cases::scatters(),
         cases::walks(),
         cases::throws(),
         cases::glosses(),
@@ -445,5 +464,21 @@ fn a_value_beyond_its_tolerance_is_seen() {
             let found = worst(&spoiled).expect("values");
             assert!(found.ratio() > 1.0, "{label}: deaf at {picked}: {found:?}");
         }
+    }
+}
+
+#[test]
+fn points_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::points() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn scattered_light_is_its_twins() {
+    let mut device = Device::new();
+    for case in cases::scatters() {
+        check(&mut device, &case);
     }
 }

@@ -1,0 +1,138 @@
+use std::ops::Range;
+
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Builder, ResourceId};
+use crate::scene::{Albedo, Lobe, Phong, Scene, VisiblePoints};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ScatterGatherPush {
+    cols: i32,
+    rows: i32,
+    first_link: i32,
+    steps: i32,
+    step: i32,
+    first_path: i32,
+    paths: i32,
+    first_direction: i32,
+    first_sun: i32,
+    suns: i32,
+    weight_sr: f32,
+    exponent: f32,
+    lobe_share: f32,
+    view_x: f32,
+    view_y: f32,
+    view_z: f32,
+    albedo: [f32; 4],
+}
+
+same_layout!(
+    ScatterGatherPush,
+    scatter_gather_push,
+    cols = COLS,
+    rows = ROWS,
+    first_link = FIRST_LINK,
+    steps = STEPS,
+    step = STEP,
+    first_path = FIRST_PATH,
+    paths = PATHS,
+    first_direction = FIRST_DIRECTION,
+    first_sun = FIRST_SUN,
+    suns = SUNS,
+    weight_sr = WEIGHT_SR,
+    exponent = EXPONENT,
+    lobe_share = LOBE_SHARE,
+    view_x = VIEW_X,
+    view_y = VIEW_Y,
+    view_z = VIEW_Z,
+    albedo = ALBEDO,
+);
+
+/// What the samples that are seen give, as in the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    None,
+    Direct,
+    Carried,
+}
+
+/// What is the same in all steps.
+pub(crate) struct Steps<'a> {
+    pub scene: &'a Scene,
+    /// Texels of the first path's first step, and of the first sun.
+    pub texels: [usize; 2],
+    /// Steps of a path.
+    pub count: u32,
+    /// Solid angle of all directions, sr.
+    pub weight_sr: f64,
+    /// Towards the view.
+    pub view: glam::DVec3,
+}
+
+/// Step `step` of some paths, which look at one image of visible points, whose first direction is `first_direction`.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    steps: &Steps,
+    (step, paths, source): (u32, Range<u32>, Source),
+    first_direction: u32,
+    bound: &[(&str, ResourceId)],
+) {
+    let Scene { field, surface, lights } = steps.scene;
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let count = paths.end - paths.start;
+    let sums = step == 0;
+    let (albedo, is_map) = match surface.albedo {
+        Albedo::Constant([r, g, b]) => ([r, g, b, 1.0], false),
+        Albedo::Map(_) => ([0.0; 4], true),
+    };
+    let lobe = match &surface.phong {
+        Some(Lobe::Constant(phong)) => *phong,
+        _ => Phong { exponent: 0.0, scale: 0.0 },
+    };
+    let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    let part = match sums {
+        true => format!("paths {}..{}", paths.start, paths.end),
+        false => format!("paths {}..{} step {step}", paths.start, paths.end),
+    };
+    let why = match sums {
+        true => "what each sample scatters of the light that it sees along its paths",
+        false => "what each sample sends back along its paths",
+    };
+    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    builder.pass(
+        &shaders::SCATTER_GATHER,
+        &part,
+        why,
+        [cols.div_ceil(8), rows.div_ceil(8), if sums { 1 } else { count }],
+        &[
+            (0, source as u32),
+            (1, u32::from(sums)),
+            (2, u32::from(is_small)),
+            (3, u32::from(is_map)),
+            (4, u32::from(surface.phong.is_some())),
+            (5, u32::from(matches!(surface.phong, Some(Lobe::Map(_))))),
+        ],
+        &ScatterGatherPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            first_link: steps.texels[0] as i32,
+            steps: steps.count as i32,
+            step: step as i32,
+            first_path: paths.start as i32,
+            paths: count as i32,
+            first_direction: first_direction as i32,
+            first_sun: steps.texels[1] as i32,
+            suns: if surface.phong.is_some() { lights.suns.len() as i32 } else { 0 },
+            weight_sr: steps.weight_sr as f32,
+            exponent: lobe.exponent,
+            lobe_share: lobe.scale,
+            view_x: steps.view.x as f32,
+            view_y: steps.view.y as f32,
+            view_z: steps.view.z as f32,
+            albedo,
+        },
+        bound,
+        looks * (4 + 16 + 16 + 16),
+        looks,
+    );
+}

@@ -1,0 +1,93 @@
+use std::ops::Range;
+
+use crate::gpu::shaders::{self, same_layout};
+use crate::plan::{Blocks, Builder, ResourceId};
+use crate::scene::{Border, HeightField};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct VisiblePointsPush {
+    cols: i32,
+    rows: i32,
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    top_level: i32,
+    highest_m: f32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    first_layer: i32,
+    first_direction: i32,
+    end_direction: i32,
+}
+
+same_layout!(
+    VisiblePointsPush,
+    visible_points_push,
+    cols = COLS,
+    rows = ROWS,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    top_level = TOP_LEVEL,
+    highest_m = HIGHEST_M,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    first_layer = FIRST_LAYER,
+    first_direction = FIRST_DIRECTION,
+    end_direction = END_DIRECTION,
+);
+
+/// What each sample sees in the directions of some layers of an image. `texels` are those of the image's directions
+/// in the buffer "directions".
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    blocks: &Blocks,
+    (layers, texels, is_small): (Range<u32>, Range<usize>, bool),
+    part: &str,
+    [directions, image]: [ResourceId; 2],
+) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let count = layers.end - layers.start;
+    let words = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let rays = words * if is_small { 2 } else { 1 };
+    builder.pass(
+        &shaders::VISIBLE_POINTS,
+        part,
+        "the sample that each sample sees in each direction",
+        [cols.div_ceil(8), rows.div_ceil(8), count],
+        &[
+            (0, border as u32),
+            (1, u32::from(thin_rows)),
+            (2, u32::from(thin_cols)),
+            (3, blocks.most_steps()),
+            (4, u32::from(is_small)),
+        ],
+        &VisiblePointsPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cells_x: blocks.cells[0] as i32,
+            cells_y: blocks.cells[1] as i32,
+            padded_rows: blocks.padded_rows as i32,
+            top_level: blocks.top_level as i32,
+            highest_m,
+            cell_x_m: field.cell_m()[0] as f32,
+            cell_y_m: field.cell_m()[1] as f32,
+            first_layer: layers.start as i32,
+            first_direction: texels.start as i32,
+            end_direction: texels.end as i32,
+        },
+        &[
+            ("cells", blocks.images.cells),
+            ("maxima", blocks.images.maxima),
+            ("ground", blocks.images.ground),
+            ("directions", directions),
+            ("visible_points", image),
+        ],
+        words * (4 + 16),
+        rays,
+    );
+}

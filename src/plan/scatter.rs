@@ -1,0 +1,316 @@
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::batch::bytes_text;
+use super::blocks::Blocks;
+use super::visible_points::{images, record, texels};
+use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use crate::passes::scatter_gather::{self as pass, Source, Steps};
+use crate::scene::{
+    Albedo, Border, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
+};
+use crate::{Error, Result};
+
+/// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
+/// busy where the field is small.
+const CARRIED_BYTES: u64 = 64 << 20;
+/// Paths side by side, at most.
+const MOST_AT_ONCE: u64 = 64;
+
+/// Passes that scatter light by the method of dependent tests (Heidrich et al. 2000, §3.1-3.2): paths whose every step is
+/// one direction for the whole field and a look-up of what each sample sees along it, from their far ends to the samples.
+///
+/// Inputs: those of [`scatter_inputs`]. Output: "scattered", the light that has been reflected once to `bounces` times
+/// before it leaves each sample, mean of the paths so far, and their number; direct light is not in it. After each pass
+/// without a step in its name it is the result of fewer paths.
+///
+/// What is diffuse starts from the direct light of all lights, that of sky and environment among it; paths that leave the
+/// field then bring nothing. Lobes reflect towards where their path comes from: what they mirror of suns, as points in
+/// their middles, and of the sky where a path leaves the field is added at each vertex.
+///
+/// Of `directions` count those that paths choose: as often as each other until none is left, in an order that the seed
+/// decides, apart for every step.
+///
+/// # Errors
+/// As [`Scatter::check`]; more memory than there is.
+pub fn scatter(
+    scene: &Scene,
+    directions: &Directions,
+    scatter: &Scatter,
+    limits: &Limits,
+) -> Result<Plan> {
+    scatter.check(scene)?;
+    let Scene { field, surface, lights } = scene;
+    let size = limits.check_size(field.rows(), field.cols())?;
+    super::visible_points::check_side(field)?;
+    let mut builder = Builder::new();
+    let rgba = Format::Rgba32Float;
+    let mut image = |name: &str, owner: Owner, format: Format| {
+        builder.image(name, owner, format, [size[0], size[1], 1], false)
+    };
+    let heights = image("heights", Owner::Input, Format::R32Float);
+    let mut bound = vec![("direct", image("direct", Owner::Input, rgba))];
+    if matches!(surface.albedo, Albedo::Map(_)) {
+        bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
+    }
+    if matches!(surface.phong, Some(Lobe::Map(_))) {
+        bound.push(("phong_map", image("phong", Owner::Input, rgba)));
+    }
+    let scattered = image("scattered", Owner::Output, rgba);
+    let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
+    let blocks = Blocks::make(&mut builder, size, surface.border);
+    bound.push(("ground", blocks.images.ground));
+    let has_lobe = surface.phong.is_some();
+    let suns = suns_of(scene)?;
+    match &suns {
+        Some(_) => blocks.record(&mut builder, field, heights, None),
+        None => blocks.record_ground(&mut builder, field, heights, None),
+    }
+    // One step more than bounces where what is met mirrors the sky.
+    let steps = scatter.bounces + u32::from(has_lobe);
+    let order = order(directions.count(), scatter, steps);
+    let (links, first_link) = builder.constants(&link_texels(scene, directions, &order));
+    let (_, first_sun) = builder.constants(&sun_texels(&lights.suns));
+    bound.push(("links", links));
+    if let Some(suns) = &suns {
+        let all = images_of_suns(&mut builder, size, suns, limits)?;
+        let (_, first) = builder.constants(&texels(suns));
+        record(&mut builder, (field, surface.border), &blocks, (links, first), suns, all.clone());
+        bound.push(("sun_points", all.0));
+    }
+    let samples = u64::from(size[0]) * u64::from(size[1]);
+    let is_chained = steps > 1;
+    let fitting = CARRIED_BYTES / (2 * 16 * samples);
+    // Paths side by side look at one image of visible points.
+    let most = match (points.len(), is_chained) {
+        (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
+        (1, false) => MOST_AT_ONCE as u32,
+        _ => 1,
+    };
+    let at_once = most.min(scatter.paths);
+    let carried: Vec<ResourceId> = (0..if is_chained { 2 } else { 0 })
+        .map(|k| {
+            let extent = [size[0], size[1], at_once];
+            builder.image(format!("carried.{k}"), Owner::Internal, rgba, extent, true)
+        })
+        .collect();
+    let of = Steps {
+        scene,
+        texels: [first_link, first_sun],
+        count: steps,
+        weight_sr: directions.share_sr() * directions.count() as f64,
+        view: scatter.view,
+    };
+    let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
+    for first in (0..scatter.paths).step_by(at_once as usize) {
+        let paths = first..scatter.paths.min(first + at_once);
+        let deepest = steps - 1;
+        for step in (0..=deepest).rev() {
+            let source = match () {
+                () if step < deepest => Source::Carried,
+                () if has_lobe => Source::None,
+                () => Source::Direct,
+            };
+            let looked = order[(first * steps + step) as usize] / of_layer;
+            let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&looked);
+            let (seen, layers) = points.iter().find(holds).expect("every direction has a layer");
+            let mut bound = bound.clone();
+            bound.push(("visible_points", *seen));
+            if source == Source::Carried {
+                bound.push(("carried_in", carried[(step as usize + 1) % 2]));
+            }
+            bound.push(match step {
+                0 => ("scattered", scattered),
+                _ => ("carried", carried[step as usize % 2]),
+            });
+            let what = (step, paths.clone(), source);
+            pass::plan(&mut builder, &of, what, of_layer * layers.start, &bound);
+        }
+    }
+    let settings = [
+        ("method", "scattering by visible points".to_owned()),
+        ("border", format!("{:?}", surface.border).to_lowercase()),
+        ("directions", directions.count().to_string()),
+        ("bounces", scatter.bounces.to_string()),
+        ("paths", scatter.paths.to_string()),
+        ("paths_at_once", at_once.to_string()),
+        ("seed", scatter.seed.to_string()),
+        ("carried", bytes_text(carried.len() as u64 * 16 * samples * u64::from(at_once))),
+    ];
+    let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
+    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), settings, limits)
+}
+
+/// Texels of the inputs of a [`scatter`](scatter()), in its plan's order: "heights"; "direct", the exit radiance of each
+/// sample under all lights without its lobe; "albedo" and "phong" (exponent, scale) where they are maps; the visible
+/// points, in as many images as `plan` has.
+///
+/// # Errors
+/// Points of another field or other directions; direct light that is not one colour a sample.
+pub fn scatter_inputs(
+    plan: &Plan,
+    scene: &Scene,
+    points: &VisiblePoints,
+    direct: &[[f32; 3]],
+) -> Result<Vec<Vec<f32>>> {
+    let Scene { field, surface, .. } = scene;
+    points.check(field, surface.border)?;
+    let samples = field.rows() * field.cols();
+    if direct.len() != samples {
+        let found = format!("{} colours", direct.len());
+        return Err(Error::setting("direct light", found, format!("{samples}, one a sample")));
+    }
+    let four = |texels: &[[f32; 3]]| -> Vec<f32> {
+        texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
+    };
+    let mut all = vec![field.heights_m().to_vec(), four(direct)];
+    if let Albedo::Map(map) = &surface.albedo {
+        all.push(four(map));
+    }
+    if let Some(Lobe::Map(map)) = &surface.phong {
+        all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
+    }
+    let mut words = points.words();
+    for (_, resource) in plan.inputs().filter(|(_, r)| r.name.starts_with("visible_points")) {
+        let wanted = (resource.bytes() / 4) as usize;
+        let Some((own, rest)) = words.split_at_checked(wanted) else {
+            let found = points.directions().count().to_string();
+            return Err(Error::setting(
+                "directions of the visible points",
+                found,
+                "those of the plan",
+            ));
+        };
+        // Words are handed over as the bits of floats.
+        all.push(own.iter().map(|word| f32::from_bits(*word)).collect());
+        words = rest;
+    }
+    if !words.is_empty() {
+        let found = points.directions().count().to_string();
+        return Err(Error::setting("directions of the visible points", found, "those of the plan"));
+    }
+    Ok(all)
+}
+
+/// Where lobes look for suns: their middles.
+fn suns_of(scene: &Scene) -> Result<Option<Directions>> {
+    let suns = &scene.lights.suns;
+    if scene.surface.phong.is_none() || suns.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(Directions::from_vectors(suns.iter().map(towards).collect(), -1.0)?))
+}
+
+fn images_of_suns(
+    builder: &mut Builder,
+    size: [u32; 2],
+    suns: &Directions,
+    limits: &Limits,
+) -> Result<(ResourceId, Range<u32>)> {
+    let is_small = VisiblePoints::is_small(size[1] as usize, size[0] as usize);
+    let layers = VisiblePoints::layers(suns.count(), is_small) as u32;
+    if layers > limits.image_layers {
+        return Err(Error::Limit {
+            what: format!("{} suns in lobes", suns.count()),
+            needs: format!("an image of {layers} layers"),
+            limit: format!("{} on this device", limits.image_layers),
+        });
+    }
+    let extent = [size[0], size[1], layers];
+    let id = builder.image("sun_points", Owner::Internal, Format::R32Uint, extent, true);
+    Ok((id, 0..layers))
+}
+
+/// Of a sun's middle.
+pub(crate) fn towards(sun: &Sun) -> DVec3 {
+    let (sin, cos) = sun.elevation_rad.sin_cos();
+    DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
+}
+
+/// Which direction each path looks along at each of its steps, path after path: for every step a shuffled list of all
+/// directions, and another when it has come to its end. Each direction is as likely everywhere, apart for every step.
+pub(crate) fn order(directions: usize, scatter: &Scatter, steps: u32) -> Vec<u32> {
+    let paths = scatter.paths as usize;
+    let mut all = vec![0; paths * steps as usize];
+    for step in 0..steps as usize {
+        let mut list: Vec<u32> = (0..directions as u32).collect();
+        for path in 0..paths {
+            let at = path % directions;
+            // Fisher & Yates: the next of what is left.
+            let cycle = (path / directions) as u64;
+            let key = u64::from(scatter.seed) << 40 ^ (step as u64) << 32 ^ cycle << 16 ^ at as u64;
+            let left = (directions - at) as u64;
+            let pick = at + ((mixed(key) >> 32) * left >> 32) as usize;
+            list.swap(at, pick);
+            all[path * steps as usize + step] = list[at];
+        }
+    }
+    all
+}
+
+/// Splitmix64 (Steele, Lea & Flood 2014).
+fn mixed(key: u64) -> u64 {
+    let a = key.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let b = (a ^ a >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let c = (b ^ b >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    c ^ c >> 31
+}
+
+/// Two a step of every path: direction and its number; the light of the sky there.
+fn link_texels(scene: &Scene, directions: &Directions, order: &[u32]) -> Vec<f32> {
+    let sky = match scene.surface.phong {
+        Some(_) => sky_of(scene, directions),
+        None => vec![[0.0; 3]; directions.count()],
+    };
+    let vectors = directions.vectors();
+    let link = |i: &u32| {
+        let (e, [r, g, b]) = (vectors[*i as usize], sky[*i as usize]);
+        [e.x as f32, e.y as f32, e.z as f32, *i as f32, r as f32, g as f32, b as f32, 0.0]
+    };
+    order.iter().flat_map(link).collect()
+}
+
+/// Two a sun: towards its middle; irradiance.
+fn sun_texels(suns: &[Sun]) -> Vec<f32> {
+    let texels = suns.iter().flat_map(|sun| {
+        let (e, [r, g, b]) = (towards(sun), sun.irradiance);
+        [e.x as f32, e.y as f32, e.z as f32, 0.0, r, g, b, 0.0]
+    });
+    texels.collect()
+}
+
+/// Radiance of sky and environment in each direction: of an image the mean of the texels that are nearest to it, so that
+/// none of its light is lost between them. Below horizontal under `open` alone.
+pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
+    let vectors = directions.vectors();
+    let uniform = scene.lights.sky.unwrap_or_default().map(f64::from);
+    let is_open = scene.surface.border == Border::Open;
+    let mut all: Vec<[f64; 3]> =
+        vectors.iter().map(|v| if is_open || v.z > 0.0 { uniform } else { [0.0; 3] }).collect();
+    let Some(environment) = &scene.lights.environment else { return all };
+    let rows = environment.rows_above_ground(scene.surface.border);
+    let [width, height] = [environment.width(), environment.height()];
+    for row in 0..rows {
+        let (sin, cos) = (PI * (row as f64 + 0.5) / height as f64).sin_cos();
+        let solid = texel_sr(environment, row);
+        for col in 0..width {
+            let azimuth = PI - TAU * (col as f64 + 0.5) / width as f64 + environment.rotation_rad();
+            let e = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos);
+            let nearest = (0..vectors.len())
+                .max_by(|a, b| vectors[*a].dot(e).total_cmp(&vectors[*b].dot(e)))
+                .expect("some");
+            let light = environment.texels()[row * width + col].map(f64::from);
+            for (sum, light) in all[nearest].iter_mut().zip(light) {
+                *sum += light * solid / directions.share_sr();
+            }
+        }
+    }
+    all
+}
+
+fn texel_sr(environment: &Environment, row: usize) -> f64 {
+    let edge = |row: usize| (PI * row as f64 / environment.height() as f64).cos();
+    TAU / environment.width() as f64 * (edge(row) - edge(row + 1))
+}

@@ -1,0 +1,108 @@
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+
+use crate::basis::triangles::Triangles;
+use crate::{Error, Result};
+
+/// Directions in which each sample of a field is asked what it sees, each standing for the same solid angle.
+///
+/// The light that falls on a sample comes from the hemisphere about its own normal, which on a slope reaches
+/// below the horizontal: directions cover the sphere down to the height `lowest_z`, -1 for all of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    vectors: Vec<DVec3>,
+    lowest_z: f64,
+}
+
+impl Directions {
+    /// How many there may be.
+    pub const COUNT: RangeInclusive<usize> = 4..=4096;
+    /// What the height of the lowest ones may be: from the whole sphere to the upper hemisphere.
+    pub const LOWEST_Z: RangeInclusive<f64> = -1.0..=0.0;
+
+    /// A spherical Fibonacci set: heights in the middles of equal parts of [`lowest_z`..1], turned from one to the
+    /// next by the golden section of the circle (Hannay & Nye 2004); `seed` turns all about the vertical.
+    ///
+    /// Of N over the sphere none is nearer to horizontal than 1/N where N is even; of an odd number one is horizontal.
+    ///
+    /// # Errors
+    /// A count or a height out of range.
+    pub fn fibonacci(count: usize, lowest_z: f64, seed: u32) -> Result<Self> {
+        if !Self::COUNT.contains(&count) {
+            let expected =
+                format!("a whole number from {} to {}", Self::COUNT.start(), Self::COUNT.end());
+            return Err(Error::setting("directions", count.to_string(), expected));
+        }
+        check_lowest(lowest_z)?;
+        let golden = 0.5 * (5_f64.sqrt() - 1.0);
+        // Multiples of an irrational number are spread evenly over the circle.
+        let turn = f64::from(seed) * 2_f64.sqrt();
+        let vectors = (0..count).map(|i| {
+            let z = 1.0 - (1.0 - lowest_z) * (i as f64 + 0.5) / count as f64;
+            let azimuth = TAU * (i as f64 * golden + turn).fract();
+            let across = (1.0 - z * z).sqrt();
+            DVec3::new(across * azimuth.cos(), across * azimuth.sin(), z)
+        });
+        Ok(Self { vectors: vectors.collect(), lowest_z })
+    }
+
+    /// Unit vectors of one's own, evenly over the sphere down to `lowest_z`: of a file, or to be looked along alone.
+    ///
+    /// # Errors
+    /// None or too many, or a vector that is not of length 1 within 1e-6.
+    pub fn from_vectors(vectors: Vec<DVec3>, lowest_z: f64) -> Result<Self> {
+        if vectors.is_empty() || vectors.len() > *Self::COUNT.end() {
+            let expected = format!("1 to {}", Self::COUNT.end());
+            return Err(Error::setting("directions", vectors.len().to_string(), expected));
+        }
+        check_lowest(lowest_z)?;
+        let is_unit = |v: &DVec3| (v.length() - 1.0).abs() <= 1e-6;
+        if let Some(i) = vectors.iter().position(|v| !is_unit(v)) {
+            let found = format!("{}", vectors[i]);
+            return Err(Error::setting(format!("direction {i}"), found, "a vector of length 1"));
+        }
+        Ok(Self { vectors, lowest_z })
+    }
+
+    /// East, north, up.
+    pub fn vectors(&self) -> &[DVec3] {
+        &self.vectors
+    }
+
+    /// Height of the lowest that they cover, [-1..0].
+    pub fn lowest_z(&self) -> f64 {
+        self.lowest_z
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.vectors.len()
+    }
+
+    /// The solid angle that each stands for: that of all that they cover over their number, sr. A direction chosen
+    /// among them has the density 1 / (count · share) of solid angle.
+    pub fn share_sr(&self) -> f64 {
+        TAU * (1.0 - self.lowest_z) / self.vectors.len() as f64
+    }
+
+    /// The net between them.
+    ///
+    /// # Errors
+    /// Fewer than four, two alike, or all on one circle.
+    pub fn triangles(&self) -> Result<Triangles> {
+        Triangles::of(&self.vectors).ok_or_else(|| {
+            let found = format!("{} that span no hull", self.vectors.len());
+            Error::setting("directions", found, "four or more, no two alike, not on one circle")
+        })
+    }
+}
+
+fn check_lowest(lowest_z: f64) -> Result<()> {
+    if Directions::LOWEST_Z.contains(&lowest_z) {
+        return Ok(());
+    }
+    let expected = "a number from -1, the whole sphere, to 0, the upper hemisphere";
+    Err(Error::setting("height of the lowest direction", lowest_z.to_string(), expected))
+}

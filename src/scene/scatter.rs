@@ -1,0 +1,58 @@
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+
+use super::Scene;
+use super::quality::within;
+use crate::{Error, Result};
+
+/// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scatter {
+    /// Times that light is reflected on its way to a sample, at most, [1..64], default 3. Time grows in proportion.
+    pub bounces: u32,
+    /// Paths of every sample, [1..4096], default 100. Fewer: faster; samples alike are wrong alike, as all look along the same
+    /// directions: no noise, but a tint of whole slopes. 40 to 100 in Heidrich et al. 2000.
+    pub paths: u32,
+    /// Which directions follow each other.
+    pub seed: u32,
+    /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
+    pub view: DVec3,
+}
+
+impl Default for Scatter {
+    fn default() -> Self {
+        Self { bounces: 3, paths: 100, seed: 0, view: DVec3::Z }
+    }
+}
+
+impl Scatter {
+    /// What [`bounces`](Self::bounces) may be.
+    pub const BOUNCES: RangeInclusive<u32> = 1..=64;
+    /// What [`paths`](Self::paths) may be.
+    pub const PATHS: RangeInclusive<u32> = 1..=4096;
+
+    /// Checks every range, and that the scene is one that can be scattered.
+    ///
+    /// # Errors
+    /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds.
+    pub fn check(&self, scene: &Scene) -> Result<()> {
+        within("--bounces", self.bounces, Self::BOUNCES)?;
+        within("--paths", self.paths, Self::PATHS)?;
+        let length = self.view.length();
+        if !((length - 1.0).abs() <= 1e-6) {
+            return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));
+        }
+        scene.lights.check()?;
+        scene.surface.check(scene.field.rows() * scene.field.cols())?;
+        let others = scene.lights.keys.len() + scene.lights.spheres.len();
+        if scene.surface.phong.is_some() && others > 0 {
+            return Err(Error::setting(
+                "scattered light",
+                format!("a lobe and {others} key lights and balls"),
+                "lobes under sky, environment and suns alone",
+            ));
+        }
+        Ok(())
+    }
+}

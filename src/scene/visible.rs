@@ -1,0 +1,199 @@
+use super::{Border, Directions, HeightField};
+use crate::{Error, Result};
+
+/// What every sample of a field sees of it in each of a set of directions (Heidrich et al. 2000, §3).
+///
+/// Kept as the device has it, one word a sample and layer. Of most fields a layer is a direction and a word
+/// `row << 16 | column` of the sample nearest to what is met. Of fields of at most 255 by 255 samples a layer is two
+/// directions, the even one in the word's lower half, as `row << 8 | column`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VisiblePoints {
+    directions: Directions,
+    size: [usize; 2],
+    field_hash: u64,
+    words: Vec<u32>,
+}
+
+/// What is seen in one direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VisiblePoint {
+    /// The surface, nearest to this sample: row · columns + column.
+    Sample(usize),
+    /// Nothing.
+    Sky,
+    /// The level, black ground beyond the field under `plane`; under `periodic` what lies beyond all repetitions that
+    /// were looked at.
+    Ground,
+}
+
+/// A half or a whole word whose upper bits are all 1, as in `points.glsl`.
+const SKY: u32 = 0xffff_ffff;
+const GROUND: u32 = 0xffff_fffe;
+const LOST: u32 = 0xffff_fffd;
+
+impl VisiblePoints {
+    /// The largest side of a field whose points take a byte an axis; 255 itself marks what is no sample.
+    pub const SMALL_SIDE: usize = 255;
+    /// The largest side of all: beyond it a row in 16 bits could be taken for a mark.
+    pub const LARGEST_SIDE: usize = 65_533;
+
+    /// Whether two directions share a word.
+    pub fn is_small(rows: usize, cols: usize) -> bool {
+        rows.max(cols) <= Self::SMALL_SIDE
+    }
+
+    /// Layers of so many directions.
+    pub fn layers(directions: usize, is_small: bool) -> usize {
+        if is_small { directions.div_ceil(2) } else { directions }
+    }
+
+    /// Of a field, from the words that [`plan::visible_points`](crate::plan::visible_points) leaves, layer after layer.
+    ///
+    /// # Errors
+    /// Too few or too many words, a point outside the field, a ray that the device has lost.
+    pub fn new(
+        field: &HeightField,
+        border: Border,
+        directions: Directions,
+        words: Vec<u32>,
+    ) -> Result<Self> {
+        let size = [field.rows(), field.cols()];
+        let layers = Self::layers(directions.count(), Self::is_small(size[0], size[1]));
+        let wanted = layers * size[0] * size[1];
+        if words.len() != wanted {
+            let found = format!("{} words", words.len());
+            return Err(Error::setting("visible points", found, format!("{wanted} words")));
+        }
+        let points = Self { directions, size, field_hash: field_hash(field, border), words };
+        for direction in 0..points.directions.count() {
+            for sample in 0..size[0] * size[1] {
+                let word = points.word(direction, sample);
+                let [row, col] = [word >> 16, word & 0xffff].map(|n| n as usize);
+                let at = || format!("visible points: direction {direction}, sample {sample}");
+                if word == LOST {
+                    let reason = "a ray took more steps than there can be".to_owned();
+                    return Err(Error::Device { doing: at(), reason });
+                }
+                if word < LOST && (row >= size[0] || col >= size[1]) {
+                    let found = format!("row {row}, column {col}");
+                    let expected = format!("a sample of {} × {}", size[1], size[0]);
+                    return Err(Error::setting(at(), found, expected));
+                }
+            }
+        }
+        Ok(points)
+    }
+
+    /// From what is seen, direction after direction.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_points(
+        field: &HeightField,
+        border: Border,
+        directions: Directions,
+        points: &[VisiblePoint],
+    ) -> Result<Self> {
+        let (rows, cols) = (field.rows(), field.cols());
+        let (samples, is_small) = (rows * cols, Self::is_small(rows, cols));
+        let mut words = vec![0; Self::layers(directions.count(), is_small) * samples];
+        for (i, point) in points.iter().take(directions.count() * samples).enumerate() {
+            let (direction, sample) = (i / samples, i % samples);
+            let word = match *point {
+                VisiblePoint::Sample(at) => ((at / cols) << 16 | at % cols) as u32,
+                VisiblePoint::Sky => SKY,
+                VisiblePoint::Ground => GROUND,
+            };
+            if is_small {
+                let half = if word >= LOST { word & 0xffff } else { word >> 16 << 8 | word & 0xff };
+                words[direction / 2 * samples + sample] |= half << (16 * (direction % 2));
+            } else {
+                words[direction * samples + sample] = word;
+            }
+        }
+        if points.len() != directions.count() * samples {
+            let expected = format!("{} points", directions.count() * samples);
+            return Err(Error::setting("visible points", points.len().to_string(), expected));
+        }
+        Self::new(field, border, directions, words)
+    }
+
+    /// Refuses a field that these are not of.
+    ///
+    /// # Errors
+    /// Other heights, cells or border than those they were made of.
+    pub fn check(&self, field: &HeightField, border: Border) -> Result<()> {
+        let hash = field_hash(field, border);
+        if self.size == [field.rows(), field.cols()] && self.field_hash == hash {
+            return Ok(());
+        }
+        let [rows, cols] = self.size;
+        Err(Error::setting(
+            "visible points",
+            format!("those of a field of {cols} × {rows} with the hash {:016x}", self.field_hash),
+            format!(
+                "those of this one, {} × {} with {hash:016x}: heights, cells and border must be the same",
+                field.cols(),
+                field.rows()
+            ),
+        ))
+    }
+
+    /// The directions, in the order of the points.
+    pub fn directions(&self) -> &Directions {
+        &self.directions
+    }
+
+    /// Rows and columns of the field.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Of the heights, cells and border that they were made of.
+    pub fn field_hash(&self) -> u64 {
+        self.field_hash
+    }
+
+    /// Layer after layer, row after row.
+    pub fn words(&self) -> &[u32] {
+        &self.words
+    }
+
+    /// What sample `sample`, row · columns + column, sees in direction `direction`.
+    ///
+    /// # Panics
+    /// Outside the field or the directions.
+    pub fn seen(&self, direction: usize, sample: usize) -> VisiblePoint {
+        match self.word(direction, sample) {
+            SKY => VisiblePoint::Sky,
+            GROUND => VisiblePoint::Ground,
+            word => {
+                let [row, col] = [word >> 16, word & 0xffff].map(|n| n as usize);
+                VisiblePoint::Sample(row * self.size[1] + col)
+            }
+        }
+    }
+
+    /// As of a large field.
+    fn word(&self, direction: usize, sample: usize) -> u32 {
+        let [rows, cols] = self.size;
+        if !Self::is_small(rows, cols) {
+            return self.words[direction * rows * cols + sample];
+        }
+        let half =
+            self.words[direction / 2 * rows * cols + sample] >> (16 * (direction % 2)) & 0xffff;
+        if half >= LOST & 0xffff { 0xffff_0000 | half } else { half >> 8 << 16 | half & 0xff }
+    }
+}
+
+/// FNV-1a (Fowler, Noll & Vo) of 64 bits over what decides what is seen: size, cells, border and heights; not the height
+/// that all are counted from.
+pub fn field_hash(field: &HeightField, border: Border) -> u64 {
+    let sizes = [field.rows() as u64, field.cols() as u64, border as u64];
+    let cells = field.cell_m().map(f64::to_bits);
+    let head = sizes.iter().chain(&cells).flat_map(|v| v.to_le_bytes());
+    let heights = field.heights_m().iter().flat_map(|h| h.to_bits().to_le_bytes());
+    head.chain(heights).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}

@@ -1,0 +1,81 @@
+//! What samples see, kept and read back for the same field alone.
+
+use ridgelight::cpu::visible_points::visible_points;
+use ridgelight::files::{read_visible_points, write_visible_points};
+use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
+
+use super::one_sentence;
+
+fn waves(rows: usize, cols: usize, cell: f64) -> HeightField {
+    let height = |i: usize| ((i / cols * 3 + i % cols * 5) % 7) as f64;
+    let heights: Vec<f64> = (0..rows * cols).map(height).collect();
+    HeightField::new(rows, cols, &heights, [cell, 1.0], None).expect("a field")
+}
+
+/// A byte an axis and two; with sky and ground among the points.
+#[test]
+fn visible_points_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.npz");
+    for (rows, cols) in [(5, 7), (2, 256), (1, 1)] {
+        let (field, border) = (waves(rows, cols, 1.0), Border::Plane);
+        let directions = Directions::fibonacci(9, -1.0, 2).expect("directions");
+        let seen = visible_points(&field, border, &directions);
+        let samples = rows * cols;
+        assert!(seen.contains(&VisiblePoint::Sky) && seen.contains(&VisiblePoint::Ground));
+        let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
+        for (i, point) in seen.iter().enumerate() {
+            assert_eq!(points.seen(i / samples, i % samples), *point);
+        }
+        write_visible_points(&path, &points).unwrap();
+        assert_eq!(read_visible_points(&path, &field, border).unwrap(), points);
+    }
+}
+
+#[test]
+fn points_of_another_field_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.npz");
+    let (field, border) = (waves(5, 7, 1.0), Border::Open);
+    let directions = Directions::fibonacci(4, -1.0, 0).expect("directions");
+    let seen = visible_points(&field, border, &directions);
+    let points = VisiblePoints::from_points(&field, border, directions, &seen).unwrap();
+    write_visible_points(&path, &points).unwrap();
+    let mut heights: Vec<f64> = field.heights_m().iter().map(|h| f64::from(*h)).collect();
+    heights[3] += 1.0;
+    let raised = HeightField::new(5, 7, &heights, [1.0; 2], None).expect("a field");
+    for (other, border) in [
+        (&raised, border),
+        (&waves(5, 7, 2.0), border),
+        (&waves(7, 5, 1.0), border),
+        (&field, Border::Periodic),
+    ] {
+        let said = read_visible_points(&path, other, border).unwrap_err().to_string();
+        one_sentence(&said, "points.npz");
+        assert!(said.contains("hash"), "{said}");
+        assert!(points.check(other, border).is_err());
+    }
+    assert!(points.check(&field, border).is_ok());
+    // Half a file, and no archive at all.
+    let bytes = std::fs::read(&path).unwrap();
+    for part in [&bytes[..bytes.len() / 2], b"no archive"] {
+        std::fs::write(&path, part).unwrap();
+        let said = read_visible_points(&path, &field, border).unwrap_err().to_string();
+        one_sentence(&said, "points.npz");
+    }
+}
+
+#[test]
+fn points_that_are_none_are_refused() {
+    let field = waves(5, 7, 1.0);
+    let directions = Directions::fibonacci(4, -1.0, 0).expect("directions");
+    let of = |words: Vec<u32>| {
+        VisiblePoints::new(&field, Border::Plane, directions.clone(), words)
+            .map_err(|e| e.to_string())
+    };
+    assert!(of(vec![0xffff_fffe; 70]).is_ok());
+    assert!(of(vec![0; 69]).unwrap_err().contains("70 words"));
+    // Row 5 of 5; a lost ray in the second of a pair.
+    assert!(of(vec![0x0500; 70]).unwrap_err().contains("row 5, column 0"));
+    assert!(of(vec![0xfffd_0000; 70]).unwrap_err().contains("direction 1"));
+}

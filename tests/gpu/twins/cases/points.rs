@@ -1,0 +1,112 @@
+//! What samples see: all borders, both kinds of words, lines and single samples, prime sides.
+
+use glam::DVec3;
+use ridgelight::scene::{
+    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter, Scene, Sun,
+    Surface,
+};
+
+use super::{Case, Wanted, noisy_environment, rough};
+use crate::{field, random};
+
+fn on(name: &'static str, field: HeightField, border: Border, directions: Directions) -> Case {
+    let surface = Surface { border, ..Surface::default() };
+    let scene = Scene { field, surface, lights: Lights::default() };
+    let wanted = Wanted::Points(directions);
+    Case { name, scene, quality: Quality::default(), wanted, loses_lines: false }
+}
+
+fn sphere(count: usize) -> Directions {
+    Directions::fibonacci(count, -1.0, 1).expect("directions")
+}
+
+/// Along rows, columns and diagonals, level and steep, straight up and down.
+fn along_the_grid() -> Directions {
+    let mut all = vec![DVec3::Z, -DVec3::Z];
+    for (x, y) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, -1.0), (-1.0, 1.0)] {
+        for z in [0.3, -0.3, 1e-3] {
+            all.push(DVec3::new(x, y, z).normalize());
+        }
+    }
+    Directions::from_vectors(all, -1.0).expect("unit vectors")
+}
+
+pub fn points() -> Vec<Case> {
+    let long = |rows: usize, cols: usize| {
+        field(rows, cols, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64 + 0.1 * c as f64)
+    };
+    vec![
+        on("points on a plane", rough(23, 29, 61), Border::Plane, sphere(33)),
+        on("points of an open field", rough(17, 31, 62), Border::Open, sphere(24)),
+        on("points of a field that repeats", rough(7, 11, 63), Border::Periodic, sphere(40)),
+        on("points along the grid", rough(9, 8, 64), Border::Open, along_the_grid()),
+        on("points of a line", rough(1, 29, 65), Border::Plane, sphere(16)),
+        on("points of a column that repeats", rough(13, 1, 66), Border::Periodic, sphere(16)),
+        on("points of one sample", rough(1, 1, 67), Border::Open, sphere(5)),
+        on("points of one sample that repeats", rough(1, 1, 68), Border::Periodic, sphere(6)),
+        on("points in whole words", long(3, 257), Border::Plane, sphere(9)),
+        on("points in whole words of a line", long(263, 1), Border::Periodic, sphere(8)),
+    ]
+}
+
+/// Towards a sun's middle.
+pub fn towards(sun: &Sun) -> DVec3 {
+    let (sin, cos) = sun.elevation_rad.sin_cos();
+    DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
+}
+
+/// `scatter_gather`: one bounce, and several in more paths than go side by side; images that are cut, whole words; lobes
+/// under all that they mirror, exponents of 1 and more.
+pub fn scatters() -> Vec<Case> {
+    let scatter = |bounces, paths| Scatter { bounces, paths, seed: 5, ..Scatter::default() };
+    let of = |name, field, surface, lights, wanted: (usize, Scatter, bool)| Case {
+        name,
+        scene: Scene { field, surface, lights },
+        quality: Quality::default(),
+        wanted: Wanted::Scatter(sphere(wanted.0), wanted.1, wanted.2),
+        loses_lines: false,
+    };
+    let mut next = random(72);
+    let map = Albedo::Map((0..72).map(|_| [next() as f32, 0.5, 0.9]).collect());
+    let grey = |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), phong: None };
+    let lobes = (0..72).map(|i| Phong { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
+    let mapped = Surface { border: Border::Open, albedo: map, phong: None };
+    let glossy = Surface {
+        border: Border::Plane,
+        albedo: Albedo::Constant([0.4, 0.3, 0.2]),
+        phong: Some(Lobe::Map(lobes.collect())),
+    };
+    let sun = |azimuth_rad, elevation_rad| Sun {
+        azimuth_rad,
+        elevation_rad,
+        diameter_rad: 0.0,
+        irradiance: [3.0, 2.0, 1.0],
+    };
+    let lights = Lights {
+        sky: Some([0.3, 0.5, 0.9]),
+        environment: Some(noisy_environment(73)),
+        suns: vec![sun(2.0, 0.4), sun(-1.0, 0.9), sun(0.3, 0.2)],
+        ..Lights::default()
+    };
+    let none = Lights::default;
+    let one = Surface {
+        border: Border::Periodic,
+        albedo: Albedo::Constant([0.5, 0.3, 0.2]),
+        phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
+    };
+    let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
+    vec![
+        of("one bounce", rough(9, 8, 74), mapped, none(), (11, scatter(1, 70), false)),
+        of(
+            "three bounces",
+            rough(7, 9, 75),
+            grey(Border::Periodic),
+            none(),
+            (13, scatter(3, 70), false),
+        ),
+        of("cut images", rough(8, 9, 76), grey(Border::Plane), none(), (9, scatter(2, 12), true)),
+        of("whole words", long, grey(Border::Plane), none(), (6, scatter(2, 4), false)),
+        of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
+        of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
+    ]
+}

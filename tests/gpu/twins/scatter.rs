@@ -1,0 +1,144 @@
+//! Steps of scattered light.
+
+use glam::DVec3;
+use ridgelight::cpu::scatter_gather::{Gathered, Samples};
+use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
+use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
+use ridgelight::plan::Pass;
+use ridgelight::scene::{Directions, Scatter, VisiblePoint, VisiblePoints};
+
+use super::cases::towards;
+use super::{Pair, Run, constant, pushed};
+
+/// A value and what it may be off by.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    light: [f64; 3],
+    off: [f64; 3],
+}
+
+impl Sum {
+    fn add(&mut self, light: [f64; 3], off: [f64; 3]) {
+        for c in 0..3 {
+            self.light[c] += light[c];
+            self.off[c] += off[c] + 2.0 * EPSILON * self.light[c];
+        }
+    }
+}
+
+/// One look-up after the other as the twin has it, given what the device was.
+pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let [first_link, steps, step, first_path, paths, first_sun, suns] = [
+        push::FIRST_LINK,
+        push::STEPS,
+        push::STEP,
+        push::FIRST_PATH,
+        push::PATHS,
+        push::FIRST_SUN,
+        push::SUNS,
+    ]
+    .map(|o| pushed(pass, o) as usize);
+    let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
+    let (source, sums) = (constant(pass, 0), constant(pass, 1) == 1);
+    let points = run.points.clone().expect("a case with points");
+    let texel = |i: usize| -> [f64; 4] {
+        std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))
+    };
+    let vector = |t: [f64; 4]| DVec3::new(t[0], t[1], t[2]);
+    let links: Vec<_> = (0..paths)
+        .map(|path| {
+            let at = first_link + 2 * ((first_path + path) * steps + step);
+            let back = if sums { Scatter::default().view } else { -vector(texel(at - 2)) };
+            let [ahead, sky] = [at, at + 1].map(texel);
+            (vector(ahead), ahead[3] as usize, [sky[0], sky[1], sky[2]], back)
+        })
+        .collect();
+    let shining: Vec<_> = (0..suns)
+        .map(|i| [first_sun + 2 * i, first_sun + 2 * i + 1].map(texel))
+        .map(|[e, light]| (vector(e), [light[0], light[1], light[2]]))
+        .collect();
+    let colours = |words: Option<Vec<f32>>| -> Vec<[f64; 3]> {
+        let texels = words.unwrap_or_default();
+        texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]].map(f64::from)).collect()
+    };
+    let direct = colours(run.floats(pass, "direct"));
+    let carried = if source == 2 { colours(run.floats(pass, "carried_in")) } else { Vec::new() };
+    let sun_points = (suns > 0).then(|| {
+        let e = run.scene.lights.suns.iter().map(towards).collect();
+        let directions = Directions::from_vectors(e, -1.0).expect("unit vectors");
+        let words = run.words(pass, "sun_points").expect("written");
+        VisiblePoints::new(&run.scene.field, run.border(), directions, words).expect("whole")
+    });
+    let written = if sums { "scattered" } else { "carried" };
+    let got = run.floats(pass, written).expect("written");
+    let samples = Samples::of(run.scene);
+    let [cols, rows] = run.size();
+    let count = rows * cols;
+    let mut before = std::mem::take(&mut run.scattered);
+    before.resize(count, ([0.0; 3], [0.0; 3]));
+    let mut pairs = Vec::new();
+    for at in 0..count {
+        let here = [at / cols, at % cols];
+        let turned = Land::normal_at(&run.scene.field, run.border(), here);
+        let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
+        let off = |of: &Gathered, e: DVec3| {
+            let mut off = gathered((of.light, of.facing, of.mirrored), n, turned);
+            // A lobe ends at the sample's own plane.
+            if samples.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
+                off = [0, 1, 2].map(|c| off[c] + of.mirrored[c]);
+            }
+            off
+        };
+        let mut sum = Sum::default();
+        for (path, (e, direction, sky, back)) in links.iter().enumerate() {
+            let seen = points.seen(*direction, at);
+            let arrives = match (seen, source) {
+                (VisiblePoint::Sample(there), 1) => direct[there],
+                (VisiblePoint::Sample(there), 2) => carried[path * count + there],
+                _ => [0.0; 3],
+            };
+            let sees_sky = !sums && seen == VisiblePoint::Sky;
+            let mirrored = if sees_sky { *sky } else { arrives };
+            let of = samples.scattered(at, (*e, weight), *back, [arrives, mirrored]);
+            let mut of_path = Sum::default();
+            of_path.add(of.light, off(&of, *e));
+            if !sums {
+                of_path.add(direct[at], [0.0; 3]);
+                for (i, (e, irradiance)) in shining.iter().enumerate() {
+                    let lit = sun_points.as_ref().expect("suns").seen(i, at) == VisiblePoint::Sky;
+                    if lit {
+                        let of = samples.scattered(at, (*e, 1.0), *back, [[0.0; 3], *irradiance]);
+                        of_path.add(of.light, off(&of, *e));
+                    }
+                }
+                let texel = 4 * (path * count + at);
+                for c in 0..3 {
+                    let (want, tolerance) = (of_path.light[c], of_path.off[c]);
+                    let got = got[texel + c].into();
+                    pairs.push(Pair { got, want, tolerance, at: [path, here[0], here[1]] });
+                }
+            }
+            sum.add(of_path.light, of_path.off);
+        }
+        if sums {
+            // The mean of those before and these; a difference, a quotient, a sum.
+            let (old, old_off) = if first_path > 0 { before[at] } else { ([0.0; 3], [0.0; 3]) };
+            let all = (first_path + paths) as f64;
+            let mean = [0, 1, 2].map(|c| (first_path as f64 * old[c] + sum.light[c]) / all);
+            let tolerance = [0, 1, 2].map(|c| {
+                (first_path as f64 * old_off[c] + sum.off[c]) / all
+                    + 12.0 * EPSILON * (old[c] + sum.light[c] / all)
+            });
+            before[at] = (mean, tolerance);
+            for c in 0..3 {
+                let got = got[4 * at + c].into();
+                let (want, tolerance) = (mean[c], tolerance[c]);
+                pairs.push(Pair { got, want, tolerance, at: [c, here[0], here[1]] });
+            }
+            let counted = f64::from(got[4 * at + 3]);
+            pairs.push(Pair { got: counted, want: all, tolerance: 0.0, at: [3, here[0], here[1]] });
+        }
+    }
+    run.scattered = before;
+    pairs
+}

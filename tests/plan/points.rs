@@ -1,0 +1,74 @@
+//! Plans of what samples see: memory first, cut where a device holds less.
+
+use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
+use ridgelight::scene::{Border, Directions};
+
+use super::flat;
+
+fn of(rows: usize, cols: usize, count: usize, limits: &Limits) -> Result<Plan, String> {
+    let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
+    let field = flat(rows, cols);
+    plan::visible_points(&field, Border::Plane, &directions, limits).map_err(|e| e.to_string())
+}
+
+fn layers(plan: &Plan) -> Vec<u32> {
+    let extent = |kind| match kind {
+        Kind::Image { layers, .. } => layers,
+        Kind::Buffer { .. } => 0,
+    };
+    plan.outputs().map(|(_, r)| extent(r.kind)).collect()
+}
+
+/// Two directions a word up to 255 samples a side, else one; odd numbers of them fill half a word.
+#[test]
+fn points_take_what_they_say() {
+    let limits = Limits::lavapipe();
+    let small = of(255, 40, 7, &limits).expect("a plan");
+    assert_eq!(layers(&small), [4]);
+    let whole = of(256, 40, 7, &limits).expect("a plan");
+    assert_eq!(layers(&whole), [7]);
+    for plan in [&small, &whole] {
+        assert_eq!(missing_barriers(&plan.passes), []);
+    }
+    let text = whole.to_string();
+    assert!(text.contains(&format!("visible_points {:.1} KiB", 7.0 * 256.0 * 40.0 * 4.0 / 1024.0)));
+}
+
+/// 2²⁰ samples: sixteen directions a dispatch of 2²⁴ rays. Of 8 MiB an allocation two layers an image; each image has its
+/// own directions, all in order.
+#[test]
+fn what_is_too_large_is_cut() {
+    let limits = Limits { memory_budget: 8 << 30, ..Limits::lavapipe() };
+    let plan = of(1024, 1024, 40, &limits).expect("a plan");
+    let labels = |plan: &Plan| -> Vec<String> {
+        let points = plan.passes.iter().filter(|p| p.name() == "visible_points");
+        points.map(plan::Pass::label).collect()
+    };
+    let bands = ["0..16", "16..32", "32..40"].map(|b| format!("visible_points directions {b}"));
+    assert_eq!((layers(&plan), labels(&plan)), (vec![40], bands.to_vec()));
+    let cut = of(1024, 1024, 5, &Limits { allocation_bytes: 32 << 20, image_layers: 2, ..limits });
+    let cut = cut.expect("a plan");
+    let bands = ["0..2", "2..4", "4..5"].map(|b| format!("visible_points directions {b}"));
+    assert_eq!((layers(&cut), labels(&cut)), (vec![2, 2, 1], bands.to_vec()));
+    let names: Vec<_> = cut.outputs().map(|(_, r)| r.name.as_str()).collect();
+    assert_eq!(names, ["visible_points.0", "visible_points.1", "visible_points.2"]);
+    let said = of(1024, 1024, 600, &Limits::lavapipe()).unwrap_err();
+    assert!(said.contains("the limit is 2048.0 MiB of --memory-budget"), "{said}");
+    let said = of(1024, 1024, 5, &Limits { allocation_bytes: 2 << 20, ..limits }).unwrap_err();
+    assert!(said.contains("one direction") && said.contains("4.0 MiB"), "{said}");
+}
+
+/// Of a relief of 1 over cells of 1: flatter than 1/16384 a cell are those of 40,001 directions, which there may not be;
+/// an odd number has a level one, though.
+#[test]
+fn level_rays_over_repetitions_are_noted() {
+    let field = ridgelight::scene::HeightField::new(2, 2, &[0.0, 1.0, 0.0, 0.0], [1.0; 2], None);
+    let field = field.expect("a field");
+    for (count, border, noted) in
+        [(64, Border::Periodic, 0), (65, Border::Periodic, 1), (65, Border::Open, 0)]
+    {
+        let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
+        let plan = plan::visible_points(&field, border, &directions, &Limits::lavapipe());
+        assert_eq!(plan.expect("a plan").notes.len(), noted, "{count} {border:?}");
+    }
+}
