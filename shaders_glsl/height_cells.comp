@@ -69,7 +69,10 @@ void main() {
     float slope_north = both_y > 0.0 ? rise_y / (both_y * cell_y_m) : 0.0;
     imageStore(ground, ivec2(c, r), vec4(own, slope_east, slope_north, 0.0));
     if (BEGINS_PATHS) {
-        imageStore(batch_mean, ivec2(c, r), vec4(0.0));
+        // The sums of a list of samples are no larger than the field.
+        if (all(lessThan(ivec2(c, r), imageSize(batch_mean)))) {
+            imageStore(batch_mean, ivec2(c, r), vec4(0.0));
+        }
         if (c == 0 && r == 0) {
             lost_rays[0] = 0u;
         }

@@ -1,9 +1,9 @@
 // Computes: one more batch of 2^SET_BITS light paths from each sample of some rows, and the mean of all batches
-// so far with its standard error, from the spread between batches.
-// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map, phong_map. Reads and writes:
+// so far with its standard error, from the spread between batches. Or, from the samples of a list, of bounced light alone.
+// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map, phong_map, places. Reads and writes:
 // batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays), part_sum (of
 // a batch in parts, light so far; w: rays). Writes: radiance, standard_error (w: rays so far). Adds to lost_rays.
-// One invocation is one sample.
+// One invocation is one sample, or one place of the list.
 //
 // A batch may come in parts: some of the paths, or some of the lights at each of their vertices. Each part
 // goes the same ways; sky and environment belong to the part of the first light.
@@ -35,6 +35,7 @@ layout(constant_id = 9) const bool HAS_BOUNCES = false;
 layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(constant_id = 12) const bool IN_PARTS = false;
 layout(constant_id = 13) const bool LOBE_IS_MAP = false;
+layout(constant_id = 14) const bool AT_PLACES = false;
 
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
@@ -56,6 +57,8 @@ layout(binding = 11) buffer LostRays { uint lost_rays[]; };
 layout(binding = 12, rgba32f) uniform image2D part_sum;
 // Exponent and scale of the lobe.
 layout(binding = 13) uniform texture2D phong_map;
+// Column and row of the samples of a list, -1 behind its end. The sums and pictures have its size.
+layout(binding = 14) uniform texture2D places;
 
 layout(push_constant) uniform PathTracePush {
     int cols;
@@ -220,6 +223,8 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
     vec2 v;
     for (int bounce = 0; bounce <= bounces; bounce++) {
         bool is_first = bounce == 0;
+        // Of a list direct light is known better than by paths.
+        bool counts = !AT_PLACES || !is_first;
         uint first_ray = uint(bounce * (light_count + 2));
         // Where a field that repeats begins again stands its first sample.
         vec2 from = vec2(place.base) + place.offset;
@@ -250,7 +255,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 float end_m = is_far ? 1e30 : max(entry, 0.0);
                 Reflected of = reflected_from(place, e);
                 vec3 brought = of.light * colour * (is_far ? 1.0 : 2.0 * PI * cone);
-                bool going = alive && shines && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
+                bool going = alive && counts && shines && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
                 Ray ray = ray_from(place.base, place.offset, place.own, e, cell_m);
                 float t_end = end_m * min(ray.scale, 1e6);
                 Met met = trace(ray, t_end, going);
@@ -270,7 +275,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             Reflected of = reflected_from(place, e);
             // The balance heuristic (Veach & Guibas 1995).
             vec3 brought = of.light * from_there.rgb / max(from_there.w + of.density, 1e-30);
-            bool going = alive && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
+            bool going = alive && counts && of.facing > 0.0 && max(brought.r, max(brought.g, brought.b)) > 0.0;
             Met met = trace(ray_from(place.base, place.offset, place.own, e, cell_m), 1e30, going);
             rays += uvec2(going ? 1u : 0u, going && met.what == RAY_LOST ? 1u : 0u);
             light += going && met.what == RAY_FREE ? carried * brought : vec3(0.0);
@@ -309,7 +314,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
             }
             rays.y += i < last_light ? 1u : 0u;
         }
-        light += going ? carried * of.scattered * seen : vec3(0.0);
+        light += going && counts ? carried * of.scattered * seen : vec3(0.0);
         if (HAS_BOUNCES) {
             alive = going && met.what == RAY_HIT;
             place = place_of(met, e);
@@ -324,8 +329,16 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
-    bool alive = at.x < cols && at.y < rows;
-    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    ivec2 size = AT_PLACES ? textureSize(places, 0) : ivec2(cols, rows);
+    bool alive = at.x < size.x && at.y < size.y;
+    // Of the sums, and of the sample.
+    ivec2 slot = min(at, size - 1);
+    ivec2 here = slot;
+    if (AT_PLACES) {
+        ivec2 listed = ivec2(texelFetch(places, slot, 0).xy);
+        alive = alive && listed.x >= 0;
+        here = max(listed, ivec2(0));
+    }
     vec4 own = texelFetch(ground, here, 0);
     Place place;
     place.base = here;
@@ -342,8 +355,9 @@ void main() {
     }
     // Seen from straight above.
     place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
-    vec4 before = imageLoad(batch_mean, here);
-    uvec3 key = uvec3(uint(here.y * cols + here.x), uint(before.w), seed);
+    vec4 before = imageLoad(batch_mean, slot);
+    // A sample that a list has twice has other paths each time.
+    uvec3 key = uvec3(uint(slot.y * cols + slot.x), uint(before.w), seed);
     uvec2 rays = uvec2(0u);
     vec3 sum = vec3(0.0);
     int i = first_path;
@@ -355,7 +369,7 @@ void main() {
         atomicAdd(lost_rays[0], rays.y);
     }
     if (IN_PARTS) {
-        vec4 earlier = imageLoad(part_sum, here);
+        vec4 earlier = imageLoad(part_sum, slot);
         bool begins = first_path == 0 && first_light == 0;
         vec4 so_far = vec4(sum, float(rays.x)) + (begins ? vec4(0.0) : earlier);
         if (alive) {
@@ -372,7 +386,7 @@ void main() {
     float n = before.w + 1.0;
     vec3 off = batch - before.rgb;
     vec3 mean = before.rgb + off / n;
-    vec4 kept = imageLoad(batch_spread, here);
+    vec4 kept = imageLoad(batch_spread, slot);
     vec3 spread = before.w > 0.0 ? kept.rgb : vec3(0.0);
     float rays_so_far = float(rays.x) + (before.w > 0.0 ? kept.w : 0.0);
     spread += off * (batch - mean);

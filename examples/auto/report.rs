@@ -145,7 +145,7 @@ fn chosen(
 ) -> Result<(std::result::Result<Chosen, String>, f64)> {
     let begun = Instant::now();
     let probes = (Probes::affordable(scene), seed);
-    let found = choose(scene, Goal::MaxError(most), probes, |quality| {
+    let found = choose(scene, Goal::MaxError(most), probes, None, |quality| {
         let drawn = draw(gpu, scene, quality, 3)?;
         let cost = drawn.passes.iter().map(|p| p.1).sum();
         all.push((*quality, Point { cost, error: truth.error(&drawn.planes).error }));

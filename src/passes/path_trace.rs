@@ -108,20 +108,22 @@ pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
     .collect()
 }
 
-/// One batch of paths from every sample of some rows, counted in eights.
+/// One batch of paths from every sample of some rows, counted in eights; of `listed` samples, their bounced light
+/// alone from some rows of the list.
 pub(crate) fn plan(
     builder: &mut Builder,
     scene: &Scene,
     blocks: &Blocks,
     (bounces, seed): (u32, u32),
-    (band, part): (Range<u32>, Option<&Part>),
+    (band, part, listed): (Range<u32>, Option<&Part>, Option<u32>),
     bound: &[(&str, ResourceId)],
 ) {
     let Scene { field, surface, lights } = scene;
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let samples = u64::from(cols) * u64::from(band.end - band.start);
     let mut label = Vec::new();
-    if band.end - band.start < rows {
+    let all_rows = listed.map_or(rows, |count| count.div_ceil(cols));
+    if band.end - band.start < all_rows {
         label.push(format!("rows {}..{}", band.start, band.end));
     }
     if let Some(Part { paths, lights }) = part {
@@ -148,7 +150,12 @@ pub(crate) fn plan(
     builder.pass(
         &shaders::PATH_TRACE,
         &label.join(" "),
-        format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
+        match listed {
+            None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
+            Some(count) => format!(
+                "{BATCH_PATHS} more paths from each of {count} samples: bounced light of up to {bounces} bounces"
+            ),
+        },
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
         &[
             (0, surface.border as u32),
@@ -165,6 +172,7 @@ pub(crate) fn plan(
             (10, blocks.most_steps()),
             (12, u32::from(part.is_some())),
             (13, u32::from(matches!(surface.phong, Some(Lobe::Map(_))))),
+            (14, u32::from(listed.is_some())),
         ],
         &PathTracePush {
             cols: cols as i32,

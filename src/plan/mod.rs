@@ -76,7 +76,10 @@ pub use map::{Map, map};
 pub use nodes::Nodes;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
-pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
+pub use reference::{
+    REFERENCE_BATCH, listed_places, reference, reference_at, reference_inputs, unmet_bounced_error,
+    unmet_error,
+};
 pub use resource::{Format, Kind, Owner, Resource};
 pub use scatter::{scatter, scatter_inputs};
 pub(crate) use spheres::samples_within;

@@ -30,6 +30,48 @@ const MOST_BOUNCES: u32 = 64;
 /// # Errors
 /// Bounces, surface or lights out of range, nothing that shines, or a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
+    traced(scene, (bounces, seed), None, limits)
+}
+
+/// The same from so many samples alone, and of their bounced light alone: what has been reflected at least once
+/// before it reaches them.
+///
+/// Inputs: those of [`reference_inputs`], then the texels of [`listed_places`]. The outputs have that list's size.
+///
+/// # Errors
+/// As [`reference`](reference()); no sample, or more than there are.
+pub fn reference_at(
+    scene: &Scene,
+    bounces: u32,
+    seed: u32,
+    samples: usize,
+    limits: &Limits,
+) -> Result<Plan> {
+    let all = scene.field.rows() * scene.field.cols();
+    if !(1..=all).contains(&samples) {
+        let expected = format!("1 to {all}, as the field has");
+        return Err(Error::setting("samples of a reference", samples.to_string(), expected));
+    }
+    traced(scene, (bounces, seed), Some(samples as u32), limits)
+}
+
+/// Texels of the list of a [`reference_at`]: samples by their place in the field, row-major, in rows as long as the
+/// field's, the last filled up with none.
+pub fn listed_places(scene: &Scene, samples: &[usize]) -> Vec<f32> {
+    let cols = scene.field.cols();
+    let texel = |i: &usize| [(i % cols) as f32, (i / cols) as f32, 0.0, 0.0];
+    let mut all: Vec<f32> = samples.iter().flat_map(texel).collect();
+    let whole = samples.len().next_multiple_of(cols);
+    all.extend([-1.0, -1.0, 0.0, 0.0].repeat(whole - samples.len()));
+    all
+}
+
+fn traced(
+    scene: &Scene,
+    (bounces, seed): (u32, u32),
+    listed: Option<u32>,
+    limits: &Limits,
+) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
@@ -71,11 +113,18 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     if matches!(surface.phong, Some(Lobe::Map(_))) {
         bound.push(("phong_map", image("phong", Owner::Input, rgba, size)));
     }
-    for output in ["radiance", "standard_error"] {
-        bound.push((output, image(output, Owner::Output, rgba, size)));
+    let summed = match listed {
+        None => size,
+        Some(count) => [size[0], count.div_ceil(size[0])],
+    };
+    if listed.is_some() {
+        bound.push(("places", image("places", Owner::Input, rgba, summed)));
     }
-    let batch_mean = image("batch_mean", Owner::Internal, rgba, size);
-    let batch_spread = image("batch_spread", Owner::Internal, rgba, size);
+    for output in ["radiance", "standard_error"] {
+        bound.push((output, image(output, Owner::Output, rgba, summed)));
+    }
+    let batch_mean = image("batch_mean", Owner::Internal, rgba, summed);
+    let batch_spread = image("batch_spread", Owner::Internal, rgba, summed);
     let lost_rays = builder.buffer("lost_rays", 16, false);
     let blocks = Blocks::make(&mut builder, size, surface.border);
     bound.extend([
@@ -87,7 +136,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
         ("lost_rays", lost_rays),
     ]);
     blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
-    let rows = size[1];
+    let rows = summed[1];
     let band_rows = band_rows(size[0], bounces);
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {
@@ -97,7 +146,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     for first in (0..rows).step_by(band_rows as usize) {
         let band = first..rows.min(first + band_rows);
         for part in &parts {
-            let dispatch = (band.clone(), (parts.len() > 1).then_some(part));
+            let dispatch = (band.clone(), (parts.len() > 1).then_some(part), listed);
             path_trace::plan(&mut builder, scene, &blocks, (bounces, seed), dispatch, &bound);
         }
     }
@@ -128,6 +177,20 @@ fn band_rows(cols: u32, bounces: u32) -> u32 {
 /// Its light, with the most W that one path can bring, then has the variance 3W²/N² at most.
 pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
     most_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
+}
+
+/// The same of bounced light alone, of a [`reference_at`] so many samples all together: the root of the mean square over
+/// them. What no path of any of them has met has a share of at most 3 / (N · samples) of all; its variance is W²/N times
+/// its mean share, with W the most that a path can bring when it has been reflected once.
+pub fn unmet_bounced_error(
+    scene: &Scene,
+    bounces: u32,
+    (paths, samples): (u32, usize),
+) -> [f64; 3] {
+    let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
+    let most = most_light(scene, later);
+    let scale = (3.0 / samples as f64).sqrt() * scene.surface.most_reflected() / f64::from(paths);
+    most.map(|most| scale * most)
 }
 
 /// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" (fourth

@@ -1,8 +1,9 @@
 //! Settings that are chosen for an error or a time.
 
+use ridgelight::cpu::bounce::{self, Fineness};
 use ridgelight::cpu::{light, oracle::Oracle};
 use ridgelight::files::HeightOptions;
-use ridgelight::scene::Border;
+use ridgelight::scene::{Albedo, Border, Lights, Scene, Surface};
 
 use crate::needs_vulkan::{attributes, write_field};
 use crate::{Folder, read, refused};
@@ -41,10 +42,16 @@ fn wrong_goals_are_refused() {
                 &["--max-error", "cannot be used with", "--method"],
             ),
             (
-                "render a.asc -o out.exr --max-error 1 --bounces 2",
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --bounce-azimuths 8",
                 2,
-                &["--bounces 2 with --max-error", "direct light alone", "trade --reference"],
+                &["--max-error", "cannot be used with", "--bounce-azimuths"],
             ),
+            (
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --phong 5,0.1 --albedo 0.5",
+                2,
+                &["--phong with --max-error", "diffuse"],
+            ),
+            ("render a.asc -o out.exr --max-error 1 --bounces 65", 2, &["--bounces", "0 to 64"]),
             ("render a.asc -o out.exr --max-error 1 --seed -1", 2, &["--seed", "whole number"]),
             ("render a.asc -o out.exr --max-error 1 --sky 0", 2, &["--sky", "radiance 0"]),
             ("render void.asc -o out.exr --max-error 1", 1, &["void.asc", "no-data"]),
@@ -118,6 +125,47 @@ fn gpu_a_max_error_holds() {
     }
     let off = (squares / count).sqrt() / (sum / count);
     assert!(off <= most && off > 0.3 * stated, "{off} of {stated}");
+}
+
+/// The same with two bounces of albedo 0.7, against the f64 quadrature, which shares nothing with the light paths that
+/// judge: what the drawn picture is off it is within the goal, as far as the quadrature tells. Without
+/// what is thrown it would not be.
+#[test]
+fn gpu_a_max_error_holds_with_bounces() {
+    let folder = Folder::new();
+    write_field(&folder, SIDE, peaks);
+    let args =
+        "render field.npy -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    for said in ["--bounces 2", "--bounce-azimuths", "light paths each", "at most"] {
+        assert!(run.out.contains(said), "{said}: {}", run.out);
+    }
+    let settings = settings(&folder);
+    let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
+    assert!(stated <= at_most && at_most <= 0.02, "{stated} {at_most}");
+    assert!(number(&settings, "error_paths") >= 512.0);
+    let exr = read(&folder.path("out.exr"));
+    let field = ridgelight::files::read_heights(
+        &folder.path("field.npy"),
+        &HeightOptions { cell_m: Some([1.0; 2]), ..HeightOptions::default() },
+    )
+    .unwrap();
+    let surface = Surface { albedo: Albedo::Constant([0.7; 3]), ..Surface::default() };
+    let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+    let scene = Scene { field, surface, lights };
+    let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
+    let truth = bounce::truth(&scene, 2, fineness).unwrap();
+    let root = |of: &dyn Fn(usize) -> f64| {
+        ((0..SIDE * SIDE).map(|i| of(i).powi(2)).sum::<f64>() / (SIDE * SIDE) as f64).sqrt()
+    };
+    let mean = truth.radiance[2].iter().map(|t| t[0]).sum::<f64>() / (SIDE * SIDE) as f64;
+    let off = |b: usize| root(&|i| f64::from(exr.planes[0][i]) - truth.radiance[b][i][0]) / mean;
+    let own = root(&|i| truth.error[2][i][0]) / mean;
+    assert!(own < 0.25 * 0.02, "the quadrature may be {own} off");
+    assert!(off(2) <= at_most + own, "{} of {at_most}, {own}", off(2));
+    // Without bounces it would not hold.
+    assert!(off(0) > 0.02, "{}", off(0));
 }
 
 #[test]

@@ -99,7 +99,7 @@ fn parts_of_a_batch_are_the_batch() {
     for (at, last) in lasts {
         whole.passes[first].push[at..at + 4].copy_from_slice(&last.to_ne_bytes());
     }
-    let [in_parts, at_once] = [plan, whole].map(|p| traced_by(&mut device, &scene, p, 2));
+    let [in_parts, at_once] = [plan, whole].map(|p| traced_by(&mut device, &scene, p, 2, &[]));
     assert_eq!([in_parts.1, at_once.1], [0, 0], "rays were lost");
     let both = in_parts.0[0].iter().flatten().zip(at_once.0[0].iter().flatten());
     let rounded = 64.0 * (BALLS as f64 + 1.0) * f64::from(f32::EPSILON);

@@ -79,8 +79,8 @@ fn rays_that_are_given_up_are_counted() {
     let ridge = field(40, 40, [1.0, 1.0], |_, c| 9.0 - (c as f64 - 20.0).abs().min(9.0));
     let scene = under_sky(ridge, Border::Plane);
     let mut plan = plan::reference(&scene, 0, 1, &device.limits()).expect("a plan");
-    assert_eq!(traced_by(&mut device, &scene, plan.clone(), 1).1, 0);
+    assert_eq!(traced_by(&mut device, &scene, plan.clone(), 1, &[]).1, 0);
     let constants = &mut plan.passes.last_mut().expect("path_trace").constants;
     constants.iter_mut().find(|(id, _)| *id == 10).expect("the bound").1 = 2;
-    assert!(traced_by(&mut device, &scene, plan, 1).1 > 0);
+    assert!(traced_by(&mut device, &scene, plan, 1, &[]).1 > 0);
 }

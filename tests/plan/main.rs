@@ -118,6 +118,7 @@ fn plans() -> Vec<Plan> {
         for border in [Border::Plane, Border::Open, Border::Periodic] {
             let scene = under_everything(flat(rows, cols), border);
             all.push(plan::reference(&scene, 1, 0, &Limits::lavapipe()).expect("a plan"));
+            all.push(plan::reference_at(&scene, 1, 0, 1, &Limits::lavapipe()).expect("a plan"));
             for quality in &qualities {
                 let mut scene = under_everything(flat(rows, cols), border);
                 // Balls take no edits, which others do.

@@ -55,3 +55,28 @@ fn environments_are_chosen_by_their_light() {
     let rows = [[1.0, 0.25, 0.25, 1.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.25, 0.5, 1.0]];
     close(&plan::reference_inputs(&scene)[2], &rows.concat());
 }
+
+/// A list of 600 samples of a field 512 wide takes two rows of it; its sums are of that size, the heights' of the field.
+#[test]
+fn a_reference_at_some_samples() {
+    let scene = under_sky(flat(515, 512));
+    let of = |samples| plan::reference_at(&scene, 1, 0, samples, &Limits::lavapipe());
+    let plan = of(600).expect("a plan");
+    let size = |name: &str| match plan.resources[plan.find(name).expect("there").0].kind {
+        plan::Kind::Image { width, height, .. } => [width, height],
+        plan::Kind::Buffer { .. } => panic!("{name} is a buffer"),
+    };
+    for name in ["places", "radiance", "standard_error", "batch_mean"] {
+        assert_eq!(size(name), [512, 2], "{name}");
+    }
+    assert_eq!(size("cells"), [512, 515]);
+    let last = plan.passes.last().expect("passes");
+    assert_eq!((last.label().as_str(), last.groups), ("path_trace", [64, 1, 1]));
+    let texels = plan::listed_places(&scene, &[0, 513, 513]);
+    assert_eq!(texels[..12], [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
+    assert_eq!((texels.len(), &texels[12..14]), (4 * 512, &[-1.0, -1.0][..]));
+    for samples in [0, 515 * 512 + 1] {
+        let refused = of(samples).unwrap_err().to_string();
+        assert!(refused.contains("1 to 263680"), "{refused}");
+    }
+}

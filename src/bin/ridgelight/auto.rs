@@ -1,15 +1,17 @@
 //! Settings chosen for an error or a time.
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Headless, Timing};
-use ridgelight::measure::auto::{self, Chosen, Drawn, Goal, Measured, Probes};
+use ridgelight::measure::auto::{self, Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced};
 use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Bounces, Hull, Quality, Scene};
+use ridgelight::scene::{Hull, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use crate::args::AutoArgs;
 use crate::idle;
+use crate::reference;
 use crate::setup;
 use crate::trade::{digits, percent};
 
@@ -45,16 +47,24 @@ pub fn choose(
     limits: &Limits,
     scene: &Scene,
     (goal, seed): (Goal, u32),
-    (hull, wanted): (Hull, Picture),
+    (hull, bounces, wanted): (Hull, u32, Picture),
     bar: &indicatif::ProgressBar,
 ) -> Result<Chosen> {
     let contents = plan::picture_inputs(scene);
     let mut drawn = 0;
     let probes = (Probes::affordable(scene), u64::from(seed));
-    let mut chosen = auto::choose(scene, goal, probes, |quality| {
+    let gpu = RefCell::new(gpu);
+    let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+        let paths = batches * plan::REFERENCE_BATCH;
+        bar.set_message(format!("tracing {paths} paths from each of {} samples", samples.len()));
+        trace(&mut gpu.borrow_mut(), limits, (scene, bounces), samples, (batches, seed))
+    };
+    let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
+    let mut chosen = auto::choose(scene, goal, probes, bounced, |quality| {
         drawn += 1;
         bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
-        draw(gpu, limits, (scene, wanted), &Quality { hull, ..*quality }, &contents)
+        let quality = Quality { hull, ..*quality };
+        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), &quality, &contents)
     })?;
     chosen.trial.quality.hull = hull;
     Ok(chosen)
@@ -103,16 +113,35 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
     })
 }
 
-/// Refuses to choose for bounced light, which exact light at probes does not hold.
-pub fn check_direct(bounces: &Bounces) -> Result<()> {
-    if bounces.count == 0 {
-        return Ok(());
-    }
-    Err(Error::setting(
-        format!("--bounces {} with --max-error or --time-budget", bounces.count),
-        "bounced light",
-        "none: settings are judged by exact direct light alone; `reference` and `trade --reference` judge bounces",
-    ))
+/// Bounced light of some samples by so many batches of paths of a seed.
+fn trace(
+    gpu: &mut Headless,
+    limits: &Limits,
+    (scene, bounces): (&Scene, u32),
+    samples: &[usize],
+    (batches, seed): (u32, u32),
+) -> Result<Vec<Traced>> {
+    let plan = plan::reference_at(scene, bounces, seed, samples.len(), limits)?;
+    let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
+    let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
+    let mut contents = plan::reference_inputs(scene);
+    contents.push(plan::listed_places(scene, samples));
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let [means, errors] = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        for _ in 1..batches {
+            for pass in &passes {
+                gpu.draw_passes(frame, &[*pass])?;
+            }
+        }
+        if let Some(lost) = frame.plan().find("lost_rays") {
+            reference::none_lost(gpu.read(frame, lost)?[0])?;
+        }
+        Ok([reference::picture(gpu, frame, 0)?, reference::picture(gpu, frame, 1)?])
+    })?;
+    let both = means.iter().zip(&errors).take(samples.len());
+    let light = |c: &[f32; 3]| c.map(f64::from);
+    Ok(both.map(|(m, e)| Traced { mean: light(m), standard_error: light(e) }).collect())
 }
 
 /// For metadata and --json.
@@ -137,6 +166,7 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
         ("error_at_most", measured.at_most.to_string()),
         ("error_confidence", confidence),
         ("error_probes", chosen.probes.to_string()),
+        ("error_paths", chosen.paths.to_string()),
         ("seed", seed.to_string()),
         ("tried", tried.collect::<Vec<_>>().join("; ")),
     ]
@@ -147,14 +177,18 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
 /// For people: what was chosen and its error; then, where settings were drawn that do not reach the
 /// goal, that it went on from them.
 pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
-    let Chosen { trial, expected, probes, confidence, trials } = chosen;
+    let Chosen { trial, expected, probes, paths, confidence, trials } = chosen;
+    let by_paths = match paths {
+        0 => String::new(),
+        _ => format!(", {paths} light paths each"),
+    };
     let confidence = confidence.map_or_else(
         || "without a confidence".to_owned(),
         |c| format!("with {:.0} % confidence", 100.0 * c),
     );
     let mut all = vec![format!(
         "{}: expected {} (within a factor of {}), measured {}, at most {} {confidence} \
-         ({probes} probes); {} settings tried",
+         ({probes} probes{by_paths}); {} settings tried",
         auto::flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),

@@ -164,7 +164,8 @@ fn trace(
     }
 }
 
-fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
+/// Texels of an output.
+pub fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
     let pixels = gpu.pixels(frame, output)?;
     Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
 }
@@ -203,7 +204,7 @@ fn mean_and_error(
 }
 
 /// Rays that were given up would be missing from the light.
-fn none_lost(count: u32) -> Result<()> {
+pub fn none_lost(count: u32) -> Result<()> {
     match count {
         0 => Ok(()),
         _ => Err(Error::Device {

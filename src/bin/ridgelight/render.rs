@@ -46,7 +46,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
-        auto::check_direct(&quality.bounces)?;
     }
     let shot = camera::asked(&args.camera, &scene)?;
     let wanted = setup::wanted(&args.layers);
@@ -66,7 +65,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
             &limits,
             &scene,
             (goal, args.auto.seed.unwrap_or(0)),
-            (quality.hull, wanted),
+            (quality.hull, quality.bounces.count, wanted),
             &progress,
         )?;
         quality = found.trial.quality;

@@ -2,18 +2,11 @@
 
 use std::cmp::Ordering;
 
-use super::model::{Costs, Model, Part, fuse_row, spacing};
+use super::candidates::{candidates, is_exact, is_finer};
+use super::model::{Costs, Model};
 use super::probes::Measured;
 use super::statistics::Statistics;
-use crate::measure::trade::start;
-use crate::scene::{Fuse, Lines, Method, Quality, Scene};
-
-const AZIMUTHS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
-const TABLES: [u32; 8] = [32, 64, 128, 256, 512, 1024, 2048, 4096];
-const STRIPS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
-const LINES: [Lines; 5] =
-    [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell];
-const FUSES: [Fuse; 3] = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
+use crate::scene::{Quality, Scene};
 
 /// Frames that are tried at most, and exact ones beyond them.
 const TRIALS: usize = 16;
@@ -89,9 +82,9 @@ pub struct Chooser<'a> {
 }
 
 impl<'a> Chooser<'a> {
-    /// For a scene and what [`Statistics`] say of it.
-    pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal) -> Self {
-        let model = Model::of(scene, statistics);
+    /// For a scene with so many bounces and what [`Statistics`] say of it.
+    pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal, bounces: u32) -> Self {
+        let model = Model::of(scene, statistics, bounces);
         let samples = scene.field.rows() * scene.field.cols();
         Self {
             scene,
@@ -99,7 +92,7 @@ impl<'a> Chooser<'a> {
             first_guess: model.clone(),
             model,
             costs: Costs::guessed(samples),
-            candidates: candidates(scene),
+            candidates: candidates(scene, bounces),
             trials: Vec::new(),
         }
     }
@@ -335,60 +328,4 @@ fn normal(deviations: f64) -> f64 {
 
 fn by_error(a: &&Trial, b: &&Trial) -> Ordering {
     a.measured.at_most.total_cmp(&b.measured.at_most)
-}
-
-/// Whether horizons are those of the surface itself, of no lines between its samples.
-fn is_exact(quality: &Quality) -> bool {
-    spacing(quality) == LINES.len()
-}
-
-/// Whether `fine` is at least as fine as `coarse` in every setting.
-fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
-    let numbers = |q: &Quality| {
-        [
-            spacing(q) as u32 + u32::from(q.lines == Lines::Exact),
-            if spacing(q) == LINES.len() { FUSES.len() as u32 } else { fuse_row(q.fuse) as u32 },
-            q.azimuths,
-            q.table_elevations,
-            q.sun_azimuths,
-        ]
-    };
-    numbers(fine).iter().zip(numbers(coarse)).all(|(f, c)| *f >= c)
-}
-
-/// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
-/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns and key
-/// lights do not have.
-fn candidates(scene: &Scene) -> Vec<Quality> {
-    let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
-        if part.is_in(scene) { values.to_vec() } else { vec![default] }
-    };
-    let plain = start();
-    let mut all = Vec::new();
-    if !Part::Geometry.is_in(scene) {
-        all.push(plain);
-    } else {
-        all.push(Quality { method: Method::Brute, ..plain });
-        if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
-            all.push(Quality { lines: Lines::Exact, ..plain });
-        }
-        for lines in LINES {
-            all.extend(FUSES.map(|fuse| Quality { lines, fuse, ..plain }));
-        }
-    }
-    let times = |all: Vec<Quality>, values: Vec<u32>, set: fn(&mut Quality, u32)| {
-        let with = |quality: Quality| {
-            values.iter().map(move |v| {
-                let mut quality = quality;
-                set(&mut quality, *v);
-                quality
-            })
-        };
-        all.into_iter().flat_map(with).collect::<Vec<_>>()
-    };
-    all = times(all, of(Part::Azimuths, &AZIMUTHS, plain.azimuths), |q, v| q.azimuths = v);
-    all = times(all, of(Part::Table, &TABLES, plain.table_elevations), |q, v| {
-        q.table_elevations = v;
-    });
-    times(all, of(Part::Strips, &STRIPS, plain.sun_azimuths), |q, v| q.sun_azimuths = v)
 }

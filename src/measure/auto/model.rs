@@ -1,6 +1,7 @@
 //! What errors and costs are expected of settings: a first guess from fitted numbers, corrected by
 //! every frame that is measured.
 
+use super::bounced::{self, BouncedLight};
 use super::fitted::{FITTED, GEOMETRY};
 use super::statistics::Statistics;
 use crate::scene::{Fuse, Lines, Method, Quality, Scene};
@@ -101,19 +102,28 @@ pub struct Expected {
     pub factor: f64,
 }
 
+/// Those of direct light, then those of bounces.
+const ALL: usize = PARTS.len() + bounced::PARTS;
+
 /// Errors by settings: each part's ln with its variance, an iterated extended Kalman filter over frames.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// ln of each part at the defaults, none where the scene does not have it.
-    logs: [Option<f64>; 4],
-    covariance: [[f64; 4]; 4],
+    logs: [Option<f64>; ALL],
+    covariance: [[f64; ALL]; ALL],
+    bounced: Option<BouncedLight>,
 }
 
 impl Model {
-    /// The fitted guess for a scene.
-    pub fn of(scene: &Scene, statistics: &Statistics) -> Self {
+    /// The fitted guess for a scene with so many bounces.
+    pub fn of(scene: &Scene, statistics: &Statistics, bounces: u32) -> Self {
         let features = statistics.features();
-        let mut model = Self { logs: [None; 4], covariance: [[0.0; 4]; 4] };
+        let bounced = (bounces > 0).then(|| BouncedLight::of(scene, statistics));
+        let mut model = Self { logs: [None; ALL], covariance: [[0.0; ALL]; ALL], bounced };
+        for (i, (log, spread)) in bounced.iter().flat_map(BouncedLight::guess).enumerate() {
+            model.logs[PARTS.len() + i] = Some(log);
+            model.covariance[PARTS.len() + i][PARTS.len() + i] = spread.powi(2);
+        }
         for (i, (part, fitted)) in PARTS.iter().zip(&FITTED).enumerate() {
             if part.is_in(scene) {
                 let sum: f64 = fitted.weights.iter().zip(features).map(|(w, x)| w * x).sum();
@@ -126,25 +136,29 @@ impl Model {
     }
 
     /// Squares of the parts.
-    fn squares(&self, quality: &Quality) -> [f64; 4] {
-        let mut squares = [0.0; 4];
+    fn squares(&self, quality: &Quality) -> [f64; ALL] {
+        let mut squares = [0.0; ALL];
         for (i, (part, fitted)) in PARTS.iter().zip(&FITTED).enumerate() {
             if let Some(log) = self.logs[i] {
                 squares[i] = (2.0 * (log - fitted.power * part.fineness(quality))).exp();
             }
         }
+        let bounced = self.bounced.iter().flat_map(|b| b.factors(quality)).enumerate();
+        for (i, factor) in bounced.map(|(i, f)| (PARTS.len() + i, f)) {
+            squares[i] = (self.log(i).exp() * factor).powi(2);
+        }
         squares
     }
 
     /// ∂ ln error / ∂ ln part: each part's share of the square; and the square.
-    fn shares(&self, quality: &Quality) -> ([f64; 4], f64) {
+    fn shares(&self, quality: &Quality) -> ([f64; ALL], f64) {
         let squares = self.squares(quality);
         let sum = squares.iter().sum::<f64>();
         (squares.map(|s| s / sum), sum)
     }
 
     /// Variance of ln error, and covariance of it with each part's ln.
-    fn variance(&self, shares: &[f64; 4]) -> (f64, [f64; 4]) {
+    fn variance(&self, shares: &[f64; ALL]) -> (f64, [f64; ALL]) {
         let with = self.covariance.map(|row| row.iter().zip(shares).map(|(c, s)| c * s).sum());
         (with.iter().zip(shares).map(|(c, s): (&f64, &f64)| c * s).sum(), with)
     }
@@ -169,9 +183,9 @@ impl Model {
         for _ in 0..STEPS {
             let (shares, sum) = self.shares(quality);
             let (variance, with) = self.variance(&shares);
-            let moved = (0..4).map(|i| shares[i] * (before[i].unwrap_or(0.0) - self.log(i)));
+            let moved = (0..ALL).map(|i| shares[i] * (before[i].unwrap_or(0.0) - self.log(i)));
             let off = told - 0.5 * sum.ln() - moved.sum::<f64>();
-            for i in 0..4 {
+            for i in 0..ALL {
                 if let (Some(log), Some(first)) = (&mut self.logs[i], before[i]) {
                     let to = first + with[i] / (variance + noise) * off;
                     *log += 0.5 * (to - *log);
@@ -180,8 +194,8 @@ impl Model {
         }
         let (shares, _) = self.shares(quality);
         let (variance, with) = self.variance(&shares);
-        for i in 0..4 {
-            for j in 0..4 {
+        for i in 0..ALL {
+            for j in 0..ALL {
                 self.covariance[i][j] -= with[i] * with[j] / (variance + noise);
             }
         }
@@ -209,8 +223,8 @@ pub struct Costs {
     seen: [Vec<[f64; 2]>; KINDS],
 }
 
-/// Sweeps along lines, exact horizons, shading, tables, balls of light, all else.
-const KINDS: usize = 6;
+/// Sweeps along lines, exact horizons, shading, tables, balls of light, all else; bounces by each engine.
+const KINDS: usize = 6 + bounced::ENGINES.len();
 
 const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
 /// Lines through all samples: the more azimuths to a side, the longer the grid vectors near them and the
@@ -232,7 +246,7 @@ impl Costs {
         let samples = samples as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
         Self {
-            units_ns: [samples, samples, samples, 67.0, samples, 0.0],
+            units_ns: [samples, samples, samples, 67.0, samples, 0.0, samples, samples, samples],
             overheads_ns: [0.0; KINDS],
             seen: Default::default(),
         }
@@ -257,7 +271,8 @@ impl Costs {
         };
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
         let balls = f64::from(quality.sun_azimuths) * scene.lights.spheres.len() as f64;
-        [all * sweep, all * exact, all * shade, table, balls * SLICE, 1.0]
+        let [walk, march, gather] = bounced::work(scene, quality);
+        [all * sweep, all * exact, all * shade, table, balls * SLICE, 1.0, walk, march, gather]
     }
 
     /// Nanoseconds that a frame will take.
@@ -270,8 +285,11 @@ impl Costs {
     /// Takes a measured frame in: nanoseconds by label of the pass.
     pub fn learn(&mut self, scene: &Scene, quality: &Quality, passes: &[(String, f64)]) {
         let mut sums = [0.0; KINDS];
+        let engine = bounced::engine(quality);
+        let engine_kind = bounced::ENGINES.iter().position(|e| *e == engine).unwrap_or(0);
         for (label, ns) in passes {
             let kind = match label.split([' ', '.']).next().unwrap_or_default() {
+                _ if label.contains("bounce") => 6 + engine_kind,
                 "horizon_sweep" | "sweep_fuse" => 0,
                 "surface_sweep" | "horizon_march" => 1,
                 "sky_shade" | "sun_shade" => 2,

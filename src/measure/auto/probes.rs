@@ -22,8 +22,20 @@ pub struct Probes {
     /// 1 / (count · chance of the place): 1 where all are as likely.
     factors: Vec<f64>,
     light: Vec<[f64; 3]>,
-    /// Root mean square by which the oracle's light is off that of half its rays.
+    /// Variance of each light's paths, mean of the channels; 0 of direct light.
+    noise: Vec<f64>,
+    /// Root mean square by which the oracle's light is off that of half its rays, and of light that no path may have
+    /// met.
     off: f64,
+}
+
+/// Bounced light of a sample by light paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traced {
+    /// Exit radiance, linear RGB, of what has been reflected at least once before.
+    pub mean: [f64; 3],
+    /// Of the mean, by the spread of independent batches of paths.
+    pub standard_error: [f64; 3],
 }
 
 /// A relative RMSE as probes tell it.
@@ -91,7 +103,44 @@ impl Probes {
             factors[i * stride] * square
         });
         let off = (squares.sum::<f64>() / some.len() as f64).sqrt();
-        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, off })
+        let noise = vec![0.0; places.len()];
+        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, off })
+    }
+
+    /// Where they are: samples by their place, row-major; some may be there twice.
+    pub fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// Adds what paths know of bounced light to that of the oracle, `unmet` by which light that no path has met may
+    /// be off in each channel, root mean square.
+    ///
+    /// # Panics
+    /// Of another number of samples.
+    pub fn add_bounced(&mut self, traced: &[Traced], unmet: [f64; 3]) {
+        assert_eq!(traced.len(), self.len(), "one a probe");
+        for ((light, noise), more) in self.light.iter_mut().zip(&mut self.noise).zip(traced) {
+            light.iter_mut().zip(more.mean).for_each(|(l, m)| *l += m);
+            *noise += more.standard_error.iter().map(|e| e * e).sum::<f64>() / 3.0;
+        }
+        let unmet = unmet.iter().map(|u| u * u).sum::<f64>() / 3.0;
+        self.off = (self.off.powi(2) + unmet).sqrt();
+    }
+
+    /// Relative RMSE that the chance of paths alone may add to a bound so many `deviations` above: s² of each light's
+    /// variance is known to √2 s² or so, of so many probes together to √(2 / probes) of their mean.
+    pub fn chance(&self, deviations: f64) -> f64 {
+        let count = self.len() as f64;
+        let fourth: f64 =
+            self.noise.iter().zip(&self.factors).map(|(n, f)| (f * n).powi(2)).sum::<f64>();
+        self.relative(deviations * (2.0 * fourth).sqrt() / count)
+    }
+
+    /// The root of a mean square over the mean of the light.
+    fn relative(&self, square: f64) -> f64 {
+        let each = self.light.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
+        if square == 0.0 { 0.0 } else { square.sqrt() / (sum / self.len() as f64).abs() }
     }
 
     /// Takes others in, of another seed and by the same `unsure`; nothing where all samples are known.
@@ -108,6 +157,7 @@ impl Probes {
         self.places.extend(&others.places);
         self.factors.extend(&others.factors);
         self.light.extend(&others.light);
+        self.noise.extend(&others.noise);
     }
 
     /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
@@ -120,9 +170,7 @@ impl Probes {
 
     /// By how much the oracle's light may be off itself, over the mean of it.
     pub fn own_error(&self) -> f64 {
-        let each = self.light.iter().zip(&self.factors);
-        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
-        if self.off == 0.0 { 0.0 } else { self.off / (sum / self.len() as f64).abs() }
+        self.relative(self.off.powi(2))
     }
 
     /// How many there are.
@@ -150,6 +198,9 @@ impl Probes {
     /// its chance (Hansen & Hurwitz 1943). The nearer the control is to the truth, the less is left to
     /// chance. Without one the picture is its own: so too where the probes find the control worse,
     /// or where the sum, a difference, is no square.
+    ///
+    /// Where L wavers, as bounced light by paths does, its variance is in (T-L)² and is taken off: the mean is right,
+    /// its own spread over the probes is in the bound, and an estimate that comes out below 0 is told as 0.
     pub fn error(
         &self,
         picture: &[Vec<f32>],
@@ -168,8 +219,8 @@ impl Probes {
         };
         let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / square.mean };
         let off = relative(self.off.powi(2));
-        let measured =
-            Measured { error: relative(square.estimate), at_most: relative(square.at_most) + off };
+        let [error, at_most] = [square.estimate, square.at_most].map(|s| relative(s.max(0.0)));
+        let measured = Measured { error, at_most: at_most + off };
         // Of a picture with values beyond f32 nothing is known.
         if measured.at_most.is_finite() { measured } else { Measured::UNKNOWN }
     }
@@ -189,23 +240,29 @@ impl Probes {
             }
         }
         let count = self.places.len() as f64;
-        let (mut rest, mut shift) = (Vec::new(), 0.0);
-        for ((i, factor), light) in self.places.iter().zip(&self.factors).zip(&self.light) {
-            let mut square = 0.0;
+        let (mut rest, mut shift, mut wavering) = (Vec::new(), 0.0, 0.0);
+        let lights = self.light.iter().zip(&self.noise);
+        for ((i, factor), (light, noise)) in self.places.iter().zip(&self.factors).zip(lights) {
+            let (mut square, mut of_control) = (-noise, 0.0);
             for (c, l) in light.iter().enumerate() {
                 let (t, k) = (at(picture, c, *i), at(control, c, *i));
-                square += ((t - l).powi(2) - (t - k).powi(2)) / 3.0;
+                square += (t - l).powi(2) / 3.0;
+                of_control += (t - k).powi(2) / 3.0;
                 shift += factor * (l - k) / (3.0 * count);
             }
-            rest.push(factor * square);
+            rest.push(factor * (square - of_control));
+            // Of (d + ε)² - s², channels that waver together: 4 d² s² + 2 s⁴, and as much again of s² itself.
+            wavering += factor.powi(2) * 4.0 * (square.max(0.0) * noise + noise.powi(2));
         }
         let mean_rest = rest.iter().sum::<f64>() / count;
         let variance =
             rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-        // Of a field that is probed whole nothing is left to chance.
-        let deviation = if self.is_whole { 0.0 } else { (variance / count).sqrt() };
+        // Of a field that is probed whole nothing but the paths is left to chance.
+        let variance = if self.is_whole { wavering / count } else { variance };
+        let deviation = (variance / count).sqrt();
         let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
-        let skew = if variance > 0.0 { cubes / variance.powf(1.5) } else { 0.0 };
+        let is_spread = variance > 0.0 && !self.is_whole;
+        let skew = if is_spread { cubes / variance.powf(1.5) } else { 0.0 };
         let estimate = squares / values.max(1.0) + mean_rest;
         let mean = (sum / values.max(1.0) + shift).abs();
         let quantile = quantile(deviations, skew, count);

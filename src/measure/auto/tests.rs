@@ -1,5 +1,7 @@
 //! Choices on a small field whose pictures the oracle draws: no device, and costs that are made up.
 
+mod bounces;
+
 use super::*;
 use crate::cpu::{light, lit::Lit, oracle::Oracle};
 use crate::scene::{HeightField, Lights, Lines, Method, Quality, Scene, Sun, Surface};
@@ -47,7 +49,7 @@ fn whole(scene: &Scene) -> Probes {
 
 fn chosen(goal: Goal) -> Result<Chosen> {
     let scene = scene();
-    choose(&scene, goal, WHOLE, |quality| draw(&scene, quality))
+    choose(&scene, goal, WHOLE, None, |quality| draw(&scene, quality))
 }
 
 /// All samples are probed, so that nothing is left to chance: what is chosen holds, and half of its
@@ -88,7 +90,7 @@ fn what_nothing_reaches_is_refused() {
         assert!(matches!(chosen(goal).unwrap_err(), Error::Setting { .. }));
     }
     // A device's own refusal is not one of settings.
-    let broken = choose(&scene(), Goal::MaxError(0.1), WHOLE, |_| {
+    let broken = choose(&scene(), Goal::MaxError(0.1), WHOLE, None, |_| {
         Err(Error::Device { doing: "drawing".into(), reason: "lost".into() })
     });
     assert!(broken.unwrap_err().to_string().contains("lost"));
@@ -103,7 +105,7 @@ fn a_time_budget_is_kept() {
     assert_eq!(found.trial.quality.azimuths, 16, "{found:?}");
     let scene = scene();
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
-    let small = choose(&scene, Goal::MaxCost(20e6), WHOLE, |quality| {
+    let small = choose(&scene, Goal::MaxCost(20e6), WHOLE, None, |quality| {
         if quality.azimuths > 12 { Err(full()) } else { draw(&scene, quality) }
     });
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
@@ -115,7 +117,7 @@ fn a_time_budget_is_kept() {
 fn expectations_are_monotone_and_learn() {
     let scene = scene();
     let statistics = Statistics::of(&scene);
-    let mut model = Model::of(&scene, &statistics);
+    let mut model = Model::of(&scene, &statistics, 0);
     let costs = Costs::guessed(SIDE * SIDE);
     let of = |azimuths: u32| Quality { azimuths, ..Quality::default() };
     for [few, many] in [[8, 16], [64, 128], [512, 1024]] {
@@ -151,7 +153,7 @@ fn costs_have_an_overhead() {
 #[test]
 fn what_ends_a_search_and_what_bounds_it_are_said() {
     let scene = scene();
-    let slow = choose(&scene, Goal::MaxError(3e-5), WHOLE, |quality| {
+    let slow = choose(&scene, Goal::MaxError(3e-5), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         drawn.passes[0].1 *= 1e3;
         Ok(drawn)
@@ -160,7 +162,7 @@ fn what_ends_a_search_and_what_bounds_it_are_said() {
     let full = || Error::Limit { what: "".into(), needs: "".into(), limit: "".into() };
     for (samples, confidence) in [(40, None), (SIDE * SIDE, Some(Probes::CONFIDENCE))] {
         let mut frames = 0;
-        let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), |quality| {
+        let found = choose(&scene, Goal::MaxError(0.1), (samples, 7), None, |quality| {
             frames += 1;
             if frames == 2 { Err(full()) } else { draw(&scene, quality) }
         });
@@ -200,7 +202,7 @@ fn choices_hold_as_often_as_they_say() {
     let most = 0.01;
     let [mut held, mut bare, mut chosen] = [0_u64; 3];
     for seed in 0..SEEDS {
-        let found = choose(&scene, Goal::MaxError(most), (64, seed), |quality| {
+        let found = choose(&scene, Goal::MaxError(most), (64, seed), None, |quality| {
             let ns = 1e6 * f64::from(quality.sun_azimuths);
             let passes = vec![("sun_shade".to_owned(), ns)];
             Ok(Drawn { planes: vec![picture(quality)], passes })
@@ -230,7 +232,7 @@ fn where_all_that_was_chosen_fails_exact_horizons_are_drawn() {
     let scene = scene();
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
     let mut seen = Vec::new();
-    let found = choose(&scene, Goal::MaxError(0.02), WHOLE, |quality| {
+    let found = choose(&scene, Goal::MaxError(0.02), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         // Exact ones are a hundred times as dear: nothing but their accuracy speaks for them.
         drawn.passes[0].1 *= if is_exact(quality) { 100.0 } else { 1.0 };
@@ -253,7 +255,7 @@ fn what_stands_in_every_settings_way_is_told() {
         needs: "longer images".into(),
         limit: "8".into(),
     };
-    let refused = choose(&scene(), Goal::MaxError(0.1), WHOLE, |_| Err(too_long()));
+    let refused = choose(&scene(), Goal::MaxError(0.1), WHOLE, None, |_| Err(too_long()));
     assert_eq!(refused.unwrap_err().to_string(), too_long().to_string());
 }
 
@@ -261,7 +263,7 @@ fn what_stands_in_every_settings_way_is_told() {
 #[test]
 fn pictures_of_infinities_are_not_chosen() {
     let scene = scene();
-    let refused = choose(&scene, Goal::MaxCost(1e12), WHOLE, |quality| {
+    let refused = choose(&scene, Goal::MaxCost(1e12), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
         drawn.planes[0][3] = f32::INFINITY;
         Ok(drawn)
@@ -275,7 +277,7 @@ fn pictures_of_infinities_are_not_chosen() {
 #[test]
 fn one_bad_frame_does_not_spoil_the_others() {
     let scene = scene();
-    let mut model = Model::of(&scene, &Statistics::of(&scene));
+    let mut model = Model::of(&scene, &Statistics::of(&scene), 0);
     let rough = Quality { azimuths: 8, lines: Lines::FourCells, ..Quality::default() };
     model.learn(&Quality::default(), 0.00075, 0.0);
     model.learn(&rough, 0.0133, 0.0);

@@ -2,9 +2,10 @@
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
-use super::probes::{Probes, apart};
+use super::probes::{Probes, Traced, apart};
 use super::statistics::Statistics;
 use crate::measure::trade::start;
+use crate::plan::{REFERENCE_BATCH, unmet_bounced_error};
 use crate::scene::{
     Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
     Scene, Wedges, Window,
@@ -29,6 +30,8 @@ pub struct Chosen {
     pub expected: Expected,
     /// How many samples of the oracle tell that error.
     pub probes: usize,
+    /// Light paths from each, that tell bounced light; 0 without.
+    pub paths: u32,
     /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
     /// and may miss shadows' edges.
     pub confidence: Option<f64>,
@@ -58,10 +61,33 @@ const COARSE: Quality = Quality {
     wedges: Wedges::Slices,
     receiver: Receiver::Plane,
     window: Window::None,
-    subsample: 1,
+    subsample: 2,
     wedge_side: 64,
-    bounces: Bounces::NONE,
+    bounces: Bounces { azimuths: 8, ..Bounces::NONE },
 };
+
+/// Bounced light that a choice is to hold, too.
+pub struct Bounced<'t> {
+    /// Times that light may be reflected: [`Bounces::count`], above 0.
+    pub count: u32,
+    /// Traces bounced light of samples, by their place, in so many batches of paths ([`REFERENCE_BATCH`]) of a seed.
+    pub trace: &'t mut Trace<'t>,
+}
+
+/// See [`Bounced::trace`].
+pub type Trace<'t> = dyn FnMut(&[usize], u32, u32) -> Result<Vec<Traced>> + 't;
+
+/// Batches that tell how many are wanted; at most.
+const FIRST_BATCHES: u32 = 8;
+const MOST_BATCHES: u32 = 256;
+/// Share of the goal that the chance of paths may be of a bound: so much is wanted (which takes the bound up by
+/// √(1 + 0.4²), 8 %), and beyond so much the goal is refused.
+const CHANCE_WANTED: f64 = 0.4;
+const CHANCE_AT_MOST: f64 = 0.8;
+/// Share of that which light that no path has met may be.
+const UNMET: f64 = 0.25;
+/// What is wanted of the light where the goal is a time.
+const CHANCE_OF_TIMED: f64 = 0.002;
 
 /// Where bounds alone stand in the way probes are added up to so many times the first.
 const MOST_PROBES: usize = 4;
@@ -75,6 +101,8 @@ const CONFIRMATIONS: u64 = 4;
 /// Probes, and the pictures that may still be asked for, in the order of what was drawn.
 struct Judge<'a> {
     scene: &'a Scene,
+    bounced: Option<Bounced<'a>>,
+    batches: u32,
     /// Where probes are drawn to, how many at a time, and of which seed the next.
     unsure: Vec<f64>,
     step: usize,
@@ -85,15 +113,84 @@ struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    fn new(scene: &'a Scene, (step, seed): (usize, u64), unsure: Vec<f64>) -> Result<Self> {
+    fn new(
+        scene: &'a Scene,
+        (step, seed): (usize, u64),
+        unsure: Vec<f64>,
+        bounced: Option<Bounced<'a>>,
+        goal: Goal,
+    ) -> Result<Self> {
         let probes = Probes::of(scene, step, seed, &unsure)?;
-        Ok(Self { scene, unsure, step, seed, probes, pictures: vec![], control: 0 })
+        let batches = FIRST_BATCHES;
+        let mut judge = Self {
+            scene,
+            bounced,
+            batches,
+            unsure,
+            step,
+            seed,
+            probes,
+            pictures: vec![],
+            control: 0,
+        };
+        let direct = judge.probes.clone();
+        judge.trace_first()?;
+        let (wanted, most) = match goal {
+            Goal::MaxError(most) => (CHANCE_WANTED * most, CHANCE_AT_MOST * most),
+            Goal::MaxCost(_) => (CHANCE_OF_TIMED, f64::INFINITY),
+        };
+        let chance = judge.probes.chance(Probes::FOUR_LOOKS);
+        let unmet = (judge.probes.own_error().powi(2) - direct.own_error().powi(2)).max(0.0).sqrt();
+        // A root of variances, which fall with the number of paths; what was not met falls itself.
+        let more =
+            (chance / wanted).powi(2).max(unmet / (UNMET * wanted)) * f64::from(FIRST_BATCHES);
+        let least = chance * (f64::from(FIRST_BATCHES) / f64::from(MOST_BATCHES)).sqrt();
+        if least > most {
+            return Err(Error::Limit {
+                what: format!("a goal of {}", figures(most / CHANCE_AT_MOST)),
+                needs: "bounced light that is known so well".into(),
+                limit: format!(
+                    "{}, as the chance of {} light paths from each of {} samples would be {}",
+                    figures(least / CHANCE_AT_MOST),
+                    MOST_BATCHES * REFERENCE_BATCH,
+                    judge.probes.len(),
+                    figures(least)
+                ),
+            });
+        }
+        if more > f64::from(FIRST_BATCHES) {
+            judge.batches = (more.ceil() as u32).min(MOST_BATCHES);
+            judge.probes = direct;
+            judge.trace_first()?;
+        }
+        Ok(judge)
     }
 
     /// Probes that were not yet drawn.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
-        Probes::of(self.scene, wanted, self.seed, &self.unsure)
+        let mut probes = Probes::of(self.scene, wanted, self.seed, &self.unsure)?;
+        self.trace(&mut probes)?;
+        Ok(probes)
+    }
+
+    fn trace_first(&mut self) -> Result<()> {
+        let mut probes = self.probes.clone();
+        self.trace(&mut probes)?;
+        self.probes = probes;
+        Ok(())
+    }
+
+    /// Adds bounced light, where there is any, by paths that no others have gone.
+    fn trace(&mut self, probes: &mut Probes) -> Result<()> {
+        let Some(bounced) = &mut self.bounced else { return Ok(()) };
+        self.seed = self.seed.wrapping_add(1 << 32);
+        // Of both halves, mixed (Steele, Lea & Flood 2014).
+        let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
+        let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
+        let of = (self.batches * REFERENCE_BATCH, probes.len());
+        probes.add_bounced(&traced, unmet_bounced_error(self.scene, bounced.count, of));
+        Ok(())
     }
 
     /// Judges a frame, and, where it is the best control or there are more probes than before, all others
@@ -143,15 +240,16 @@ impl<'a> Judge<'a> {
 /// light judge, others for another `seed`.
 ///
 /// What is chosen is drawn again: its time is that of this frame, and its bound is one by samples that
-/// had no part in the choice.
+/// had no part in the choice. What is `bounced` is judged, and its settings are chosen, too.
 ///
 /// # Errors
-/// A goal out of range; one that nothing reaches, with the nearest that was; what `draw` answers, but for
+/// A goal out of range, or finer than paths can tell; one that nothing reaches, with the nearest that was; what `draw` answers, but for
 /// [`Error::Limit`], which leaves out the settings and all that are dearer, unless all are.
-pub fn choose(
-    scene: &Scene,
+pub fn choose<'a>(
+    scene: &'a Scene,
     goal: Goal,
     (probes, seed): (usize, u64),
+    bounced: Option<Bounced<'a>>,
     mut draw: impl FnMut(&Quality) -> Result<Drawn>,
 ) -> Result<Chosen> {
     let (name, bound) = match goal {
@@ -161,9 +259,11 @@ pub fn choose(
     if !(bound > 0.0 && bound.is_finite()) {
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
     }
-    let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal);
+    let count = bounced.as_ref().map_or(0, |b| b.count);
+    let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
     let (mut pilots, mut refused) = (Vec::new(), None);
-    for quality in [start(), COARSE] {
+    for mut quality in [start(), COARSE] {
+        quality.bounces.count = count;
         match draw(&quality) {
             Err(limit @ Error::Limit { .. }) => {
                 chooser.refuse(&quality);
@@ -179,7 +279,7 @@ pub fn choose(
         _ => Vec::new(),
     };
     let is_aimed = !unsure.is_empty();
-    let mut judge = Judge::new(scene, (probes, seed), unsure)?;
+    let mut judge = Judge::new(scene, (probes, seed), unsure, bounced, goal)?;
     let own = judge.probes.own_error();
     if let Goal::MaxError(most) = goal
         && own >= most
@@ -187,7 +287,14 @@ pub fn choose(
         return Err(Error::Limit {
             what: format!("--max-error {most}"),
             needs: "exact light that is known so well".into(),
-            limit: format!("{}, by which half of its rays are off", figures(own)),
+            limit: format!(
+                "{}, by which half of its rays are off{}",
+                figures(own),
+                match count {
+                    0 => "",
+                    _ => ", or light that no path has met",
+                }
+            ),
         });
     }
     for (quality, drawn) in pilots {
@@ -218,6 +325,7 @@ pub fn choose(
                 trial,
                 expected: chooser.expected(&quality),
                 probes: fresh.len(),
+                paths: if count > 0 { judge.batches * REFERENCE_BATCH } else { 0 },
                 confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
                 trials: chooser.trials().to_vec(),
             });
@@ -288,6 +396,12 @@ pub fn flags(quality: &Quality, scene: &Scene) -> String {
             Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
             Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
         }
+    }
+    let Bounces { count, engine, azimuths, cutoff, .. } = quality.bounces;
+    if count > 0 {
+        all += &format!(" --bounces {count} --bounce-engine {}", engine.name());
+        all += &format!(" --bounce-azimuths {azimuths} --bounce-cutoff {cutoff}");
+        all += &format!(" --subsample {}", quality.subsample);
     }
     all.trim_start().to_owned()
 }

@@ -4,7 +4,7 @@ use super::quality::SETTINGS;
 use super::values::whole;
 
 /// What `--max-error` and `--time-budget` choose themselves, or what does nothing beside them: all but where hulls
-/// live, and whether there are bounces, which is refused with a reason.
+/// live, and how many bounces there are.
 fn chosen() -> impl Iterator<Item = &'static str> {
     let is_asked = |s: &str| matches!(s, "hull" | "bounces");
     SETTINGS.into_iter().filter(move |s| !is_asked(s)).chain(["method"])
@@ -17,7 +17,8 @@ pub struct AutoArgs {
     /// bounded with 95 % confidence by exact light at 192 to 3000 samples that had no part in choosing. Draws
     /// up to 16 frames, where none of them holds two more of exact horizons, and the chosen once more; none
     /// that is expected to take more than 30 s; refused, with the nearest that was found, where none is that
-    /// accurate. Of direct light: not with --bounces
+    /// accurate. Of --bounces light paths from each of those samples tell the truth, as many as keep their chance a
+    /// part of the error
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget", conflicts_with_all = chosen())]
     pub max_error: Option<f64>,
     /// Choose the most accurate settings of at most this GPU time a frame on this device, drawn once more
