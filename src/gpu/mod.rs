@@ -27,7 +27,7 @@ pub use lend::Lent;
 pub use look::Seen;
 pub use renderer::{ImageArg, ImageState, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
-pub use screen::{Panel, Screen, Shot, Shown, Sight};
+pub use screen::{Panel, Part, PartTimes, Screen, Shot, Shown, Sight, Work};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;

@@ -42,7 +42,9 @@ pub use map::{Map, map};
 pub use nodes::Nodes;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
-pub use reference::{REFERENCE_BATCH, reference, reference_inputs, unmet_error};
+pub use reference::{
+    REFERENCE_BATCH, reference, reference_in_bands, reference_inputs, unmet_error,
+};
 pub use resource::{Format, Kind, Owner, Resource};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;

@@ -30,6 +30,22 @@ const MOST_BOUNCES: u32 = 64;
 /// # Errors
 /// Bounces, surface or lights out of range, nothing that shines, or a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
+    let rows = band_rows(scene.field.cols() as u32, bounces);
+    reference_in_bands(scene, bounces, seed, limits, rows)
+}
+
+/// The same with a dispatch for every `band_rows` rows, 1 or more: for hosts that draw frames between them. Other bands,
+/// the same bits.
+///
+/// # Errors
+/// As there.
+pub fn reference_in_bands(
+    scene: &Scene,
+    bounces: u32,
+    seed: u32,
+    limits: &Limits,
+    band_rows: u32,
+) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
     lights.check()?;
     surface.check(field.rows() * field.cols())?;
@@ -88,7 +104,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
     ]);
     blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = size[1];
-    let band_rows = band_rows(size[0], bounces);
+    let band_rows = band_rows.max(1);
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {
         let sum = builder.image("part_sum", Owner::Internal, rgba, [size[0], rows, 1], false);
