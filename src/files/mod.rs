@@ -33,7 +33,7 @@ pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, read_metadata, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use lobe::read_lobes;
-pub use npy::{NpyWriter, write_npy_f32};
+pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};
 pub use png::{Tone, encode_png, write_png};
 pub use room::check_room;

@@ -3,6 +3,7 @@
 use super::atomic::Temporary;
 use super::heights::Raster;
 use super::open;
+use crate::scene::HeightField;
 use crate::{Error, Result};
 use half::f16;
 use std::path::Path;
@@ -209,8 +210,7 @@ impl NpyWriter {
         let left = shape.iter().try_fold(1_usize, |n, d| n.checked_mul(*d)).ok_or_else(|| {
             Error::setting("shape", format!("{shape:?}"), "a product within the address space")
         })?;
-        let mut file = Temporary::create(path)?;
-        file.write(&header("<f4", shape)?)?;
+        let file = begin(path, "<f4", shape)?;
         Ok(Self { file, shape: shape.to_vec(), left })
     }
 
@@ -247,6 +247,47 @@ impl NpyWriter {
         }
         self.file.finish()
     }
+}
+
+/// A file with an array's header, for its values to follow.
+fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
+    let mut file = Temporary::create(path)?;
+    let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
+    let mut header = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
+        sizes.trim_end()
+    );
+    // The data begins at a multiple of 64 bytes, after a 10-byte preamble and a line feed.
+    let padded = (10 + header.len() + 1).next_multiple_of(64);
+    header.push_str(&" ".repeat(padded - 10 - header.len() - 1));
+    header.push('\n');
+    let length = u16::try_from(header.len()).map_err(|_| {
+        Error::setting("shape", format!("{} dimensions", shape.len()), "a few dimensions")
+    })?;
+    file.write(b"\x93NUMPY\x01\x00")?;
+    file.write(&length.to_le_bytes())?;
+    file.write(header.as_bytes())?;
+    Ok(file)
+}
+
+/// Writes a field's heights as an array of little-endian f64, absolute, in its length unit; voids as NaN, to be read
+/// with no-data NaN. A field that is read from it has the same heights to a rounding of f32, above a base of its own.
+///
+/// # Errors
+/// A disk that does not take them.
+pub fn write_npy_heights(path: &Path, field: &HeightField) -> Result<()> {
+    let mut file = begin(path, "<f8", &[field.rows(), field.cols()])?;
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    for (n, heights) in field.heights_m().chunks(4096).enumerate() {
+        let absolute = |(i, h): (usize, &f32)| match is_void(4096 * n + i) {
+            true => f64::NAN,
+            false => field.base_m() + f64::from(*h),
+        };
+        let bytes: Vec<u8> =
+            heights.iter().enumerate().flat_map(|h| absolute(h).to_le_bytes()).collect();
+        file.write(&bytes)?;
+    }
+    file.finish()
 }
 
 /// Writes an array of `shape` (last index fastest) from chunks of any lengths, in order.

@@ -47,8 +47,8 @@ pub struct Renderer {
     pipeline_of_pass: Vec<Pipeline>,
     descriptor_pool: vk::DescriptorPool,
     slots: Vec<Slot>,
-    /// Whether all passes have been recorded: what an edit goes on from.
-    is_drawn: bool,
+    /// How many of the plan's first passes have been recorded; after all, it stays all: what an edit goes on from.
+    begun: usize,
     /// By pass of a whole recording: whether it must run, as it has been told something new since it
     /// was recorded last, or follows one that has.
     pending: Vec<bool>,
@@ -121,7 +121,7 @@ impl Renderer {
             pipeline_of_pass: Vec::new(),
             descriptor_pool: vk::DescriptorPool::null(),
             slots: Vec::new(),
-            is_drawn: false,
+            begun: 0,
             pending: vec![true; plan.passes.len()],
             timestamps: timestamps.map(|(ns, bits)| (ns, u64::MAX >> (64 - bits.min(64)))),
             plan,
@@ -212,9 +212,12 @@ impl Renderer {
     /// earlier recording of this renderer; of outputs that they do not write the contents are kept
     /// where the caller's state before keeps them.
     ///
+    /// A renderer that has not yet recorded all may do so in pieces: the plan's first passes, and then those that
+    /// follow, or the first again.
+    ///
     /// # Errors
     /// As [`record`](Self::record); a pass that does not exist, twice the same, or one before another
-    /// that precedes it in the plan; fewer than all by a renderer that has not yet recorded all.
+    /// that precedes it in the plan; others than those of the next piece by a renderer that has not yet recorded all.
     pub fn record_passes<I: Copy + Into<InputArg>>(
         &mut self,
         commands: vk::CommandBuffer,
@@ -227,7 +230,7 @@ impl Renderer {
         self.check(slot, &inputs, outputs)?;
         self.check_passes(passes)?;
         self.append(commands, slot, &inputs, outputs, passes, None);
-        self.is_drawn = true;
+        self.begun = self.begun.max(passes.last().map_or(0, |last| last + 1));
         passes.iter().for_each(|pass| self.pending[*pass] = false);
         self.plan.add_followers(&mut self.pending);
         Ok(())

@@ -15,7 +15,7 @@ use super::memory::Backed;
 use super::surface::Handles;
 use super::{Frame, Headless, HeadlessOptions, Timing, failed};
 use crate::files::Tone;
-use crate::plan::{Map, Plan, View};
+use crate::plan::{Map, Plan, Rectangle, View};
 use crate::{Error, Result};
 
 use chain::Chain;
@@ -32,7 +32,8 @@ pub struct Screen {
     chain: Option<Chain>,
     slots: Vec<Slot>,
     next: usize,
-    drawer: Option<Drawer>,
+    /// One a part of the last shot.
+    drawers: Vec<Drawer>,
     /// Outlives its surface, which goes with the device.
     _window: Arc<dyn Any>,
 }
@@ -45,15 +46,19 @@ struct Slot {
     done: vk::Fence,
     /// Signalled when its picture may be drawn into.
     acquired: vk::Semaphore,
-    /// Heights, text, and what is read back: made when first needed.
-    heights: Option<Backed>,
-    panel: Option<Backed>,
+    /// Heights of each part, text, and what is read back: made when first needed.
+    heights: Vec<Option<Backed>>,
+    text: Option<Backed>,
     readback: Option<Backed>,
+    /// Whether the last shot lit each of its parts.
+    was_lit: Vec<bool>,
 }
 
-/// Text over a picture: opaque, in its upper left corner.
+/// Pixels over a picture: opaque.
 #[derive(Clone, Copy, Debug)]
 pub struct Panel<'a> {
+    /// Column and row of the picture where its upper left corner is.
+    pub at: [u32; 2],
     /// Columns and rows, pixels; what does not fit is cut off.
     pub size: [u32; 2],
     /// Red, green, blue and 255, row after row.
@@ -69,30 +74,63 @@ pub enum Sight<'a> {
     Camera(&'a View),
 }
 
-/// What one frame shows, and what is done before.
+/// What lights a frame before it is shown.
+#[derive(Clone, Copy, Debug)]
+pub enum Work<'a> {
+    /// Passes by position in its plan, as [`Renderer::record_passes`](super::Renderer::record_passes) takes them; none: it
+    /// stays as it was.
+    Passes(&'a [usize]),
+    /// What an edit of a rectangle of its heights needs: [`Renderer::record_edit`](super::Renderer::record_edit).
+    Edit(Rectangle),
+}
+
+impl Work<'_> {
+    fn is_none(&self) -> bool {
+        matches!(self, Self::Passes([]))
+    }
+}
+
+/// One frame of a picture: what is done to it, and where it is shown.
+pub struct Part<'a> {
+    /// Made by [`Screen::frame`].
+    pub frame: &'a mut Frame,
+    /// The heights above the field's base, one a sample, and the rectangle where they are new; else as they are.
+    pub heights: Option<(&'a [f32], Rectangle)>,
+    /// Before it is shown.
+    pub work: Work<'a>,
+    /// What is seen of it, and how large.
+    pub sight: Sight<'a>,
+    /// The picture's column where it begins, in its first row.
+    pub left: u32,
+}
+
+/// What a picture is beside its parts.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot<'a> {
-    /// New heights above the field's base, one a sample; else as they are.
-    pub heights: Option<&'a [f32]>,
-    /// Passes that light the field anew, by position in its plan.
-    pub passes: &'a [usize],
-    /// What is seen of it; the size is [`Screen::size`].
-    pub sight: Sight<'a>,
     /// How radiance looks.
     pub tone: Tone,
     /// The field's, where it has any.
     pub voids: Option<&'a [bool]>,
-    /// Over the picture.
-    pub panel: Option<Panel<'a>>,
+    /// Over the picture, in this order.
+    pub panels: &'a [Panel<'a>],
     /// Whether the picture is read back, which waits for it.
     pub keeps: bool,
+}
+
+/// GPU times of one part of a picture.
+#[derive(Clone, Debug, Default)]
+pub struct PartTimes {
+    /// What lit its frame; nothing where nothing did.
+    pub light: Vec<Timing>,
+    /// What drew it.
+    pub drawing: Vec<Timing>,
 }
 
 /// What became of a frame that has been handed to the window.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
-    /// GPU times of the frame before the last, by pass, where they are in.
-    pub timings: Vec<Timing>,
+    /// GPU times of the picture before the last, of each part, where they are in.
+    pub timings: Vec<PartTimes>,
     /// Red, green, blue, 255 of each pixel, row after row, where they were to be kept.
     pub pixels: Option<Vec<[u8; 4]>>,
 }
@@ -119,7 +157,7 @@ impl Screen {
         let swapchains = khr::swapchain::Device::new(&host.instance, &host.device);
         let (slots, _window) = (Vec::new(), window as Arc<dyn Any>);
         let mut screen =
-            Self { gpu, swapchains, chain: None, slots, next: 0, drawer: None, _window };
+            Self { gpu, swapchains, chain: None, slots, next: 0, drawers: Vec::new(), _window };
         for _ in 0..SLOTS {
             let slot = Slot::new(&screen.gpu)?;
             screen.slots.push(slot);
@@ -132,13 +170,25 @@ impl Screen {
         &mut self.gpu
     }
 
-    /// A frame whose light it can show: as [`Headless::frame`], for frames in flight. To be ended by
-    /// [`end`](Self::end).
+    /// A frame whose light it can show: as [`Headless::frame`], for frames in flight, dark until it is lit. To be ended
+    /// by [`end`](Self::end).
     ///
     /// # Errors
     /// As there.
     pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
-        self.gpu.frame_in_flight(plan, contents, SLOTS)
+        let frame = self.gpu.frame_in_flight(plan, contents, SLOTS)?;
+        let darkened = frame.outputs.iter().try_for_each(|image| {
+            let texels = image.extent.iter().map(|n| *n as usize).product::<usize>();
+            let dark = vec![0.0; texels * (image.format.bytes() / 4) as usize];
+            self.gpu.upload(image, &dark)
+        });
+        match darkened {
+            Ok(()) => Ok(frame),
+            Err(error) => {
+                self.gpu.end(frame);
+                Err(error)
+            }
+        }
     }
 
     /// Frees a frame, once the device is done with it.
@@ -210,20 +260,24 @@ impl Screen {
         }
     }
 
-    /// Lights a frame as the shot says, draws its picture and hands it to the window. None where there was no
-    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the shot was done.
-    ///
-    /// The first shot of a frame must run all its passes.
+    /// Lights the frames of a picture's parts as they say, draws it and hands it to the window. None where there was no
+    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the parts was done.
     ///
     /// # Errors
-    /// A shot that does not fit, or a device out of memory or lost.
-    pub fn draw(&mut self, frame: &mut Frame, shot: &Shot<'_>) -> Result<Option<Shown>> {
+    /// Parts that do not fit, or a device out of memory or lost.
+    pub fn draw(&mut self, parts: &mut [Part<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
         let slot = self.next;
         let Some(image) = self.acquire(slot)? else { return Ok(None) };
-        let mut timings = frame.renderer().timings(slot).unwrap_or_default();
-        timings.extend(self.drawer.iter().flat_map(|d| d.timings(slot)));
-        self.prepare(slot, frame, shot)?;
-        self.record(slot, image, frame, shot)?;
+        let mut timings = Vec::new();
+        for (n, part) in parts.iter_mut().enumerate() {
+            let was_lit = self.slots[slot].was_lit.get(n).is_some_and(|was| *was);
+            let light = part.frame.renderer().timings(slot).filter(|_| was_lit);
+            let drawing = self.drawers.get(n).map(|d| d.timings(slot)).unwrap_or_default();
+            timings.push(PartTimes { light: light.unwrap_or_default(), drawing });
+        }
+        self.prepare(slot, parts, shot)?;
+        self.record(slot, image, parts, shot)?;
+        self.slots[slot].was_lit = parts.iter().map(|part| !part.work.is_none()).collect();
         self.submit(slot, image)?;
         self.present(slot, image)?;
         self.next = (slot + 1) % SLOTS;
@@ -315,9 +369,10 @@ impl Slot {
             commands: vk::CommandBuffer::null(),
             done: vk::Fence::null(),
             acquired: vk::Semaphore::null(),
-            heights: None,
-            panel: None,
+            heights: Vec::new(),
+            text: None,
             readback: None,
+            was_lit: Vec::new(),
         };
         // SAFETY: the device is alive; what was made before a failure is destroyed below.
         let made = unsafe {
@@ -353,8 +408,9 @@ impl Slot {
     }
 
     fn free(&mut self, gpu: &mut Headless) {
-        let all = [&mut self.heights, &mut self.panel, &mut self.readback];
-        for mut backed in all.into_iter().filter_map(Option::take) {
+        let others = [&mut self.text, &mut self.readback];
+        let all = self.heights.iter_mut().chain(others);
+        for mut backed in all.filter_map(Option::take) {
             gpu.memory.free(&mut backed);
         }
     }
@@ -384,7 +440,7 @@ impl Drop for Screen {
     fn drop(&mut self) {
         // A lost device is done with everything.
         let _ = self.wait();
-        if let Some(drawer) = self.drawer.take() {
+        for drawer in self.drawers.drain(..) {
             drawer.end(&mut self.gpu);
         }
         if let Some(chain) = self.chain.take() {

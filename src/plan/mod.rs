@@ -77,8 +77,8 @@ pub use nodes::Nodes;
 pub use pass::{Pass, ResourceId, missing_barriers};
 pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{
-    REFERENCE_BATCH, listed_places, reference, reference_at, reference_inputs, unmet_bounced_error,
-    unmet_error,
+    REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
+    unmet_bounced_error, unmet_error,
 };
 pub use resource::{Format, Kind, Owner, Resource};
 pub use scatter::{scatter, scatter_inputs};

@@ -14,7 +14,9 @@ use super::sweep::Sweep;
 use super::sweeping::{Lists, prepare, settings};
 use super::{Builder, Limits, Nodes, Plan};
 use crate::passes;
-use crate::scene::{Albedo, Basis, Border, Environment, LightBasis, Lobe, Quality, Scene, Wedges};
+use crate::scene::{
+    Albedo, Basis, Border, Bounces, Environment, LightBasis, Lobe, Quality, Scene, Wedges,
+};
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
@@ -37,6 +39,9 @@ pub struct Picture {
     pub keeps_horizons: bool,
     /// The heights will stay those of the scene: what these cannot show is left out.
     pub still: bool,
+    /// Nothing stands in the way of light but the ground that a sample lies on, and none is thrown on: what all the
+    /// other passes are for. Balls of light are hidden all the same.
+    pub unshadowed: bool,
 }
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
@@ -59,6 +64,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
     let shining = Shining::of(scene, quality, wanted, &mut notes)?;
+    let quality = &if wanted.unshadowed { without_bounces(quality) } else { *quality };
     let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
     let quality = &bounces::settled(quality, surface, &sweep, &mut notes);
@@ -66,7 +72,13 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if is_walked {
         sweep.keep_occluders()?;
     }
-    if wanted.still && !is_walked && sweep.sees_own_crossings() && field.is_concave(surface.border)
+    if wanted.unshadowed {
+        notes.push("no sweep, no bounces: without shadows".into());
+        sweep = Sweep::Crossings;
+    } else if wanted.still
+        && !is_walked
+        && sweep.sees_own_crossings()
+        && field.is_concave(surface.border)
     {
         notes.push("no sweep: nothing rises above anything else, the field is concave".into());
         sweep = Sweep::Crossings;
@@ -192,6 +204,10 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         drawing.light(&lists, quality)?;
     }
     Plan::finish(drawing.builder, size, lists.lists.concat(), Vec::new(), notes, used, limits)
+}
+
+fn without_bounces(quality: &Quality) -> Quality {
+    Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality }
 }
 
 /// Texels of the inputs of a [`picture`](picture()), in its plan's order: "heights"; "environment" and

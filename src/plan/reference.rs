@@ -30,7 +30,23 @@ const MOST_BOUNCES: u32 = 64;
 /// # Errors
 /// Bounces, surface or lights out of range, nothing that shines, or a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
-    traced(scene, (bounces, seed), None, limits)
+    let rows = band_rows(scene.field.cols() as u32, bounces);
+    traced(scene, (bounces, seed), None, rows, limits)
+}
+
+/// The same with a dispatch for every `band_rows` rows, 1 or more: for hosts that draw frames between them. Other bands,
+/// the same bits.
+///
+/// # Errors
+/// As there.
+pub fn reference_in_bands(
+    scene: &Scene,
+    bounces: u32,
+    seed: u32,
+    limits: &Limits,
+    band_rows: u32,
+) -> Result<Plan> {
+    traced(scene, (bounces, seed), None, band_rows, limits)
 }
 
 /// The same from so many samples alone, and of their bounced light alone: what has been reflected at least once
@@ -52,7 +68,8 @@ pub fn reference_at(
         let expected = format!("1 to {all}, as the field has");
         return Err(Error::setting("samples of a reference", samples.to_string(), expected));
     }
-    traced(scene, (bounces, seed), Some(samples as u32), limits)
+    let rows = band_rows(scene.field.cols() as u32, bounces);
+    traced(scene, (bounces, seed), Some(samples as u32), rows, limits)
 }
 
 /// Texels of the list of a [`reference_at`]: samples by their place in the field, row-major, in rows as long as the
@@ -70,6 +87,7 @@ fn traced(
     scene: &Scene,
     (bounces, seed): (u32, u32),
     listed: Option<u32>,
+    band_rows: u32,
     limits: &Limits,
 ) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
@@ -137,7 +155,7 @@ fn traced(
     ]);
     blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = summed[1];
-    let band_rows = band_rows(size[0], bounces);
+    let band_rows = band_rows.max(1);
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {
         let sum = builder.image("part_sum", Owner::Internal, rgba, [size[0], rows, 1], false);

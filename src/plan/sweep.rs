@@ -219,7 +219,9 @@ impl Sweep {
         } else {
             shift
         };
-        let highest = field.heights_m().iter().fold(0.0_f32, |m, h| m.max(h.abs()));
+        // Of others nothing depends on it, so that edits of the highest are edits.
+        let heights = field.heights_m().iter().filter(|_| packed);
+        let highest = heights.fold(0.0_f32, |m, h| m.max(h.abs()));
         Ok(Sweep::Lines(LineSweep {
             hull: place,
             hull_depth,

@@ -125,7 +125,8 @@ impl HeightField {
         self.cell_m
     }
 
-    /// The height that [`heights_m`](Self::heights_m) are offsets from: the median, in metres.
+    /// The height that [`heights_m`](Self::heights_m) are offsets from, in metres: the median of those that the field
+    /// was made of.
     pub fn base_m(&self) -> f64 {
         self.base_m
     }
@@ -133,6 +134,46 @@ impl HeightField {
     /// Heights above [`base_m`](Self::base_m), row-major from the north-west corner; voids filled.
     pub fn heights_m(&self) -> &[f32] {
         &self.heights_m
+    }
+
+    /// Puts other heights, above the same base, in the place of some rows of a rectangle's, `cols` each: from a row and
+    /// a column on. The others keep their bits; voids stay voids.
+    ///
+    /// # Errors
+    /// A rectangle beyond the field; the first height that is none, or so steep that slopes' squares would not be f32's.
+    pub fn replace(
+        &mut self,
+        [row, col]: [usize; 2],
+        cols: usize,
+        heights_m: &[f32],
+    ) -> Result<()> {
+        let rows = heights_m.len().checked_div(cols).unwrap_or(0);
+        let fits = |from: usize, count: usize, all: usize| {
+            count > 0 && from.checked_add(count).is_some_and(|end| end <= all)
+        };
+        let is_whole = rows * cols == heights_m.len();
+        if !(is_whole && fits(row, rows, self.rows) && fits(col, cols, self.cols)) {
+            return Err(Error::setting(
+                "heights",
+                format!("{} in rows of {cols}, from row {row}, column {col}", heights_m.len()),
+                format!("whole rows within {} × {}", self.cols, self.rows),
+            ));
+        }
+        // Together with any other that passed, or that the field was made of, within twice the steepest.
+        let most = (STEEPEST * self.cell_m[0].min(self.cell_m[1])).min(HEIGHT_LIMIT);
+        let is_one = |h: &f32| f64::from(h.abs()) <= most;
+        if let Some(i) = heights_m.iter().position(|h| !is_one(h)) {
+            return Err(Error::setting(
+                format!("height at row {}, column {}", row + i / cols, col + i % cols),
+                format!("{:?}", heights_m[i]),
+                format!("a number within ±{most:e} of the base"),
+            ));
+        }
+        for (r, new) in heights_m.chunks_exact(cols).enumerate() {
+            let from = (row + r) * self.cols + col;
+            self.heights_m[from..from + cols].copy_from_slice(new);
+        }
+        Ok(())
     }
 
     /// One mark a sample, true where the input held no data; `None` where it held data everywhere.
@@ -235,6 +276,20 @@ mod tests {
         assert!(error.to_string().contains("row 1, column 0"), "{error}");
         let voids = Some(vec![false, false, true, false]);
         assert!(HeightField::new(2, 2, &[0.0, 1.0, f64::NAN, 3.0], [1.0, 1.0], voids).is_ok());
+    }
+
+    #[test]
+    fn heights_are_replaced_in_place_or_refused_by_place() {
+        let mut field = HeightField::new(3, 3, &[5.0; 9], [1.0, 1.0], None).unwrap();
+        field.replace([1, 1], 2, &[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert_eq!(field.base_m(), 5.0);
+        assert_eq!(field.heights_m(), [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 3.0, 4.0]);
+        let said = field.replace([2, 1], 2, &[1.0, f32::NAN]).unwrap_err().to_string();
+        assert!(said.contains("row 2, column 2"), "{said}");
+        for (at, cols, count) in [([2, 2], 2, 2), ([0, 0], 2, 3), ([0, 0], 0, 0), ([3, 0], 1, 1)] {
+            assert!(field.replace(at, cols, &vec![0.0; count]).is_err(), "{at:?} {cols} {count}");
+        }
+        assert_eq!(field.heights_m()[8], 4.0);
     }
 
     #[test]

@@ -56,7 +56,8 @@ fn plateaus(rows: usize, cols: usize) -> HeightField {
 }
 
 fn planned(gpu: &Headless, scene: &Scene, quality: &Quality, keeps_horizons: bool) -> Plan {
-    let wanted = Picture { keeps_horizons, light_layers: true, sky_view: true, still: false };
+    let wanted =
+        Picture { keeps_horizons, light_layers: true, sky_view: true, ..Picture::default() };
     plan::picture(scene, quality, &gpu.report().limits, wanted).expect("a plan")
 }
 

@@ -84,3 +84,45 @@ fn rays_that_are_given_up_are_counted() {
     constants.iter_mut().find(|(id, _)| *id == 10).expect("the bound").1 = 2;
     assert!(traced_by(&mut device, &scene, plan, 1, &[]).1 > 0);
 }
+
+/// A reference in bands, recorded piece by piece, is one that is recorded whole, to the bit; pieces out of order are
+/// refused, the first may come again.
+#[test]
+fn pieces_of_a_batch_are_the_batch() {
+    let mut device = Device::new();
+    let hills =
+        field(37, 21, [1.0, 1.0], |r, c| 3.0 * (r as f64 / 4.0).sin() * (c as f64 / 3.0).cos());
+    let scene = under_sky(hills, Border::Plane);
+    let limits = device.limits();
+    let contents = plan::reference_inputs(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let whole = plan::reference(&scene, 1, 3, &limits).expect("a plan");
+    let want = gpu
+        .with_frame(whole, &contents, |gpu, frame| {
+            gpu.draw(frame)?;
+            gpu.pixels(frame, 0)
+        })
+        .expect("drawn");
+    let banded = plan::reference_in_bands(&scene, 1, 3, &limits, 8).expect("a plan");
+    let count = banded.passes.len();
+    let first = banded.passes.iter().position(|p| p.name() == "path_trace").expect("traces");
+    assert_eq!(count - first, 5);
+    let got = gpu
+        .with_frame(banded, &contents, |gpu, frame| {
+            let mut pieces = vec![0..first, 0..first + 1];
+            pieces.extend((first + 1..count).map(|n| n..n + 1));
+            let error = gpu.draw_passes(frame, &[first]).expect_err("nothing recorded");
+            assert!(error.to_string().contains("all passes before"), "{error}");
+            for piece in pieces {
+                gpu.draw_passes(frame, &piece.collect::<Vec<_>>())?;
+            }
+            // Any, from here on: another batch is another mean.
+            let got = gpu.pixels(frame, 0)?;
+            gpu.draw_passes(frame, &(first..count).collect::<Vec<_>>())?;
+            assert!(gpu.pixels(frame, 0)? != got);
+            Ok(got)
+        })
+        .expect("drawn");
+    assert!(got == want);
+}

@@ -354,3 +354,30 @@ fn bounces() {
     let note = "bounces 5 to 9 dropped: of a surface that reflects at most 0.5 they carry at most 6.055e-2";
     assert!(short.notes.iter().any(|n| n.starts_with(note)), "{:?}", short.notes);
 }
+
+/// Without shadows no horizon is swept and nothing is thrown on: whatever the method, ground is looked at where a
+/// sample lies, and the picture has the same images.
+#[test]
+fn without_shadows_nothing_is_swept() {
+    let ridges: Vec<f64> = (0..9 * 14).map(|i| f64::from(i % 5)).collect();
+    let field = HeightField::new(9, 14, &ridges, [1.0, 1.0], None).expect("a good field");
+    let scene = under_everything(field, Border::Plane);
+    let bounces = Bounces { count: 2, ..Bounces::default() };
+    for method in [Method::Sweep, Method::Pyramid, Method::Brute] {
+        let quality = Quality { method, azimuths: 8, bounces, ..Quality::default() };
+        let drawn = |unshadowed| {
+            let wanted = Picture { unshadowed, ..Picture::default() };
+            plan::picture(&scene, &quality, &Limits::lavapipe(), wanted).expect("a plan")
+        };
+        let [usual, off] = [false, true].map(drawn);
+        let outputs = |plan: &Plan| plan.outputs().map(|(_, r)| r.clone()).collect::<Vec<_>>();
+        assert_eq!(outputs(&usual), outputs(&off));
+        let seen = ["horizon_sweep", "horizon_march", "pyramid_march", "bounce"];
+        let sweeps = |plan: &Plan| {
+            let names = plan.passes.iter().map(plan::Pass::name);
+            names.filter(|name| seen.iter().any(|s| name.starts_with(s))).count()
+        };
+        assert!(sweeps(&usual) > 0 && sweeps(&off) == 0, "{method:?}: {:?}", short(&off));
+        assert!(missing_barriers(&off.passes).is_empty());
+    }
+}

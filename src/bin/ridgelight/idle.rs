@@ -6,9 +6,14 @@ use crate::args::SETTINGS;
 
 /// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
-    if quiet {
-        return;
+    if !quiet {
+        notes(written, used).iter().for_each(|line| tell(line));
     }
+}
+
+/// A line for each.
+pub fn notes(written: &[(String, String)], used: &[(String, String)]) -> Vec<String> {
+    let mut lines = Vec::new();
     for (setting, value) in written.iter().filter(|(s, _)| SETTINGS.contains(&s.as_str())) {
         let by_name = |(name, used): &(String, String)| {
             // The others are the planner's to choose or to count on.
@@ -16,15 +21,22 @@ pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)])
             name == setting && is_kept
         };
         if !used.iter().any(by_name) {
-            note(setting, value, &reason(setting, used));
+            lines.push(line(setting, value, &reason(setting, used)));
         }
     }
+    lines
 }
 
 /// One line.
 pub fn note(setting: &str, value: &str, reason: &str) {
-    let flag = setting.replace('_', "-");
-    let line = format!("note: --{flag} {value} changes nothing {reason}");
+    tell(&line(setting, value, reason));
+}
+
+fn line(setting: &str, value: &str, reason: &str) -> String {
+    format!("note: --{} {value} changes nothing {reason}", setting.replace('_', "-"))
+}
+
+fn tell(line: &str) {
     // A closed stderr is no panic.
     let _ = writeln!(std::io::stderr(), "{line}");
 }

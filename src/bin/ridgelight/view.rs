@@ -1,10 +1,12 @@
 //! `ridgelight view`: a lit field in a window.
 
 mod app;
+mod brush;
+mod moving;
 mod panel;
 mod script;
 mod state;
-mod waves;
+mod strokes;
 
 use std::collections::VecDeque;
 

@@ -90,8 +90,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// In the plan's order, each once; so that as many as there are, are all. Fewer only after all: the
-    /// plan's own images would hold nothing.
+    /// In the plan's order, each once; so that as many as there are, are all. Before all have been, only those that
+    /// come next: the plan's own images would hold nothing.
     pub(super) fn check_passes(&self, passes: &[usize]) -> Result<()> {
         let count = self.plan.passes.len();
         if let Some(pass) = passes.iter().find(|p| **p >= count) {
@@ -104,11 +104,14 @@ impl Renderer {
                 "each once, in the plan's order",
             ));
         }
-        if passes.len() < count && !self.is_drawn {
+        let begin = passes.first().copied().unwrap_or(0);
+        let is_piece = begin + passes.len() == passes.last().map_or(0, |last| last + 1)
+            && (begin == 0 || begin == self.begun);
+        if self.begun < count && !is_piece {
             return Err(Error::setting(
                 "passes",
-                format!("{} of {count}, nothing recorded", passes.len()),
-                "a recording of all passes before",
+                format!("{} of {count}, {} recorded", passes.len(), self.begun),
+                "a recording of all passes before, or these in order",
             ));
         }
         Ok(())
@@ -116,8 +119,10 @@ impl Renderer {
 
     /// Whether an edit can go on from what was recorded last.
     pub(super) fn check_drawn(&self, outputs: &[ImageArg]) -> Result<()> {
-        if !self.is_drawn {
-            return Err(Error::setting("an edit", "nothing recorded", "a recording of all passes"));
+        let count = self.plan.passes.len();
+        if self.begun < count {
+            let found = format!("{} of {count} passes recorded", self.begun);
+            return Err(Error::setting("an edit", found, "a recording of all passes"));
         }
         let pending = self.pending.iter().filter(|p| **p).count();
         if pending > 0 {

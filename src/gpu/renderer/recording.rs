@@ -22,13 +22,14 @@ impl Renderer {
         edited: Option<Rectangle>,
     ) {
         let whole_plan = edited.is_none() && passes.len() == self.plan.passes.len();
+        let holds_nothing = whole_plan || self.begun == 0;
         let (bound, buffers) = self.bind(inputs, outputs);
         let taken = self.takes(&buffers, edited);
         self.write_tables(slot);
         self.write_sets(slot, &bound);
         let device = self.host.device.clone();
         let queries = self.slots[slot].queries;
-        let entry = self.entry(&bound, whole_plan);
+        let entry = self.entry(&bound, holds_nothing);
         let exit = self.exit(&bound);
         let compute = vk::PipelineStageFlags2::COMPUTE_SHADER;
         // Passes of an edit may find their workgroups in a buffer.
@@ -87,11 +88,11 @@ impl Renderer {
     }
 
     /// From what images were to what passes use them as. The plan's own hold nothing from frame to
-    /// frame, unless single passes are repeated.
+    /// frame, unless some passes alone are recorded after others.
     fn entry(
         &self,
         bound: &[Option<&ImageArg>],
-        whole_plan: bool,
+        holds_nothing: bool,
     ) -> Vec<vk::ImageMemoryBarrier2<'static>> {
         let own_to = |backed: &Backed, layout, to| {
             let from = ImageState { layout, ..ImageState::WRITTEN };
@@ -101,8 +102,11 @@ impl Renderer {
         let mut entry = Vec::new();
         for (i, backed) in self.resources.iter().enumerate() {
             if let Some(backed) = backed.as_ref().filter(|b| b.image != vk::Image::null()) {
-                let layout =
-                    if whole_plan { vk::ImageLayout::UNDEFINED } else { vk::ImageLayout::GENERAL };
+                let layout = if holds_nothing {
+                    vk::ImageLayout::UNDEFINED
+                } else {
+                    vk::ImageLayout::GENERAL
+                };
                 entry.push(match self.plan.resources[i].owner {
                     Owner::InputBuffer => own_to(backed, layout, Taken::COPIED),
                     _ => own(backed, layout),

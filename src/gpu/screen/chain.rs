@@ -148,3 +148,26 @@ impl Chain {
 fn gpu_name(gpu: &Headless) -> &str {
     &gpu.report().name
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A minimised window of a system where surfaces have sizes has none; where they have none it is the window's, as far
+    /// as it goes.
+    #[test]
+    fn pictures_are_as_large_as_the_window_or_none() {
+        let extent = |width, height| vk::Extent2D { width, height };
+        let known = |current| vk::SurfaceCapabilitiesKHR {
+            current_extent: current,
+            min_image_extent: extent(1, 1),
+            max_image_extent: extent(500, 400),
+            ..Default::default()
+        };
+        assert_eq!(size(&known(extent(0, 0)), [300, 200]), [0, 0]);
+        assert_eq!(size(&known(extent(64, 48)), [300, 200]), [64, 48]);
+        let any = known(extent(u32::MAX, u32::MAX));
+        assert_eq!(size(&any, [300, 200]), [300, 200]);
+        assert_eq!(size(&any, [600, 0]), [500, 1]);
+    }
+}

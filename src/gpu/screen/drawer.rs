@@ -9,7 +9,7 @@ use super::super::memory::Backed;
 use super::super::{
     Frame, Headless, ImageArg, ImageState, Renderer, Timing, ViewOutputs, ViewRenderer,
 };
-use super::{SLOTS, Shot, Sight};
+use super::{SLOTS, Sight};
 use crate::files::Tone;
 use crate::plan::{self, Map, View};
 use crate::{Error, Result};
@@ -31,20 +31,20 @@ pub(super) enum Drawer {
 }
 
 impl Drawer {
-    pub fn new(gpu: &mut Headless, shot: &Shot<'_>, swaps: bool) -> Result<Self> {
-        Ok(match shot.sight {
-            Sight::Map(map) => {
-                Self::Map(Box::new(MapDrawer::new(gpu, map, shot.tone, shot.voids)?))
-            }
-            Sight::Camera(view) => {
-                Self::View(Box::new(ViewDrawer::new(gpu, view, shot.voids, swaps)?))
-            }
+    pub fn new(
+        gpu: &mut Headless,
+        sight: Sight<'_>,
+        (tone, voids, swaps): (Tone, Option<&[bool]>, bool),
+    ) -> Result<Self> {
+        Ok(match sight {
+            Sight::Map(map) => Self::Map(Box::new(MapDrawer::new(gpu, map, tone, voids)?)),
+            Sight::Camera(view) => Self::View(Box::new(ViewDrawer::new(gpu, view, voids, swaps)?)),
         })
     }
 
-    /// Whether it can draw a shot without being made anew.
-    pub fn fits(&self, shot: &Shot<'_>) -> bool {
-        match (self, shot.sight) {
+    /// Whether it can draw what is seen so without being made anew.
+    pub fn fits(&self, sight: Sight<'_>) -> bool {
+        match (self, sight) {
             (Self::Map(drawer), Sight::Map(map)) => drawer.fits(map),
             (Self::View(drawer), Sight::Camera(view)) => drawer.view.is_shaped_like(view),
             _ => false,
@@ -59,20 +59,20 @@ impl Drawer {
         }
     }
 
-    /// Draws a shot that fits, of a frame that has been lit; the picture is left for copies.
+    /// Draws a frame that has been lit as it is seen, which fits; the picture is left for copies.
     pub fn record(
         &mut self,
         gpu: &Headless,
         commands: vk::CommandBuffer,
         slot: usize,
-        (shot, frame): (&Shot<'_>, &Frame),
+        (frame, sight, exposure): (&Frame, Sight<'_>, f32),
     ) -> Result<()> {
-        match (self, shot.sight) {
+        match (self, sight) {
             (Self::Map(drawer), Sight::Map(map)) => {
                 drawer.record(gpu, commands, slot, (map, frame))
             }
             (Self::View(drawer), Sight::Camera(view)) => {
-                drawer.record(commands, slot, (view, shot.tone.exposure), frame)
+                drawer.record(commands, slot, (view, exposure), frame)
             }
             _ => Err(Error::setting("sight", "another", "the one that was prepared")),
         }

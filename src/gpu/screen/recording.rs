@@ -6,7 +6,8 @@ use super::super::allocator::MemoryUse;
 use super::super::memory::whole;
 use super::super::{Frame, failed};
 use super::drawer::{COPIED, Drawer};
-use super::{Panel, Screen, Shot, Sight, Slot, fitting};
+use super::{Panel, Part, Screen, Shot, Sight, Slot, Work, fitting};
+use crate::plan::Rectangle;
 use crate::{Error, Result};
 
 /// Where the window's picture is, between the copies into it.
@@ -20,61 +21,72 @@ const SHOWN: (vk::ImageLayout, vk::AccessFlags2) =
     (vk::ImageLayout::PRESENT_SRC_KHR, vk::AccessFlags2::NONE);
 
 impl Screen {
-    /// What the shot hands to the device; the slot is free.
-    pub(super) fn prepare(&mut self, slot: usize, frame: &Frame, shot: &Shot<'_>) -> Result<()> {
-        let [cols, rows] = frame.plan().size;
-        let samples = cols as usize * rows as usize;
-        if shot.heights.is_some_and(|h| h.len() != samples) {
-            let found = format!("{} heights", shot.heights.map_or(0, <[f32]>::len));
-            return Err(Error::setting("heights", found, format!("{samples}, one a sample")));
-        }
+    /// What the parts hand to the device; the slot is free.
+    pub(super) fn prepare(
+        &mut self,
+        slot: usize,
+        parts: &[Part<'_>],
+        shot: &Shot<'_>,
+    ) -> Result<()> {
         let chain = self.chain.as_ref().expect("acquired from");
-        let (size, swaps) = match shot.sight {
-            Sight::Map(map) => (map.size, map.swaps),
-            Sight::Camera(view) => (view.size, chain.swaps()),
-        };
-        if size != chain.size || swaps != chain.swaps() {
-            return Err(Error::setting("sight: size", "another", "the window's pictures'"));
-        }
-        let pixels = u64::from(chain.size[0]) * u64::from(chain.size[1]);
+        let (size, swaps, is_readable) = (chain.size, chain.swaps(), chain.is_readable);
+        parts.iter().try_for_each(|part| check(part, size, swaps))?;
         let gpu = &mut self.gpu;
-        let is_readable = chain.is_readable;
         let of_slot = &mut self.slots[slot];
-        if let Some(heights) = shot.heights {
-            let bytes: &[u8] = bytemuck::cast_slice(heights);
-            let named = ("heights of a frame", bytes.len() as u64);
-            put(fitting(gpu, &mut of_slot.heights, named, MemoryUse::Upload)?, bytes)?;
+        of_slot.heights.resize_with(of_slot.heights.len().max(parts.len()), || None);
+        for (part, place) in parts.iter().zip(&mut of_slot.heights) {
+            let Some((heights, at)) = part.heights else { continue };
+            let cols = part.frame.plan().size[0] as usize;
+            let bytes = 4 * u64::from(at.cols) * u64::from(at.rows);
+            let named = ("heights of a frame", bytes);
+            let mut to = mapped(fitting(gpu, place, named, MemoryUse::Upload)?)?;
+            for row in at.row..at.row + at.rows {
+                let from = row as usize * cols + at.col as usize;
+                let row: &[u8] = bytemuck::cast_slice(&heights[from..from + at.cols as usize]);
+                let (here, after) = to.split_at_mut(row.len());
+                here.copy_from_slice(row);
+                to = after;
+            }
         }
-        if let Some(panel) = &shot.panel {
-            let texels: Vec<[u8; 4]> = panel.pixels.iter().map(|p| ordered(*p, swaps)).collect();
-            let bytes = texels.as_flattened();
-            let named = ("text of a frame", bytes.len() as u64);
-            put(fitting(gpu, &mut of_slot.panel, named, MemoryUse::Upload)?, bytes)?;
+        let bytes: u64 = shot.panels.iter().map(|panel| 4 * panel.pixels.len() as u64).sum();
+        if bytes > 0 {
+            let named = ("text of a frame", bytes);
+            let to = mapped(fitting(gpu, &mut of_slot.text, named, MemoryUse::Upload)?)?;
+            let pixels = shot.panels.iter().flat_map(|panel| panel.pixels);
+            for (to, pixel) in to.as_chunks_mut::<4>().0.iter_mut().zip(pixels) {
+                *to = ordered(*pixel, swaps);
+            }
         }
         if shot.keeps {
             if !is_readable {
                 let reason = "the window's pictures cannot be copied".into();
                 return Err(Error::Device { doing: "reading a picture back".into(), reason });
             }
-            let named = ("picture of a frame", 4 * pixels);
+            let named = ("picture of a frame", 4 * u64::from(size[0]) * u64::from(size[1]));
             fitting(gpu, &mut of_slot.readback, named, MemoryUse::Readback)?;
         }
-        if self.drawer.as_ref().is_none_or(|d| !d.fits(shot)) {
+        self.prepare_drawers(parts, shot, swaps)
+    }
+
+    fn prepare_drawers(&mut self, parts: &[Part<'_>], shot: &Shot<'_>, swaps: bool) -> Result<()> {
+        let fit = self.drawers.len() == parts.len()
+            && self.drawers.iter().zip(parts).all(|(drawer, part)| drawer.fits(part.sight));
+        if !fit {
             self.wait()?;
-            if let Some(old) = self.drawer.take() {
-                old.end(&mut self.gpu);
+            self.drawers.drain(..).for_each(|old| old.end(&mut self.gpu));
+            for part in parts {
+                let of_all = (shot.tone, shot.voids, swaps);
+                self.drawers.push(Drawer::new(&mut self.gpu, part.sight, of_all)?);
             }
-            self.drawer = Some(Drawer::new(&mut self.gpu, shot, swaps)?);
         }
-        let drawer = self.drawer.as_mut().expect("made above");
-        drawer.set_tone(&mut self.gpu, shot.tone)
+        self.drawers.iter_mut().try_for_each(|drawer| drawer.set_tone(&mut self.gpu, shot.tone))
     }
 
     pub(super) fn record(
         &mut self,
         slot: usize,
         image: usize,
-        frame: &mut Frame,
+        parts: &mut [Part<'_>],
         shot: &Shot<'_>,
     ) -> Result<()> {
         let device = self.gpu.host().device.clone();
@@ -88,28 +100,37 @@ impl Screen {
                 .and_then(|()| device.begin_command_buffer(commands, &begin))
         }
         .map_err(failed("recording a frame"))?;
-        if shot.heights.is_some() {
-            self.copy_heights(slot, frame);
+        for (n, part) in parts.iter_mut().enumerate() {
+            if let (Some((_, at)), Some(from)) = (part.heights, &self.slots[slot].heights[n]) {
+                self.copy_heights(commands, (from.buffer, at), part.frame);
+            }
+            let (inputs, outputs) = (part.frame.inputs(), part.frame.outputs());
+            let renderer = part.frame.renderer();
+            match part.work {
+                Work::Passes([]) => {}
+                Work::Passes(passes) => {
+                    renderer.record_passes(commands, slot, &inputs, &outputs, passes)?;
+                }
+                Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
+            }
+            let seen = (&*part.frame, part.sight, shot.tone.exposure);
+            self.drawers[n].record(&self.gpu, commands, slot, seen)?;
         }
-        if !shot.passes.is_empty() {
-            let (inputs, outputs) = (frame.inputs(), frame.outputs());
-            frame.renderer().record_passes(commands, slot, &inputs, &outputs, shot.passes)?;
-        }
-        let drawer = self.drawer.as_mut().expect("prepared");
-        drawer.record(&self.gpu, commands, slot, (shot, frame))?;
-        self.fill(slot, image, shot);
+        self.fill(slot, image, parts, shot);
         // SAFETY: recording was begun above.
         unsafe { device.end_command_buffer(commands) }.map_err(failed("recording a frame"))
     }
 
-    /// From the slot's buffer into the frame's first input, which is in GENERAL: what used it before and will
+    /// From a buffer of a rectangle's into the frame's first input, which is in GENERAL: what used it before and will
     /// next is the renderer's to wait for, which hands it over for any use.
-    fn copy_heights(&self, slot: usize, frame: &Frame) {
-        let (Some(from), commands) = (&self.slots[slot].heights, self.slots[slot].commands) else {
-            return;
-        };
-        let [width, height] = frame.plan().size;
-        let region = [copied([width, height])];
+    fn copy_heights(
+        &self,
+        commands: vk::CommandBuffer,
+        (from, at): (vk::Buffer, Rectangle),
+        frame: &Frame,
+    ) {
+        let offset = vk::Offset3D { x: at.col as i32, y: at.row as i32, z: 0 };
+        let region = [copied([at.cols, at.rows]).image_offset(offset)];
         let general = vk::ImageLayout::GENERAL;
         let to = frame.inputs()[0].image;
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
@@ -121,39 +142,55 @@ impl Screen {
             .dst_access_mask(any)];
         let wait = vk::DependencyInfo::default().memory_barriers(&barrier);
         let device = &self.gpu.host().device;
-        // SAFETY: `commands` is being recorded; the buffer holds a height a texel.
+        // SAFETY: `commands` is being recorded; the buffer holds a height a texel of the rectangle, which is checked to
+        // be within the image.
         unsafe {
             device.cmd_pipeline_barrier2(commands, &wait);
-            device.cmd_copy_buffer_to_image(commands, from.buffer, to, general, &region);
+            device.cmd_copy_buffer_to_image(commands, from, to, general, &region);
         }
     }
 
-    /// Copies picture and text into the window's image, and back to the host where they are kept.
-    fn fill(&self, slot: usize, image: usize, shot: &Shot<'_>) {
+    /// Copies pictures and text into the window's image, and back to the host where they are kept.
+    fn fill(&self, slot: usize, image: usize, parts: &[Part<'_>], shot: &Shot<'_>) {
         let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
         let chain = self.chain.as_ref().expect("acquired from");
         let (to, commands) = (chain.images[image], slot.commands);
         let change = |from: (vk::ImageLayout, vk::AccessFlags2), to_state| {
             self.change(commands, to, from, to_state);
         };
-        let whole_image = copied(chain.size);
-        let (size, part) = (whole_image.image_extent, whole_image.image_subresource);
-        let copy =
-            [vk::ImageCopy::default().src_subresource(part).dst_subresource(part).extent(size)];
-        let picture = self.drawer.as_ref().expect("prepared").picture();
         change(NEW, FILLED);
-        // SAFETY: `commands` is being recorded; texels of both images are four bytes; both are of the size.
-        unsafe {
-            device.cmd_copy_image(commands, picture, COPIED.layout, to, FILLED.0, &copy);
-        }
-        if let (Some(panel), Some(from)) = (&shot.panel, &slot.panel) {
+        if !matches!(parts, [one] if one.size() == chain.size) {
+            let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
+            // SAFETY: `commands` is being recorded; the image is in this layout.
+            unsafe { device.cmd_clear_color_image(commands, to, FILLED.0, &black, &[whole(1)]) };
             change(FILLED, FILLED);
-            let region = [text(panel, chain.size)];
-            // SAFETY: the buffer holds the panel's pixels, the region is cut to the image.
-            unsafe {
-                device.cmd_copy_buffer_to_image(commands, from.buffer, to, FILLED.0, &region);
-            }
         }
+        for (part, drawer) in parts.iter().zip(&self.drawers) {
+            let region = copied(part.size());
+            let (size, layers) = (region.image_extent, region.image_subresource);
+            let copy = [vk::ImageCopy::default()
+                .src_subresource(layers)
+                .dst_subresource(layers)
+                .dst_offset(vk::Offset3D { x: part.left as i32, y: 0, z: 0 })
+                .extent(size)];
+            let (from, layout) = (drawer.picture(), COPIED.layout);
+            // SAFETY: `commands` is being recorded; texels of both images are four bytes; the part was checked to be
+            // within the image, and is as large as its picture.
+            unsafe { device.cmd_copy_image(commands, from, layout, to, FILLED.0, &copy) };
+        }
+        let mut offset = 0;
+        for panel in shot.panels {
+            if let (Some(region), Some(from)) = (text(panel, chain.size, offset), &slot.text) {
+                change(FILLED, FILLED);
+                // SAFETY: the buffer holds the panel's pixels from the offset on, the region is cut to the image.
+                unsafe {
+                    let (from, region) = (from.buffer, [region]);
+                    device.cmd_copy_buffer_to_image(commands, from, to, FILLED.0, &region);
+                }
+            }
+            offset += 4 * panel.pixels.len() as u64;
+        }
+        let whole_image = copied(chain.size);
         let mut last = FILLED;
         if let (true, Some(back)) = (shot.keeps, &slot.readback) {
             change(FILLED, READ);
@@ -218,10 +255,50 @@ fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
     if swaps { [b, g, r, a] } else { [r, g, b, a] }
 }
 
-fn put(backed: &mut super::Backed, bytes: &[u8]) -> Result<()> {
+fn mapped(backed: &mut super::Backed) -> Result<&mut [u8]> {
     let mapped = backed.mapped();
-    let mapped = mapped.ok_or_else(|| failed("uploading")(vk::Result::ERROR_MEMORY_MAP_FAILED))?;
-    mapped[..bytes.len()].copy_from_slice(bytes);
+    mapped.ok_or_else(|| failed("uploading")(vk::Result::ERROR_MEMORY_MAP_FAILED))
+}
+
+impl Part<'_> {
+    /// Columns and rows that it takes of the picture.
+    fn size(&self) -> [u32; 2] {
+        match self.sight {
+            Sight::Map(map) => map.size,
+            Sight::Camera(view) => view.size,
+        }
+    }
+}
+
+/// Whether a part is within a picture and its heights within its field.
+fn check(part: &Part<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
+    let plan = part.frame.plan();
+    let field @ [cols, rows] = plan.size;
+    if let Some((heights, at)) = part.heights {
+        let within = |first: u32, count: u32, all: u32| {
+            first.checked_add(count).is_some_and(|end| end <= all) && count > 0
+        };
+        let samples = cols as usize * rows as usize;
+        if heights.len() != samples
+            || !(within(at.col, at.cols, cols) && within(at.row, at.rows, rows))
+        {
+            let found = format!("{} heights, new in {at:?}", heights.len());
+            let expected = format!("{samples}, new within {} × {}", field[0], field[1]);
+            return Err(Error::setting("heights", found, expected));
+        }
+    }
+    let [width, height] = part.size();
+    let is_ordered = match part.sight {
+        Sight::Map(map) => map.swaps == swaps,
+        Sight::Camera(_) => true,
+    };
+    if part.left.checked_add(width).is_none_or(|end| end > size[0]) || height > size[1] {
+        let found = format!("{width} × {height} from column {}", part.left);
+        return Err(Error::setting("sight: size", found, format!("within {size:?}")));
+    }
+    if !is_ordered {
+        return Err(Error::setting("sight: swaps", "another order", "that of the window"));
+    }
     Ok(())
 }
 
@@ -237,9 +314,14 @@ fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
         .image_extent(vk::Extent3D { width, height, depth: 1 })
 }
 
-/// A panel's part of a picture.
-fn text(panel: &Panel<'_>, size: [u32; 2]) -> vk::BufferImageCopy {
+/// A panel's part of a picture, from an offset of the buffer on; none where nothing of it is seen.
+fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImageCopy> {
     let [width, height] = panel.size;
-    let region = copied([width.min(size[0]), height.min(size[1])]);
-    region.buffer_row_length(width).buffer_image_height(height)
+    let left = |i: usize| size[i].saturating_sub(panel.at[i]).min(panel.size[i]);
+    let seen = [left(0), left(1)];
+    let [x, y] = panel.at.map(|at| at as i32);
+    let region = copied(seen).buffer_row_length(width).buffer_image_height(height);
+    let is_whole = panel.pixels.len() == width as usize * height as usize;
+    let region = region.image_offset(vk::Offset3D { x, y, z: 0 }).buffer_offset(offset);
+    (is_whole && !seen.contains(&0)).then_some(region)
 }

@@ -26,6 +26,12 @@ impl Asked {
         self.0.push((id.to_owned(), words));
     }
 
+    /// A flag's first words, where it was given.
+    pub fn first(&self, id: &str) -> Option<&str> {
+        let (_, words) = self.0.iter().find(|(known, _)| known == id)?;
+        words.first().map(String::as_str)
+    }
+
     /// Nothing for a flag.
     pub fn clear(&mut self, id: &str) {
         self.0.retain(|(known, _)| known != id);

@@ -1,5 +1,6 @@
 //! The window's events, and its frames.
 
+mod compare;
 mod drawing;
 mod saving;
 mod steps;
@@ -8,8 +9,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
-use ridgelight::gpu::{Frame, HeadlessOptions, Screen, Timing};
-use ridgelight::plan::Limits;
+use ridgelight::gpu::{Frame, HeadlessOptions, Screen};
+use ridgelight::plan::{Limits, Rectangle};
 use ridgelight::{Error, Result};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
@@ -19,8 +20,9 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
 use super::script::{Button, Step};
-use super::state::State;
+use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
+use compare::Compare;
 
 pub struct App<'a> {
     args: &'a ViewArgs,
@@ -33,6 +35,8 @@ pub struct App<'a> {
     keys: ModifiersState,
     cursor: [f64; 2],
     held: Option<Button>,
+    /// Whether nobody can see the window, as far as its system tells.
+    is_hidden: bool,
     /// Frames that are still to be drawn; the figures of one are known two frames later.
     due: u32,
     frames: u64,
@@ -46,7 +50,12 @@ struct Shown {
     lit: Option<Frame>,
     /// Whether the light has to be found anew.
     is_stale: bool,
-    times: Vec<Timing>,
+    /// Light that could be drawn.
+    good: Option<Light>,
+    /// What is shown beside, where anything is.
+    compare: Option<Compare>,
+    figures: Figures,
+    last_edit: Option<Rectangle>,
     limits: Limits,
     screen: Screen,
     window: Arc<Window>,
@@ -65,6 +74,7 @@ impl<'a> App<'a> {
             keys: ModifiersState::empty(),
             cursor: [0.0; 2],
             held: None,
+            is_hidden: false,
             due: 0,
             frames: 0,
             spent: Vec::new(),
@@ -98,8 +108,18 @@ impl<'a> App<'a> {
         if let Some(budget) = self.args.global.memory_budget {
             limits.memory_budget = budget;
         }
-        let (size, times) = (self.args.size, Vec::new());
-        self.shown = Some(Shown { lit: None, is_stale: true, times, limits, screen, window, size });
+        self.shown = Some(Shown {
+            lit: None,
+            is_stale: true,
+            good: None,
+            compare: None,
+            figures: Figures::default(),
+            last_edit: None,
+            limits,
+            screen,
+            window,
+            size: self.args.size,
+        });
         self.due = 3;
         Ok(())
     }
@@ -107,7 +127,8 @@ impl<'a> App<'a> {
     /// Frees what is on the device; tells what validation said.
     fn close(&mut self) {
         let Some(mut shown) = self.shown.take() else { return };
-        let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit));
+        let beside = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
+        let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit)).and(beside);
         let said = shown.screen.gpu().take_messages();
         if let (Err(error), None) = (freed, &self.error) {
             self.error = Some(error);
@@ -118,17 +139,32 @@ impl<'a> App<'a> {
         }
     }
 
+    /// Whether there is something to be drawn that nobody has seen.
+    fn is_due(&self) -> bool {
+        let gathers = |compare: &Compare| compare.is_busy(&self.state);
+        let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
+        self.due > 0 || !self.is_hidden && (self.state.is_moving() || compare.is_some_and(gathers))
+    }
+
     fn failed(&mut self, events: &ActiveEventLoop, error: Error) {
         self.error.get_or_insert(error);
         events.exit();
     }
 
+    /// The window's.
     fn size(&self) -> [u32; 2] {
         self.shown.as_ref().map_or(self.args.size, |shown| shown.size)
     }
 
+    /// That of one of the pictures side by side, or of the only one; and a place of the window in the one that it is in.
+    fn within(&self, [x, y]: [f64; 2]) -> ([u32; 2], [f64; 2]) {
+        let (lefts, size) = drawing::places(self.size(), self.state.is_split);
+        let left = lefts.iter().map(|l| f64::from(*l)).rev().find(|l| *l <= x).unwrap_or(0.0);
+        (size, [x - left, y])
+    }
+
     fn key(&mut self, name: &str) -> Result<bool> {
-        let size = self.size();
+        let (size, _) = self.within(self.cursor);
         let before = self.state.light();
         let wish = self.state.key(name, size);
         self.grant(wish, before)
@@ -142,6 +178,10 @@ fn name(key: &Key, keys: ModifiersState) -> Option<String> {
         Key::Named(NamedKey::ArrowUp) => "up",
         Key::Named(NamedKey::ArrowDown) => "down",
         Key::Named(NamedKey::Home) => "home",
+        Key::Named(NamedKey::Tab) => "tab",
+        Key::Named(NamedKey::Delete) => "delete",
+        Key::Named(NamedKey::PageUp) => "pageup",
+        Key::Named(NamedKey::PageDown) => "pagedown",
         Key::Named(NamedKey::Escape) => "escape",
         Key::Character(text) => return Some(text.to_lowercase()),
         _ => return None,
@@ -172,7 +212,7 @@ impl ApplicationHandler for App<'_> {
             Ok(false) => return events.exit(),
             Err(error) => return self.failed(events, error),
         }
-        let is_busy = self.due > 0 || self.state.is_moving() || self.steps.is_some();
+        let is_busy = self.is_due() || self.steps.is_some();
         events.set_control_flow(if is_busy { ControlFlow::Poll } else { ControlFlow::Wait });
     }
 
@@ -188,8 +228,11 @@ impl App<'_> {
             WindowEvent::CloseRequested => return Ok(false),
             WindowEvent::Resized(_)
             | WindowEvent::RedrawRequested
-            | WindowEvent::Occluded(false)
             | WindowEvent::ScaleFactorChanged { .. } => self.due = self.due.max(1),
+            WindowEvent::Occluded(is_hidden) => {
+                self.is_hidden = is_hidden;
+                self.due = self.due.max(1);
+            }
             WindowEvent::ModifiersChanged(keys) => self.keys = keys.state(),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 if let Some(name) = name(&event.logical_key, self.keys) {
@@ -205,13 +248,20 @@ impl App<'_> {
                     _ => return Ok(true),
                 };
                 self.held = held.filter(|_| state == ElementState::Pressed);
+                return match self.held {
+                    Some(button) => self.press(button),
+                    None => self.release(),
+                };
             }
             WindowEvent::CursorMoved { position, .. } => {
                 let way = [position.x - self.cursor[0], position.y - self.cursor[1]];
+                let dragged = self.held.map(|button| self.drag(button, way));
                 self.cursor = [position.x, position.y];
-                if let Some(button) = self.held {
-                    return self.drag(button, way);
+                if let Some(dragged) = dragged {
+                    return dragged;
                 }
+                let wish = self.state.point(self.within(self.cursor).1);
+                return self.do_plainly(wish);
             }
             WindowEvent::MouseWheel { delta, .. } => {
                 let notches = match delta {
@@ -226,17 +276,37 @@ impl App<'_> {
         Ok(true)
     }
 
-    fn drag(&mut self, button: Button, way: [f64; 2]) -> Result<bool> {
-        let size = self.size();
+    fn press(&mut self, button: Button) -> Result<bool> {
+        let (size, at) = self.within(self.cursor);
         let before = self.state.light();
-        let wish = self.state.drag(button, way, size);
+        let wish = self.state.press(button, at, size);
+        self.grant(wish, before)
+    }
+
+    fn release(&mut self) -> Result<bool> {
+        let wish = self.state.release();
+        self.do_plainly(wish)
+    }
+
+    /// From the cursor on.
+    fn drag(&mut self, button: Button, way: [f64; 2]) -> Result<bool> {
+        let (size, from) = self.within(self.cursor);
+        let before = self.state.light();
+        let wish = self.state.drag(button, from, way, size);
         self.grant(wish, before)
     }
 
     fn wheel(&mut self, notches: f64, at: [f64; 2]) -> Result<bool> {
-        let size = self.size();
-        let before = self.state.light();
+        let (size, at) = self.within(at);
         let wish = self.state.wheel(notches, at, size);
-        self.grant(wish, before)
+        self.do_plainly(wish)
+    }
+
+    /// What changes no light.
+    fn do_plainly(&mut self, wish: Wish) -> Result<bool> {
+        if wish != Wish::Nothing {
+            self.due = self.due.max(1);
+        }
+        Ok(true)
     }
 }

@@ -9,14 +9,35 @@ const MARGIN: usize = 6;
 const LETTER: usize = 8;
 const LINE: usize = 11;
 
-/// Pixels of some lines.
+/// Around the chosen mark, and around others.
+const RIM: [[u8; 4]; 2] = [[0xff; 4], [0, 0, 0, 0xff]];
+
+/// Pixels of some lines, or of a mark.
+#[derive(Clone)]
 pub struct Drawn {
     pub size: [u32; 2],
     pub pixels: Vec<[u8; 4]>,
 }
 
-/// `scale` pixels a side of a dot.
+/// Letters that a line of a width, pixels, has room for.
+pub fn letters(width: u32, scale: usize) -> usize {
+    (width as usize / scale).saturating_sub(2 * MARGIN) / LETTER
+}
+
+/// A square with a rim, `half` pixels to each side of its middle without it.
+pub fn square(half: u32, colour: [u8; 4], is_chosen: bool) -> Drawn {
+    let side = 2 * half + 3;
+    let rim = RIM[usize::from(!is_chosen)];
+    let is_rim = |i: u32| [i % side, i / side].iter().any(|v| *v == 0 || *v == side - 1);
+    let pixels = (0..side * side).map(|i| if is_rim(i) { rim } else { colour }).collect();
+    Drawn { size: [side, side], pixels }
+}
+
+/// `scale` pixels a side of a dot; nothing of no lines.
 pub fn draw(lines: &[String], scale: usize) -> Drawn {
+    if lines.is_empty() {
+        return Drawn { size: [0, 0], pixels: Vec::new() };
+    }
     let longest = lines.iter().map(String::len).max().unwrap_or(0);
     let dots = [2 * MARGIN + longest * LETTER, 2 * MARGIN + lines.len() * LINE];
     let [width, height] = dots.map(|d| d * scale);

@@ -24,8 +24,12 @@ pub enum Step {
     Scene(PathBuf),
     /// The window's pixels.
     Screenshot(PathBuf),
-    /// Frames so far, and milliseconds of each since the last report.
-    Report,
+    /// The text over them.
+    Text(PathBuf),
+    /// Frames are drawn until the reference beside has so many paths a sample.
+    Paths(u32),
+    /// Frames so far, and milliseconds of each since the last report; after some words.
+    Report(String),
     /// Input is awaited for so many seconds, as without a script.
     Wait(f64),
     /// A size that has been asked for, and until when it may come.
@@ -37,7 +41,7 @@ pub enum Step {
 /// A mouse button's work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// Turns the view.
+    /// What the tool at hand does: turns the view.
     Left,
     /// Moves the sun.
     Right,
@@ -64,8 +68,8 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 place: format!("line {number}"),
                 found: line.to_owned(),
                 expected:
-                    "key, drag, wheel, frames, size, lose, picture, scene, screenshot, report or \
-                       wait, and what belongs to it"
+                    "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, paths, \
+                       report or wait, and what belongs to it"
                         .into(),
             }
         })?);
@@ -95,7 +99,9 @@ fn step(line: &str) -> Option<Step> {
         ["picture", file] => Step::Picture(file.into()),
         ["scene", file] => Step::Scene(file.into()),
         ["screenshot", file] => Step::Screenshot(file.into()),
-        ["report"] => Step::Report,
+        ["text", file] => Step::Text(file.into()),
+        ["paths", count] => Step::Paths(count.parse().ok()?),
+        ["report", ..] => Step::Report(words[1..].join(" ")),
         ["wait", seconds] => Step::Wait(seconds.parse().ok()?),
         _ => return None,
     })

@@ -1,22 +1,27 @@
 //! What is shown and by what it is lit, and what keys and drags change of it.
 
 mod figures;
+mod lights;
+mod painting;
+mod settings;
+mod sight;
 
-use ridgelight::Result;
 use ridgelight::files::Tone;
-use ridgelight::plan::{self, Limits, Map, Picture, Plan, View, ViewOptions};
-use ridgelight::scene::{Camera, Lens, Lights, Method, Quality, Scene, Sun};
+use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
+use ridgelight::scene::{Camera, Lights, Quality, Scene};
+use ridgelight::{Error, Result};
 
+use super::brush::{Brush, Work};
+use super::moving::{Kind, Moving};
 use super::script::Button;
-use super::waves::Waves;
-use crate::args::{ViewArgs, sun};
+use super::strokes::Strokes;
+use crate::args::ViewArgs;
 use crate::scene_file::Asked;
+use settings::{Refused, Settings};
+use sight::{FOV_DEG, Sight};
 
-/// Angle between the lower and the upper edge of what a camera sees, degrees.
-const FOV_DEG: f64 = 40.0;
-
-/// Cells of the mesh along a side, at most: larger fields are drawn through fewer samples.
-const MOST_CELLS: u32 = 1024;
+pub use figures::Figures;
+pub use settings::said;
 
 /// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +31,10 @@ pub enum Wish {
     Show,
     /// Other light or another field.
     Light,
+    /// Other heights in a rectangle: [`State::take_edited`].
+    Heights,
+    /// How far from the reference the light is.
+    Error,
     Picture,
     Scene,
     End,
@@ -38,46 +47,67 @@ pub type Light = (Quality, Lights, Asked);
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Text {
     Keys,
+    Settings,
     Figures,
     Nothing,
 }
 
-/// What of the field is seen.
-#[derive(Clone, Copy)]
-struct Place {
-    /// Column and row in the middle of the picture.
-    middle: [f64; 2],
-    samples_per_pixel: f64,
+/// What the left button does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tool {
+    Look,
+    Brush(Work),
+    Lights,
 }
 
 pub struct State {
     pub scene: Scene,
     pub quality: Quality,
     asked: Asked,
-    waves: Option<Waves>,
+    moving: Option<Moving>,
     exposure: f32,
-    /// None: all of the field.
-    place: Option<Place>,
-    /// None: from straight above.
-    camera: Option<Camera>,
+    sight: Sight,
     text: Text,
+    settings: Settings,
+    tool: Tool,
+    brush: Brush,
+    strokes: Strokes,
+    /// Where heights have changed since they were last taken.
+    edited: Option<Rectangle>,
+    /// Where the stroke that is being drawn has come to, absolute.
+    stroke_m: [f64; 2],
+    /// The ball of light that is chosen.
+    ball: Option<usize>,
+    cursor: [f64; 2],
+    /// Whether the light is shown between that without shadows and the reference.
+    pub is_split: bool,
     /// Said until the next key.
     pub message: Option<String>,
 }
 
 impl State {
     pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
-        Self {
+        let mut state = Self {
             scene,
             quality,
             asked: args.asked.clone(),
-            waves: None,
+            moving: None,
             exposure: args.exposure,
-            place: None,
-            camera: None,
+            sight: Sight::default(),
             text: Text::Keys,
+            settings: Settings::new(),
+            tool: Tool::Look,
+            brush: Brush { radius_m: 0.0, strength: 0.1 },
+            strokes: Strokes::default(),
+            edited: None,
+            stroke_m: [0.0; 2],
+            ball: None,
+            cursor: [0.0; 2],
+            is_split: false,
             message: None,
-        }
+        };
+        state.brush.radius_m = state.side_m() / 16.0;
+        state
     }
 
     /// What a key or a drag may change of the light.
@@ -86,9 +116,11 @@ impl State {
     }
 
     /// Goes back to light that could be drawn, and says why.
-    pub fn go_back(&mut self, light: Light, why: &ridgelight::Error) {
+    pub fn go_back(&mut self, light: Light, why: Error) {
         (self.quality, self.scene.lights, self.asked) = light;
-        self.message = Some(why.to_string());
+        if let Err(Refused(why)) = said::<()>(Err(why)) {
+            self.message = Some(why);
+        }
     }
 
     pub fn tone(&self) -> Tone {
@@ -96,21 +128,48 @@ impl State {
     }
 
     pub fn is_moving(&self) -> bool {
-        self.waves.is_some()
+        self.moving.is_some()
     }
 
-    /// What was given and what has been changed since, for a scene file; of a picture of this size.
-    pub fn asked(&self, [width, height]: [u32; 2], limits: &Limits) -> Asked {
+    /// Whether heights are other than they were read.
+    pub fn has_other_heights(&self) -> bool {
+        self.is_moving() || self.strokes.have_changed()
+    }
+
+    fn say(&mut self, message: &str) -> Wish {
+        self.message = Some(message.to_owned());
+        Wish::Show
+    }
+
+    /// What was given and what has been changed since, for a scene file; of a picture of this size. `heights` is the file
+    /// of other heights.
+    pub fn asked(
+        &self,
+        [width, height]: [u32; 2],
+        limits: &Limits,
+        heights: Option<&str>,
+    ) -> Asked {
         let mut asked = self.asked.clone();
+        if let Some(heights) = heights {
+            let field = &self.scene.field;
+            let [x, y] = field.cell_m();
+            asked.set("path", vec![heights.to_owned()]);
+            asked.set("cell", vec![format!("{x},{y}")]);
+            asked.clear("z_scale");
+            asked.clear("nodata");
+            if field.voids().is_some() {
+                asked.set("nodata", vec!["nan".to_owned()]);
+            }
+        }
         // The window's, where there is no camera.
         asked.clear("size");
-        let Some(camera) = &self.camera else { return asked };
+        let Some(camera) = &self.sight.camera else { return asked };
         let Camera { target_m: [x, y, z], azimuth_rad, elevation_rad, distance_m, .. } = camera;
         let compass = hundredths(90.0 - azimuth_rad.to_degrees());
         let elevation = hundredths(elevation_rad.to_degrees());
         asked.set("camera", vec![format!("{compass},{elevation},{distance_m}")]);
         asked.set("look_at", vec![format!("{x},{y},{z}")]);
-        let options = self.options([width, height], limits);
+        let options = Sight::options(&self.scene.field, [width, height], limits);
         asked.set("fov", vec![FOV_DEG.to_string()]);
         asked.set("size", vec![format!("{width}x{height}")]);
         asked.set("samples", vec![options.samples.to_string()]);
@@ -118,169 +177,44 @@ impl State {
         asked
     }
 
-    /// As `render` would, while nothing moves.
+    /// As `render` would, while nothing moves and no brush is at hand, which needs what edits go on from.
     pub fn plan(&self, limits: &Limits) -> Result<Plan> {
-        let wanted = Picture { still: self.waves.is_none(), ..Picture::default() };
+        let has_brush = matches!(self.tool, Tool::Brush(_));
+        let wanted = Picture { still: !self.is_moving() && !has_brush, ..Picture::default() };
+        let plan = |wanted| plan::picture(&self.scene, &self.quality, limits, wanted);
+        if has_brush && !self.is_moving() {
+            let kept = plan(Picture { keeps_horizons: true, ..wanted });
+            if let Ok(kept) = kept.map(|kept| (!kept.edit_passes.is_empty()).then_some(kept))
+                && let Some(kept) = kept
+            {
+                return Ok(kept);
+            }
+        }
+        plan(wanted)
+    }
+
+    /// The same light without shadows and bounces.
+    pub fn plan_off(&self, limits: &Limits) -> Result<Plan> {
+        let wanted = Picture { unshadowed: true, ..Picture::default() };
         plan::picture(&self.scene, &self.quality, limits, wanted)
     }
 
     /// The field of the next frame, where it moves.
     pub fn step(&mut self) -> Result<()> {
-        if let Some(waves) = &mut self.waves {
-            self.scene.field = waves.next()?;
+        if let Some(moving) = &mut self.moving {
+            self.scene.field = moving.next()?;
         }
         Ok(())
     }
 
-    /// What is seen in a picture of a size.
+    /// What is seen from above in a picture of a size.
     pub fn map(&self, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
-        let Place { middle, samples_per_pixel } = self.place(size);
-        let corner = std::array::from_fn(|i| {
-            // Whole pixels, so that samples of one side look alike.
-            let pixels = middle[i] / samples_per_pixel - f64::from(size[i]) / 2.0;
-            (pixels.round() * samples_per_pixel) as f32
-        });
-        Map {
-            field: [self.scene.field.cols() as u32, self.scene.field.rows() as u32],
-            has_colour,
-            has_voids: self.scene.field.voids().is_some(),
-            size,
-            corner,
-            samples_per_pixel: samples_per_pixel as f32,
-            swaps,
-        }
+        self.sight.map(&self.scene.field, size, swaps, has_colour)
     }
 
-    fn place(&self, size: [u32; 2]) -> Place {
-        self.place.unwrap_or_else(|| {
-            let field = [self.scene.field.cols(), self.scene.field.rows()].map(|n| n as f64);
-            let needed = (field[0] / f64::from(size[0])).max(field[1] / f64::from(size[1]));
-            // Whole pixels a sample where there are as many.
-            let samples_per_pixel =
-                if needed <= 1.0 { 1.0 / (1.0 / needed).floor() } else { needed };
-            Place { middle: field.map(|n| n / 2.0), samples_per_pixel }
-        })
-    }
-
-    fn shift(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
-        let mut place = self.place(size);
-        let field = [self.scene.field.cols(), self.scene.field.rows()];
-        for i in 0..2 {
-            let moved = place.middle[i] - pixels[i] * place.samples_per_pixel;
-            place.middle[i] = moved.clamp(0.0, field[i] as f64);
-        }
-        self.place = Some(place);
-        Wish::Show
-    }
-
-    /// Nearer by a factor; what is at a pixel stays there.
-    fn zoom(&mut self, size: [u32; 2], factor: f64, at: [f64; 2]) -> Wish {
-        let mut place = self.place(size);
-        let finer = (place.samples_per_pixel / factor).clamp(1.0 / 64.0, 64.0);
-        for i in 0..2 {
-            let off = at[i] - f64::from(size[i]) / 2.0;
-            place.middle[i] += off * (place.samples_per_pixel - finer);
-        }
-        place.samples_per_pixel = finer;
-        self.place = Some(place);
-        Wish::Show
-    }
-
-    /// Turns the first sun, degrees; makes one where there is none.
-    fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
-        let lights = &mut self.scene.lights;
-        let words = match lights.suns.first() {
-            Some(sun) => {
-                let (azimuth, elevation) = compass(sun);
-                let azimuth = hundredths((azimuth + clockwise).rem_euclid(360.0)) % 360.0;
-                sun_words(sun, azimuth, hundredths((elevation + up).clamp(0.0, 90.0)))
-            }
-            None => "315,30".to_owned(),
-        };
-        let Ok(sun) = sun(&words) else { return Wish::Nothing };
-        let mut all: Vec<String> = vec![words];
-        all.extend(lights.suns.iter().skip(1).map(|s| {
-            let (azimuth, elevation) = compass(s);
-            sun_words(s, azimuth, elevation)
-        }));
-        match lights.suns.first_mut() {
-            Some(first) => *first = sun,
-            None => lights.suns.push(sun),
-        }
-        // The default of a scene without lights goes with the first light.
-        if let Some([r, g, b]) = lights.sky {
-            self.asked.set("sky", vec![format!("{r},{g},{b}")]);
-        }
-        self.asked.set("sun", all);
-        Wish::Light
-    }
-
-    /// What a camera sees, where there is one.
+    /// What a camera sees of what a plan draws, where there is one.
     pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
-        let Some(camera) = &self.camera else { return Ok(None) };
-        let options = self.options(size, limits);
-        View::new(&self.scene, lit, camera, &options, limits).map(Some)
-    }
-
-    fn options(&self, size: [u32; 2], limits: &Limits) -> ViewOptions {
-        let longest = self.scene.field.rows().max(self.scene.field.cols()) as u32;
-        ViewOptions {
-            size,
-            // Processors pay for each.
-            samples: if limits.is_cpu { 1 } else { 4 },
-            mesh_step: longest.div_ceil(MOST_CELLS).min(1024),
-            ..ViewOptions::default()
-        }
-    }
-
-    /// From the south, all of the field in the picture.
-    fn begin_camera(&mut self, size: [u32; 2]) -> Wish {
-        let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
-        let lens = Lens::Perspective { fov_rad: FOV_DEG.to_radians() };
-        let angles = [-90_f64, 45.0].map(f64::to_radians);
-        if self.scene.field.rows().min(self.scene.field.cols()) < 2 {
-            self.message = Some("a camera needs two rows and two columns".into());
-            return Wish::Show;
-        }
-        self.camera = Some(Camera::around(&self.scene.field, None, angles, lens, aspect));
-        Wish::Show
-    }
-
-    /// Moves what is seen by pixels.
-    fn pan(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
-        let Some(camera) = &mut self.camera else { return self.shift(size, pixels) };
-        let [right, up, _] = camera.axes();
-        let half =
-            if let Lens::Perspective { fov_rad } = camera.lens { fov_rad / 2.0 } else { 0.0 };
-        let metres = 2.0 * camera.distance_m * half.tan() / f64::from(size[1].max(1));
-        let moved = right * (-pixels[0] * metres) + up * (pixels[1] * metres);
-        for (place, by) in camera.target_m.iter_mut().zip(moved.to_array()) {
-            *place += by;
-        }
-        Wish::Show
-    }
-
-    /// Turns the camera, degrees; moves the map where there is none.
-    fn turn(&mut self, size: [u32; 2], pixels: [f64; 2]) -> Wish {
-        let Some(camera) = &mut self.camera else { return self.shift(size, pixels) };
-        let per_pixel = 180.0 / f64::from(size[1].max(1));
-        // Hundredths of degrees, which files keep.
-        let azimuth = camera.azimuth_rad.to_degrees() - pixels[0] * per_pixel;
-        camera.azimuth_rad = (90.0 - hundredths(90.0 - azimuth) % 360.0).to_radians();
-        let elevation = camera.elevation_rad.to_degrees() + pixels[1] * per_pixel;
-        camera.elevation_rad = hundredths(elevation).clamp(1.0, 90.0).to_radians();
-        Wish::Show
-    }
-
-    /// Nearer by a factor.
-    fn near(&mut self, size: [u32; 2], factor: f64, at: [f64; 2]) -> Wish {
-        match &mut self.camera {
-            Some(camera) => {
-                camera.distance_m = (camera.distance_m / factor).clamp(1e-6, 1e12);
-                Wish::Show
-            }
-            None => self.zoom(size, factor, at),
-        }
+        self.sight.view(&self.scene, lit, size, limits)
     }
 
     /// A key by its name: a letter, `left`, `shift+left`, `escape`.
@@ -288,52 +222,81 @@ impl State {
         self.message = None;
         let middle = size.map(|n| f64::from(n) / 2.0);
         let step = f64::from(size[0].min(size[1])) / 16.0;
+        let field = &self.scene.field;
         match name {
-            "left" => self.turn(size, [step, 0.0]),
-            "right" => self.turn(size, [-step, 0.0]),
-            "up" => self.turn(size, [0.0, step]),
-            "down" => self.turn(size, [0.0, -step]),
-            "j" => self.pan(size, [step, 0.0]),
-            "l" => self.pan(size, [-step, 0.0]),
-            "i" => self.pan(size, [0.0, step]),
-            "k" => self.pan(size, [0.0, -step]),
-            "v" if self.camera.is_some() => {
-                self.camera = None;
-                Wish::Show
+            "left" => self.sight.turn(field, size, [step, 0.0]),
+            "right" => self.sight.turn(field, size, [-step, 0.0]),
+            "up" => self.sight.turn(field, size, [0.0, step]),
+            "down" => self.sight.turn(field, size, [0.0, -step]),
+            "j" => self.sight.pan(field, size, [step, 0.0]),
+            "l" => self.sight.pan(field, size, [-step, 0.0]),
+            "i" => self.sight.pan(field, size, [0.0, step]),
+            "k" => self.sight.pan(field, size, [0.0, -step]),
+            "+" | "=" => self.sight.near(field, size, 1.25, middle),
+            "-" => self.sight.near(field, size, 0.8, middle),
+            "home" => self.sight.all(field, size),
+            "v" if self.sight.camera.is_some() => self.sight.camera = None,
+            "v" if field.rows().min(field.cols()) < 2 => {
+                return self.say("a camera needs two rows and two columns");
             }
-            "v" => self.begin_camera(size),
-            "home" if self.camera.is_some() => self.begin_camera(size),
+            "v" => self.sight.begin_camera(field, size),
+            "e" => self.exposure = (self.exposure * 1.25).clamp(1e-30, 1e30),
+            "d" => self.exposure = (self.exposure * 0.8).clamp(1e-30, 1e30),
+            "h" => {
+                self.text = match self.text {
+                    Text::Keys | Text::Settings => Text::Figures,
+                    Text::Figures => Text::Nothing,
+                    Text::Nothing => Text::Keys,
+                };
+            }
+            "c" if size[0] < 24 && !self.is_split => {
+                return self.say("the window is too narrow for three pictures");
+            }
+            "c" => self.is_split = !self.is_split,
+            _ => return self.key_of_light(name, size),
+        }
+        Wish::Show
+    }
+
+    /// Keys that change more than what is seen.
+    fn key_of_light(&mut self, name: &str, size: [u32; 2]) -> Wish {
+        match name {
             "shift+left" => self.turn_sun(-5.0, 0.0),
             "shift+right" => self.turn_sun(5.0, 0.0),
             "shift+up" => self.turn_sun(0.0, 2.0),
             "shift+down" => self.turn_sun(0.0, -2.0),
-            "+" | "=" => self.near(size, 1.25, middle),
-            "-" => self.near(size, 0.8, middle),
-            "home" => {
-                self.place = None;
-                Wish::Show
+            "m" => self.turn_setting("method", true),
+            "b" => self.turn_bounces(),
+            "," | "." => {
+                let chosen = self.settings.chosen().to_owned();
+                self.turn_setting(&chosen, name == ".")
             }
-            "e" | "d" => {
-                let factor = if name == "e" { 1.25 } else { 0.8 };
-                self.exposure = (self.exposure * factor).clamp(1e-30, 1e30);
-                Wish::Show
-            }
-            "h" => {
-                self.text = match self.text {
-                    Text::Keys => Text::Figures,
-                    Text::Figures => Text::Nothing,
-                    Text::Nothing => Text::Keys,
-                };
-                Wish::Show
-            }
-            "m" | "," | "." | "b" => self.turn_quality(name),
-            "w" => {
-                match self.waves.take() {
-                    Some(waves) => self.scene.field = waves.end(),
-                    None => self.waves = Some(Waves::over(self.scene.field.clone())),
+            "tab" | "shift+tab" => {
+                // The list first, then another of it.
+                if self.text == Text::Settings {
+                    self.settings.choose(name == "tab");
                 }
-                Wish::Light
+                self.text = Text::Settings;
+                Wish::Show
             }
+            "1" => self.take(Tool::Look),
+            "2" => self.take(Tool::Brush(Work::Raise)),
+            "3" => self.take(Tool::Brush(Work::Lower)),
+            "4" => self.take(Tool::Brush(Work::Erode)),
+            "5" => self.take(Tool::Lights),
+            "[" | "]" | ";" | "'" if self.tool != Tool::Lights => self.change_brush(name),
+            "[" | "]" | ";" | "'" | "t" | "x" | "delete" | "pageup" | "pagedown" => {
+                self.change_ball(name)
+            }
+            "o" => {
+                self.tool = Tool::Lights;
+                self.place_ball(size, size.map(|n| f64::from(n) / 2.0))
+            }
+            "z" => self.undo(true),
+            "y" => self.undo(false),
+            "w" => self.move_by(Kind::Waves),
+            "g" => self.move_by(Kind::Ridge),
+            "r" => Wish::Error,
             "p" => Wish::Picture,
             "s" => Wish::Scene,
             "q" | "escape" => Wish::End,
@@ -341,69 +304,94 @@ impl State {
         }
     }
 
-    fn turn_quality(&mut self, key: &str) -> Wish {
-        let quality = &mut self.quality;
-        match key {
-            "m" => {
-                quality.method = match quality.method {
-                    Method::Auto => Method::Sweep,
-                    Method::Sweep => Method::Pyramid,
-                    Method::Pyramid => Method::Brute,
-                    Method::Brute => Method::Auto,
-                };
-                self.asked.set("method", vec![method(quality).to_owned()]);
-            }
-            "b" => {
-                quality.bounces.count = (quality.bounces.count + 1) % 4;
-                self.asked.set("bounces", vec![quality.bounces.count.to_string()]);
-            }
-            _ => {
-                let asked = quality.azimuths;
-                let other = if key == "." { asked * 2 } else { asked / 2 };
-                quality.azimuths = other.clamp(4, 1024);
-                self.asked.set("azimuths", vec![quality.azimuths.to_string()]);
-            }
+    /// Goes over to another tool; brushes have another plan.
+    fn take(&mut self, tool: Tool) -> Wish {
+        self.strokes.end(&self.scene.field);
+        self.tool = tool;
+        Wish::Light
+    }
+
+    /// Begins or ends what moves.
+    fn move_by(&mut self, kind: Kind) -> Wish {
+        self.strokes.end(&self.scene.field);
+        let before = self.moving.take().map(|moving| {
+            let kind = moving.kind;
+            self.scene.field = moving.end();
+            kind
+        });
+        if before != Some(kind) {
+            self.moving = Some(Moving::over(self.scene.field.clone(), kind));
         }
         Wish::Light
     }
 
-    /// A drag by a button, pixels.
-    pub fn drag(&mut self, button: Button, way: [f64; 2], size: [u32; 2]) -> Wish {
-        match button {
-            Button::Left => self.turn(size, way),
-            Button::Middle => self.pan(size, way),
-            Button::Right => self.turn_sun(way[0] / 2.0, -way[1] / 4.0),
+    fn turn_bounces(&mut self) -> Wish {
+        // None, one, two, three, and none again.
+        if self.quality.bounces.count >= 3 {
+            self.asked.set("bounces", vec!["0".to_owned()]);
+            self.quality.bounces.count = 0;
+            return Wish::Light;
         }
+        self.turn_setting("bounces", true)
+    }
+
+    fn turn_setting(&mut self, id: &str, ahead: bool) -> Wish {
+        match self.settings.turn(id, ahead, &mut self.asked) {
+            Ok(quality) => {
+                self.quality = quality;
+                Wish::Light
+            }
+            Err(Refused(why)) => self.say(&why),
+        }
+    }
+
+    /// A button that goes down at a pixel.
+    pub fn press(&mut self, button: Button, at: [f64; 2], size: [u32; 2]) -> Wish {
+        match (button, self.tool) {
+            (Button::Left, Tool::Brush(work)) => self.begin_stroke(work, at, size),
+            (Button::Left, Tool::Lights) => {
+                self.message = None;
+                self.take_ball(size, at)
+            }
+            _ => Wish::Nothing,
+        }
+    }
+
+    /// A drag by a button from a pixel, pixels.
+    pub fn drag(&mut self, button: Button, from: [f64; 2], way: [f64; 2], size: [u32; 2]) -> Wish {
+        let to = [from[0] + way[0], from[1] + way[1]];
+        self.cursor = to;
+        let field = &self.scene.field;
+        match (button, self.tool) {
+            (Button::Left, Tool::Brush(work)) => return self.draw_stroke(work, to, size),
+            (Button::Left, Tool::Lights) => return self.drag_ball(size, from, to),
+            (Button::Left, Tool::Look) => self.sight.turn(field, size, way),
+            (Button::Middle, _) => self.sight.pan(field, size, way),
+            (Button::Right, _) => return self.turn_sun(way[0] / 2.0, -way[1] / 4.0),
+        }
+        Wish::Show
+    }
+
+    /// The button goes up.
+    pub fn release(&mut self) -> Wish {
+        self.strokes.end(&self.scene.field);
+        Wish::Show
+    }
+
+    /// The mouse without a button, over a picture: brushes show where they are.
+    pub fn point(&mut self, at: [f64; 2]) -> Wish {
+        self.cursor = at;
+        if matches!(self.tool, Tool::Brush(_)) { Wish::Show } else { Wish::Nothing }
     }
 
     /// Notches of the wheel, upwards, at a pixel.
     pub fn wheel(&mut self, notches: f64, at: [f64; 2], size: [u32; 2]) -> Wish {
-        self.near(size, 1.25_f64.powf(notches.clamp(-20.0, 20.0)), at)
+        let factor = 1.25_f64.powf(notches.clamp(-20.0, 20.0));
+        self.sight.near(&self.scene.field, size, factor, at);
+        Wish::Show
     }
-}
-
-fn method(quality: &Quality) -> &'static str {
-    match quality.method {
-        Method::Auto => "auto",
-        Method::Sweep => "sweep",
-        Method::Pyramid => "pyramid",
-        Method::Brute => "brute",
-    }
-}
-
-/// Compass azimuth and elevation, degrees, less the rounding of radians.
-fn compass(sun: &Sun) -> (f64, f64) {
-    let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
-    ((90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad))
 }
 
 fn hundredths(degrees: f64) -> f64 {
     (degrees * 100.0).round() / 100.0
-}
-
-/// As `--sun` takes it.
-fn sun_words(sun: &Sun, azimuth: f64, elevation: f64) -> String {
-    let diameter = (sun.diameter_rad.to_degrees() * 1e9).round() / 1e9;
-    let [r, g, b] = sun.irradiance;
-    format!("{azimuth},{elevation},{diameter},{r},{g},{b}")
 }

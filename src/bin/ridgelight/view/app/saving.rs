@@ -29,7 +29,7 @@ impl App<'_> {
             return self.say(saved, &path);
         }
         let saved = render::check_finite(&pixels, field).and_then(|()| {
-            let metadata = setup::metadata(gpu, field, lit.plan(), &shown.times);
+            let metadata = setup::metadata(gpu, field, lit.plan(), &shown.figures.light);
             let (rows, cols) = (field.rows(), field.cols());
             let picture = render::rgb(&pixels);
             files::write_png(&path, rows, cols, &picture, field.voids(), tone, &metadata)
@@ -37,17 +37,17 @@ impl App<'_> {
         self.say(saved, &path)
     }
 
-    /// What `render --scene` takes. Waves are not in it.
+    /// What `render --scene` takes, and beside it the heights where they are not those that were read.
     pub(super) fn save_scene(&mut self, path: Option<&Path>) -> Result<()> {
         let path = path.map_or_else(|| self.free_name("json"), Path::to_owned);
         let Some(shown) = &self.shown else { return Ok(()) };
-        let scene = self.state.asked(shown.size, &shown.limits).to_json(&Cli::command());
-        let saved = files::write_json(&path, &scene);
-        self.say(saved, &path)?;
-        if let (true, Some(said)) = (self.state.is_moving(), &mut self.state.message) {
-            said.push_str(", without the waves");
-        }
-        Ok(())
+        let heights = self.state.has_other_heights().then(|| path.with_extension("npy"));
+        let name = heights.as_ref().and_then(|h| h.file_name()).map(|n| n.to_string_lossy());
+        let asked = self.state.asked(shown.size, &shown.limits, name.as_deref());
+        let scene = asked.to_json(&Cli::command());
+        let field = &self.state.scene.field;
+        let saved = heights.iter().try_for_each(|h| files::write_npy_heights(h, field));
+        self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)
     }
 
     /// The window's pixels.
@@ -79,6 +79,7 @@ impl App<'_> {
     fn free_name(&self, extension: &str) -> PathBuf {
         let stem = self.args.input.path.file_stem().unwrap_or_default().to_string_lossy();
         let name = |n: u32| PathBuf::from(format!("{stem}-view-{n}.{extension}"));
-        (1..).map(name).find(|path| !path.exists()).expect("some number is free")
+        let is_free = |path: &PathBuf| !path.exists() && !path.with_extension("npy").exists();
+        (1..).map(name).find(is_free).expect("some number is free")
     }
 }

@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use ridgelight::{Error, Result};
+use ridgelight::{Error, Result, files};
 use winit::dpi::PhysicalSize;
 
 use super::super::script::Step;
-use super::App;
+use super::{App, Shown};
 
 /// How long a window may take to become as large as a script wants it.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -18,7 +18,7 @@ impl App<'_> {
             return Ok(true);
         }
         if self.steps.is_none() {
-            if self.due > 0 || self.state.is_moving() {
+            if self.is_due() {
                 self.draw(false)?;
             }
             return Ok(true);
@@ -30,7 +30,10 @@ impl App<'_> {
             Step::Key(name) => return self.key(&name),
             Step::Drag(button, from, way) => {
                 self.cursor = from;
-                return self.drag(button, way);
+                self.press(button)?;
+                self.drag(button, way)?;
+                self.cursor = [from[0] + way[0], from[1] + way[1]];
+                return self.release();
             }
             Step::Wheel(notches, at) => return self.wheel(notches, at),
             Step::Frames(0) => None,
@@ -55,8 +58,20 @@ impl App<'_> {
                 Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
                 None => Some(Step::Screenshot(path)),
             },
-            Step::Report => {
-                self.report();
+            Step::Text(path) => {
+                let text = self.text();
+                files::write_text(&path, &text).map(|()| None)?
+            }
+            Step::Paths(count) => {
+                let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
+                let has_all = compare.is_some_and(|c| c.paths() >= count);
+                if !has_all {
+                    self.draw(false)?;
+                }
+                (!has_all).then_some(Step::Paths(count))
+            }
+            Step::Report(what) => {
+                self.report(&what);
                 None
             }
             Step::Wait(seconds) => {
@@ -64,7 +79,7 @@ impl App<'_> {
                 Some(Step::Waiting(until))
             }
             Step::Waiting(until) => {
-                if self.due > 0 || self.state.is_moving() {
+                if self.is_due() {
                     self.draw(false)?;
                 } else {
                     std::thread::sleep(Duration::from_millis(5));
@@ -97,18 +112,25 @@ impl App<'_> {
         Ok(Some(Step::Resizing(wanted, until)))
     }
 
-    fn report(&mut self) {
+    /// What stands over the picture, a line a line.
+    fn text(&self) -> String {
+        let Some(Shown { lit: Some(lit), figures, .. }) = &self.shown else { return String::new() };
+        let lines = self.state.lines(lit.plan(), figures, usize::MAX);
+        lines.iter().map(|line| format!("{line}\n")).collect()
+    }
+
+    fn report(&mut self, what: &str) {
+        let what = if what.is_empty() { String::new() } else { format!("{what}: ") };
         let spent = std::mem::take(&mut self.spent);
         let mut sorted = spent.clone();
         sorted.sort_by(f64::total_cmp);
         let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
-        let ns = self.shown.iter().flat_map(|s| &s.times).map(|t| t.ns).sum::<f64>();
+        let passes = self.shown.as_ref().map_or(0.0, |shown| shown.figures.ms());
         let resident = resident_kib().map_or_else(|| "unknown".into(), |kib| kib.to_string());
         crate::say!(
-            "frames {}, median of {} {middle:.3} ms, passes {:.3} ms, resident KiB {resident}",
+            "{what}frames {}, median of {} {middle:.3} ms, passes {passes:.3} ms, resident KiB {resident}",
             self.frames,
-            spent.len(),
-            ns / 1e6
+            spent.len()
         );
     }
 }

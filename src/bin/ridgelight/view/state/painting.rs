@@ -1,0 +1,135 @@
+//! Brushes at work, and what marks them and the lights on the picture.
+
+use ridgelight::plan::Rectangle;
+
+use super::{State, Tool, Wish};
+use crate::view::brush::{Work, together};
+
+/// Dots around a brush.
+const RING: u32 = 24;
+
+/// A square on the picture: its middle, half its side and its colour.
+pub struct Mark {
+    pub at: [f64; 2],
+    pub half: u32,
+    pub colour: [u8; 4],
+    /// Whether it has a bright rim.
+    pub is_chosen: bool,
+}
+
+impl State {
+    pub(super) fn begin_stroke(&mut self, work: Work, at: [f64; 2], size: [u32; 2]) -> Wish {
+        self.message = None;
+        self.cursor = at;
+        if self.is_moving() {
+            return self.say("W or G stops what moves; then the brush changes what stays");
+        }
+        let Some([x, y, _]) = self.sight.ground(&self.scene.field, size, at) else {
+            return Wish::Show;
+        };
+        self.strokes.begin(&self.scene.field);
+        self.stroke_m = [x, y];
+        self.dab(work, [x, y])
+    }
+
+    /// Dabs a quarter of the radius apart, on to a pixel.
+    pub(super) fn draw_stroke(&mut self, work: Work, to: [f64; 2], size: [u32; 2]) -> Wish {
+        let ground = self.sight.ground(&self.scene.field, size, to);
+        let (Some([x, y, _]), true) = (ground, self.strokes.is_begun()) else { return Wish::Show };
+        let from = self.stroke_m;
+        let length = (x - from[0]).hypot(y - from[1]);
+        let spacing = self.brush.radius_m / 4.0;
+        let mut wish = Wish::Show;
+        for n in 1..=(length / spacing) as u32 {
+            let share = f64::from(n) * spacing / length;
+            self.stroke_m = [from[0] + share * (x - from[0]), from[1] + share * (y - from[1])];
+            wish = self.dab(work, self.stroke_m);
+        }
+        wish
+    }
+
+    fn dab(&mut self, work: Work, at: [f64; 2]) -> Wish {
+        match self.brush.dab(&mut self.scene.field, work, at) {
+            Ok(Some(at)) => {
+                self.strokes.reach(at);
+                self.edit(at)
+            }
+            Ok(None) => Wish::Show,
+            Err(why) => self.say(&why.to_string()),
+        }
+    }
+
+    fn edit(&mut self, at: Rectangle) -> Wish {
+        self.edited = Some(self.edited.map_or(at, |all| together(all, at)));
+        Wish::Heights
+    }
+
+    /// The last stroke, back or again.
+    pub(super) fn undo(&mut self, is_back: bool) -> Wish {
+        if self.is_moving() {
+            return self.say("W or G stops what moves; then strokes are undone");
+        }
+        self.strokes.end(&self.scene.field);
+        let field = &mut self.scene.field;
+        let done = if is_back { self.strokes.undo(field) } else { self.strokes.redo(field) };
+        match done {
+            Ok(Some(at)) => self.edit(at),
+            Ok(None) => self.say(if is_back { "nothing to undo" } else { "nothing to do again" }),
+            Err(why) => self.say(&why.to_string()),
+        }
+    }
+
+    pub(super) fn change_brush(&mut self, key: &str) -> Wish {
+        let brush = &mut self.brush;
+        match key {
+            "[" => brush.radius_m *= 0.8,
+            "]" => brush.radius_m *= 1.25,
+            ";" => brush.strength *= 0.8,
+            _ => brush.strength = (brush.strength * 1.25).min(1.0),
+        }
+        Wish::Show
+    }
+
+    /// Where heights have changed since this was last asked.
+    pub fn take_edited(&mut self) -> Option<Rectangle> {
+        self.edited.take()
+    }
+
+    /// What was taken could not be drawn.
+    pub fn give_back_edited(&mut self, at: Rectangle) {
+        self.edit(at);
+    }
+
+    /// What marks the tool at hand in a picture of a size.
+    pub fn marks(&self, size: [u32; 2]) -> Vec<Mark> {
+        let field = &self.scene.field;
+        match self.tool {
+            Tool::Look => Vec::new(),
+            Tool::Lights => {
+                let balls = self.scene.lights.spheres.iter().enumerate();
+                let mark = |(n, ball): (usize, &ridgelight::scene::SphereLight)| {
+                    let (at, _) = self.sight.pixel(field, size, ball.position_m, ball.radius_m)?;
+                    let most = ball.radiance.iter().copied().fold(1e-30, f32::max);
+                    let [r, g, b] = ball.radiance.map(|v| (255.0 * (v / most).sqrt()) as u8);
+                    let is_chosen = self.chosen_ball() == Some(n);
+                    Some(Mark { at, half: 3, colour: [r, g, b, 255], is_chosen })
+                };
+                balls.filter_map(mark).collect()
+            }
+            Tool::Brush(_) => {
+                let Some([x, y, z]) = self.sight.ground(field, size, self.cursor) else {
+                    return Vec::new();
+                };
+                let dot = |n: u32| {
+                    let (sin, cos) =
+                        (std::f64::consts::TAU * f64::from(n) / f64::from(RING)).sin_cos();
+                    let [x, y] = [x + self.brush.radius_m * cos, y + self.brush.radius_m * sin];
+                    let at = self.on_ground([x, y]).unwrap_or(z);
+                    let (at, _) = self.sight.pixel(field, size, [x, y, at], 1.0)?;
+                    Some(Mark { at, half: 1, colour: [255, 220, 80, 255], is_chosen: false })
+                };
+                (0..RING).filter_map(dot).collect()
+            }
+        }
+    }
+}

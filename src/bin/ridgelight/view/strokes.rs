@@ -1,0 +1,128 @@
+//! What brushes have changed, to be undone.
+
+use ridgelight::Result;
+use ridgelight::plan::Rectangle;
+use ridgelight::scene::HeightField;
+
+use super::brush::together;
+
+/// Strokes that can be undone; the oldest are kept for good.
+const MOST: usize = 64;
+
+/// Heights of a rectangle before and after.
+struct Stroke {
+    at: Rectangle,
+    before: Vec<f32>,
+    after: Vec<f32>,
+}
+
+#[derive(Default)]
+pub struct Strokes {
+    done: Vec<Stroke>,
+    undone: Vec<Stroke>,
+    /// All heights before the stroke that is being drawn, and what it has reached.
+    begun: Option<(Vec<f32>, Option<Rectangle>)>,
+    /// Whether strokes are kept that can no longer be undone.
+    is_past: bool,
+}
+
+impl Strokes {
+    pub fn begin(&mut self, field: &HeightField) {
+        self.begun = Some((field.heights_m().to_vec(), None));
+    }
+
+    pub fn is_begun(&self) -> bool {
+        self.begun.is_some()
+    }
+
+    pub fn reach(&mut self, at: Rectangle) {
+        if let Some((_, all)) = &mut self.begun {
+            *all = Some(all.map_or(at, |all| together(all, at)));
+        }
+    }
+
+    /// The stroke is over; what was undone before is gone.
+    pub fn end(&mut self, field: &HeightField) {
+        let Some((heights, Some(at))) = self.begun.take() else { return };
+        let before = cut(&heights, field.cols(), at);
+        let after = cut(field.heights_m(), field.cols(), at);
+        self.undone.clear();
+        self.done.push(Stroke { at, before, after });
+        if self.done.len() > MOST {
+            self.done.remove(0);
+            self.is_past = true;
+        }
+    }
+
+    /// Takes the last stroke back; where it was.
+    pub fn undo(&mut self, field: &mut HeightField) -> Result<Option<Rectangle>> {
+        let Some(stroke) = self.done.pop() else { return Ok(None) };
+        let at = put(field, stroke.at, &stroke.before)?;
+        self.undone.push(stroke);
+        Ok(Some(at))
+    }
+
+    /// Does again what was undone last.
+    pub fn redo(&mut self, field: &mut HeightField) -> Result<Option<Rectangle>> {
+        let Some(stroke) = self.undone.pop() else { return Ok(None) };
+        let at = put(field, stroke.at, &stroke.after)?;
+        self.done.push(stroke);
+        Ok(Some(at))
+    }
+
+    /// How many can be undone and done again.
+    pub fn count(&self) -> [usize; 2] {
+        [self.done.len(), self.undone.len()]
+    }
+
+    /// Whether heights are other than they were read.
+    pub fn have_changed(&self) -> bool {
+        self.is_past || !self.done.is_empty()
+    }
+}
+
+fn cut(heights: &[f32], cols: usize, at: Rectangle) -> Vec<f32> {
+    let rows = at.row as usize..(at.row + at.rows) as usize;
+    let row = |r: usize| &heights[r * cols + at.col as usize..][..at.cols as usize];
+    rows.flat_map(row).copied().collect()
+}
+
+fn put(field: &mut HeightField, at: Rectangle, heights: &[f32]) -> Result<Rectangle> {
+    field.replace([at.row as usize, at.col as usize], at.cols as usize, heights).map(|()| at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::brush::{Brush, Work};
+    use super::*;
+
+    #[test]
+    fn strokes_are_undone_and_done_again_to_the_bit() {
+        let heights: Vec<f64> = (0..400).map(|i| f64::from(i % 7)).collect();
+        let mut field = HeightField::new(20, 20, &heights, [1.0; 2], None).unwrap();
+        let brush = Brush { radius_m: 3.0, strength: 0.3 };
+        let mut strokes = Strokes::default();
+        let mut all = vec![field.clone()];
+        for (work, place) in [(Work::Raise, 5.0), (Work::Erode, 9.0), (Work::Lower, 16.0)] {
+            strokes.begin(&field);
+            for step in [0.0, 1.5] {
+                let at = brush.dab(&mut field, work, [place + step, 8.0]).unwrap();
+                strokes.reach(at.unwrap());
+            }
+            strokes.end(&field);
+            assert!(*all.last().unwrap() != field, "{work:?}");
+            all.push(field.clone());
+        }
+        for before in all[..3].iter().rev() {
+            strokes.undo(&mut field).unwrap().unwrap();
+            assert!(field == *before);
+        }
+        assert!(strokes.undo(&mut field).unwrap().is_none() && !strokes.have_changed());
+        for after in &all[1..] {
+            strokes.redo(&mut field).unwrap().unwrap();
+            assert!(field == *after);
+        }
+        assert!(strokes.redo(&mut field).unwrap().is_none());
+        assert_eq!(strokes.count(), [3, 0]);
+    }
+}
