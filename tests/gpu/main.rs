@@ -34,10 +34,11 @@ mod pyramid;
 mod real;
 mod reference_edges;
 mod reference_numbers;
-#[expect(dead_code, reason = "of its scenes only the pits are drawn here")]
+#[expect(dead_code, reason = "of its scenes only pits and grooves are drawn here")]
 #[path = "../reference_page/mod.rs"]
 mod reference_page;
 mod reference_truth;
+mod scatter;
 #[path = "../scenes/mod.rs"]
 mod scenes;
 mod soft_spheres;
