@@ -175,7 +175,7 @@ impl FacetHarmonics {
         let rows: Vec<Vec<f64>> = table.directions.iter().map(|v| evaluate(order, *v)).collect();
         let inverse = pseudo_inverse(&rows, terms);
         let mut coefficients = vec![[0.0; 3]; terms * terms];
-        for c in 0..3 {
+        for c in [0, 1, 2] {
             // B⁺ F, then its product with B⁺ᵀ.
             let mut half = vec![0.0; terms * count];
             for i in 0..terms {

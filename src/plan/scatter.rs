@@ -242,7 +242,7 @@ pub(crate) fn order(directions: usize, scatter: &Scatter, steps: u32) -> Vec<u32
             let cycle = (path / directions) as u64;
             let key = u64::from(scatter.seed) << 40 ^ (step as u64) << 32 ^ cycle << 16 ^ at as u64;
             let left = (directions - at) as u64;
-            let pick = at + ((mixed(key) >> 32) * left >> 32) as usize;
+            let pick = at + (((mixed(key) >> 32) * left) >> 32) as usize;
             list.swap(at, pick);
             all[path * steps as usize + step] = list[at];
         }
