@@ -87,7 +87,9 @@ fn gpu_a_max_error_holds() {
     let args = "render field.npy -o out.exr --json out.json --max-error 0.01";
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
-    for said in ["expected", "measured", "at most", "95 % confidence", "probes", "--azimuths"] {
+    for said in
+        ["guessed", "one standard deviation", "measured", "95 % confidence", "probes", "--azimuths"]
+    {
         assert!(run.out.contains(said), "{said}: {}", run.out);
     }
     let settings = settings(&folder);

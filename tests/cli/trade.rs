@@ -308,3 +308,54 @@ fn gpu_trade_against_a_reference() {
     );
     assert!(folder.contents() == before);
 }
+
+/// Lobes of each sample, thrown twice, against light paths: harmonics and what is kept of lobes' light are walked, and nothing
+/// that lobes refuse is left as if it could be drawn. Without such a truth they are refused.
+#[test]
+fn gpu_trade_takes_lobes() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let lobes: Vec<u8> = (0..512_u16)
+        .flat_map(|i| if i < 256 { f32::from(i % 9) } else { f32::from(i % 3) * 0.2 }.to_le_bytes())
+        .collect();
+    folder.write("lobes.npy", &npy("<f4", false, "(2, 16, 16)", &lobes));
+    let scene = "--sky 1 --sun 100,40 --albedo 0.5 --phong lobes.npy --bounces 2";
+    let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
+    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let bare = format!("trade field.npy -o out --budget 2 {scene}");
+    let run = folder.run(&bare.split(' ').collect::<Vec<_>>());
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(
+        run.err.contains("--phong with trade: found a lobe, expected --reference"),
+        "{}",
+        run.err
+    );
+    let run = folder.run(&format!("{bare} --reference truth.exr").split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let report = json(&folder.path("out/trade.json"));
+    let flags = |list: &str| -> Vec<String> {
+        let all = report[list].as_array().unwrap().iter();
+        all.map(|p| p["flags"].as_str().unwrap().to_owned()).collect()
+    };
+    let tried: Vec<String> = flags("points");
+    assert!(tried.iter().all(|f| f.contains("--basis sh --sh-order")), "{tried:?}");
+    assert!(tried.iter().all(|f| f.contains("--bounce-gloss")), "{tried:?}");
+    // Exact lines have no azimuth of the sun's.
+    let open = flags("not_tried");
+    assert!(!open.iter().chain(&tried).any(|f| f.contains("--lines exact")), "{open:?}");
+    let out = report["ruled_out"].as_array().unwrap();
+    let exact =
+        out.iter().find(|g| g["why"].as_str().unwrap().contains("--lines exact with --sun"));
+    let settings = exact.expect("a reason")["settings"].as_array().unwrap();
+    // Every number of azimuths, slices of the sun and bounces, every order and gloss.
+    assert_eq!(settings.len() % (6 * 6 * 5 * 3 * 4), 0, "{}", settings.len());
+}
+
+/// A pass that there is not is told before the light is verified.
+#[test]
+fn gpu_a_pass_that_is_not_is_told_at_once() {
+    let folder = Folder::new();
+    let run = folder.run(&["bench", "--size", "32", "--passes", "sky_shade,none"]);
+    assert_eq!((run.status, run.out.as_str()), (Some(2), ""), "{}", run.err);
+    assert!(run.err.contains("--passes: found none, expected"), "{}", run.err);
+}

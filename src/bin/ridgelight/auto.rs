@@ -161,7 +161,7 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
     [
         asked,
         ("error_expected", chosen.expected.error.to_string()),
-        ("error_expected_within_factor", chosen.expected.factor.to_string()),
+        ("error_expected_deviation_factor", chosen.expected.factor.to_string()),
         ("error_measured", measured.error.to_string()),
         ("error_at_most", measured.at_most.to_string()),
         ("error_confidence", confidence),
@@ -187,7 +187,7 @@ pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
         |c| format!("with {:.0} % confidence", 100.0 * c),
     );
     let mut all = vec![format!(
-        "{}: expected {} (within a factor of {}), measured {}, at most {} {confidence} \
+        "{}: guessed {} (give or take a factor of {}, one standard deviation), measured {}, at most {} {confidence} \
          ({probes} probes{by_paths}); {} settings tried",
         auto::flags(&trial.quality, scene),
         percent(expected.error),

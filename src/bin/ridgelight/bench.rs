@@ -52,6 +52,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     setup::check_diffuse(&scene, "bench")?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+    // Verifying takes long.
+    if args.sizes.is_empty() {
+        check_names(&args.passes, &plan, args.forms)?;
+    }
     idle(args, &plan);
     let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
     let bar = crate::render::progress(args.global.quiet, "verifying against the oracle");
@@ -77,7 +81,6 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         }
         all.extend(table);
     } else {
-        check_names(&args.passes, &plan, args.forms)?;
         let contents = plan::picture_inputs(&scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &contents)?;

@@ -17,7 +17,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use ridgelight::files;
-use ridgelight::measure::trade::{Rule, knobs, places, start};
+use ridgelight::measure::trade::{Place, Rule, knobs, places, refused, start_of};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
@@ -51,14 +51,17 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    setup::check_diffuse(&scene, "trade")?;
+    if args.reference.is_none() && scene.surface.phong.is_some() {
+        let expected = "--reference: no other truth here has lobes";
+        return Err(Error::setting("--phong with trade", "a lobe", expected));
+    }
     if args.bounces > 0 && args.reference.is_none() {
         let expected = "--reference, made with as many: no other truth here has bounces";
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
     bounces.check()?;
-    let start = Quality { bounces, ..start() };
+    let start = Quality { bounces, ..start_of(&scene) };
     let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
@@ -91,8 +94,13 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let tones = Tones::of(&truth);
     let knobs = knobs(&scene, args.bounces);
     let places = places(&knobs, &start);
+    let why = |place: &Place| match rig.plan(&scene, &place.quality) {
+        Err(error @ Error::Setting { .. }) => Some(setup::in_flags(error).to_string()),
+        _ => None,
+    };
+    let refused = refused(&knobs, &places, why);
     let (walk, recommended) =
-        walk::walk(&mut rig, (&truth, &tones), (&knobs, &places), (&start, rule), &bar)?;
+        walk::walk(&mut rig, (&truth, &tones), (&knobs, &places, refused), (&start, rule), &bar)?;
     bar.set_message("moving the hull of the recommended settings");
     let best = &walk.points[recommended.point];
     let draw_s = best.ratio * walk.baseline_ns() * 1e-9;

@@ -4,8 +4,8 @@
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
 use crate::scene::{
-    Basis, BounceEngine, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision, Quality,
-    Scene,
+    Basis, BounceEngine, BounceGloss, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision,
+    Quality, Scene,
 };
 use std::ops::RangeInclusive;
 
@@ -49,6 +49,8 @@ const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision
 
 const BOUNCE_ENGINES: [BounceEngine; 3] =
     [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::Brute];
+const BOUNCE_GLOSSES: [BounceGloss; 3] =
+    [BounceGloss::Scalar, BounceGloss::VectorF16, BounceGloss::Vector];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
@@ -72,10 +74,15 @@ fn shining(lights: &Lights) -> Lights {
     shining
 }
 
+/// Whether the surface mirrors anything.
+fn has_lobe(scene: &Scene) -> bool {
+    scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
+}
+
 /// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
-/// an environment.
+/// an environment. Lobes are lit by harmonics alone, and throw light on by pyramids alone, from every sample.
 pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
-    let lights = &shining(&scene.lights);
+    let (lights, has_lobe) = (&shining(&scene.lights), has_lobe(scene));
     let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
     let mut all = vec![
         Knob {
@@ -172,7 +179,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             idle: |_| false,
         });
     }
-    if lights.environment.is_some() {
+    if lights.environment.is_some() && !has_lobe {
         all.push(Knob {
             name: "table elevations",
             steps: spell("--table-elevations", &TABLE_ELEVATIONS),
@@ -182,10 +189,13 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
             idle: |quality| quality.basis == Basis::Sh,
         });
+    }
+    if lights.environment.is_some() || (lights.sky.is_some() && has_lobe) {
         let orders = SH_ORDERS.map(|n| format!("--basis sh --sh-order {n}"));
+        let table = (!has_lobe).then(|| "--basis table".to_owned());
         all.push(Knob {
             name: "basis",
-            steps: orders.into_iter().chain(["--basis table".to_owned()]).collect(),
+            steps: orders.into_iter().chain(table).collect(),
             range: None,
             default: 0,
             dearer: "higher orders of harmonics, then tables: the environment's detail",
@@ -196,7 +206,8 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             idle: |_| false,
         });
     }
-    if lights.environment.is_some() || bounces > 0 {
+    let is_sampled_all = has_lobe && bounces > 0;
+    if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
         all.push(Knob {
             name: "sub-sampling",
             steps: spell("--subsample", &SUBSAMPLES),
@@ -208,17 +219,27 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         });
     }
     if bounces > 0 {
-        all.extend(bounce_knobs());
+        all.extend(bounce_knobs(has_lobe));
     }
+    let start = start_of(scene);
     for knob in &mut all {
-        knob.default = default_step(knob);
+        knob.default = default_step(knob, &start);
     }
     all
 }
 
-fn bounce_knobs() -> [Knob; 2] {
-    [
-        Knob {
+fn bounce_knobs(has_lobe: bool) -> [Knob; 2] {
+    let by = match has_lobe {
+        true => Knob {
+            name: "bounce gloss",
+            steps: BOUNCE_GLOSSES.iter().map(|g| format!("--bounce-gloss {}", g.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "radiance by direction, then in full precision: what lobes throw on",
+            set: |quality, step| quality.bounces.gloss = BOUNCE_GLOSSES[step],
+            idle: |_| false,
+        },
+        false => Knob {
             name: "bounce engine",
             steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
             range: None,
@@ -227,6 +248,9 @@ fn bounce_knobs() -> [Knob; 2] {
             set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
             idle: |_| false,
         },
+    };
+    [
+        by,
         Knob {
             name: "bounce azimuths",
             steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
@@ -244,11 +268,19 @@ pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
 }
 
-fn default_step(knob: &Knob) -> usize {
+/// The same for a scene: lobes are lit by harmonics.
+pub fn start_of(scene: &Scene) -> Quality {
+    let Lights { sky, environment, .. } = shining(&scene.lights);
+    let is_mirrored = has_lobe(scene) && (sky.is_some() || environment.is_some());
+    let basis = if is_mirrored { Basis::Sh } else { Basis::Table };
+    Quality { basis, ..start() }
+}
+
+fn default_step(knob: &Knob, start: &Quality) -> usize {
     let is_default = |step: &usize| {
-        let mut quality = start();
+        let mut quality = *start;
         (knob.set)(&mut quality, *step);
-        quality == start()
+        quality == *start
     };
     (0..knob.steps.len()).find(is_default).expect("every default is on its ladder")
 }
@@ -304,113 +336,4 @@ pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{HeightField, KeyLight, SphereLight, Sun, Surface};
-
-    fn scene(lights: Lights) -> Scene {
-        let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
-        Scene { field, surface: Surface::default(), lights }
-    }
-
-    fn sky() -> Lights {
-        Lights { sky: Some([1.0; 3]), ..Lights::default() }
-    }
-
-    fn sun(diameter_rad: f64) -> Lights {
-        let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad, irradiance: [1.0; 3] };
-        Lights { suns: vec![sun], ..Lights::default() }
-    }
-
-    #[test]
-    fn only_knobs_that_change_something_are_walked() {
-        let names = |lights| knobs(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
-        let always = ["sweep", "fuse", "precision", "level step", "level offset"];
-        let with = |more: &[&'static str]| [&always, more].concat();
-        assert_eq!(names(sky()), with(&["azimuths"]));
-        assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
-        assert_eq!(names(sun(0.0)), with(&[]));
-        let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-        let spheres = vec![ball];
-        assert_eq!(
-            names(Lights { spheres: spheres.clone(), ..Lights::default() }),
-            ["sun azimuths", "light basis"]
-        );
-        let balls_too = with(&["sun azimuths", "light basis"]);
-        assert_eq!(names(Lights { spheres: spheres.clone(), ..sun(0.0) }), balls_too);
-        // A patch of the sky needs horizons as a sun does; a dark sky and a dark sun none.
-        let keys = vec![KeyLight {
-            azimuth_rad: 0.0,
-            width_rad: 1.0,
-            elevations_rad: [0.1, 0.5],
-            radiance: [1.0; 3],
-        }];
-        assert_eq!(names(Lights { keys, ..Lights::default() }), with(&["sun azimuths"]));
-        let mut dark = Lights { sky: Some([0.0; 3]), spheres, ..sun(0.01) };
-        dark.suns[0].irradiance = [0.0; 3];
-        assert_eq!(names(dark), ["sun azimuths", "light basis"]);
-    }
-
-    /// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
-    /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
-    #[test]
-    fn places_are_all_that_differ() {
-        let knobs = knobs(&scene(sky()), 0);
-        let start = start();
-        let all = places(&knobs, &start);
-        assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
-        for (i, place) in all.iter().enumerate() {
-            place.quality.check().unwrap();
-            assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
-        }
-        let default = all.iter().find(|p| p.quality == start).unwrap();
-        let flags = "--lines 1 --fuse aimed-nearest --precision f32 --azimuths 64";
-        assert_eq!(default.flags(&knobs), flags);
-        let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
-        assert_eq!(brute.len(), 6);
-        assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
-        assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
-    }
-
-    /// Steps rise within the range, differ, and the default is the command line's.
-    #[test]
-    fn knobs_say_their_range_and_default() {
-        let light = Lights {
-            environment: Some(
-                crate::scene::Environment::new(2, 1, vec![[1.0; 3]; 2], 0.0).unwrap(),
-            ),
-            ..sun(0.01)
-        };
-        let all = knobs(&scene(light), 1);
-        let found: Vec<(&str, &str)> =
-            all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
-        let expected = [
-            ("sweep", "--lines 1"),
-            ("fuse", "--fuse aimed-nearest"),
-            ("precision", "--precision f32"),
-            ("level step", "--level-step 4"),
-            ("level offset", "--level-offset 2"),
-            ("azimuths", "--azimuths 64"),
-            ("sun azimuths", "--sun-azimuths 8"),
-            ("table elevations", "--table-elevations 256"),
-            ("basis", "--basis table"),
-            ("sub-sampling", "--subsample 1"),
-            ("bounce engine", "--bounce-engine auto"),
-            ("bounce azimuths", "--bounce-azimuths 32"),
-        ];
-        assert_eq!(found, expected);
-        for knob in &all {
-            let Some(range) = &knob.range else { continue };
-            let count = |s: &String| s.split(' ').next_back().unwrap().parse::<u32>().unwrap();
-            let counts: Vec<u32> = knob.steps.iter().map(count).collect();
-            assert!(counts.iter().all(|c| range.contains(c)), "{counts:?}");
-            assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
-            for (step, count) in counts.iter().enumerate() {
-                let mut quality = start();
-                (knob.set)(&mut quality, step);
-                quality.check().unwrap();
-                assert_eq!(quality == start(), step == knob.default, "{count}");
-            }
-        }
-    }
-}
+mod tests;

@@ -3,10 +3,12 @@
 
 mod frontier;
 mod knobs;
+mod refused;
 mod search;
 #[cfg(test)]
 mod tests;
 
 pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
-pub use knobs::{Knob, Place, knobs, places, start};
+pub use knobs::{Knob, Place, knobs, places, start, start_of};
+pub use refused::refused;
 pub use search::{Break, SLACK, Search, Side, Skip};

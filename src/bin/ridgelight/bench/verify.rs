@@ -11,7 +11,7 @@ use ridgelight::cpu::{key, light};
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Lobe, Method, Precision,
     Quality, Scene, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
@@ -293,6 +293,10 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
         Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
         constant => constant.clone(),
     };
+    let phong = scene.surface.phong.as_ref().map(|lobe| match lobe {
+        Lobe::Map(map) => Lobe::Map(of.iter().map(|i| map[*i]).collect()),
+        constant => constant.clone(),
+    });
     // The piece's western column and southern row are where its lights are counted from.
     let west = range(cols).start as f64 * field.cell_m()[0];
     let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
@@ -309,7 +313,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
             field.cell_m(),
             None,
         )?,
-        surface: Surface { albedo, border: scene.surface.border, phong: None },
+        surface: Surface { albedo, border: scene.surface.border, phong },
         lights,
     })
 }

@@ -63,11 +63,11 @@ impl Walk {
     }
 }
 
-/// Walks from `start` on and recommends by `rule`, whose times are nanoseconds.
+/// Walks from `start` on, past what is refused, and recommends by `rule`, whose times are nanoseconds.
 pub fn walk(
     rig: &mut Rig,
     (truth, tones): (&Truth, &Tones),
-    (knobs, places): (&[Knob], &[Place]),
+    (knobs, places, refused): (&[Knob], &[Place], Vec<(usize, String)>),
     (start, rule): (&Quality, Rule),
     bar: &indicatif::ProgressBar,
 ) -> Result<(Walk, Recommendation)> {
@@ -81,6 +81,10 @@ pub fn walk(
         baseline,
         out_of_time: false,
     };
+    for (place, why) in refused {
+        walk.search.give_up(place, false);
+        walk.given_up.push((place, why));
+    }
     let mut frame: Option<Frame> = None;
     let mut slow = Vec::new();
     let walked = loop {
