@@ -68,7 +68,7 @@ fn wanted(flags: u32) -> Done<Picture> {
         light_layers: flags & RIDGELIGHT_PICTURE_LIGHT_LAYERS != 0,
         sky_view: flags & RIDGELIGHT_PICTURE_SKY_VIEW != 0,
         keeps_horizons: flags & RIDGELIGHT_PICTURE_KEEPS_HORIZONS != 0,
-        still: false,
+        ..Picture::default()
     })
 }
 
