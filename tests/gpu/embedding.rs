@@ -300,7 +300,8 @@ fn an_error_leaves_the_command_buffer_untouched() {
     gpu.end(frame);
 }
 
-/// The plan's own images hold nothing before all passes have run, and are in no layout.
+/// The plan's own images hold nothing before all passes have run, and are in no layout: piece by piece from the first on,
+/// or not at all.
 #[test]
 fn some_passes_are_refused_until_all_have_been_recorded() {
     let mut device = Device::new();
@@ -310,9 +311,16 @@ fn some_passes_are_refused_until_all_have_been_recorded() {
     let contents = contents(&scene);
     let gpu = device.gpu.as_mut().expect("alive");
     let mut frame = frame(gpu, &plan, &contents);
-    for few in [&[][..], &[0], &all[1..]] {
-        let error = gpu.draw_passes(&mut frame, few).expect_err("nothing to go on from");
+    let mut refused = |gpu: &mut Headless, frame: &mut Frame, few: &[usize]| {
+        let error = gpu.draw_passes(frame, few).expect_err("nothing to go on from");
         assert!(error.to_string().contains("recording of all passes"), "{error}");
+    };
+    for few in [&[][..], &[0, 2], &all[1..]] {
+        refused(gpu, &mut frame, few);
+    }
+    gpu.draw_passes(&mut frame, &[0]).expect("the first");
+    for few in [&[][..], &all[2..]] {
+        refused(gpu, &mut frame, few);
     }
     gpu.draw_passes(&mut frame, &all).expect("all, by name");
     let drawn = outputs(gpu, &frame);

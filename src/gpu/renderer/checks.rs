@@ -104,14 +104,15 @@ impl Renderer {
                 "each once, in the plan's order",
             ));
         }
-        let begin = passes.first().copied().unwrap_or(0);
-        let is_piece = begin + passes.len() == passes.last().map_or(0, |last| last + 1)
-            && (begin == 0 || begin == self.begun);
-        if self.begun < count && !is_piece {
+        let is_next = passes.first().is_some_and(|first| {
+            let is_unbroken = first + passes.len() - 1 == passes[passes.len() - 1];
+            is_unbroken && (*first == 0 || *first == self.begun)
+        });
+        if self.begun < count && !is_next {
             return Err(Error::setting(
                 "passes",
                 format!("{} of {count}, {} recorded", passes.len(), self.begun),
-                "a recording of all passes before, or these in order",
+                "a recording of all passes before, or the next of them",
             ));
         }
         Ok(())
