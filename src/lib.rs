@@ -88,6 +88,9 @@
 //!
 //! `window` (default): `ridgelight view`, by winit. `shaderc`: shaders compiled by shaderc instead of glslang.
 
+// Of the library alone: examples and programs tell their readers otherwise.
+#![deny(clippy::missing_errors_doc)]
+
 pub mod basis;
 pub mod cpu;
 mod error;
