@@ -20,7 +20,7 @@
 #![doc = concat!("```no_run\n", include_str!("../examples/first_light.rs"), "```")]
 //!
 //! Line by line: a [`HeightField`](scene::HeightField) checks the heights and keeps them as `f32` offsets from
-//! their [middle](scene::HeightField::base_m), so that 8848 m ± 1 cm survive. [`Lights`](scene::Lights) are linear
+//! their [median](scene::HeightField::base_m), so that 8848 m ± 1 cm survive. [`Lights`](scene::Lights) are linear
 //! radiance and irradiance. What is out of its range is refused by name, with what was expected, at the latest by
 //! [`plan::picture`], which decides everything: which passes run, how large each image is, how much memory that takes;
 //! print it (`println!("{plan}")`) to see why. [`Headless`](gpu::Headless) is a device of its own for tools and
@@ -87,6 +87,9 @@
 //! hands in; [`basis`] and [`cpu`] are mathematics, for those who hand in what it is about.
 //!
 //! `window` (default): `ridgelight view`, by winit. `shaderc`: shaders compiled by shaderc instead of glslang.
+
+// Of the library alone: examples and programs tell their readers otherwise.
+#![deny(clippy::missing_errors_doc)]
 
 pub mod basis;
 pub mod cpu;

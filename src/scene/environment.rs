@@ -18,7 +18,8 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// An environment of `width`×`height` texels, turned counter-clockwise by `rotation_rad`.
+    /// An environment of `width`×`height` texels, linear RGB, row after row from the zenith, turned counter-clockwise
+    /// by `rotation_rad`, within ±1e6. An image twice as wide as high has square texels at the horizon.
     ///
     /// # Errors
     /// Sizes that do not match, a texel that is negative or not finite (named by row and column).

@@ -24,10 +24,11 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// A field of `rows`×`cols` heights in metres (or whatever unit `cell_m` is in).
+    /// A field of `rows`×`cols` heights in metres (or whatever unit `cell_m` is in), each within ±1e15: row after
+    /// row, row 0 in the north, column 0 in the west.
     ///
-    /// `cell_m` is the spacing of columns and of rows. `voids` marks samples that hold no data;
-    /// their value is ignored and filled from their neighbours.
+    /// `cell_m` is the spacing of columns and of rows, [1e-12..1e12]; they need not be equal. `voids`, one mark a
+    /// sample, marks those that hold no data; their value is ignored and filled from their neighbours.
     ///
     /// # Errors
     /// Sizes that do not match or are 0, cells that are not positive and finite, a height outside

@@ -2,6 +2,10 @@ use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
 /// Everything that shines on the field. Nothing here is nothing lit.
+///
+/// Radiance and irradiance are linear RGB in one unit of the caller's, each [0..1e36]: exit radiance comes out in the
+/// same. Level ground of albedo 1 has exit radiance 1 under a sky of radiance 1, and under a sun in the zenith of
+/// irradiance π.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// A uniform sky's radiance, linear RGB.

@@ -3,9 +3,9 @@ use crate::{Error, Result};
 /// What the field is made of and what lies beyond its edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Share of light that is reflected, diffusely.
+    /// Share of light that is reflected, diffusely, [0..1] in each channel.
     pub albedo: Albedo,
-    /// What the sweep meets outside the field.
+    /// What lies outside the field: ground at horizontal, nothing, or the field again.
     pub border: Border,
     /// A mirror-like lobe besides.
     pub phong: Option<Lobe>,
