@@ -4,6 +4,7 @@ mod bounces;
 mod camera;
 mod environment;
 mod field;
+mod hash;
 mod key;
 mod lights;
 mod quality;
