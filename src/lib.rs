@@ -3,6 +3,7 @@
 //! Data flows one way: a [`scene`] (field, surface, lights) and a quality become a pure plan, the
 //! plan becomes commands in a command buffer, and the commands leave images and timings behind.
 
+pub mod bake;
 pub mod basis;
 pub mod cpu;
 mod error;
