@@ -10,6 +10,7 @@ mod bounces;
 mod change;
 mod contract;
 mod debugger;
+mod decoders;
 mod edits;
 mod embedding;
 mod extremes;

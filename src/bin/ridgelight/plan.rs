@@ -2,7 +2,7 @@ use ridgelight::Result;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan};
 
-use crate::args::{PlanArgs, PlanFormat};
+use crate::args::{GlobalArgs, PlanArgs, PlanFormat};
 use crate::idle;
 use crate::setup::{self, Outcome};
 
@@ -15,9 +15,28 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    // Planned for the device that would run it; without one, for the software driver everyone has.
+    let (name, limits) = limits(&args.global)?;
+    let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
+    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
+    match args.format {
+        _ if args.global.quiet => {}
+        PlanFormat::Text => {
+            crate::say!("for {name}");
+            crate::say!("{}", plan.to_string().trim_end());
+        }
+        PlanFormat::Json => crate::say!("{:#}", json(&plan)),
+        PlanFormat::Dot => crate::say!("{}", dot(&plan).trim_end()),
+    }
+    if let Some(path) = &args.global.json {
+        ridgelight::files::write_json(path, &json(&plan))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The device that would run it and its limits; without one, those of the software driver everyone has.
+pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
     let devices = gpu::devices();
-    let report = match &args.global.device {
+    let report = match &global.device {
         Some(wanted) => {
             let devices = devices?;
             let index = gpu::choose(&devices, Some(wanted))?;
@@ -30,25 +49,11 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         }
     };
     let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
-    if let Some(budget) = args.global.memory_budget {
+    if let Some(budget) = global.memory_budget {
         limits.memory_budget = budget;
     }
-    let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
-    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
-    match args.format {
-        _ if args.global.quiet => {}
-        PlanFormat::Text => {
-            let name = report.as_ref().map_or("lavapipe (no device here)", |r| r.name.as_str());
-            crate::say!("for {name}");
-            crate::say!("{}", plan.to_string().trim_end());
-        }
-        PlanFormat::Json => crate::say!("{:#}", json(&plan)),
-        PlanFormat::Dot => crate::say!("{}", dot(&plan).trim_end()),
-    }
-    if let Some(path) = &args.global.json {
-        ridgelight::files::write_json(path, &json(&plan))?;
-    }
-    Ok(Outcome::Done)
+    let name = report.map_or("lavapipe (no device here)".into(), |r| r.name);
+    Ok((name, limits))
 }
 
 fn json(plan: &Plan) -> serde_json::Value {
