@@ -5,6 +5,8 @@
 //! words, bindings, push constant size (of a `.vert` `NAME_VERT`, of a `.frag` `NAME_FRAG`), and the byte offsets of every struct with explicit layout,
 //! against which `same_layout!` (src/gpu/shaders.rs) checks the host's structs at compile time. The first error of a
 //! shader stops the build with file and line.
+//!
+//! Shaders of tests (`tests/gpu/decoders/*.comp`, where they are) become `$OUT_DIR/NAME.spv`, which no library holds.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -18,12 +20,7 @@ fn main() {
     let folder = PathBuf::from("shaders_glsl");
     println!("cargo:rerun-if-changed={}", folder.display());
     println!("cargo:rerun-if-changed=build.rs");
-    let mut sources: Vec<PathBuf> = fs::read_dir(&folder)
-        .unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())))
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| stage(path).is_some())
-        .collect();
-    sources.sort();
+    let sources = shaders_in(&folder);
     let mut table = String::new();
     let mut layouts: BTreeMap<String, BTreeMap<String, u32>> = BTreeMap::new();
     let (mut names, mut graphics) = (Vec::new(), Vec::new());
@@ -66,8 +63,34 @@ fn main() {
         writeln!(table, "    }}").unwrap();
     }
     writeln!(table, "}}").unwrap();
-    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR")).join("shaders.rs");
-    fs::write(&out, table).unwrap_or_else(|e| fail(&format!("{}: {e}", out.display())));
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    write(&out.join("shaders.rs"), table.as_bytes());
+    let of_tests = Path::new("tests/gpu/decoders");
+    if of_tests.is_dir() {
+        println!("cargo:rerun-if-changed={}", of_tests.display());
+        for path in shaders_in(of_tests) {
+            let (text, files) = include(&path);
+            let words = compile(&text, &files);
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_ne_bytes()).collect();
+            let stem = path.file_stem().expect("a listed file has a name");
+            write(&out.join(stem).with_extension("spv"), &bytes);
+        }
+    }
+}
+
+/// Every shader in a folder that is compiled by itself, in order.
+fn shaders_in(folder: &Path) -> Vec<PathBuf> {
+    let mut sources: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())))
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| stage(path).is_some())
+        .collect();
+    sources.sort();
+    sources
+}
+
+fn write(path: &Path, bytes: &[u8]) {
+    fs::write(path, bytes).unwrap_or_else(|e| fail(&format!("{}: {e}", path.display())));
 }
 
 /// What a file's extension says, where it is a shader's.

@@ -91,6 +91,7 @@
 // Of the library alone: examples and programs tell their readers otherwise.
 #![deny(clippy::missing_errors_doc)]
 
+pub mod bake;
 pub mod basis;
 pub mod cpu;
 mod error;

@@ -94,8 +94,17 @@ impl Slices {
 
     /// The slice of what is 1 above `elevation_rad`, [-π/2..π/2], and 0 below.
     pub fn above(&self, elevation_rad: f64) -> Vec<f64> {
+        let mut slice = vec![0.0; self.parts.len()];
+        self.above_into(elevation_rad, &mut slice);
+        slice
+    }
+
+    /// [`above`](Self::above) into the first numbers of `slice`; what is beyond stays.
+    pub fn above_into(&self, elevation_rad: f64, slice: &mut [f64]) {
         let (sin, cos) = elevation_rad.sin_cos();
-        self.parts.iter().map(|part| part.at(elevation_rad, sin, cos)).collect()
+        for (number, part) in slice.iter_mut().zip(&self.parts) {
+            *number = part.at(elevation_rad, sin, cos);
+        }
     }
 
     /// The slice of what is 1 between two elevations; all 0 where `high_rad` is not above `low_rad`.

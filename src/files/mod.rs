@@ -1,4 +1,4 @@
-//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY, JSON and text out.
+//! Readers and writers: height fields, environments, albedo maps in; EXR, PNG, NPY, KTX2, JSON and text out.
 //!
 //! A wrong input is one sentence that names the file, the place in it, what was found and what
 //! was expected ([`Error::File`](crate::Error::File)). An output is complete or absent: it is
@@ -9,6 +9,7 @@
 
 mod asc;
 mod atomic;
+mod codes;
 mod cube;
 mod environment;
 mod exr;
@@ -17,6 +18,7 @@ mod geotiff;
 mod hdr;
 mod heights;
 mod hgt;
+mod ktx2;
 mod lobe;
 mod npy;
 mod npz;
@@ -29,9 +31,11 @@ mod tif;
 mod visible;
 
 pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
+pub use codes::write_codes;
 pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, read_metadata, write_exr};
 pub use heights::{HeightOptions, parse_heights, read_heights};
+pub use ktx2::{Ktx2Writer, TexelFormat};
 pub use lobe::read_lobes;
 pub use npy::{NpyWriter, write_npy_f32, write_npy_heights};
 pub use planes::{Planes, parse_planes, read_planes};

@@ -225,12 +225,11 @@ fn lobes() {
 }
 
 #[test]
-fn not_yet() {
+fn unknown_and_missing() {
     let folder = Folder::new();
     refused(
         &folder,
         &[
-            ("bake a.asc -o out --what horizons", 2, &["bake", "not yet"]),
             ("nosuch a.asc", 2, &["nosuch"]),
             ("render", 2, &["<INPUT>", "--output"]),
             ("render a.asc", 2, &["--output"]),
@@ -393,6 +392,12 @@ fn help_says_units_and_defaults() {
         ("--seed", &["0 where none is given"]),
     ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
+    let bake: &[(&str, &[&str])] = &[
+        ("--what", &["the list below"]),
+        ("--format", &["values in f32", "exr, png, npy, ktx2"]),
+        ("--encoding", &["KIND=ENCODING", "default the first"]),
+        ("--plan", &["memory", "runs nothing"]),
+    ];
     let plan: &[(&str, &[&str])] = &[("--format", &["[default: text]"])];
     let compare: &[(&str, &[&str])] = &[
         ("--max-rmse", &["relative to the mean of B", "0.01 is 1 %"]),
@@ -428,6 +433,7 @@ fn help_says_units_and_defaults() {
         ("trade", &[lit, trade]),
         ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
+        ("bake", &[shared, bake]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),
         ("devices", &[]),
@@ -457,5 +463,9 @@ fn help_says_units_and_defaults() {
         let run = folder.run_without_driver(args);
         assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
     }
-    assert!(!folder.run_without_driver(&["--help"]).out.contains("bake"));
+    // Every kind is told of with the ways to pack it.
+    let help = folder.run_without_driver(&["bake", "--help"]).out;
+    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is brute here"] {
+        assert!(help.contains(said), "{said} in\n{help}");
+    }
 }

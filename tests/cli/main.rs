@@ -2,6 +2,7 @@
 //! stderr where something is wrong, and then no file changed and none left behind.
 
 mod auto;
+mod bake;
 mod camera;
 #[path = "../common/mod.rs"]
 mod common;

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod heights;
+mod ktx2;
 mod light;
 mod malformed;
 mod real;

@@ -11,6 +11,7 @@ mod buffers;
 mod change;
 mod contract;
 mod debugger;
+mod decoders;
 mod edits;
 mod embedding;
 mod extremes;

@@ -1,6 +1,7 @@
 //! What can be asked for, and how it is spelled.
 
 mod auto;
+mod bake;
 mod bounces;
 mod camera;
 mod compare;
@@ -17,6 +18,7 @@ use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand,
 
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
+pub use bake::BakeArgs;
 pub use camera::CameraArgs;
 pub use compare::CompareArgs;
 pub use quality::{
@@ -79,6 +81,7 @@ impl Cli {
         let quality = match &mut self.command {
             Command::Render(args) => Some(&mut args.quality),
             Command::Horizon(args) => Some(&mut args.quality),
+            Command::Bake(args) => Some(&mut args.quality),
             Command::Plan(args) => Some(&mut args.quality),
             Command::Bench(args) => Some(&mut args.quality),
             Command::View(args) => {
@@ -113,17 +116,10 @@ pub enum Command {
     Trade(TradeArgs),
     /// The truth, slowly: light paths with all bounces, and how far off they may still be
     Reference(ReferenceArgs),
-    /// Maps for engines (not yet)
-    #[command(hide = true)]
-    Bake(NotYet),
+    /// Maps for engines, of ground that does not move: horizons, sky view, bent normals, harmonics
+    Bake(BakeArgs),
     /// A window: look around, move the sun, try methods
     View(ViewArgs),
-}
-
-#[derive(Args)]
-pub struct NotYet {
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    pub rest: Vec<String>,
 }
 
 const RENDER_HELP: &str = "\

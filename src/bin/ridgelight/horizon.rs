@@ -15,13 +15,13 @@ const OUTPUT_BYTES: u64 = 256 << 20;
 pub type Each<'a> = dyn FnMut(u32, &[f32], &[f32]) -> Result<()> + 'a;
 
 /// Azimuths whose outputs take at most [`OUTPUT_BYTES`] and a quarter of the budget.
-fn at_once(field: &HeightField, limits: &Limits) -> u32 {
+pub fn at_once(field: &HeightField, limits: &Limits) -> u32 {
     let plane = 4 * (field.rows() * field.cols()) as u64;
     (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
 }
 
 /// Horizons from azimuth `first` on: of `most`, or of as many fewer as the limits ask for.
-fn plan_from(
+pub fn plan_from(
     field: &HeightField,
     border: Border,
     quality: &Quality,

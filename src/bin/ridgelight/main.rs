@@ -25,6 +25,7 @@ fn said(written: std::io::Result<()>) {
 
 mod args;
 mod auto;
+mod bake;
 mod bench;
 mod camera;
 mod compare;
@@ -84,7 +85,7 @@ fn main() -> ExitCode {
         args::Command::Devices(args) => devices::run(args),
         args::Command::Reference(args) => reference::run(args),
         args::Command::Trade(args) => trade::run(args),
-        args::Command::Bake(_) => not_yet("bake"),
+        args::Command::Bake(args) => bake::run(args),
         args::Command::View(args) => view::run(args),
     };
     match done {
@@ -101,9 +102,4 @@ fn fail(error: &ridgelight::Error) -> ExitCode {
     let line = error.to_string().replace(char::is_control, " ");
     let _ = writeln!(std::io::stderr(), "ridgelight: {line}");
     ExitCode::from(if matches!(error, ridgelight::Error::Setting { .. }) { 2 } else { 1 })
-}
-
-fn not_yet(command: &str) -> ridgelight::Result<setup::Outcome> {
-    let expected = "another that --help lists: it is not yet there";
-    Err(ridgelight::Error::setting("command", command, expected))
 }

@@ -2,7 +2,7 @@ use ridgelight::Result;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan, View};
 
-use crate::args::{PlanArgs, PlanFormat};
+use crate::args::{GlobalArgs, PlanArgs, PlanFormat};
 use crate::camera;
 use crate::idle;
 use crate::setup::{self, Outcome};
@@ -17,24 +17,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let shot = camera::asked(&args.camera, &scene)?;
-    // Planned for the device that would run it; without one, for the software driver everyone has.
-    let devices = gpu::devices();
-    let report = match &args.global.device {
-        Some(wanted) => {
-            let devices = devices?;
-            let index = gpu::choose(&devices, Some(wanted))?;
-            devices.into_iter().nth(index)
-        }
-        None => {
-            let devices = devices.unwrap_or_default();
-            let index = gpu::choose(&devices, None).ok();
-            index.and_then(|index| devices.into_iter().nth(index))
-        }
-    };
-    let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
-    if let Some(budget) = args.global.memory_budget {
-        limits.memory_budget = budget;
-    }
+    let (name, limits) = limits(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
     let seen = match &shot {
         Some(shot) => {
@@ -48,7 +31,6 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {
-            let name = report.as_ref().map_or("lavapipe (no device here)", |r| r.name.as_str());
             crate::say!("for {name}");
             crate::say!("{}", plan.to_string().trim_end());
             if let Some(view) = &seen {
@@ -62,6 +44,29 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
         ridgelight::files::write_json(path, &json(&plan, seen.as_ref()))?;
     }
     Ok(Outcome::Done)
+}
+
+/// The device that would run it and its limits; without one, those of the software driver everyone has.
+pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
+    let devices = gpu::devices();
+    let report = match &global.device {
+        Some(wanted) => {
+            let devices = devices?;
+            let index = gpu::choose(&devices, Some(wanted))?;
+            devices.into_iter().nth(index)
+        }
+        None => {
+            let devices = devices.unwrap_or_default();
+            let index = gpu::choose(&devices, None).ok();
+            index.and_then(|index| devices.into_iter().nth(index))
+        }
+    };
+    let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
+    if let Some(budget) = global.memory_budget {
+        limits.memory_budget = budget;
+    }
+    let name = report.map_or("lavapipe (no device here)".into(), |r| r.name);
+    Ok((name, limits))
 }
 
 fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {

@@ -1,0 +1,13 @@
+// bent_normal.ktx2: the mean free direction and the cone about it that is as large as all that is free.
+// uv (0, 0) is the north-west corner; x is east, y north, z up.
+
+// The direction, and the cone's half-angle, radians.
+vec4 bent_normal(sampler2D map, vec2 uv) {
+    vec4 texel = texture(map, uv);
+    if (!BENT_OCTAHEDRAL) {
+        return vec4(normalize(texel.xyz), BENT_CONE_SCALE * texel.w);
+    }
+    vec2 s = 2.0 * texel.xy - 1.0;
+    vec2 p = 0.5 * vec2(s.x + s.y, s.x - s.y);
+    return vec4(normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y))), BENT_CONE_SCALE * texel.z);
+}

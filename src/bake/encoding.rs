@@ -1,0 +1,392 @@
+//! From values to texels and back, and by how much that may be off.
+
+use half::f16;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A component of a texel, as Vulkan reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Component {
+    /// 0..255 for 0..1.
+    Unorm8,
+    /// 0..65535 for 0..1.
+    Unorm16,
+    /// -127..127 for -1..1.
+    Snorm8,
+    /// -32767..32767 for -1..1.
+    Snorm16,
+    /// Half precision.
+    F16,
+    /// Single precision.
+    F32,
+}
+
+/// What a decoder in f32 may add to a component of at most 1: its conversion and a product or two.
+const DECODER: f64 = 1.0 / (1 << 22) as f64;
+
+impl Component {
+    /// Bytes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Component::Unorm8 | Component::Snorm8 => 1,
+            Component::Unorm16 | Component::Snorm16 | Component::F16 => 2,
+            Component::F32 => 4,
+        }
+    }
+
+    /// The code of 1; of floats 1 itself.
+    pub fn one(self) -> f64 {
+        match self {
+            Component::Unorm8 => 255.0,
+            Component::Unorm16 => 65535.0,
+            Component::Snorm8 => 127.0,
+            Component::Snorm16 => 32767.0,
+            Component::F16 | Component::F32 => 1.0,
+        }
+    }
+
+    /// Whether it holds fractions of a fixed range, not floats.
+    pub fn is_normalised(self) -> bool {
+        !matches!(self, Component::F16 | Component::F32)
+    }
+
+    /// Whether it holds numbers below 0.
+    pub fn is_signed(self) -> bool {
+        !matches!(self, Component::Unorm8 | Component::Unorm16)
+    }
+
+    /// What a normalised component can be off by: half a step. 0 of floats.
+    pub fn half_step(self) -> f64 {
+        if self.is_normalised() { 0.5 / self.one() } else { 0.0 }
+    }
+
+    /// The nearest that it holds; what lies beyond its range becomes the range's end.
+    pub fn rounded(self, value: f64) -> f64 {
+        match self {
+            Component::F16 => f16::from_f64(value).to_f64(),
+            Component::F32 => f64::from(value as f32),
+            _ => self.code(value) / self.one(),
+        }
+    }
+
+    /// The integer of a normalised component.
+    fn code(self, value: f64) -> f64 {
+        let least = if self.is_signed() { -1.0 } else { 0.0 };
+        (value.clamp(least, 1.0) * self.one()).round()
+    }
+
+    /// Appends the nearest that it holds, little-endian.
+    pub fn put(self, value: f64, bytes: &mut Vec<u8>) {
+        match self {
+            Component::Unorm8 => bytes.push(self.code(value) as u8),
+            Component::Snorm8 => bytes.extend((self.code(value) as i8).to_le_bytes()),
+            Component::Unorm16 => bytes.extend((self.code(value) as u16).to_le_bytes()),
+            Component::Snorm16 => bytes.extend((self.code(value) as i16).to_le_bytes()),
+            Component::F16 => bytes.extend(f16::from_f64(value).to_le_bytes()),
+            Component::F32 => bytes.extend((value as f32).to_le_bytes()),
+        }
+    }
+}
+
+/// A promise: how far a decoded quantity may be from the value that was encoded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Of what.
+    pub of: &'static str,
+    /// "rad", or nothing.
+    pub unit: &'static str,
+    /// Times the half step of a component.
+    pub half_steps: f64,
+}
+
+impl Bound {
+    /// At most this, and [`relative`](Self::relative) of the value besides; what a decoder in f32 adds is in it.
+    pub fn absolute(&self, component: Component) -> f64 {
+        match component {
+            // Half the least step.
+            Component::F16 => self.half_steps / f64::from(1 << 25),
+            Component::F32 => 0.0,
+            _ => self.half_steps * (component.half_step() + DECODER),
+        }
+    }
+
+    /// A share of the value itself, of floats: half a step and the decoder's.
+    pub fn relative(&self, component: Component) -> f64 {
+        match component {
+            Component::F16 => 1.0 / 2048.0 + DECODER,
+            Component::F32 => DECODER,
+            _ => 0.0,
+        }
+    }
+}
+
+/// How values of a kind become the components of a texel.
+#[derive(Clone, Copy, Debug)]
+pub struct Encoding {
+    /// As the command line calls it.
+    pub name: &'static str,
+    /// What holds each.
+    pub component: Component,
+    /// Values that a texel stands for.
+    pub values: usize,
+    /// Components that it takes.
+    pub components: usize,
+    /// Values to components, each in the component's range.
+    pub encode: fn(&[f64], &mut [f64]),
+    /// Components to values.
+    pub decode: fn(&[f64], &mut [f64]),
+    /// The same in words, for the sheet; components are r, g, b and a.
+    pub decoding: &'static str,
+    /// What is promised.
+    pub bounds: &'static [Bound],
+}
+
+/// The one of that name.
+pub fn encoding_named(all: &'static [Encoding], name: &str) -> Option<&'static Encoding> {
+    all.iter().find(|encoding| encoding.name == name)
+}
+
+fn same(from: &[f64], to: &mut [f64]) {
+    to.copy_from_slice(from);
+}
+
+const SCALAR: Encoding = Encoding {
+    name: "f32",
+    component: Component::F32,
+    values: 1,
+    components: 1,
+    encode: same,
+    decode: same,
+    decoding: "r",
+    bounds: &[],
+};
+
+const ELEVATION: &[Bound] = &[Bound { of: "elevation", unit: "rad", half_steps: FRAC_PI_2 }];
+
+const ANGLE: Encoding = Encoding {
+    encode: |value, texel| texel[0] = value[0] / FRAC_PI_2,
+    decode: |texel, value| value[0] = texel[0] * FRAC_PI_2,
+    decoding: "elevation = r π/2",
+    bounds: ELEVATION,
+    ..SCALAR
+};
+
+/// Of horizons, radians: fractions of a right angle, whose step is the same at all elevations, or the sine, which
+/// light takes without another function but which is coarse near the zenith. A sine and an unsigned fraction hold no
+/// horizon below horizontal.
+pub static HORIZON: [Encoding; 5] = [
+    Encoding { name: "snorm16-angle", component: Component::Snorm16, ..ANGLE },
+    Encoding { name: "snorm8-angle", component: Component::Snorm8, ..ANGLE },
+    Encoding { name: "unorm8-angle", component: Component::Unorm8, ..ANGLE },
+    Encoding {
+        name: "unorm16-sin",
+        component: Component::Unorm16,
+        encode: |value, texel| texel[0] = value[0].sin(),
+        decode: |texel, value| value[0] = texel[0].min(1.0).asin(),
+        decoding: "sine of the elevation = r",
+        bounds: &[Bound { of: "sine of the elevation", unit: "", half_steps: 1.0 }],
+        ..SCALAR
+    },
+    Encoding { bounds: ELEVATION, decoding: "elevation = r", ..SCALAR },
+];
+
+const SHARES: &[Bound] = &[Bound { of: "share", unit: "", half_steps: 1.0 }];
+
+/// Of shares, 0 to 1.
+pub static SHARE: [Encoding; 3] = [
+    Encoding { name: "unorm16", component: Component::Unorm16, bounds: SHARES, ..SCALAR },
+    Encoding { name: "unorm8", component: Component::Unorm8, bounds: SHARES, ..SCALAR },
+    Encoding { bounds: SHARES, ..SCALAR },
+];
+
+/// The upper half of an octahedron, turned by 45° so that it fills the square (Cigolle et al. 2014, hemi-oct): with
+/// p = (x, y)/(|x| + |y| + z), u = p_x + p_y and v = p_x - p_y. Continuous all over, so that it may be filtered.
+///
+/// Steps δ of u and v move p by at most δ and z = 1 - |p_x| - |p_y| by at most δ, the point on the octahedron by
+/// √2 δ; it is at least 1/√3 from the middle, so the direction turns by at most asin(√6 δ). In half steps of components,
+/// of which u and v are twice as wide, 2 √6 = 4.899.
+const OCTAHEDRAL: Encoding = Encoding {
+    values: 4,
+    components: 3,
+    encode: |value, texel| {
+        let sum = value[0].abs() + value[1].abs() + value[2].abs();
+        let (x, y) = (value[0] / sum, value[1] / sum);
+        texel[0] = 0.5 + 0.5 * (x + y);
+        texel[1] = 0.5 + 0.5 * (x - y);
+        texel[2] = value[3] / PI;
+    },
+    decode: |texel, value| {
+        let (u, v) = (2.0 * texel[0] - 1.0, 2.0 * texel[1] - 1.0);
+        let (x, y) = (0.5 * (u + v), 0.5 * (u - v));
+        let z = 1.0 - x.abs() - y.abs();
+        let length = (x * x + y * y + z * z).sqrt();
+        value.copy_from_slice(&[x / length, y / length, z / length, texel[2] * PI]);
+    },
+    decoding: "u = 2r - 1, v = 2g - 1, x = (u + v)/2, y = (u - v)/2, direction = normalize(x, y, 1 - |x| - |y|), \
+               cone's half-angle = b π",
+    bounds: &[
+        Bound { of: "direction", unit: "rad", half_steps: 4.9 },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI },
+    ],
+    ..SCALAR
+};
+
+/// Steps δ of three components move a unit vector by at most √3 δ, so it turns by asin(√3 δ).
+const XYZ: Encoding = Encoding {
+    values: 4,
+    components: 4,
+    encode: |value, texel| {
+        texel[..3].copy_from_slice(&value[..3]);
+        texel[3] = value[3] / PI;
+    },
+    decode: |texel, value| {
+        let length = (texel[0] * texel[0] + texel[1] * texel[1] + texel[2] * texel[2]).sqrt();
+        for (v, t) in value[..3].iter_mut().zip(texel) {
+            *v = t / length;
+        }
+        value[3] = texel[3] * PI;
+    },
+    decoding: "direction = normalize(r, g, b), cone's half-angle = a π",
+    bounds: &[
+        Bound { of: "direction", unit: "rad", half_steps: 1.7322 },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI },
+    ],
+    ..SCALAR
+};
+
+/// Of a direction above horizontal and the half-angle of a cone, radians.
+pub static BENT_NORMAL: [Encoding; 5] = [
+    Encoding { name: "unorm16-octahedral", component: Component::Unorm16, ..OCTAHEDRAL },
+    Encoding { name: "unorm8-octahedral", component: Component::Unorm8, ..OCTAHEDRAL },
+    Encoding { name: "snorm16-xyz", component: Component::Snorm16, ..XYZ },
+    Encoding { name: "snorm8-xyz", component: Component::Snorm8, ..XYZ },
+    Encoding {
+        values: 4,
+        components: 4,
+        decoding: "direction = (r, g, b), cone's half-angle = a",
+        bounds: &[
+            Bound { of: "components of the direction", unit: "", half_steps: 1.0 },
+            Bound { of: "cone's half-angle", unit: "rad", half_steps: 1.0 },
+        ],
+        ..SCALAR
+    },
+];
+
+const FOUR: Encoding = Encoding {
+    values: 4,
+    components: 4,
+    decoding: "coefficients 4k to 4k + 3 of layer k = r, g, b, a",
+    bounds: &[Bound { of: "coefficient", unit: "", half_steps: 1.0 }],
+    ..SCALAR
+};
+
+/// Of coefficients, four a texel.
+pub static COEFFICIENTS: [Encoding; 2] =
+    [Encoding { name: "f16", component: Component::F16, ..FOUR }, FOUR];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest share of its bound that a value's decoded form is off by, over all bounds.
+    fn worst(encoding: &Encoding, values: &[f64]) -> f64 {
+        let mut texel = vec![0.0; encoding.components];
+        (encoding.encode)(values, &mut texel);
+        texel.iter_mut().for_each(|t| *t = encoding.component.rounded(*t));
+        let mut back = vec![0.0; encoding.values];
+        (encoding.decode)(&texel, &mut back);
+        let turned = |a: &[f64], b: &[f64]| {
+            let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+            let sine = (cross(0, 1).powi(2) + cross(1, 2).powi(2) + cross(2, 0).powi(2)).sqrt();
+            sine.atan2((0..3).map(|i| a[i] * b[i]).sum())
+        };
+        let off = |bound: &Bound| {
+            let (is, was) = match bound.of {
+                "elevation" | "share" => (back[0], values[0]),
+                "sine of the elevation" => (back[0].sin(), values[0].sin()),
+                "direction" => (turned(&back, values), 0.0),
+                "cone's half-angle" => (back[3], values[3]),
+                "components of the direction" | "coefficient" => {
+                    let far = |i: &usize| (back[*i] - values[*i]).abs();
+                    let i = (0..3).max_by(|i, j| far(i).total_cmp(&far(j))).expect("three");
+                    (back[i], values[i])
+                }
+                other => panic!("no test of {other}"),
+            };
+            let component = encoding.component;
+            let allowed = bound.absolute(component) + bound.relative(component) * was.abs();
+            (is - was).abs() / allowed
+        };
+        encoding.bounds.iter().map(off).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn values_come_back_within_what_is_promised() {
+        // Steps are worst between two codes: dense, and not in step with any of them.
+        let dense = |i: usize, count: usize| i as f64 / count as f64;
+        let mut largest = 0.0;
+        let mut hold = |encoding: &Encoding, values: &[f64]| {
+            let share = worst(encoding, values);
+            assert!(share <= 1.0, "{} of {values:?}: {share} of its bound", encoding.name);
+            largest = f64::max(largest, share);
+        };
+        for encoding in &HORIZON {
+            let low = if encoding.component.is_signed() { -FRAC_PI_2 } else { 0.0 };
+            for i in 0..=40_009 {
+                hold(encoding, &[low + (FRAC_PI_2 - low) * dense(i, 40_009)]);
+            }
+        }
+        for encoding in &SHARE {
+            (0..=40_009).for_each(|i| hold(encoding, &[dense(i, 40_009)]));
+        }
+        for encoding in &BENT_NORMAL {
+            for i in 0..=307 {
+                for j in 0..=211 {
+                    let (z, phi) = (dense(i, 307), 2.0 * PI * dense(j, 211));
+                    let r = (1.0 - z * z).sqrt();
+                    hold(encoding, &[r * phi.cos(), r * phi.sin(), z, PI * dense(i + j, 518)]);
+                }
+            }
+        }
+        for encoding in &COEFFICIENTS {
+            (0..=40_009).for_each(|i| {
+                let v = 4.0 * dense(i, 40_009) - 2.0;
+                hold(encoding, &[v, v * 1e-3, v * 1e-7, v * v]);
+            });
+        }
+        // Bounds are near what happens, not far beyond it.
+        assert!(largest > 0.99, "{largest}");
+    }
+
+    #[test]
+    fn a_code_off_by_one_is_beyond_the_bound() {
+        for encoding in HORIZON.iter().chain(&SHARE).filter(|e| e.component.is_normalised()) {
+            let step = 1.0 / encoding.component.one();
+            let allowed = encoding.bounds[0].absolute(encoding.component);
+            let mut value = [0.0];
+            (encoding.decode)(&[0.25 + step], &mut value);
+            let mut expected = [0.0];
+            (encoding.decode)(&[0.25], &mut expected);
+            let off = if encoding.name.ends_with("sin") {
+                value[0].sin() - expected[0].sin()
+            } else {
+                value[0] - expected[0]
+            };
+            assert!(off > 1.5 * allowed, "{}", encoding.name);
+        }
+    }
+
+    #[test]
+    fn codes_are_vulkans() {
+        let bytes = |component: Component, value| {
+            let mut bytes = Vec::new();
+            component.put(value, &mut bytes);
+            bytes
+        };
+        assert_eq!(bytes(Component::Unorm8, 1.0), [255]);
+        assert_eq!(bytes(Component::Snorm8, -1.0), [129]);
+        assert_eq!(bytes(Component::Unorm16, 0.5), 32768_u16.to_le_bytes());
+        assert_eq!(bytes(Component::Snorm16, -2.0), (-32767_i16).to_le_bytes());
+        assert_eq!(bytes(Component::F16, 1.0), 0x3c00_u16.to_le_bytes());
+        assert_eq!(bytes(Component::F32, -0.25), (-0.25_f32).to_le_bytes());
+    }
+}

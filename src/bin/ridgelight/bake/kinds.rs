@@ -1,0 +1,147 @@
+//! What can be baked: one file a kind, and a line of [`KINDS`].
+
+mod bent_normal;
+mod horizon;
+mod sh_transfer;
+mod sh_visibility;
+mod sky_view;
+mod visible_sky;
+
+use glam::DVec3;
+use ridgelight::Result;
+use ridgelight::bake::{Encoding, Ray, Sum, Summing};
+use ridgelight::scene::{Border, Quality};
+
+use super::map::{Format, MapFiles};
+
+/// All of them, as --help lists them.
+pub static KINDS: [&Kind; 6] = [
+    &horizon::KIND,
+    &sky_view::KIND,
+    &visible_sky::KIND,
+    &bent_normal::KIND,
+    &sh_visibility::KIND,
+    &sh_transfer::KIND,
+];
+
+/// What can be baked.
+pub struct Kind {
+    /// As `--what` takes it; its files are called so, with `_` for `-`.
+    pub name: &'static str,
+    /// What it is, for --help and the sheet.
+    pub about: &'static str,
+    /// How its values are packed; the first is the default.
+    pub encodings: &'static [Encoding],
+    /// Files that are written where none are asked for.
+    pub formats: &'static [Format],
+    /// GLSL that reads the .ktx2, less the constants of a [`Map`].
+    pub decoder: &'static str,
+    /// Begins one.
+    pub begin: fn(&Asked) -> Result<Making>,
+}
+
+/// What is asked of a kind.
+pub struct Asked<'a> {
+    pub border: Border,
+    pub quality: &'a Quality,
+    pub encoding: &'static Encoding,
+    /// Of the field.
+    pub samples: usize,
+}
+
+/// A map as it will stand in files.
+pub struct Map {
+    /// A plane of values each, as channels of an .exr are called, in the order of an .npy.
+    pub planes: Vec<String>,
+    /// What the planes hold, one after the other; one entry where all hold the same.
+    pub values: Vec<Value>,
+    /// Whether the .ktx2 is an array, a layer for as many planes as its encoding takes.
+    pub is_array: bool,
+    /// Constants that the decoder needs, as lines of GLSL.
+    pub constants: Vec<String>,
+}
+
+/// A value of a sample.
+pub struct Value {
+    pub name: &'static str,
+    pub about: &'static str,
+    /// "rad", or nothing.
+    pub unit: &'static str,
+    /// The least and the largest that it can be.
+    pub range: [f64; 2],
+}
+
+/// A kind on its way.
+pub struct Making {
+    pub map: Map,
+    pub maker: Box<dyn Maker>,
+}
+
+/// Makes a map of the horizons of a circle.
+pub trait Maker {
+    /// Bytes that it holds until the end.
+    fn bytes(&self) -> u64;
+
+    /// Takes an azimuth, in the order of the circle: elevations, radians, and unit normals of all samples.
+    fn add(
+        &mut self,
+        ray: Ray,
+        elevations_rad: &[f32],
+        normals: &[DVec3],
+        files: &mut MapFiles,
+    ) -> Result<()>;
+
+    /// Hands over what is left, after the last azimuth.
+    fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()>;
+}
+
+/// A kind that is a sum over azimuths.
+struct Sums {
+    summing: Summing,
+    bytes: u64,
+}
+
+impl Sums {
+    fn begin(what: Box<dyn Sum>, asked: &Asked, map: Map) -> Making {
+        // The sums, and the values as they are made of them.
+        let bytes =
+            Summing::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
+        let summing = Summing::new(what, asked.samples);
+        Making { map, maker: Box::new(Self { summing, bytes }) }
+    }
+}
+
+impl Maker for Sums {
+    fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    fn add(
+        &mut self,
+        ray: Ray,
+        elevations_rad: &[f32],
+        normals: &[DVec3],
+        _: &mut MapFiles,
+    ) -> Result<()> {
+        self.summing.add(ray, elevations_rad, normals);
+        Ok(())
+    }
+
+    fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()> {
+        let planes = self.summing.end(normals);
+        let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
+        planes.chunks(files.planes_at_once()).try_for_each(|layer| files.take(layer))
+    }
+}
+
+/// Coefficients of harmonics, four a texel.
+fn coefficients(kind: &Kind, order: usize, value: Value) -> Map {
+    let stem = super::map::stem(kind);
+    let bands = (0..order as isize).flat_map(|l| (-l..=l).map(move |m| (l, m)));
+    Map {
+        planes: bands.map(|(l, m)| format!("{stem}.l{l}m{m}")).collect(),
+        values: vec![value],
+        is_array: true,
+        constants: vec![format!("const int SH_COUNT = {};", order * order)],
+    }
+}

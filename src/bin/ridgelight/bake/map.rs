@@ -1,0 +1,404 @@
+//! A map's files: values go to all of them as they come, layer by layer.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use ridgelight::bake::{Component, Encoding};
+use ridgelight::files::{self, Channels, Ktx2Writer, Layer, NpyWriter, TexelFormat};
+use ridgelight::scene::HeightField;
+use ridgelight::{Error, Result};
+use serde_json::{Value as Json, json};
+
+use super::kinds::{Kind, Map};
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Exr,
+    Png,
+    Npy,
+    Ktx2,
+}
+
+impl Format {
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Exr => "exr",
+            Format::Png => "png",
+            Format::Npy => "npy",
+            Format::Ktx2 => "ktx2",
+        }
+    }
+
+    /// Whether it can hold what the encoding makes.
+    pub fn takes(self, encoding: &Encoding) -> bool {
+        let is_picture = encoding.component.is_normalised() && encoding.components < 4;
+        self != Format::Png || is_picture
+    }
+}
+
+/// What a kind's files are called, before the dot.
+pub fn stem(kind: &Kind) -> String {
+    kind.name.replace('-', "_")
+}
+
+/// What is written of a kind, and how.
+pub struct Wanted {
+    pub kind: &'static Kind,
+    pub encoding: &'static Encoding,
+    pub formats: Vec<Format>,
+}
+
+impl Wanted {
+    fn layers(&self, map: &Map) -> usize {
+        map.planes.len().div_ceil(self.encoding.values)
+    }
+
+    fn texels(&self) -> TexelFormat {
+        // Three components have a fourth beside them, as no device must sample textures of three.
+        let count = self.encoding.components;
+        TexelFormat {
+            component: self.encoding.component,
+            count: if count == 3 { 4 } else { count },
+        }
+    }
+
+    /// Of the pictures, one a layer.
+    fn pictures(&self, map: &Map) -> Vec<String> {
+        let stem = stem(self.kind);
+        if !map.is_array {
+            return vec![format!("{stem}.png")];
+        }
+        (0..self.layers(map)).map(|k| format!("{stem}_{k:04}.png")).collect()
+    }
+
+    /// Every file, and the most bytes that it may take.
+    pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
+        let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
+        let samples = samples as u64;
+        let mut all = Vec::new();
+        for format in &self.formats {
+            let name = format!("{stem}.{}", format.name());
+            let texels = self.texels().bytes() as u64;
+            match format {
+                // ZIP adds little to what it cannot make smaller.
+                Format::Exr => all.push((name, 4 * planes * samples / 100 * 101 + 65_536)),
+                Format::Npy => all.push((name, 4 * planes * samples + 256)),
+                Format::Ktx2 => {
+                    all.push((name, texels * self.layers(map) as u64 * samples + 1024));
+                }
+                Format::Png => {
+                    let most = (texels + 2) * samples / 100 * 101 + 65_536;
+                    all.extend(self.pictures(map).into_iter().map(|name| (name, most)));
+                }
+            }
+        }
+        all.push((format!("{stem}.glsl"), self.decoder(map).len() as u64));
+        all
+    }
+
+    /// Bytes that its files hold until they are written.
+    pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
+        let samples = samples as u64;
+        let of = |format: &Format| match format {
+            Format::Exr => 4 * map.planes.len() as u64 * samples,
+            Format::Png => (self.texels().bytes() + 2) as u64 * self.layers(map) as u64 * samples,
+            // A layer, on its way.
+            Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
+        };
+        self.formats.iter().map(of).sum()
+    }
+
+    /// GLSL: constants, then what reads the map by them.
+    pub fn decoder(&self, map: &Map) -> String {
+        let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
+        constants + self.kind.decoder
+    }
+}
+
+enum Open {
+    Exr(PathBuf, Vec<Vec<f32>>),
+    Npy(PathBuf, NpyWriter),
+    Ktx2(PathBuf, Ktx2Writer),
+    /// Samples of each picture.
+    Png(Vec<(PathBuf, Vec<u8>)>),
+}
+
+/// A map's files, until [`finish`](Self::finish) nowhere to be seen.
+pub struct MapFiles<'a> {
+    wanted: Wanted,
+    map: Map,
+    field: &'a HeightField,
+    folder: PathBuf,
+    texts: Vec<(String, String)>,
+    open: Vec<Open>,
+    taken: usize,
+    /// Components that were beyond their range by more than half a step, and the most that one was.
+    clamped: (u64, f64),
+}
+
+impl<'a> MapFiles<'a> {
+    /// Begins all of them.
+    pub fn create(
+        folder: &Path,
+        wanted: Wanted,
+        map: Map,
+        field: &'a HeightField,
+        hash: &str,
+    ) -> Result<Self> {
+        let size = [field.cols(), field.rows()];
+        let texts: Vec<(String, String)> = [
+            ("ridgelight.kind", wanted.kind.name),
+            ("ridgelight.encoding", wanted.encoding.name),
+            ("ridgelight.decoding", wanted.encoding.decoding),
+            ("ridgelight.field_hash", hash),
+        ]
+        .map(|(name, text)| (name.to_owned(), text.to_owned()))
+        .into();
+        let path = |format: Format| folder.join(format!("{}.{}", stem(wanted.kind), format.name()));
+        let layers = map.is_array.then(|| wanted.layers(&map));
+        let open = wanted.formats.iter().map(|format| {
+            Ok(match format {
+                Format::Exr => Open::Exr(path(*format), Vec::new()),
+                Format::Npy => {
+                    let mut shape = vec![map.planes.len(), size[1], size[0]];
+                    if map.planes.len() == 1 && !map.is_array {
+                        shape.remove(0);
+                    }
+                    Open::Npy(path(*format), NpyWriter::create(&path(*format), &shape)?)
+                }
+                Format::Ktx2 => {
+                    let path = path(*format);
+                    let texels = wanted.texels();
+                    let writer = Ktx2Writer::create(&path, texels, size, layers, &texts)?;
+                    Open::Ktx2(path, writer)
+                }
+                Format::Png => Open::Png(Vec::new()),
+            })
+        });
+        let open = open.collect::<Result<_>>()?;
+        let folder = folder.to_owned();
+        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, clamped: (0, 0.0) })
+    }
+
+    /// As many planes as a layer's texels stand for.
+    pub fn planes_at_once(&self) -> usize {
+        self.wanted.encoding.values
+    }
+
+    /// Takes a layer: as many planes as [`planes_at_once`](Self::planes_at_once), fewer in the last.
+    pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
+        let (texels, picture) = self.coded(planes);
+        let voids = self.field.voids();
+        let masked = |plane: &[f32]| {
+            let mut plane = plane.to_vec();
+            crate::setup::mask_voids(self.field, &mut plane, 1);
+            plane
+        };
+        let pictures = self.wanted.pictures(&self.map);
+        for open in &mut self.open {
+            match open {
+                Open::Exr(_, kept) => kept.extend(planes.iter().map(|plane| masked(plane))),
+                Open::Npy(_, writer) => {
+                    for plane in planes {
+                        match voids {
+                            None => writer.write(plane)?,
+                            Some(_) => writer.write(&masked(plane))?,
+                        }
+                    }
+                }
+                Open::Ktx2(_, writer) => writer.write(&texels)?,
+                Open::Png(kept) => {
+                    let name = &pictures[self.taken];
+                    kept.push((self.folder.join(name), picture.clone()));
+                }
+            }
+        }
+        self.taken += 1;
+        Ok(())
+    }
+
+    fn has(&self, format: Format) -> bool {
+        self.wanted.formats.contains(&format)
+    }
+
+    /// Channels of a picture: components, and opacity where there are voids.
+    fn channels(&self) -> usize {
+        self.wanted.encoding.components + usize::from(self.field.voids().is_some())
+    }
+
+    /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, 16 bits big-endian.
+    fn coded(&mut self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
+        let (encoding, voids) = (self.wanted.encoding, self.field.voids());
+        let (component, format) = (encoding.component, self.wanted.texels());
+        let samples = self.field.rows() * self.field.cols();
+        let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
+        let reserve = |is_wanted: bool, each: usize| {
+            Vec::with_capacity(if is_wanted { each * samples } else { 0 })
+        };
+        let mut texels = reserve(has_texels, format.bytes());
+        let mut picture = reserve(has_picture, self.channels() * component.bytes());
+        if !has_texels && !has_picture {
+            return (texels, picture);
+        }
+        let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
+        let least = if component.is_signed() { -1.0 } else { 0.0 };
+        let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
+        for at in 0..samples {
+            for (value, plane) in values.iter_mut().zip(planes) {
+                *value = f64::from(plane[at]);
+            }
+            (encoding.encode)(values, parts);
+            let is_void = voids.is_some_and(|v| v[at]);
+            for part in parts.iter() {
+                let beyond = (part - 1.0).max(least - part);
+                if component.is_normalised() && beyond > component.half_step() && !is_void {
+                    self.clamped = (self.clamped.0 + 1, self.clamped.1.max(beyond));
+                }
+            }
+            if has_texels {
+                parts.iter().for_each(|part| component.put(*part, &mut texels));
+                if parts.len() < format.count {
+                    component.put(if is_void { 0.0 } else { 1.0 }, &mut texels);
+                }
+            }
+            if has_picture {
+                for part in parts.iter() {
+                    let part = if component.is_signed() { 0.5 + 0.5 * part } else { *part };
+                    sample(&mut picture, component, if is_void { 0.0 } else { part });
+                }
+                if voids.is_some() {
+                    sample(&mut picture, component, if is_void { 0.0 } else { 1.0 });
+                }
+            }
+        }
+        (texels, picture)
+    }
+
+    /// A line on values that the encoding does not reach, where there are any.
+    pub fn note(&self) -> Option<String> {
+        let (count, most) = self.clamped;
+        (count > 0).then(|| {
+            let (kind, encoding) = (self.wanted.kind.name, self.wanted.encoding.name);
+            format!(
+                "note: {kind}: {count} components lie beyond what {encoding} holds, by up to {most:.2e} of its range, and \
+                 are its ends: few azimuths for such slopes"
+            )
+        })
+    }
+
+    /// Puts all files at their places, and says what they are; `metadata` is for those that keep it.
+    pub fn finish(mut self, metadata: &[(String, String)]) -> Result<Json> {
+        let size = [self.field.cols(), self.field.rows()];
+        let mut sheets = Vec::new();
+        let bits = 8 * self.wanted.encoding.component.bytes() as u32;
+        for open in std::mem::take(&mut self.open) {
+            match open {
+                Open::Exr(path, planes) => {
+                    let layers = planes.iter().zip(&self.map.planes).map(|(plane, name)| Layer {
+                        name: String::new(),
+                        channels: Channels::Scalar(name, plane),
+                    });
+                    let layers: Vec<Layer> = layers.collect();
+                    let mut all = metadata.to_vec();
+                    all.extend(
+                        self.texts.iter().filter(|(name, _)| !name.contains("cod")).cloned(),
+                    );
+                    files::write_exr(&path, size[1], size[0], &layers, &all)?;
+                    sheets.push(self.sheet(Format::Exr, &path, "f32")?);
+                }
+                Open::Npy(path, writer) => {
+                    writer.finish()?;
+                    sheets.push(self.sheet(Format::Npy, &path, "f32")?);
+                }
+                Open::Ktx2(path, writer) => {
+                    writer.finish()?;
+                    let format = self.wanted.texels().vulkan().map_or("", |(_, name)| name);
+                    sheets.push(self.sheet(Format::Ktx2, &path, format)?);
+                }
+                Open::Png(pictures) => {
+                    for (path, samples) in pictures {
+                        let channels = (self.channels(), bits);
+                        files::write_codes(&path, size, channels, &samples, &self.texts)?;
+                        let what = format!(
+                            "{} of {bits} bits",
+                            ["Y", "YA", "RGB", "RGBA"][channels.0 - 1]
+                        );
+                        sheets.push(self.sheet(Format::Png, &path, &what)?);
+                    }
+                }
+            }
+        }
+        let decoder = format!("{}.glsl", stem(self.wanted.kind));
+        files::write_text(&self.folder.join(&decoder), &self.wanted.decoder(&self.map))?;
+        let values =
+            self.map.values.iter().map(
+                |v| json!({ "name": v.name, "about": v.about, "unit": v.unit, "range": v.range }),
+            );
+        let values: Vec<Json> = values.collect();
+        let mut sheet = json!({
+            "kind": self.wanted.kind.name, "about": self.wanted.kind.about, "values": values,
+            "planes": self.map.planes, "encoding": self.wanted.encoding.name, "decoder": decoder, "files": sheets,
+        });
+        if self.clamped.0 > 0 {
+            let (count, most) = self.clamped;
+            sheet["beyond_range"] = json!({ "components": count, "at_most": most });
+        }
+        Ok(sheet)
+    }
+
+    /// What one file is.
+    fn sheet(&self, format: Format, path: &Path, holds: &str) -> Result<Json> {
+        let about = std::fs::metadata(path);
+        let about = about.map_err(|source| Error::Io { path: path.to_owned(), source })?;
+        let encoding = self.wanted.encoding;
+        let is_coded = matches!(format, Format::Ktx2 | Format::Png);
+        let decoding = match format {
+            Format::Exr | Format::Npy => "the values themselves".to_owned(),
+            Format::Png if encoding.component.is_signed() => {
+                format!("{}, where a sample v (0 to 1) stands for 2v - 1", encoding.decoding)
+            }
+            _ => encoding.decoding.to_owned(),
+        };
+        let component = encoding.component;
+        let coded = encoding.bounds.iter().map(|b| {
+            let [most, share] = [b.absolute(component), b.relative(component)];
+            json!({ "of": b.of, "unit": b.unit, "at_most": most, "and_of_the_value": share })
+        });
+        let bounds: Vec<Json> = if is_coded {
+            coded.collect()
+        } else {
+            // Of f64 to f32.
+            vec![
+                json!({ "of": "value", "unit": "", "at_most": 0.0, "and_of_the_value": 1.0 / f64::from(1 << 24) }),
+            ]
+        };
+        let mut sheet = json!({
+            "file": path.file_name().map(|n| n.to_string_lossy()), "format": format.name(), "bytes": about.len(),
+            "texels": holds, "decoding": decoding, "error": bounds,
+        });
+        if self.field.voids().is_some() {
+            sheet["voids"] = match format {
+                Format::Exr | Format::Npy => "NaN",
+                Format::Png => "transparent: opacity is the last channel",
+                Format::Ktx2 if self.wanted.texels().count > encoding.components => {
+                    "what the ground has there once it is filled from around; a is 0 there, else 1"
+                }
+                Format::Ktx2 => "what the ground has there once it is filled from around",
+            }
+            .into();
+        }
+        Ok(sheet)
+    }
+}
+
+/// A sample of a picture, of as many bits as the component.
+fn sample(picture: &mut Vec<u8>, component: Component, value: f64) {
+    match component.bytes() {
+        1 => Component::Unorm8.put(value, picture),
+        _ => {
+            Component::Unorm16.put(value, picture);
+            let end = picture.len();
+            picture.swap(end - 2, end - 1);
+        }
+    }
+}

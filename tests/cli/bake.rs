@@ -1,0 +1,268 @@
+//! `bake`: what is refused, what is written, and what its sheet says of it.
+
+use serde_json::Value;
+
+use crate::needs_vulkan::{done, json, write_field};
+use crate::{Folder, read, refused};
+
+#[test]
+fn wrong_requests_are_told() {
+    let folder = Folder::new();
+    folder.write("taken", b"");
+    let with = |rest: &str| format!("bake a.asc -o out {rest}");
+    let horizon = |rest: &str| with(&format!("--what horizon {rest}"));
+    let all = [
+        ("bake a.asc --what horizon".to_owned(), 2, &["--output"][..]),
+        (with(""), 2, &["--what"]),
+        (with("--what horizons"), 2, &["'horizons'", "horizon, sky-view, visible-sky"]),
+        (horizon(" --what sky-view,horizon").replace("  ", " "), 2, &["horizon twice"]),
+        (horizon("--format ktx"), 2, &["ktx", "ktx2"]),
+        (horizon("--format npy,npy"), 2, &["--format: found npy twice"]),
+        (horizon("--encoding unorm16-sin"), 2, &["KIND=ENCODING"]),
+        (horizon("--encoding horizon=unorm16"), 2, &["horizon is packed as", "unorm16-sin"]),
+        (horizon("--encoding sky-view=unorm8"), 2, &["found one of sky-view"]),
+        (
+            horizon("--encoding horizon=f32,horizon=snorm8-angle"),
+            2,
+            &["--encoding: found two of horizon"],
+        ),
+        (
+            horizon("--encoding horizon=f32 --format png"),
+            2,
+            &["found png with f32 of horizon", "ktx2"],
+        ),
+        (
+            with("--what bent-normal --encoding bent-normal=snorm8-xyz --format png"),
+            2,
+            &["found png with snorm8-xyz of bent-normal"],
+        ),
+        (
+            horizon("--encoding horizon=unorm16-sin --border open"),
+            2,
+            &["found unorm16-sin with --border open", "snorm16-angle"],
+        ),
+        (with("--what sh-transfer --sh-order 6"), 2, &["--sh-order", "found 6", "2 to 5"]),
+        (with("--what sh-visibility --sh-order 7"), 2, &["--sh-order: found 7"]),
+        (horizon("--azimuths 3"), 2, &["--azimuths: found 3"]),
+        (horizon("--method sweep --lines exact"), 2, &["--lines: found exact", "--method brute"]),
+        (horizon("--memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
+        (horizon("--sky 1"), 2, &["--sky"]),
+        (horizon("--json out.txt"), 2, &["--json: found out.txt"]),
+        ("bake none.asc -o out --what horizon".to_owned(), 1, &["none.asc"]),
+        ("bake a.asc -o taken --what horizon".to_owned(), 2, &["-o", "the file taken"]),
+        ("bake a.asc -o no/out --what horizon".to_owned(), 2, &["-o", "a folder no that exists"]),
+        (horizon(""), 1, &["driver"]),
+    ];
+    let all: Vec<(String, i32, &[&str])> =
+        all.map(|(words, status, says)| (words.trim_end().to_owned(), status, says)).into();
+    let cases: Vec<_> = all.iter().map(|(words, s, says)| (words.as_str(), *s, *says)).collect();
+    refused(&folder, &cases);
+    // An output that is the input would take it away.
+    std::fs::create_dir(folder.path("in")).unwrap();
+    std::fs::rename(folder.path("a.npy"), folder.path("in/horizon.npy")).unwrap();
+    let own = "bake in/horizon.npy -o in --what horizon --format npy";
+    refused(&folder, &[(own, 2, &["-o", "which is the input"])]);
+}
+
+/// Each file with the most that it may take, and memory on both sides; nothing is run or written.
+#[test]
+fn a_plan_says_what_it_will_take() {
+    let folder = Folder::new();
+    let before = folder.contents();
+    let words =
+        "bake a.asc -o out --what horizon,sky-view,sh-visibility --azimuths 8 --sh-order 3 --plan";
+    let run = folder.run_without_driver(&words.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let said = |what: &str| -> u64 {
+        let line = run.out.lines().find(|l| l.ends_with(what));
+        let line = line.unwrap_or_else(|| panic!("{what} in\n{}", run.out));
+        line.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    // 12 samples: 8 layers of 2 bytes; 1 of 2; 3 layers of 4 coefficients of 2.
+    for (file, texels) in
+        [("horizon.ktx2", 192), ("sky_view.ktx2", 24), ("sh_visibility.ktx2", 288)]
+    {
+        assert!((texels..texels + 2048).contains(&said(file)), "{file}");
+    }
+    for file in ["horizon.glsl", "sky_view.png", "sh_visibility.exr", "bake.json"] {
+        assert!(said(file) > 0);
+    }
+    // Nine sums of 8 bytes are the most of what is held; the heights the least on the device.
+    assert!(said("memory of this program") >= 12 * 9 * 8);
+    assert!(run.out.contains("memory of lavapipe"), "{}", run.out);
+    assert_eq!(folder.contents(), before);
+}
+
+fn map<'a>(sheet: &'a Value, kind: &str) -> &'a Value {
+    let all = sheet["maps"].as_array().unwrap();
+    all.iter().find(|map| map["kind"] == kind).unwrap_or_else(|| panic!("{kind} in {all:?}"))
+}
+
+/// A field of a wall, its maps in every format.
+#[test]
+fn gpu_every_file_is_there_and_told_of() {
+    let folder = Folder::new();
+    write_field(&folder, 9, |_, c| if c == 6 { 3.0 } else { 0.0 });
+    let kinds = "horizon,sky-view,visible-sky,bent-normal";
+    done(
+        &folder,
+        &format!("bake field.npy -o out --what {kinds} --azimuths 8 --format exr,png,npy,ktx2"),
+    );
+    done(
+        &folder,
+        "bake field.npy -o out2 --what sh-visibility,sh-transfer --sh-order 2 --azimuths 8",
+    );
+    let mut sheets = [json(&folder.path("out/bake.json")), json(&folder.path("out2/bake.json"))];
+    for (sheet, out) in sheets.iter().zip(["out", "out2"]) {
+        let mut told = vec!["bake.json".to_owned()];
+        for map in sheet["maps"].as_array().unwrap() {
+            told.push(map["decoder"].as_str().unwrap().to_owned());
+            for file in map["files"].as_array().unwrap() {
+                let name = file["file"].as_str().unwrap();
+                let length = std::fs::metadata(folder.path(out).join(name)).unwrap().len();
+                assert_eq!(file["bytes"], length, "{name}");
+                assert!(!file["error"].as_array().unwrap().is_empty(), "{name}");
+                assert!(!file["decoding"].as_str().unwrap().is_empty(), "{name}");
+                told.push(name.to_owned());
+            }
+            assert!(map["beyond_range"].is_null(), "{map}");
+        }
+        let entries = std::fs::read_dir(folder.path(out)).unwrap();
+        let mut there: Vec<String> =
+            entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        told.sort();
+        there.sort();
+        assert_eq!(told, there);
+        for decoder in there.iter().filter(|name| name.ends_with(".glsl")) {
+            let text = std::fs::read_to_string(folder.path(out).join(decoder)).unwrap();
+            assert!(text.lines().count() <= 20, "{decoder} has {} lines", text.lines().count());
+        }
+    }
+    // Eight pictures of a horizon's azimuths, one of each other kind.
+    let pictures = |kind: &str| {
+        let files = map(&sheets[0], kind)["files"].as_array().unwrap().iter();
+        files.filter(|f| f["format"] == "png").count()
+    };
+    assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
+    assert_eq!(sheets[0]["settings"]["azimuths"], 8);
+    assert_eq!(sheets[0]["settings"]["method"], "brute");
+    // The hash is of the field, whatever is baked of it, and stands in what is written.
+    let hash = sheets[0]["field"]["hash"].as_str().unwrap().to_owned();
+    assert_eq!(sheets[1]["field"]["hash"], hash.as_str());
+    let exr = crate::needs_vulkan::attributes(&folder.path("out/sky_view.exr"));
+    assert_eq!(exr["field_hash"], hash);
+    // The same is baked again, bit for bit, over what is there.
+    let kept = |folder: &Folder| std::fs::read(folder.path("out2/sh_transfer.ktx2")).unwrap();
+    let first = kept(&folder);
+    done(&folder, "bake field.npy -o out2 --what sh-transfer --sh-order 2 --azimuths 8 --quiet");
+    assert!(kept(&folder) == first);
+    sheets[1] = json(&folder.path("out2/bake.json"));
+    assert_eq!(sheets[1]["maps"].as_array().unwrap().len(), 1);
+}
+
+/// Values are those of `horizon`, and a scene file gives what flags give.
+#[test]
+fn gpu_horizons_are_those_of_the_command_horizon() {
+    let folder = Folder::new();
+    write_field(&folder, 8, |r, c| ((r * 31 + c * 17) % 7) as f32);
+    folder.write("scene.json", br#"{ "field": { "file": "field.npy", "cell_m": [2, 3] }, "quality": { "azimuths": 8, "method": "brute" } }"#);
+    done(&folder, "horizon --scene scene.json -o h.npy");
+    done(&folder, "bake --scene scene.json -o out --what horizon --format npy,exr,ktx2");
+    let (kept, baked) = (read(&folder.path("h.npy")), read(&folder.path("out/horizon.npy")));
+    assert_eq!(kept.planes, baked.planes);
+    let layers = read(&folder.path("out/horizon.exr"));
+    assert_eq!(layers.names[1], "horizon.045.000");
+    assert_eq!(layers.planes, baked.planes);
+}
+
+#[test]
+fn gpu_voids_are_nan_transparent_and_filled() {
+    let folder = Folder::new();
+    folder.write("v.asc", b"ncols 4 nrows 3 cellsize 1 nodata_value -9 0 0 0 0 0 5 -9 0 0 0 0 0");
+    const VOID: usize = 4 + 2;
+    done(
+        &folder,
+        "bake v.asc -o out --what horizon,sky-view,bent-normal --azimuths 4 --format exr,npy,png,ktx2",
+    );
+    let path = |name: &str| folder.path("out").join(name);
+    for name in ["horizon", "sky_view", "bent_normal"] {
+        for format in ["exr", "npy"] {
+            for plane in read(&path(&format!("{name}.{format}"))).planes {
+                for (i, v) in plane.iter().enumerate() {
+                    assert_eq!(v.is_nan(), i == VOID, "{name}.{format}, sample {i}: {v}");
+                }
+            }
+        }
+    }
+    for name in ["horizon_0003.png", "sky_view.png", "bent_normal.png"] {
+        let picture = read(&path(name));
+        let alpha = crate::needs_vulkan::plane(&picture, "A");
+        for (i, v) in alpha.iter().enumerate() {
+            assert_eq!(*v, if i == VOID { 0.0 } else { 1.0 }, "{name}, sample {i}");
+        }
+    }
+    // In a texture the filled ground's, which filters take from, and 0 in the component beside.
+    let texels = |name: &str| {
+        let bytes = std::fs::read(path(name)).unwrap();
+        let reader = ktx2::Reader::new(&bytes).unwrap();
+        let level = reader.levels().next().unwrap().data;
+        level.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b)).collect::<Vec<_>>()
+    };
+    let sky = texels("sky_view.ktx2");
+    assert!(sky.iter().all(|code| *code > 0), "{sky:?}");
+    let bent = texels("bent_normal.ktx2");
+    for (i, texel) in bent.as_chunks::<4>().0.iter().enumerate() {
+        assert_eq!(texel[3], if i == VOID { 0 } else { 65535 }, "sample {i}");
+    }
+    let sheet = json(&path("bake.json"));
+    assert_eq!(sheet["field"]["voids"], 1);
+    for file in map(&sheet, "bent-normal")["files"].as_array().unwrap() {
+        assert!(file["voids"].is_string(), "{file}");
+    }
+}
+
+/// One sample, one row, one column; the steepest that is taken; all of every kind, finite and in range.
+#[test]
+fn gpu_extremes() {
+    let folder = Folder::new();
+    folder.write("one.asc", b"ncols 1 nrows 1 cellsize 1 7");
+    folder.write("row.asc", b"ncols 5 nrows 1 cellsize 1 0 1e6 0 -1e6 3");
+    folder.write("column.asc", b"ncols 1 nrows 3 cellsize 1e-3 0 5 0");
+    folder.write("flat.asc", b"ncols 3 nrows 2 cellsize 1e9 0 0 0 0 0 1e-6");
+    let kinds = "horizon,sky-view,visible-sky,bent-normal,sh-visibility,sh-transfer";
+    for field in ["one", "row", "column", "flat"] {
+        for border in ["plane", "open", "periodic"] {
+            let out = format!("{field}_{border}");
+            done(
+                &folder,
+                &format!(
+                    "bake {field}.asc -o {out} --border {border} --what {kinds} --azimuths 4 --format npy,ktx2 --quiet"
+                ),
+            );
+            let sheet = json(&folder.path(&out).join("bake.json"));
+            for map in sheet["maps"].as_array().unwrap() {
+                let values = map["values"].as_array().unwrap();
+                let name = map["kind"].as_str().unwrap().replace('-', "_");
+                let planes = read(&folder.path(&out).join(format!("{name}.npy"))).planes;
+                for (i, plane) in planes.iter().enumerate() {
+                    let range = &values[i.min(values.len() - 1)]["range"];
+                    // Four azimuths are no whole sum: what they make of a share may pass 1 on the steepest slopes, and is
+                    // then told of; else a rounding to f32 is all.
+                    let slack = if map["beyond_range"].is_null() { 1e-6 } else { 1.0 };
+                    let [low, high] = [0, 1].map(|at| range[at].as_f64().unwrap());
+                    for value in plane {
+                        let value = f64::from(*value);
+                        assert!(
+                            value >= low - slack && value <= high + slack,
+                            "{out}, {name}: {value} in {low} to {high}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    // A level sample sees all of the sky, in f32's nearest.
+    let one = |name: &str| read(&folder.path("one_plane").join(name)).planes[0][0];
+    assert_eq!([one("sky_view.npy"), one("visible_sky.npy")], [1.0, 1.0]);
+    assert_eq!(one("horizon.npy"), 0.0);
+}

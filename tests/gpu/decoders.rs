@@ -1,0 +1,473 @@
+//! The decoders that `bake` writes beside its maps, compiled as they are and run on the device over the files of a real
+//! field, against the values that were packed: each within the error that its sheet states.
+
+use std::path::Path;
+use std::process::Command;
+
+use ash::vk;
+use ridgelight::bake::{self, Encoding};
+use ridgelight::files::{Planes, read_planes};
+use ridgelight::gpu::{Blocks, Headless, Host, MemoryRequest, MemoryUse};
+use ridgelight::{gpu::Allocation, gpu::Allocator};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::Device;
+
+const AZIMUTHS: u32 = 8;
+const ORDER: usize = 3;
+
+/// A shader of `decoders/`, its decoder, and the constants that the written decoder has by name.
+struct Decoder {
+    kind: &'static str,
+    spirv: &'static [u8],
+    body: &'static str,
+    encodings: &'static [Encoding],
+    is_array: bool,
+    /// Planes of what it writes.
+    planes: usize,
+    constants: fn(&Encoding) -> Vec<(&'static str, Constant)>,
+}
+
+#[derive(Clone, Copy)]
+enum Constant {
+    Int(i32),
+    Float(f64),
+    Bool(bool),
+}
+
+impl Constant {
+    /// As the specialisation of a shader takes it.
+    fn bits(self) -> u32 {
+        match self {
+            Constant::Int(v) => v as u32,
+            Constant::Float(v) => (v as f32).to_bits(),
+            Constant::Bool(v) => u32::from(v),
+        }
+    }
+
+    /// As the written decoder has it.
+    fn line(self, name: &str) -> String {
+        match self {
+            Constant::Int(v) => format!("const int {name} = {v};\n"),
+            Constant::Float(v) => format!("const float {name} = {v:?};\n"),
+            Constant::Bool(v) => format!("const bool {name} = {v};\n"),
+        }
+    }
+}
+
+macro_rules! decoder {
+    ($name:literal, $kind:literal, $encodings:expr, $is_array:literal, $planes:expr, $constants:expr) => {
+        Decoder {
+            kind: $kind,
+            spirv: include_bytes!(concat!(env!("OUT_DIR"), "/", $name, ".spv")),
+            body: include_str!(concat!("../../shaders_glsl/decode/", $name, ".glsl")),
+            encodings: &$encodings,
+            is_array: $is_array,
+            planes: $planes,
+            constants: $constants,
+        }
+    };
+}
+
+fn count(_: &Encoding) -> Vec<(&'static str, Constant)> {
+    vec![("SH_COUNT", Constant::Int((ORDER * ORDER) as i32))]
+}
+
+fn all() -> [Decoder; 6] {
+    let horizon = |encoding: &Encoding| {
+        let is_angle = encoding.name.ends_with("-angle");
+        let scale = if is_angle { FRAC_PI_2 } else { 1.0 };
+        let azimuths = ("HORIZON_AZIMUTHS", Constant::Int(AZIMUTHS as i32));
+        vec![azimuths, ("HORIZON_SCALE", Constant::Float(scale))]
+    };
+    let bent = |encoding: &Encoding| {
+        let is_octahedral = encoding.name.ends_with("-octahedral");
+        let scale = if encoding.name == "f32" { 1.0 } else { PI };
+        let octahedral = ("BENT_OCTAHEDRAL", Constant::Bool(is_octahedral));
+        vec![octahedral, ("BENT_CONE_SCALE", Constant::Float(scale))]
+    };
+    let (none, squared) = (|_: &Encoding| Vec::new(), ORDER * ORDER);
+    [
+        decoder!("horizon", "horizon", bake::HORIZON, true, AZIMUTHS as usize, horizon),
+        decoder!("sky_view", "sky-view", bake::SHARE, false, 1, none),
+        decoder!("visible_sky", "visible-sky", bake::SHARE, false, 1, none),
+        decoder!("bent_normal", "bent-normal", bake::BENT_NORMAL, false, 4, bent),
+        decoder!("sh_visibility", "sh-visibility", bake::COEFFICIENTS, true, squared, count),
+        decoder!("sh_transfer", "sh-transfer", bake::COEFFICIENTS, true, squared, count),
+    ]
+}
+
+/// Bakes the bundled field, every kind with its encoding of this number (or its last), with its values beside.
+fn baked(folder: &Path, number: usize) -> serde_json::Value {
+    let (mut kinds, mut encodings) = (Vec::new(), Vec::new());
+    for decoder in all() {
+        kinds.push(decoder.kind);
+        encodings.push(format!("{}={}", decoder.kind, numbered(&decoder, number).name));
+    }
+    let field = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/mt_washington_256.png");
+    let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
+        .arg("bake")
+        .arg(field)
+        .args("--cell 66,92.6 --z-scale 3 --method sweep --format ktx2,npy --quiet".split(' '))
+        .args(["--azimuths", &AZIMUTHS.to_string(), "--sh-order", &ORDER.to_string()])
+        .args(["--what", &kinds.join(","), "--encoding", &encodings.join(",")])
+        .arg("-o")
+        .arg(folder)
+        .output()
+        .expect("the binary");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let sheet = std::fs::read(folder.join("bake.json")).expect("a sheet");
+    serde_json::from_slice(&sheet).expect("JSON")
+}
+
+fn numbered(decoder: &Decoder, number: usize) -> &'static Encoding {
+    &decoder.encodings[number.min(decoder.encodings.len() - 1)]
+}
+
+/// What the sheet promises of a map's texture: of what, at most, and a share of the value.
+fn promised(sheet: &serde_json::Value, kind: &str) -> Vec<(String, f64, f64)> {
+    let maps = sheet["maps"].as_array().expect("maps");
+    let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
+    assert!(map["beyond_range"].is_null(), "{kind}: values beyond what is encoded");
+    let files = map["files"].as_array().expect("files");
+    let texture = files.iter().find(|file| file["format"] == "ktx2").expect("a texture");
+    let errors = texture["error"].as_array().expect("errors").iter();
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let of = |e: &serde_json::Value| e["of"].as_str().expect("a text").to_owned();
+    errors.map(|e| (of(e), number(&e["at_most"]), number(&e["and_of_the_value"]))).collect()
+}
+
+/// The largest error of what was decoded, as a share of what is promised, and of what.
+fn worst(
+    promised: &[(String, f64, f64)],
+    found: &[f32],
+    truth: &Planes,
+    slack: f64,
+) -> (f64, String) {
+    let samples = truth.rows * truth.cols;
+    let at = |plane: usize, i: usize| {
+        (f64::from(found[plane * samples + i]), f64::from(truth.planes[plane][i]))
+    };
+    let mut worst = (0.0, String::new());
+    for (of, absolute, relative) in promised {
+        let mut hold = |is: f64, was: f64| {
+            let share = (is - was).abs() / (absolute + relative * was.abs() + slack);
+            // Nothing off of nothing allowed; and no number.
+            let share = if is == was { 0.0 } else { share };
+            let share = if share.is_nan() { f64::INFINITY } else { share };
+            if share > worst.0 {
+                worst = (share, of.clone());
+            }
+        };
+        for i in 0..samples {
+            let each = |plane| at(plane, i);
+            match of.as_str() {
+                "direction" => {
+                    let [a, b] = [0, 1].map(|side| {
+                        glam::DVec3::from_array([0, 1, 2].map(|p| [each(p).0, each(p).1][side]))
+                    });
+                    hold(a.cross(b).length().atan2(a.dot(b)), 0.0);
+                }
+                "cone's half-angle" => hold(each(3).0, each(3).1),
+                "components of the direction" => (0..3).for_each(|p| hold(each(p).0, each(p).1)),
+                "sine of the elevation" => (0..truth.planes.len()).for_each(|p| {
+                    let (sine, elevation) = each(p);
+                    hold(sine, elevation.sin());
+                }),
+                "elevation" | "share" | "coefficient" => {
+                    (0..truth.planes.len()).for_each(|p| hold(each(p).0, each(p).1));
+                }
+                other => panic!("no test of {other}"),
+            }
+        }
+    }
+    worst
+}
+
+/// Every decoder with every encoding of its kind.
+#[test]
+fn decoders_keep_what_sheets_promise() {
+    let device = Device::new();
+    let gpu = device.gpu.as_ref().expect("alive");
+    let folder = tempfile::tempdir().expect("a folder");
+    let most = all().iter().map(|d| d.encodings.len()).max().expect("some");
+    for number in 0..most {
+        let sheet = baked(folder.path(), number);
+        for decoder in all().iter().filter(|d| number < d.encodings.len()) {
+            let encoding = numbered(decoder, number);
+            let stem = decoder.kind.replace('-', "_");
+            let path = |extension: &str| folder.path().join(format!("{stem}.{extension}"));
+            // What is written is what is compiled here, behind the constants that it is specialised by.
+            let constants = (decoder.constants)(encoding);
+            let lines: String = constants.iter().map(|(name, c)| c.line(name)).collect();
+            let written = std::fs::read_to_string(path("glsl")).expect("a decoder");
+            assert_eq!(written, lines + decoder.body, "{stem}.glsl");
+            let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
+
+            let mut truth = read_planes(&path("npy")).expect("values");
+            let texture = std::fs::read(path("ktx2")).expect("a texture");
+            let promised = promised(&sheet, decoder.kind);
+            // An azimuth is within m 2^-22 of a step of the one that was asked for, across which horizons change by no
+            // more than a right angle.
+            let is_horizon = decoder.kind == "horizon";
+            let slack =
+                if is_horizon { FRAC_PI_2 * f64::from(AZIMUTHS) / f64::from(1 << 22) } else { 0.0 };
+            let found = decode(gpu, decoder, &bits, &texture, 0.0);
+            let (share, of) = worst(&promised, &found, &truth, slack);
+            println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
+            assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
+
+            // The comparison hears: what is off by three bounds.
+            let mut off = found.clone();
+            let (_, absolute, relative) = promised[promised.len() - 1].clone();
+            let last = off.len() - 1;
+            let is_sine = promised[0].0.starts_with("sine");
+            let value =
+                f64::from(truth.planes[truth.planes.len() - 1].last().copied().expect("some"));
+            let value = if is_sine { value.sin() } else { value };
+            off[last] = (value + 3.0 * (absolute + relative * value.abs() + slack) + 1e-6) as f32;
+            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: deaf", decoder.kind);
+
+            // Between two azimuths both count alike.
+            if is_horizon && !is_sine {
+                let found = decode(gpu, decoder, &bits, &texture, 0.5);
+                let first = truth.planes.clone();
+                for (k, plane) in truth.planes.iter_mut().enumerate() {
+                    let next = &first[(k + 1) % first.len()];
+                    plane.iter_mut().zip(next).for_each(|(a, b)| *a = 0.5 * (*a + b));
+                }
+                let (share, of) = worst(&promised, &found, &truth, slack);
+                assert!(share <= 1.0, "between azimuths, {}: {share} of {of}", encoding.name);
+            }
+        }
+    }
+}
+
+const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+    aspect_mask: vk::ImageAspectFlags::COLOR,
+    base_mip_level: 0,
+    level_count: 1,
+    base_array_layer: 0,
+    layer_count: vk::REMAINING_ARRAY_LAYERS,
+};
+
+/// A buffer of texels or of values, which the host can reach.
+struct Buffer {
+    buffer: vk::Buffer,
+    memory: Allocation,
+}
+
+impl Buffer {
+    fn new(host: &Host, blocks: &mut Blocks, bytes: usize, is_read: bool) -> Self {
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::STORAGE_BUFFER;
+        let info = vk::BufferCreateInfo::default().size(bytes as u64).usage(usage);
+        // SAFETY: the device is alive; the memory is the buffer's own.
+        unsafe {
+            let buffer = host.device.create_buffer(&info, None).expect("a buffer");
+            let requirements = host.device.get_buffer_memory_requirements(buffer);
+            let used_by = if is_read { MemoryUse::Readback } else { MemoryUse::Upload };
+            let request = MemoryRequest { name: "texels", requirements, used_by, is_linear: true };
+            let memory = blocks.allocate(&request).expect("memory");
+            host.device.bind_buffer_memory(buffer, memory.memory, memory.offset).expect("bound");
+            Self { buffer, memory }
+        }
+    }
+
+    fn mapped(&self) -> *mut u8 {
+        self.memory.mapped.expect("mapped").cast().as_ptr()
+    }
+}
+
+/// The texture as an image of its own format, in any layout for sampling once it is filled.
+fn image(
+    host: &Host,
+    blocks: &mut Blocks,
+    header: &ktx2::Header,
+    is_array: bool,
+) -> (vk::Image, vk::ImageView, Allocation) {
+    let format = vk::Format::from_raw(header.format.expect("a format").value() as i32);
+    let info = vk::ImageCreateInfo::default()
+        .image_type(vk::ImageType::TYPE_2D)
+        .format(format)
+        .extent(vk::Extent3D { width: header.pixel_width, height: header.pixel_height, depth: 1 })
+        .mip_levels(1)
+        .array_layers(header.layer_count.max(1))
+        .samples(vk::SampleCountFlags::TYPE_1)
+        .usage(vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST);
+    assert_eq!(header.layer_count > 0, is_array);
+    // SAFETY: the device is alive; the memory is the image's own.
+    unsafe {
+        let (instance, physical) = (&host.instance, host.physical_device);
+        let about = instance.get_physical_device_format_properties(physical, format);
+        let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE;
+        assert!(about.optimal_tiling_features.contains(needed), "{format:?} is not sampled here");
+        let image = host.device.create_image(&info, None).expect("an image");
+        let requirements = host.device.get_image_memory_requirements(image);
+        let used_by = MemoryUse::Device;
+        let request = MemoryRequest { name: "map", requirements, used_by, is_linear: false };
+        let memory = blocks.allocate(&request).expect("memory");
+        host.device.bind_image_memory(image, memory.memory, memory.offset).expect("bound");
+        let kind =
+            if is_array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        let info = vk::ImageViewCreateInfo::default()
+            .image(image)
+            .view_type(kind)
+            .format(format)
+            .subresource_range(WHOLE);
+        let view = host.device.create_image_view(&info, None).expect("a view");
+        (image, view, memory)
+    }
+}
+
+/// Runs a decoder over a texture, azimuths that many steps on: what it writes.
+fn decode(
+    gpu: &Headless,
+    decoder: &Decoder,
+    bits: &[u32],
+    texture: &[u8],
+    offset: f32,
+) -> Vec<f32> {
+    let host = gpu.host();
+    let device = &host.device;
+    let mut blocks = Blocks::new(host).expect("blocks");
+    let reader = ktx2::Reader::new(texture).expect("a texture");
+    let (header, texels) = (reader.header(), reader.levels().next().expect("a level").data);
+    let (width, height) = (header.pixel_width, header.pixel_height);
+    let samples = (width * height) as usize;
+    let upload = Buffer::new(host, &mut blocks, texels.len(), false);
+    let values = Buffer::new(host, &mut blocks, 4 * samples * decoder.planes, true);
+    let (map, view, map_memory) = image(host, &mut blocks, &header, decoder.is_array);
+    let entries: Vec<vk::SpecializationMapEntry> = (0..bits.len() as u32)
+        .map(|i| vk::SpecializationMapEntry { constant_id: i, offset: 4 * i, size: 4 })
+        .collect();
+    let data: Vec<u8> = bits.iter().flat_map(|b| b.to_ne_bytes()).collect();
+    let constants = vk::SpecializationInfo::default().map_entries(&entries).data(&data);
+    let words: Vec<u32> =
+        decoder.spirv.as_chunks::<4>().0.iter().map(|b| u32::from_ne_bytes(*b)).collect();
+    let kinds = [vk::DescriptorType::COMBINED_IMAGE_SAMPLER, vk::DescriptorType::STORAGE_BUFFER];
+    let bindings = [0, 1].map(|i| {
+        vk::DescriptorSetLayoutBinding::default()
+            .binding(i as u32)
+            .descriptor_type(kinds[i])
+            .descriptor_count(1)
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+    });
+    let sizes = kinds.map(|ty| vk::DescriptorPoolSize::default().ty(ty).descriptor_count(1));
+    let push_range =
+        [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: 12 }];
+    let push: Vec<u8> =
+        [width, height, offset.to_bits()].iter().flat_map(|word| word.to_ne_bytes()).collect();
+    // Only the array's own layers and planes count: a decoder of an array runs once a plane.
+    let depth = if decoder.is_array { decoder.planes as u32 } else { 1 };
+    // SAFETY: all handles are alive, and are destroyed when the queue has done all its work (`run` waits).
+    unsafe {
+        upload.mapped().copy_from(texels.as_ptr(), texels.len());
+        let sampler = vk::SamplerCreateInfo::default()
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        let sampler = device.create_sampler(&sampler, None).expect("a sampler");
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        let set_layouts = [device.create_descriptor_set_layout(&info, None).expect("a layout")];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&set_layouts)
+            .push_constant_ranges(&push_range);
+        let layout = device.create_pipeline_layout(&info, None).expect("a layout");
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        let module = device.create_shader_module(&info, None).expect("a module");
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(c"main")
+            .specialization_info(&constants);
+        let info = [vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout)];
+        let pipeline = device
+            .create_compute_pipelines(vk::PipelineCache::null(), &info, None)
+            .expect("a pipeline")[0];
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+        let pool = device.create_descriptor_pool(&info, None).expect("a pool");
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(pool)
+            .set_layouts(&set_layouts);
+        let set = device.allocate_descriptor_sets(&info).expect("a set")[0];
+        let read = [vk::DescriptorImageInfo {
+            sampler,
+            image_view: view,
+            image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        }];
+        let written =
+            [vk::DescriptorBufferInfo { buffer: values.buffer, offset: 0, range: vk::WHOLE_SIZE }];
+        let write = |i: usize| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(i as u32)
+                .descriptor_type(kinds[i])
+                .descriptor_count(1)
+        };
+        let writes = [write(0).image_info(&read), write(1).buffer_info(&written)];
+        device.update_descriptor_sets(&writes, &[]);
+        gpu.run(|commands| {
+            let barrier = |old, new, from, to| {
+                vk::ImageMemoryBarrier2::default()
+                    .image(map)
+                    .subresource_range(WHOLE)
+                    .old_layout(old)
+                    .new_layout(new)
+                    .src_stage_mask(from)
+                    .dst_stage_mask(to)
+            };
+            let (copy, compute) =
+                (vk::PipelineStageFlags2::COPY, vk::PipelineStageFlags2::COMPUTE_SHADER);
+            let filled = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+            let before =
+                [barrier(vk::ImageLayout::UNDEFINED, filled, vk::PipelineStageFlags2::NONE, copy)
+                    .dst_access_mask(vk::AccessFlags2::TRANSFER_WRITE)];
+            let sampled = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+            let after = [barrier(filled, sampled, copy, compute)
+                .src_access_mask(vk::AccessFlags2::TRANSFER_WRITE)
+                .dst_access_mask(vk::AccessFlags2::SHADER_SAMPLED_READ)];
+            let host_reads = [vk::MemoryBarrier2::default()
+                .src_stage_mask(compute)
+                .src_access_mask(vk::AccessFlags2::SHADER_STORAGE_WRITE)
+                .dst_stage_mask(vk::PipelineStageFlags2::HOST)
+                .dst_access_mask(vk::AccessFlags2::HOST_READ)];
+            let region = [vk::BufferImageCopy::default()
+                .image_subresource(vk::ImageSubresourceLayers {
+                    aspect_mask: vk::ImageAspectFlags::COLOR,
+                    mip_level: 0,
+                    base_array_layer: 0,
+                    layer_count: header.layer_count.max(1),
+                })
+                .image_extent(vk::Extent3D { width, height, depth: 1 })];
+            let to = |barriers| vk::DependencyInfo::default().image_memory_barriers(barriers);
+            device.cmd_pipeline_barrier2(commands, &to(&before));
+            device.cmd_copy_buffer_to_image(commands, upload.buffer, map, filled, &region);
+            device.cmd_pipeline_barrier2(commands, &to(&after));
+            let point = vk::PipelineBindPoint::COMPUTE;
+            device.cmd_bind_pipeline(commands, point, pipeline);
+            device.cmd_bind_descriptor_sets(commands, point, layout, 0, &[set], &[]);
+            device.cmd_push_constants(commands, layout, vk::ShaderStageFlags::COMPUTE, 0, &push);
+            device.cmd_dispatch(commands, samples.div_ceil(64) as u32, 1, depth);
+            let info = vk::DependencyInfo::default().memory_barriers(&host_reads);
+            device.cmd_pipeline_barrier2(commands, &info);
+            Ok(())
+        })
+        .expect("run");
+        let found =
+            std::slice::from_raw_parts(values.mapped().cast::<f32>(), samples * decoder.planes);
+        let found = found.to_vec();
+        device.destroy_descriptor_pool(pool, None);
+        device.destroy_pipeline(pipeline, None);
+        device.destroy_shader_module(module, None);
+        device.destroy_pipeline_layout(layout, None);
+        device.destroy_descriptor_set_layout(set_layouts[0], None);
+        device.destroy_sampler(sampler, None);
+        device.destroy_image_view(view, None);
+        device.destroy_image(map, None);
+        blocks.free(map_memory);
+        for buffer in [upload, values] {
+            device.destroy_buffer(buffer.buffer, None);
+            blocks.free(buffer.memory);
+        }
+        found
+    }
+}

@@ -1,0 +1,28 @@
+// Computes: what the decoder that `bake` writes beside a map makes of it.
+// Reads: visible_sky.ktx2.
+// Writes: values, a plane each.
+// One invocation is a texel.
+#version 460
+
+layout(local_size_x = 64) in;
+
+layout(binding = 0) uniform sampler2D map;
+layout(std430, binding = 1) writeonly buffer Values {
+    float values[];
+};
+layout(push_constant) uniform Push {
+    int cols;
+    int rows;
+    float offset;
+};
+
+#include "decode/visible_sky.glsl"
+
+void main() {
+    int i = int(gl_GlobalInvocationID.x);
+    if (i >= cols * rows) {
+        return;
+    }
+    vec2 uv = (vec2(i % cols, i / cols) + 0.5) / vec2(cols, rows);
+    values[i] = visible_sky(map, uv);
+}
