@@ -1,0 +1,141 @@
+//! Scattered light beside light paths, by directions and paths; and pictures.
+
+use ridgelight::Result;
+use ridgelight::cpu::scatter_gather::expected;
+use ridgelight::files::{self, HeightOptions, Tone};
+use ridgelight::gpu::Headless;
+use ridgelight::plan::REFERENCE_BATCH;
+use ridgelight::scene::{Albedo, Directions, HeightField, Scatter, Scene, Surface};
+
+use crate::traced::traced;
+use crate::{Asked, Colours, colours, grooves, lights, mean, points, rms, scattered};
+
+const BOUNCES: u32 = 3;
+const DIRECTIONS: [usize; 3] = [64, 256, 1024];
+const PATHS: [u32; 3] = [40, 100, 400];
+const SEEDS: u32 = 4;
+/// White columns between pictures, and pixels a sample.
+const GAP: usize = 4;
+const SCALE: usize = 3;
+
+/// The middle of a field, at most `side`² samples, so much steeper.
+fn middle(field: &HeightField, side: usize, z_scale: f64) -> Result<HeightField> {
+    let [rows, cols] = [field.rows(), field.cols()].map(|n| n.min(side));
+    let first = [(field.rows() - rows) / 2, (field.cols() - cols) / 2];
+    let at = |i: usize| (first[0] + i / cols) * field.cols() + first[1] + i % cols;
+    let heights: Vec<f64> =
+        (0..rows * cols).map(|i| z_scale * f64::from(field.heights_m()[at(i)])).collect();
+    HeightField::new(rows, cols, &heights, field.cell_m(), None)
+}
+
+fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
+    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
+    let mountain = files::read_heights("assets/mt_washington_256.png".as_ref(), &options)?;
+    let on = |field| {
+        let surface = Surface { albedo: Albedo::Constant([0.8, 0.7, 0.6]), ..Surface::default() };
+        Scene { field, surface, lights: lights() }
+    };
+    let mut all = vec![
+        ("grooves", grooves(asked.side, asked.side, 16)?),
+        ("Mt Washington, six times as steep", on(middle(&mountain, asked.side, 6.0)?)),
+    ];
+    if let Some(folder) = &asked.folder {
+        // 80 cells from black to white.
+        let options = HeightOptions {
+            z_scale: 80.0 / 65535.0,
+            cell_m: Some([1.0; 2]),
+            ..HeightOptions::default()
+        };
+        let path = folder.join("height/Moss001_1K_Displacement.png");
+        let moss = files::read_heights(&path, &options)?;
+        let mut scene = on(middle(&moss, 2 * asked.side, 1.0)?);
+        scene.surface.albedo = Albedo::Constant([0.55, 0.7, 0.25]);
+        all.push(("moss", scene));
+    }
+    Ok(all)
+}
+
+pub fn run(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+    let mut rows: Vec<[Colours; 3]> = Vec::new();
+    for (name, scene) in scenes(asked)? {
+        rows.push(one(gpu, asked, name, &scene)?);
+    }
+    let Some(path) = &asked.output else { return Ok(()) };
+    // Pictures of one side; grooves and moss, the figures that the paper has.
+    let last = rows.last().expect("some");
+    let side = (last[0].len() as f64).sqrt() as usize;
+    let mut picture = Vec::new();
+    for (panels, own) in [(&rows[0], asked.side), (last, side)] {
+        for row in (0..side * SCALE).map(|row| row / SCALE % own) {
+            for (i, panel) in panels.iter().enumerate() {
+                if i > 0 {
+                    picture.extend([[1.0; 3]; GAP]);
+                }
+                let cols = (0..side * SCALE).map(|col| col / SCALE % own);
+                picture.extend(cols.map(|col| panel[row * own + col]));
+            }
+        }
+    }
+    let width = 3 * side * SCALE + 2 * GAP;
+    files::write_png(path, 2 * side * SCALE, width, &picture, None, Tone { exposure: 1.2 }, &[])
+}
+
+/// Direct light, with scattered light, and light paths.
+fn one(gpu: &mut Headless, asked: &Asked, name: &str, scene: &Scene) -> Result<[Colours; 3]> {
+    let (field, border) = (&scene.field, scene.surface.border);
+    let batches = asked.paths.div_ceil(REFERENCE_BATCH);
+    let [direct, _] = traced(gpu, scene, 0, batches)?.map(|v| colours(&v));
+    let [all, error] = traced(gpu, scene, BOUNCES, batches)?.map(|v| colours(&v));
+    let truth: Colours =
+        all.iter().zip(&direct).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect();
+    let (level, whole) = (mean(&truth), mean(&all));
+    println!(
+        "{name}, {} × {}, {BOUNCES} bounces; scattered light is {:.1} % of all; {} light paths, standard error {:.2} % of it\n",
+        field.cols(),
+        field.rows(),
+        100.0 * level / whole,
+        batches * REFERENCE_BATCH,
+        100.0 * rms(error.as_flattened().iter().map(|v| f64::from(*v))) / level,
+    );
+    println!("| directions | MB | ms to find | paths | RMSE, % of scattered | of all | ms |");
+    println!("|---|---|---|---|---|---|---|");
+    let off = |found: &Colours| {
+        let pairs = found.as_flattened().iter().zip(truth.as_flattened());
+        rms(pairs.map(|(a, b)| f64::from(a - b)))
+    };
+    let mut best = truth.clone();
+    for count in DIRECTIONS {
+        let directions = Directions::fibonacci(count, -1.0, 0)?;
+        let (points, found_ms) = points(gpu, field, border, &directions)?;
+        let head =
+            format!("| {count} | {:.1} | {found_ms:.1} |", 4.0 * points.words().len() as f64 / 1e6);
+        for paths in PATHS {
+            let (mut squares, mut times) = (0.0, Vec::new());
+            for seed in 0..SEEDS {
+                let scatter = Scatter { bounces: BOUNCES, paths, seed, ..Scatter::default() };
+                let (light, ms) = scattered(gpu, scene, &points, &direct, &scatter)?;
+                squares += off(&light).powi(2) / f64::from(SEEDS);
+                times.push(ms);
+                best = light;
+            }
+            times.sort_by(f64::total_cmp);
+            let rmse = squares.sqrt();
+            println!(
+                "{head} {paths} | {:.2} | {:.2} | {:.2} |",
+                100.0 * rmse / level,
+                100.0 * rmse / whole,
+                times[times.len() / 2]
+            );
+        }
+        let of: Vec<_> = direct.iter().map(|v| v.map(f64::from)).collect();
+        let mean = expected(scene, &points, &of, BOUNCES);
+        let mean: Colours = mean.iter().map(|v| v.map(|v| v as f32)).collect();
+        let rmse = off(&mean);
+        println!("{head} all | {:.2} | {:.2} | |", 100.0 * rmse / level, 100.0 * rmse / whole);
+    }
+    println!(
+        "\nMeans of {SEEDS} seeds; `all` paths: what the device's tend to, by the processor.\n"
+    );
+    let lit = direct.iter().zip(&best).map(|(a, b)| [0, 1, 2].map(|c| a[c] + b[c])).collect();
+    Ok([direct, lit, all])
+}
