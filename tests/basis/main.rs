@@ -9,6 +9,7 @@ mod legendre;
 mod light;
 mod product;
 mod slice;
+mod thrown;
 mod wedge;
 mod window;
 mod zonal;
