@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 #[derive(Default)]
-struct Machine {
+pub struct Machine {
     values: HashMap<String, f64>,
     products: usize,
     sums: usize,
@@ -32,8 +32,12 @@ impl Machine {
         }
     }
 
+    pub fn set(&mut self, name: &str, value: f64) {
+        self.values.insert(name.to_owned(), value);
+    }
+
     /// Runs every statement of a function's body.
-    fn run(&mut self, text: &str) {
+    pub fn run(&mut self, text: &str) {
         let body = text.split_once('{').expect("a body").1;
         for line in body.lines().map(|l| l.split("//").next().unwrap().trim()) {
             if line.is_empty() || line == "}" || line == "float t;" {
@@ -88,7 +92,7 @@ impl Machine {
             .unwrap_or_else(|_| *self.values.get(&token).unwrap_or_else(|| panic!("{token}")))
     }
 
-    fn read(&self, name: &str, count: usize) -> Vec<f64> {
+    pub fn read(&self, name: &str, count: usize) -> Vec<f64> {
         (0..count).map(|i| self.values[&format!("{name}[{i}]")]).collect()
     }
 }

@@ -10,6 +10,7 @@ mod light;
 mod product;
 mod slice;
 mod triangles;
+mod thrown;
 mod wedge;
 mod window;
 mod zonal;

@@ -24,7 +24,7 @@ fn every_light_holds_under_every_method() {
 
 #[test]
 fn every_bounce_holds_under_every_engine() {
-    hold(|case| case.about == About::Bounces);
+    hold(|case| matches!(case.about, About::Bounces | About::Glosses));
 }
 
 #[test]
@@ -113,6 +113,7 @@ fn what_is_not_judged_is_known() {
             "a single-sample pit of 1e6 cells",
             "thrown by a spike of 1e6 cells",
             "thrown in a pit of 1e6 cells",
+            "thrown and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn",
             "thrown by a slope of 1e6",
             "thrown under a hemisphere whose hull is as deep as the line",
             "a ball over a slope of 1e0, by harmonics",

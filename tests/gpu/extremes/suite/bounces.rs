@@ -98,7 +98,12 @@ pub fn cases() -> Vec<Case> {
     all
 }
 
-fn rubble(sides: [usize; 2], cell_m: [f64; 2], relief_m: f64, base_m: f64) -> HeightField {
+pub(super) fn rubble(
+    sides: [usize; 2],
+    cell_m: [f64; 2],
+    relief_m: f64,
+    base_m: f64,
+) -> HeightField {
     field(sides, cell_m, |r, c| base_m + relief_m * ((r * 37 + c * 101) % 11) as f64 / 10.0)
 }
 
@@ -254,16 +259,16 @@ struct Ground<'a> {
 }
 
 /// What a pyramid looks at.
-struct OfPyramid {
-    heights: Pyramid,
-    shade: Pyramid,
-    height_texels: Vec<f32>,
-    stack: Vec<f32>,
-    shade_texels: Vec<[f64; 3]>,
+pub(super) struct OfPyramid {
+    pub heights: Pyramid,
+    pub shade: Pyramid,
+    pub height_texels: Vec<f32>,
+    pub stack: Vec<f32>,
+    pub shade_texels: Vec<[f64; 3]>,
 }
 
 impl OfPyramid {
-    fn new(found: &Found, exit: &[[f64; 3]]) -> Self {
+    pub fn new(found: &Found, exit: &[[f64; 3]]) -> Self {
         let (quality, field, border) =
             (&found.method.quality, &found.scene.field, found.scene.surface.border);
         let heights = Pyramid::new(quality, [field.cols() as u32, field.rows() as u32], border);

@@ -8,8 +8,8 @@ use ridgelight::measure::tolerance::{
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::{
-    self, Basis, BounceEngine, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Precision, Quality,
-    Receiver, Wedges,
+    self, Basis, BounceEngine, BounceGloss, Bounces, Fuse, Hull, Levels, LightBasis, Lines,
+    Precision, Quality, Receiver, Wedges,
 };
 
 use super::About;
@@ -61,6 +61,7 @@ pub fn all() -> Vec<Method> {
     .chain(bounces(&base))
     .chain(soft_balls(&base))
     .chain(lobes(&base))
+    .chain(glosses(&base))
     .collect()
 }
 
@@ -97,6 +98,30 @@ fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
     ]
     .into_iter()
     .map(|(name, quality)| Method { name, about: About::Lobes, quality })
+}
+
+/// Light of lobes thrown once: by direction, of either storage of levels, and as seen from above.
+fn glosses(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+    let base = *base;
+    let of = |gloss, sh_order, levels| {
+        let bounces = Bounces {
+            count: 1,
+            engine: BounceEngine::Pyramid,
+            azimuths: 8,
+            cutoff: 0.0,
+            level_offset: 1,
+            gloss,
+            ..Bounces::NONE
+        };
+        Quality { basis: Basis::Sh, sh_order, levels, level_offset: 1, bounces, ..base }
+    };
+    [
+        ("by direction, 4, stack", of(BounceGloss::Vector, 4, Levels::Stack)),
+        ("by direction, 3, levels", of(BounceGloss::Vector, 3, Levels::Pyramid)),
+        ("as seen from above, 4", of(BounceGloss::Scalar, 4, Levels::Stack)),
+    ]
+    .into_iter()
+    .map(|(name, quality)| Method { name, about: About::Glosses, quality })
 }
 
 /// Every engine of bounces: walks along the grid, where they meet all there is; rays along cells' diagonals, and

@@ -3,6 +3,7 @@
 
 mod balls;
 mod bounces;
+mod glosses;
 mod horizons;
 pub mod inputs;
 mod lights;
@@ -39,6 +40,8 @@ pub enum About {
     SoftBalls,
     /// What ground mirrors.
     Lobes,
+    /// What ground mirrors of what it throws.
+    Glosses,
 }
 
 /// A scene at an extreme, and what its answer has to be.
@@ -203,7 +206,7 @@ pub struct Row {
 pub fn cases() -> Vec<Case> {
     let of_horizons = horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases());
     let of_their_own = bounces::cases().into_iter().chain(soft_balls::cases());
-    of_horizons.chain(of_their_own).chain(lobes::cases()).collect()
+    of_horizons.chain(of_their_own).chain(lobes::cases()).chain(glosses::cases()).collect()
 }
 
 /// Which cases are put to which methods, by their places in the lists.

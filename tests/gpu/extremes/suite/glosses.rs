@@ -1,0 +1,291 @@
+//! Light that lobes throw, once, and mirror, at the extremes.
+//!
+//! Under a point sun in the zenith nothing is in shadow: what arrives of it is known in closed form at every sample. What
+//! leaves there by direction, what others see of it by pyramids and what their lobes make of that are the twins' in f64,
+//! from the heights alone.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::cpu::bounce_gather::BounceGather;
+use ridgelight::cpu::gloss_exit::{mirrored, thrown};
+use ridgelight::cpu::gloss_gather::{GlossGather, Series};
+use ridgelight::cpu::pyramid_march::Stored;
+use ridgelight::cpu::shared::field::{field_slope, normal_of};
+use ridgelight::cpu::shared::sweep::Heights;
+use ridgelight::cpu::shared::thrown::Cast;
+use ridgelight::cpu::sun_gloss::gloss_on;
+use ridgelight::cpu::vector_reduce::vector_reduce;
+use ridgelight::measure::tolerance::{
+    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_gloss_exit,
+    twin_sh_gloss, twin_sun_arriving, twin_sun_gloss,
+};
+use ridgelight::scene::{
+    Albedo, Border, BounceGloss, HeightField, Levels, Lights, Lobe, Phong, Receiver, Sun,
+};
+
+use super::bounces::{OfPyramid, rubble};
+use super::lights::light;
+use super::{About, Case, Found, Probe, field, is_pyramid};
+
+const SIDE: usize = 33;
+/// Samples looked at: about so many.
+const PLACES: usize = 12;
+
+const EXPECTED: &str = "what the twins see of the sun's own harmonics thrown by every sample's lobe and diffusely, mirrored to above";
+const BOUND: &str = "series: what arrives, leaves and is gathered (`src/measure/tolerance/gloss.rs`), a lobe's sum of them; 4 ε";
+
+const STEEP: &str = "thrown and mirrored by a spike of 1e6 cells, lobes of 0 and 1e4 in turn";
+
+pub fn cases() -> Vec<Case> {
+    let square = [1.0, 1.0];
+    let middle = |r: usize, c: usize| (r, c) == (SIDE / 2, SIDE / 2);
+    let spike =
+        |height: f64| field([SIDE; 2], square, move |r, c| if middle(r, c) { height } else { 0.0 });
+    let rough = || rubble([13, 17], square, 3.0, 0.0);
+    let black = || rubble([SIDE; 2], square, 3.0, 0.0);
+    let mut all = Vec::new();
+    for exponent in [0.0, 1e4] {
+        let of = |name: &str, ground, albedo, scale| {
+            let name = format!("{name}, lobes of {exponent}");
+            lobed(&name, ground, Border::Plane, albedo, [exponent; 2], scale, 1.0)
+        };
+        all.push(of("thrown and mirrored in rubble", rough(), 0.5, 0.5));
+        all.push(of("mirrored in rubble of albedo 0", black(), 0.0, 1.0));
+        all.push(of("thrown and mirrored by a spike of 1 cell", spike(1.0), 0.5, 0.5));
+    }
+    let of = |name: &str, ground, border, exponents, exit| {
+        lobed(name, ground, border, 0.5, exponents, 0.25, exit)
+    };
+    // A pyramid's levels round to more than what is to be found.
+    let needle = field([13, 17], square, |r, c| if (r, c) == (6, 8) { 1e6 } else { 0.0 });
+    let needle = of(STEEP, needle, Border::Plane, [0.0, 1e4], 1.0);
+    all.push(Case { unjudged: is_pyramid, ..needle });
+    let mixed = "thrown and mirrored in rubble, lobes of 0 and 1e4 in turn";
+    all.push(of(mixed, rough(), Border::Open, [0.0, 1e4], 1.0));
+    let bright = "thrown and mirrored in rubble under a sun of 1e30";
+    all.push(of(bright, rough(), Border::Plane, [20.0; 2], 1e30));
+    let high = field([13, 17], square, |_, _| 1e15);
+    all.push(of("mirrored by level ground at 1e15", high, Border::Plane, [20.0; 2], 1.0));
+    for (sides, border) in [
+        ([1, 1], Border::Plane),
+        ([1, 31], Border::Plane),
+        ([31, 1], Border::Open),
+        ([1, 31], Border::Periodic),
+        ([2, 3], Border::Periodic),
+    ] {
+        let [rows, cols] = sides;
+        let name = format!("thrown and mirrored in {rows} × {cols} of rubble");
+        all.push(of(&name, rubble(sides, [1.5, 1.0], 3.0, 0.0), border, [20.0; 2], 1.0));
+    }
+    all.push(without("thrown in white rubble, lobes of scale 0", 1.0, true));
+    all.push(without("thrown in black rubble, lobes of scale 0", 0.0, false));
+    all
+}
+
+/// Ground of an albedo and of lobes whose exponents take turns.
+fn lobed(
+    name: &str,
+    ground: HeightField,
+    border: Border,
+    albedo: f32,
+    exponents: [f32; 2],
+    scale: f32,
+    irradiance: f32,
+) -> Case {
+    let sun = Sun {
+        azimuth_rad: 0.0,
+        elevation_rad: FRAC_PI_2,
+        diameter_rad: 0.0,
+        irradiance: [irradiance; 3],
+    };
+    let samples = ground.heights_m().len();
+    let phong = |i: usize| Phong { exponent: exponents[i % 2], scale };
+    let lights = Lights { suns: vec![sun], ..Lights::default() };
+    let mut case = light(name, (EXPECTED, BOUND), (ground, border, lights), both);
+    case.about = About::Glosses;
+    case.scene.surface.albedo = Albedo::Constant([albedo; 3]);
+    case.scene.surface.phong = Some(match exponents {
+        [a, b] if a == b => Lobe::Constant(phong(0)),
+        _ => Lobe::Map((0..samples).map(phong).collect()),
+    });
+    case
+}
+
+/// Lobes of scale 0 are none: no layer of theirs, and, where the ground is black, none of a bounce.
+fn without(name: &str, albedo: f32, is_thrown: bool) -> Case {
+    let ground = rubble([13, 17], [1.0, 1.0], 3.0, 0.0);
+    let case = lobed(name, ground, Border::Plane, albedo, [20.0; 2], 0.0, 1.0);
+    let expected =
+        "no layer of lobes; black: nothing, white: diffuse bounces as without".to_owned();
+    let probes = move |found: &Found| {
+        assert!(!found.has("glossy"), "{}", found.method.name);
+        assert_eq!(found.has("indirect.1"), is_thrown, "{}", found.method.name);
+        let [whole, direct] = ["radiance", "direct.sun1"].map(|name| found.layer(name));
+        let thrown = if is_thrown { found.layer("indirect.1") } else { vec![0.0; whole.len()] };
+        let at = |i: usize| {
+            let expected = direct[i] + thrown[i];
+            Probe {
+                found: whole[i],
+                expected: [expected; 2],
+                bound: 4.0 * EPSILON * expected,
+                at: [0, 0, i],
+            }
+        };
+        (0..whole.len()).step_by(7).map(at).collect()
+    };
+    Case { expected, bound: "4 ε".to_owned(), probes: Box::new(probes), ..case }
+}
+
+/// What samples throw of the sun, and what that is off by in each coefficient.
+struct Exit {
+    normals: Vec<DVec3>,
+    series: Vec<Series>,
+    /// As seen from above.
+    seen: Vec<[f64; 3]>,
+    off: f64,
+    off_seen: f64,
+}
+
+impl Exit {
+    fn new(found: &Found, order: usize) -> Self {
+        let (field, surface) = (&found.scene.field, &found.scene.surface);
+        let (heights, sun) = (Heights::of(field, surface.border), &found.scene.lights.suns[0]);
+        let (Some(lobe), Albedo::Constant([albedo, ..])) = (&surface.phong, &surface.albedo) else {
+            unreachable!("each case has both");
+        };
+        let (albedo, bright) = (f64::from(*albedo), f64::from(sun.irradiance[0]));
+        let above = evaluate(order, DVec3::Z);
+        let arriving: Series = above.iter().map(|y| [bright * y; 3]).collect();
+        let magnitude: f64 = above.iter().map(|y| y.abs()).sum();
+        let mut exit = Self {
+            normals: Vec::new(),
+            series: Vec::new(),
+            seen: Vec::new(),
+            off: 0.0,
+            off_seen: 0.0,
+        };
+        for i in 0..field.heights_m().len() {
+            let at = [i / field.cols(), i % field.cols()];
+            let normal = normal_of(field_slope(&heights, at[1] as i32, at[0] as i32));
+            let error = Land::normal_at(field, surface.border, at);
+            let (phong, facing) = (lobe.at(i), normal.z);
+            let diffuse = [bright * albedo * facing / PI; 3];
+            let mirrored = bright * gloss_on(normal, sun, phong, facing / PI);
+            exit.series.push(thrown(&arriving, normal, phong, diffuse));
+            exit.seen.push(diffuse.map(|d| d + mirrored));
+            exit.normals.push(normal);
+            let scale = f64::from(phong.scale) * bright;
+            // A coefficient that arrives is turned into at most √(n²) times its error; diffuse light by √4π.
+            let arrives = order as f64 * twin_sun_arriving(error, facing);
+            let of_diffuse = 4.0 * (error * bright * albedo + 16.0 * EPSILON * diffuse[0]);
+            let leaves = twin_gloss_exit(order, error) * magnitude;
+            exit.off = exit.off.max(scale * (arrives + leaves) + of_diffuse);
+            let of_lobe = twin_sun_gloss(phong.exponent.into(), error, facing);
+            exit.off_seen =
+                exit.off_seen.max(scale * of_lobe + of_diffuse + 16.0 * EPSILON * mirrored);
+        }
+        exit
+    }
+}
+
+/// What is thrown, by the diffuse part and by the lobe.
+fn both(found: &Found) -> Vec<Probe> {
+    let quality = &found.method.quality;
+    let (field, border) = (&found.scene.field, found.scene.surface.border);
+    let order = quality.sh_order as usize;
+    let exit = Exit::new(found, order);
+    let levels = OfPyramid::new(found, &exit.seen);
+    let mut texels: Vec<Series> = Vec::new();
+    let is_vector = quality.bounces.gloss != BounceGloss::Scalar;
+    if is_vector {
+        for number in 1..=levels.shade.levels() {
+            let level = vector_reduce(&exit.series, &levels.shade, number, &texels);
+            texels.extend(level);
+        }
+    }
+    let is_stack = quality.levels == Levels::Stack;
+    let gather = BounceGather {
+        field,
+        heights: Heights::of(field, border),
+        pyramid: &levels.heights,
+        stored: match is_stack {
+            true => Stored::Stack(&levels.stack),
+            false => Stored::Levels(&levels.height_texels),
+        },
+        shade: &levels.shade,
+        shade_texels: &levels.shade_texels,
+        exit: &exit.seen,
+        receiver: Receiver::Plane,
+        azimuths: quality.bounces.azimuths,
+    };
+    let vectors = is_vector.then_some([&exit.series[..], &texels[..]]);
+    let twin = GlossGather { gather, order, vectors };
+    let sum = |series: &Series| series.iter().map(|s| s[0].abs()).sum::<f64>();
+    // Y_lm of a direction have the norm n / √4π; so have n² coefficients that are e off each, n e: in any direction a series
+    // is n² e / √4π off, and one of norm |c| is n |c| / √4π at most.
+    let in_a_direction = (order * order) as f64 / (4.0 * PI).sqrt();
+    let largest = |series: &Series| {
+        let norm = series.iter().map(|s| s[0] * s[0]).sum::<f64>().sqrt();
+        order as f64 * norm / (4.0 * PI).sqrt()
+    };
+    let (bright, off) = match is_vector {
+        true => (exit.series.iter().map(largest).fold(0.0, f64::max), in_a_direction * exit.off),
+        false => (exit.seen.iter().fold(0.0, |m: f64, v| m.max(v[0])), exit.off_seen),
+    };
+    let land = Land::of(field, border);
+    let gathered = Gathered {
+        land,
+        step_m: land.cell_m,
+        is_stack,
+        own_levels: true,
+        receiver: Receiver::Plane,
+        brightest: bright,
+        spread: 2.0 * bright,
+    };
+    let of_exit = |cast: &Cast| {
+        let here = gathered.error(cast);
+        CastError { radiance: here.radiance + off, ..here }
+    };
+    let turned = |cast: &Cast| {
+        let here = of_exit(cast);
+        CastError { radiance: here.radiance + order as f64 * here.elevation_rad * bright, ..here }
+    };
+    let layers = ["indirect.1", "glossy"].map(|name| found.layer(name));
+    let (Some(lobe), Albedo::Constant([albedo, ..])) =
+        (&found.scene.surface.phong, &found.scene.surface.albedo)
+    else {
+        return Vec::new();
+    };
+    let count = exit.normals.len();
+    let places = (0..count).step_by((count / PLACES).max(1) | 1).chain([count / 2]);
+    places
+        .flat_map(|i| {
+            let at = [i / field.cols(), i % field.cols()];
+            let normal = Land::normal_at(field, border, at);
+            let slices = Slices { normal, wedge: 1.0, brightest: bright };
+            let all = twin.casts_along(at);
+            let want = twin.of(&all);
+            let of_series = twin_arriving(&all, of_exit, order, &slices);
+            let of_light = ThrownError::of(&all, |_, cast| turned(cast), &slices).light[0];
+            let phong = lobe.at(i);
+            let mirror = mirrored(&want.series, exit.normals[i], phong)[0];
+            let coefficients = in_a_direction * of_series;
+            let of_lobe = coefficients + twin_sh_gloss(order, normal) * sum(&want.series);
+            let albedo = f64::from(*albedo);
+            let probes = [
+                (albedo * want.diffuse[0], albedo * of_light),
+                (mirror, f64::from(phong.scale) * of_lobe),
+            ];
+            let probe = |k: usize| {
+                let (expected, bound) = probes[k];
+                let bound = bound + 4.0 * EPSILON * expected;
+                Probe { found: layers[k][i], expected: [expected; 2], bound, at: [k, at[0], at[1]] }
+            };
+            // Black ground throws by its lobes alone.
+            let of_both = [probe(0), probe(1)];
+            of_both.into_iter().skip(usize::from(albedo == 0.0)).collect::<Vec<_>>()
+        })
+        .collect()
+}
