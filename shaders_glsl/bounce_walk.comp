@@ -8,7 +8,6 @@
 // One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-#extension GL_KHR_shader_subgroup_vote : require
 
 // Side by side along the march, as the steps of a line lie in the lattice.
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -20,11 +19,8 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 // Samples from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// Stretches that are kept of an azimuth, for later bounces.
-layout(constant_id = 5) const int CAST_SLOTS = 0;
-// How much farther a kept stretch ends than it begins, at most. Its radiance is taken from one place: across the line a
-// slice of 16 azimuths is 0.4 of the distance wide, whose radiance is one line's, too.
-const float CAST_GROWTH = 1.5;
+// Whether what is seen is kept, for later bounces.
+layout(constant_id = 5) const bool KEEPS_CASTS = false;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -33,7 +29,7 @@ layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
 layout(binding = 3, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 4, r32f) uniform readonly image2D exit_grey;
 layout(binding = 5, rgba32f) uniform image2D bounce_sum;
-layout(binding = 6, rg32ui) uniform writeonly uimage2DArray casting_sets;
+layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray casting_sets;
 
 #include "shared/angle.glsl"
 #include "shared/lattice.glsl"
@@ -189,49 +185,17 @@ void throw_light(vec2 opened, vec3 light) {
     thrown += dot(faces, opened) * light;
 }
 
-// The casting set so far: how many slots are begun; of the last one's stretches, where they begin, their weight, and
-// that times their distance.
-int cast_count;
-float cast_begin;
-float cast_weight;
-float cast_moment;
+// The casting set so far, ring by ring: weights, and those times the distance in steps.
+vec4 ring_weights;
+vec4 ring_moments;
 
-void keep_slot(int slot, uvec2 kept) {
-    int layer = int(azimuth_index - begin) * CAST_SLOTS + slot;
-    imageStore(casting_sets, ivec3(own_node, layer), uvec4(kept, 0u, 0u));
-}
-
-// The last one, at the mean of its stretches.
-void keep_cast() {
-    float mean = cast_moment / max(cast_weight, 1e-30);
-    float distance = mix(cast_begin, mean, cast_weight > 0.0);
-    Place p = place_at(int(distance + 0.5));
-    ivec2 place = texel_at(mix(p.lane, p.next, p.t >= 0.5), p.march);
-    keep_slot(cast_count - 1, cast_of(place, cast_weight));
-}
-
-// A stretch, with the middle of what is seen of it. Those that go no farther than CAST_GROWTH of where the first of
-// them begins are kept as one, and so are all that come when no slot is left.
-void take_cast(float from, float middle, float to, vec2 opened, bool on) {
-    bool goes_on = cast_count > 0 && (to <= CAST_GROWTH * cast_begin || cast_count == CAST_SLOTS);
-    bool begins = on && !goes_on;
-    if (begins && cast_count > 0) {
-        keep_cast();
-    }
+// A stretch, with the middle of what is seen of it.
+void take_cast(float middle, vec2 opened, bool on) {
     float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
-    cast_begin = mix(cast_begin, from, begins);
-    cast_weight = mix(cast_weight, 0.0, begins) + weight;
-    cast_moment = mix(cast_moment, 0.0, begins) + weight * middle;
-    cast_count += int(begins);
-}
-
-void end_casts() {
-    if (cast_count > 0) {
-        keep_cast();
-    }
-    if (cast_count < CAST_SLOTS) {
-        keep_slot(cast_count, uvec2(CASTS_END, 0u));
-    }
+    vec3 within = vec3(lessThan(vec3(middle), RING_ENDS));
+    vec4 of_rings = weight * (vec4(within, 1.0) - vec4(0.0, within));
+    ring_weights += of_rings;
+    ring_moments += middle * of_rings;
 }
 
 // What is thrown along the azimuth, on a surface with this normal that rises by `plane` along it; and what
@@ -249,10 +213,8 @@ vec4 walked(vec3 normal, float plane) {
     passed = moments_above(plane);
     float whole = dot(faces, passed);
     thrown = vec3(0.0);
-    cast_count = 0;
-    cast_begin = 0.0;
-    cast_weight = 0.0;
-    cast_moment = 0.0;
+    ring_weights = vec4(0.0);
+    ring_moments = vec4(0.0);
     reached = plane;
     // The triangle that holds the sample: what leads into it meets it at once. Its end is the cell's diagonal,
     // where that is crossed, else the first step.
@@ -268,19 +230,21 @@ vec4 walked(vec3 normal, float plane) {
     vec2 split_moments = moments_above(split_slope);
     vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(sees_split));
     throw_light(split_opened, own_light);
-    if (CAST_SLOTS > 0) {
-        take_cast(0.0, 0.0, u, split_opened, sees_split);
+    if (KEEPS_CASTS) {
+        take_cast(0.0, split_opened, sees_split);
     }
     passed = mix(passed, split_moments, bvec2(sees_split));
     reached = sees_split ? split_slope : reached;
-    // Where the next piece begins: its distance in steps, slope, and radiance, if that is known.
+    // Where the next piece begins: its distance in steps, slope, and radiance.
     int at = 0;
     float from = split ? u : 0.0;
     float slope = split ? split_slope : plane;
     vec3 light = mix(own_light, split_light, bvec3(split));
-    bool is_known = true;
-    // At most one turn a step. Left by all together, as in horizon_sweep.
-    while (subgroupAny(walking)) {
+    // At most one turn a step. Neither branch nor vote stands in it: llvmpipe (Mesa 22.3) goes through both sides of the
+    // one and makes eight branches of the other. As it also lets a lane that has left the loop go on computing, what a
+    // turn finds counts where the lane is still walking, of which `turns_on` tells the compiler nothing.
+    int turns_on = int(walking);
+    while (turns_on > 0) {
         int met = occluder_at(at);
         int back = at == 0 ? 1 : met;
         walking = walking && back > 0;
@@ -289,46 +253,39 @@ vec4 walked(vec3 normal, float plane) {
         float to_slope = slope_at(to);
         // What lies between may rise as well.
         bool searches = walking && to_slope > reached && to > next;
-        if (subgroupAny(searches)) {
-            float next_slope = slope_at(next);
-            to = searches ? next : to;
-            to_slope = searches ? next_slope : to_slope;
-        }
+        float next_slope = slope_at(next);
+        to = searches ? next : to;
+        to_slope = searches ? next_slope : to_slope;
         bool sees = walking && to_slope > reached;
         bool is_own = at == 0 && !split;
-        if (subgroupAny(sees)) {
-            vec3 there = light_at(to);
-            vec3 far = mix(there, own_light, bvec3(is_own));
-            // Where the piece comes up over what is before it: radiance is linear.
-            float under = max(reached - slope, 0.0) * from;
-            float over = (to_slope - reached) * float(to);
-            vec3 near = light;
-            if (subgroupAny(sees && !is_known)) {
-                vec3 here = light_at(at);
-                near = mix(here, light, bvec3(is_known));
-            }
-            float hidden = under / max(under + over, 1e-30);
-            vec3 begins = mix(near, far, hidden);
-            vec2 now = moments_above(to_slope);
-            vec2 opened = mix(vec2(0.0), passed - now, bvec2(sees));
-            throw_light(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(sees)));
-            if (CAST_SLOTS > 0) {
-                float begin_of = mix(from, float(to), hidden);
-                float middle = mix(0.5 * (begin_of + float(to)), 0.0, is_own);
-                take_cast(begin_of, middle, float(to), opened, sees);
-            }
-            passed = mix(passed, now, bvec2(sees));
-            light = mix(light, far, bvec3(sees));
-            reached = sees ? to_slope : reached;
+        vec3 there = light_at(to);
+        vec3 far = mix(there, own_light, bvec3(is_own));
+        // Where the piece comes up over what is before it: radiance is linear.
+        float under = max(reached - slope, 0.0) * from;
+        float over = (to_slope - reached) * float(to);
+        float hidden = under / max(under + over, 1e-30);
+        vec3 begins = mix(light, far, hidden);
+        vec2 now = moments_above(to_slope);
+        vec2 opened = mix(vec2(0.0), passed - now, bvec2(sees));
+        throw_light(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(sees)));
+        if (KEEPS_CASTS) {
+            float begin_of = mix(from, float(to), hidden);
+            float middle = mix(0.5 * (begin_of + float(to)), 0.0, is_own);
+            take_cast(middle, opened, sees);
         }
-        is_known = walking ? sees && !is_own : is_known;
+        passed = mix(passed, now, bvec2(sees));
+        reached = sees ? to_slope : reached;
+        light = mix(light, there, bvec3(walking));
         at = walking ? to : at;
         from = walking ? float(to) : from;
         slope = walking ? to_slope : slope;
         walking = walking && at < limit;
+        turns_on = int(walking);
     }
-    if (CAST_SLOTS > 0) {
-        end_casts();
+    if (KEEPS_CASTS) {
+        vec4 steps_to = ring_moments / max(ring_weights, vec4(1e-30));
+        uvec4 kept = casts_of(steps_to, ring_weights / azimuth.wedge_rad);
+        imageStore(casting_sets, ivec3(own_node, int(azimuth_index - begin)), kept);
     }
     return vec4(thrown, whole);
 }

@@ -1,6 +1,6 @@
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Batch, Bounce, Builder, CAST_SLOTS, ResourceId};
+use crate::plan::{Batch, Bounce, Builder, ResourceId};
 use crate::scene::Border;
 
 #[repr(C)]
@@ -85,7 +85,7 @@ pub(crate) fn plan(
                 (2, u32::from(axis.marches_rows)),
                 (3, u32::from(bounce.grey)),
                 (4, nodes.stride),
-                (5, if casts.is_some() { CAST_SLOTS } else { 0 }),
+                (5, u32::from(casts.is_some())),
             ],
             &BounceWalkPush {
                 cols: cols as i32,
@@ -100,7 +100,7 @@ pub(crate) fn plan(
                 begin: swept.begin,
             },
             &bound,
-            found * (4 + 32 + u64::from(last - first) * 2),
+            found * (4 + 32 + u64::from(last - first) * if casts.is_some() { 18 } else { 2 }),
             found * u64::from(last - first),
         );
         pass.azimuths = first..last;

@@ -1,38 +1,52 @@
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Bounce, BounceNodes, Builder, CAST_SLOTS, ResourceId};
+use crate::plan::{Bounce, BounceNodes, Builder, ResourceId};
+use crate::scene::Border;
+use std::ops::Range;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct CastGatherPush {
-    nodes_x: i32,
-    nodes_y: i32,
+    cols: i32,
+    rows: i32,
+    begin: u32,
+    count: u32,
 }
 
-same_layout!(CastGatherPush, cast_gather_push, nodes_x = NODES_X, nodes_y = NODES_Y);
+same_layout!(
+    CastGatherPush,
+    cast_gather_push,
+    cols = COLS,
+    rows = ROWS,
+    begin = BEGIN,
+    count = COUNT,
+);
 
-/// What every node sees of one more bounce, by the casting sets that the first one left.
+/// What every node sees of one more bounce, by the casting sets that the first one left along some of the `azimuths`.
 pub(crate) fn plan(
     builder: &mut Builder,
-    size: [u32; 2],
-    azimuths: u32,
+    (size, border): ([u32; 2], Border),
+    (azimuths, circle): (ResourceId, Range<u32>),
     (at, casts): (&BounceNodes, ResourceId),
     bounce: &Bounce,
 ) {
     let [nodes_x, nodes_y] = at.nodes.size(size);
-    let seen = at.count(size) * u64::from(azimuths);
-    builder.pass(
+    let count = circle.len() as u32;
+    let seen = at.count(size) * u64::from(count);
+    let pass = builder.pass(
         &shaders::CAST_GATHER,
         &bounce.name,
-        format!("{}, by the casting sets of {azimuths} azimuths", bounce.why),
+        format!("{}, by the casting sets of {count} azimuths", bounce.why),
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
-        &[(0, azimuths), (1, CAST_SLOTS), (2, u32::from(bounce.grey))],
-        &CastGatherPush { nodes_x: nodes_x as i32, nodes_y: nodes_y as i32 },
+        &[(0, border as u32), (1, u32::from(bounce.grey)), (2, at.nodes.stride)],
+        &CastGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
         &[
             ("casting_sets", casts),
+            ("azimuths", azimuths),
             (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
             ("bounce_sum", at.sum),
         ],
-        at.count(size) * 32 + seen * (8 + if bounce.grey { 4 } else { 16 }),
+        at.count(size) * 32 + seen * (16 + if bounce.grey { 16 } else { 64 }),
         seen,
     );
+    pass.azimuths = circle;
 }

@@ -5,10 +5,6 @@ use super::batch::bytes_text;
 use super::{Builder, Format, Limits, Nodes, Owner, ResourceId};
 use crate::scene::{BounceEngine, Quality};
 
-/// Stretches that are kept of what a node sees along an azimuth; what comes when no slot is left is taken as one with
-/// the last.
-pub(crate) const CAST_SLOTS: u32 = 8;
-
 /// Where bounces are found, and what is kept there.
 #[derive(Clone, Copy)]
 pub(crate) struct BounceNodes {
@@ -19,13 +15,13 @@ pub(crate) struct BounceNodes {
     pub sky_share: ResourceId,
     /// Whether that is the bounces' own to find, in their azimuths.
     pub finds_share: bool,
-    /// What the first bounce has seen, a layer a slot of an azimuth: where, and its weight.
+    /// What the first bounce has seen, a layer an azimuth: of four rings where, and its weight.
     pub casts: Option<ResourceId>,
 }
 
 impl BounceNodes {
     /// None where every sample is a node, or without bounces; `sky_share` is that of other lights, which walks find by
-    /// their own azimuths. Of walks, casting sets are kept where later bounces need them and they take no more than half
+    /// their own azimuths. Of walks, casting sets are kept where later bounces need them and they take no more than a quarter
     /// of what the budget leaves.
     pub fn make(
         builder: &mut Builder,
@@ -47,10 +43,10 @@ impl BounceNodes {
         let is_walked = quality.bounces.engine == BounceEngine::Sweep;
         let shared = sky_share.filter(|_| !is_walked);
         let sky_share = shared.unwrap_or_else(|| image("sky_share", Format::R32Float, size));
-        let layers = quality.bounces.azimuths * CAST_SLOTS;
-        let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 8;
+        let layers = quality.bounces.azimuths;
+        let bytes = u64::from(across) * u64::from(along) * u64::from(layers) * 16;
         let room =
-            (limits.memory_budget.saturating_sub(builder.bytes()) / 2).min(limits.allocation_bytes);
+            (limits.memory_budget.saturating_sub(builder.bytes()) / 4).min(limits.allocation_bytes);
         let are_wanted = is_walked && count > 1;
         let fits = bytes <= room && layers <= limits.image_layers;
         if are_wanted && !fits {
@@ -63,7 +59,7 @@ impl BounceNodes {
         }
         let casts = (are_wanted && fits).then(|| {
             let extent = [across, along, layers];
-            builder.image("casting_sets", Owner::Internal, Format::Rg32Uint, extent, true)
+            builder.image("casting_sets", Owner::Internal, Format::Rgba32Uint, extent, true)
         });
         Some(Self { nodes, sum, sky_share, finds_share: shared.is_none(), casts })
     }

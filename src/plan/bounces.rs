@@ -199,7 +199,10 @@ impl Bouncing {
                 let (sweeping, batches) = swept.expect("swept for walks");
                 match self.at_nodes.and_then(|at| Some((at, at.casts?))) {
                     Some((at, casts)) if k > 1 => {
-                        cast_gather::plan(builder, size, self.azimuths, (&at, casts), &bounce);
+                        let first = batches[0].first;
+                        let circle = (sweeping.azimuths, first..first + self.azimuths);
+                        let field = (size, scene.surface.border);
+                        cast_gather::plan(builder, field, circle, (&at, casts), &bounce);
                     }
                     _ => walk(builder, scene, k, (sweeping, batches), &bounce),
                 }

@@ -5,7 +5,10 @@ use std::ops::Range;
 
 use ridgelight::cpu::bounce_shade::bounce_shade as shade_twin;
 use ridgelight::cpu::bounce_walk::walked_along;
-use ridgelight::cpu::cast_gather::{Cast, cast_gather as gather_twin};
+use ridgelight::cpu::cast_gather::{
+    Cast, RING_ENDS, cast_gather as gather_twin, cast_of, cast_part,
+};
+use ridgelight::cpu::shared::sweep::March;
 use ridgelight::cpu::shared::thrown::thrown;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::{EPSILON, Slices, ThrownError, twin_bounce_shade, walk_error};
@@ -24,8 +27,8 @@ pub(super) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
 }
 
 /// The casting sets that a walk has left of some azimuths, if it leaves any: they throw ground of radiance 1 as the walk
-/// does, and that of radiances that are columns and rows, which lie as their mean does, within a sample: it stands half a
-/// step away, and across it as much again.
+/// does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
+/// mean does, within a sample: it stands half a step away, and across it as much again.
 pub(super) fn casts(
     run: &mut Run,
     pass: &Pass,
@@ -33,7 +36,7 @@ pub(super) fn casts(
     places: &[[usize; 2]],
 ) -> Vec<Pair> {
     let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
-    let Some(sets) = casting_sets(run, pass, constant(pass, 5) as usize) else {
+    let Some(sets) = casting_sets(run, pass, begin, places) else {
         return Vec::new();
     };
     let [cols, rows] = run.size();
@@ -54,10 +57,11 @@ pub(super) fn casts(
                 let at = [azimuth, *row, *col];
                 let along = walked_along(swept, &exit, *col as i32, *row as i32).0;
                 let want = thrown(&along).0;
-                let off = ThrownError::of(&along, |_, cast| walk_error(wedge, cast), slices).sum;
+                let walked = ThrownError::of(&along, |_, cast| walk_error(wedge, cast), slices).sum;
+                let off = walked[0] + 2.0 * cast_part(wedge);
                 let got = gather_twin(set, &exit64);
-                pairs.push(Pair { got: got[0], want: want[0], tolerance: off[0], at });
-                let tolerance = want[0] + far * off[0];
+                pairs.push(Pair { got: got[0], want: want[0], tolerance: off, at });
+                let tolerance = want[0] + far * off;
                 let pair = |c: usize| Pair { got: got[c], want: want[c], tolerance, at };
                 pairs.extend([1, 2].into_iter().filter(|_| is_ramp).map(pair));
             }
@@ -66,41 +70,53 @@ pub(super) fn casts(
     pairs
 }
 
-/// Casting sets of all nodes, azimuth by azimuth, if the pass binds any.
-fn casting_sets(run: &mut Run, pass: &Pass, slots: usize) -> Option<Vec<Vec<Vec<Cast>>>> {
+/// Casting sets of all nodes, azimuth by azimuth from the first one kept, if the pass binds any. Every ring's mean lies
+/// within the ring, rounded to a step.
+fn casting_sets(
+    run: &mut Run,
+    pass: &Pass,
+    begin: usize,
+    places: &[[usize; 2]],
+) -> Option<Vec<Vec<[Cast; 4]>>> {
     let words = run.words(pass, "casting_sets")?;
-    let count = run.extent(pass, "casting_sets").iter().product::<usize>();
-    let [cols, _] = run.size();
-    let cast = |layer: usize, node: usize| {
-        let [place, weight] = [0, 1].map(|k| words[2 * (layer * count + node) + k]);
-        let sample = (place >> 16) as usize * cols + (place & 0xffff) as usize;
-        (place != u32::MAX).then(|| Cast { sample, weight: f32::from_bits(weight).into() })
+    let heights = run.heights();
+    let set = |march: &March, words: &[u32], [row, col]: [usize; 2]| {
+        [0, 1, 2, 3].map(|ring| {
+            let cast = cast_of(march, words[ring], [col as i32, row as i32]);
+            let least = ring.checked_sub(1).map_or(0, |r| RING_ENDS[r]);
+            let most = RING_ENDS.get(ring).copied().unwrap_or(i32::MAX);
+            let lies = (least..=most).contains(&cast.steps);
+            assert!(cast.weight == 0.0 || lies, "ring {ring}: {cast:?}");
+            cast
+        })
     };
-    let set = |azimuth: usize, node: usize| {
-        (0..slots).map_while(|slot| cast(azimuth * slots + slot, node)).collect()
+    let of = |(k, layer): (usize, &[u32])| {
+        let march = March::new(heights, &run.plan.azimuths[begin + k]);
+        let sets = layer.chunks_exact(4).zip(places);
+        sets.map(|(words, place)| set(&march, words, *place)).collect()
     };
-    let azimuths = words.len() / 2 / count / slots;
-    Some((0..azimuths).map(|k| (0..count).map(|node| set(k, node)).collect()).collect())
+    Some(words.chunks_exact(4 * places.len()).enumerate().map(of).collect())
 }
 
-/// From the device's own casting sets: a product and a sum for each.
+/// From the device's own casting sets: a product and a sum for each, of weights that are products themselves.
 pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let slots = constant(pass, 1) as usize;
-    let sets = casting_sets(run, pass, slots).expect("bound");
-    assert_eq!(sets.len(), constant(pass, 0) as usize);
+    use offsets::cast_gather_push::{BEGIN, COUNT};
+    let places = places(run, Nodes { stride: constant(pass, 2) });
+    let begin = pushed(pass, BEGIN) as usize;
+    let sets = casting_sets(run, pass, begin, &places).expect("bound");
+    assert_eq!(sets.len(), pushed(pass, COUNT) as usize);
     let exit = match run.floats(pass, "exit_grey") {
         Some(grey) => grey.iter().map(|v| [f64::from(*v); 3]).collect(),
         None => run.exit(pass),
     };
     let texels = run.floats(pass, "bounce_sum").expect("written");
-    let places = places(run, Nodes { stride: run.quality.subsample });
     let mut pairs = Vec::new();
     for (node, ([row, col], got)) in places.iter().zip(texels.chunks_exact(4)).enumerate() {
         let seen: Vec<&Cast> = sets.iter().flat_map(|set| &set[node]).collect();
         let whole = f64::from(got[3]);
         let want = gather_twin(seen.iter().copied(), &exit).map(|v| v / whole);
         let weights: f64 = seen.iter().map(|c| c.weight).sum();
-        let terms = (seen.len() + 8) as f64;
+        let terms = (seen.len() + 10) as f64;
         let tolerance = terms * EPSILON * brightest(&exit) * weights / whole;
         let at = [0, *row, *col];
         pairs.extend((0..3).map(|c| Pair { got: got[c].into(), want: want[c], tolerance, at }));
