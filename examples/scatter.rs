@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release --example scatter -- [converge|table|brdf|all] [FOLDER] [--side N] [--spp N] [-o PICTURE.png]`
 //!
-//! `converge` (part of `all`, the default): three bounces on periodic grooves and on the middle N² (32) samples of the
-//! bundled mountain by directions and paths, beside the difference of N (2048) light paths a sample with and without them;
-//! and both pictures, direct, scattered, light paths, with the moss of FOLDER's `height/` where there is one.
+//! `converge` (part of `all`, the default): three bounces on grooves and on bumps, N² (32) samples that repeat, and on the
+//! moss of FOLDER's `height/` where there is one, by directions and paths, beside N (2048) light paths a sample with and
+//! without bounces; PICTURE.png has direct light, scattered light and light paths of the first and the last of them.
 //! `table`: the paper's table 1 by size. `brdf`: what of a field is seen from afar; see `scatter/brdf.rs`.
 
 #[path = "scatter/brdf.rs"]

@@ -19,7 +19,7 @@ fn bricks(side: usize) -> Result<HeightField> {
 }
 
 /// Round bumps, 16 samples apart.
-fn bumps(side: usize) -> Result<HeightField> {
+pub fn bumps(side: usize) -> Result<HeightField> {
     let wave = |n: usize| (std::f64::consts::TAU * n as f64 / 16.0).sin();
     let heights: Vec<f64> =
         (0..side * side).map(|i| 4.0 * wave(i / side) * wave(i % side)).collect();

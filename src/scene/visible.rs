@@ -100,7 +100,7 @@ impl VisiblePoints {
         for (i, point) in points.iter().take(directions.count() * samples).enumerate() {
             let (direction, sample) = (i / samples, i % samples);
             let word = match *point {
-                VisiblePoint::Sample(at) => ((at / cols) << 16 | at % cols) as u32,
+                VisiblePoint::Sample(at) => (((at / cols) << 16) | (at % cols)) as u32,
                 VisiblePoint::Sky => SKY,
                 VisiblePoint::Ground => GROUND,
             };
