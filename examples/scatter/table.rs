@@ -2,7 +2,6 @@
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::measure::fractal::fractal;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
 
 use crate::{grooves, lights, points, scattered};
@@ -33,14 +32,12 @@ pub fn run(gpu: &mut Headless) -> Result<()> {
     );
     println!("| field | MB | found | 1 bounce | 3 bounces | paper: found | software | hardware |");
     println!("|---|---|---|---|---|---|---|---|");
-    let rough = fractal(1024, 1)?;
     for (name, field, paper) in [
         ("triangles 32²", grooves(32, 32, 16)?.field, "27 | 10 | 0.48"),
         ("bricks 128²", bricks(128)?, "1029 | 12 | 2.10"),
         ("bumps 32²", bumps(32)?, "109 | 8 | 0.48"),
         ("bumps 128²", bumps(128)?, " | | "),
         ("bumps 1024²", bumps(1024)?, " | | "),
-        ("fractal 1024²", rough, " | | "),
     ] {
         let directions = Directions::fibonacci(COUNT, -1.0, 0)?;
         let (points, found_ms) = points(gpu, &field, Border::Periodic, &directions)?;
