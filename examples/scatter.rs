@@ -2,9 +2,9 @@
 //!
 //! `cargo run --release --example scatter -- [converge|table|brdf|all] [FOLDER] [--side N] [--spp N] [-o PICTURE.png]`
 //!
-//! `converge` (part of `all`, the default): three bounces on periodic grooves and on the middle N² (32) samples of the
-//! bundled mountain by directions and paths, beside the difference of N (2048) light paths a sample with and without them;
-//! and both pictures, direct, scattered, light paths, with the moss of FOLDER's `height/` where there is one.
+//! `converge` (part of `all`, the default): three bounces on grooves and on bumps, N² (32) samples that repeat, and on the
+//! moss of FOLDER's `height/` where there is one, by directions and paths, beside N (2048) light paths a sample with and
+//! without bounces; PICTURE.png has direct light, scattered light and light paths of the first and the last of them.
 //! `table`: the paper's table 1 by size. `brdf`: what of a field is seen from afar; see `scatter/brdf.rs`.
 
 #[path = "scatter/brdf.rs"]
@@ -18,7 +18,7 @@ mod traced;
 
 use std::path::PathBuf;
 
-use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions};
 use ridgelight::plan;
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
@@ -70,9 +70,7 @@ fn points(
     let plan = plan::visible_points(field, border, directions, &gpu.report().limits)?;
     let outputs = plan.outputs().count();
     let (words, ms) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
-        // The first draw warms up.
-        gpu.draw(frame)?;
-        let ms = gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        let ms = timed(gpu, frame)?;
         let mut words = Vec::new();
         for output in 0..outputs {
             words.extend(gpu.pixels(frame, output)?.values.iter().map(|v| v.to_bits()));
@@ -94,10 +92,18 @@ fn scattered(
     let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
-        let ms = gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        let ms = timed(gpu, frame)?;
         Ok((colours(&gpu.pixels(frame, 0)?.values), ms))
     })
+}
+
+/// Milliseconds of the device for a frame; of small ones, which a first draw's warming up would tell in, for a second.
+fn timed(gpu: &mut Headless, frame: &mut Frame) -> Result<f64> {
+    let [cols, rows] = frame.plan().size;
+    if cols * rows < 1 << 18 {
+        gpu.draw(frame)?;
+    }
+    Ok(gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6)
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {

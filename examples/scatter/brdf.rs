@@ -88,7 +88,7 @@ fn percent(of: [f64; 3]) -> f64 {
 
 pub fn run(gpu: &mut Headless) -> Result<()> {
     println!("Seen from afar: {TABLE} × {TABLE} lights and views, {} bounces\n", SCATTER.bounces);
-    for (name, scene) in [("grooves", grooves(4, 16, 16)?), ("waves", waves()?)] {
+    for (name, scene) in [("grooves", grooves(4, 64, 64)?), ("waves", waves()?)] {
         one(gpu, name, &scene)?;
     }
     Ok(())

@@ -5,40 +5,37 @@ use ridgelight::cpu::scatter_gather::expected;
 use ridgelight::files::{self, HeightOptions, Tone};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
-use ridgelight::scene::{Albedo, Directions, HeightField, Scatter, Scene, Surface};
+use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
 
+use crate::table::bumps;
 use crate::traced::traced;
 use crate::{Asked, Colours, colours, grooves, lights, mean, points, rms, scattered};
 
 const BOUNCES: u32 = 3;
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];
 const PATHS: [u32; 3] = [40, 100, 400];
-const SEEDS: u32 = 4;
+const SEEDS: u32 = 16;
 /// White columns between pictures, and pixels a sample.
 const GAP: usize = 4;
 const SCALE: usize = 3;
 
-/// The middle of a field, at most `side`² samples, so much steeper.
-fn middle(field: &HeightField, side: usize, z_scale: f64) -> Result<HeightField> {
+/// The middle of a field, at most `side`² samples.
+fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
     let [rows, cols] = [field.rows(), field.cols()].map(|n| n.min(side));
     let first = [(field.rows() - rows) / 2, (field.cols() - cols) / 2];
     let at = |i: usize| (first[0] + i / cols) * field.cols() + first[1] + i % cols;
-    let heights: Vec<f64> =
-        (0..rows * cols).map(|i| z_scale * f64::from(field.heights_m()[at(i)])).collect();
+    let heights: Vec<f64> = (0..rows * cols).map(|i| f64::from(field.heights_m()[at(i)])).collect();
     HeightField::new(rows, cols, &heights, field.cell_m(), None)
 }
 
 fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
-    let options = HeightOptions { cell_m: Some([66.0, 92.6]), ..HeightOptions::default() };
-    let mountain = files::read_heights("assets/mt_washington_256.png".as_ref(), &options)?;
     let on = |field| {
         let surface = Surface { albedo: Albedo::Constant([0.8, 0.7, 0.6]), ..Surface::default() };
         Scene { field, surface, lights: lights() }
     };
-    let mut all = vec![
-        ("grooves", grooves(asked.side, asked.side, 16)?),
-        ("Mt Washington, six times as steep", on(middle(&mountain, asked.side, 6.0)?)),
-    ];
+    let mut all =
+        vec![("grooves", grooves(asked.side, asked.side, 16)?), ("bumps", on(bumps(asked.side)?))];
+    all[1].1.surface.border = Border::Periodic;
     if let Some(folder) = &asked.folder {
         // 80 cells from black to white.
         let options = HeightOptions {
@@ -48,7 +45,7 @@ fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
         };
         let path = folder.join("height/Moss001_1K_Displacement.png");
         let moss = files::read_heights(&path, &options)?;
-        let mut scene = on(middle(&moss, 2 * asked.side, 1.0)?);
+        let mut scene = on(middle(&moss, 2 * asked.side)?);
         scene.surface.albedo = Albedo::Constant([0.55, 0.7, 0.25]);
         all.push(("moss", scene));
     }

@@ -174,26 +174,25 @@ impl FacetHarmonics {
         }
         let rows: Vec<Vec<f64>> = table.directions.iter().map(|v| evaluate(order, *v)).collect();
         let inverse = pseudo_inverse(&rows, terms);
-        let mut coefficients = vec![[0.0; 3]; terms * terms];
-        for c in [0, 1, 2] {
+        let channel = |c: usize| {
             // B⁺ F, then its product with B⁺ᵀ.
             let mut half = vec![0.0; terms * count];
-            for i in 0..terms {
-                for (light, weight) in inverse[i].iter().enumerate() {
-                    for view in 0..count {
-                        half[i * count + view] += weight * table.at(light, view)[c];
+            for (row, half) in inverse.iter().zip(half.chunks_exact_mut(count)) {
+                for (light, weight) in row.iter().enumerate() {
+                    for (view, sum) in half.iter_mut().enumerate() {
+                        *sum += weight * table.at(light, view)[c];
                     }
                 }
             }
-            for i in 0..terms {
-                for j in 0..terms {
-                    let sum: f64 =
-                        (0..count).map(|view| half[i * count + view] * inverse[j][view]).sum();
-                    coefficients[i * terms + j][c] += 0.5 * sum;
-                    coefficients[j * terms + i][c] += 0.5 * sum;
-                }
-            }
-        }
+            let product = |i: usize, j: usize| -> f64 {
+                let half = &half[i * count..(i + 1) * count];
+                half.iter().zip(&inverse[j]).map(|(a, b)| a * b).sum()
+            };
+            let pairs = (0..terms * terms).map(|i| (i / terms, i % terms));
+            pairs.map(|(i, j)| 0.5 * (product(i, j) + product(j, i))).collect::<Vec<f64>>()
+        };
+        let [r, g, b] = [0, 1, 2].map(channel);
+        let coefficients = (0..terms * terms).map(|i| [r[i], g[i], b[i]]).collect();
         let mut of = Self { order, coefficients, residual: 0.0 };
         let (mut left, mut all) = (0.0, 0.0);
         for light in 0..count {

@@ -40,7 +40,7 @@ impl Scatter {
         within("--bounces", self.bounces, Self::BOUNCES)?;
         within("--paths", self.paths, Self::PATHS)?;
         let length = self.view.length();
-        if !length.is_finite() || (length - 1.0).abs() > 1e-6 {
+        if !(1.0 - 1e-6..=1.0 + 1e-6).contains(&length) {
             return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));
         }
         scene.lights.check()?;

@@ -55,7 +55,7 @@ fn what_is_too_large_is_cut() {
     let said = of(1024, 1024, 600, &Limits::lavapipe()).unwrap_err();
     assert!(said.contains("the limit is 2048.0 MiB of --memory-budget"), "{said}");
     let said = of(1024, 1024, 5, &Limits { allocation_bytes: 2 << 20, ..limits }).unwrap_err();
-    assert!(said.contains("one direction") && said.contains("4.0 MiB"), "{said}");
+    assert!(said.contains("one direction") && said.contains("4096.0 KiB"), "{said}");
 }
 
 /// Of a relief of 1 over cells of 1: flatter than 1/16384 a cell are those of 40,001 directions, which there may not be;
