@@ -134,7 +134,7 @@ fn sky_changed(away: f64, rim: f64, alpha: f64) -> f64 {
     2.0 / f64::from(m) * (0..m).map(of).sum::<f64>() + 1.0 / (sphere * sphere)
 }
 
-/// At 256 azimuths what claims to be exact, brute, is within 0.2 % of the closed form where the field has no staircase. That
+/// What claims to be exact, brute, is at 64 and at 256 azimuths within 0.2 % of the closed form where the field has no staircase. That
 /// alone takes more of a rim 30 cells away, in quadrature of f64, too (`examples/bounce`). Every sample's sky is within what
 /// is left of it.
 #[test]
@@ -142,7 +142,8 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
     const FAR: f64 = 30.5;
     const MOST: f64 = 0.2;
     let mut gpu = Device::new();
-    for (alpha, albedo) in [(0.8, 0.5), (1.2, 0.9)] {
+    // The deep pit is the worse one; of the other fewer azimuths are as near, which costs less.
+    for (alpha, albedo, azimuths) in [(0.8, 0.5, 64), (1.2, 0.9, 256)] {
         let rho = f64::from(albedo);
         let side = pit(FAR, alpha).cols();
         let middle = (side / 2) as f64;
@@ -150,8 +151,8 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
         let inner = (0..side * side).filter(|i| away(*i) <= 0.5 * FAR);
         let bounds: Vec<(usize, f64)> =
             inner.map(|i| (i, rho * sky_changed(away(i), FAR, alpha))).collect();
-        let of = |count| Bounces { count, azimuths: 256, ..thrown(BounceEngine::Brute) };
-        let all = bounced(&mut gpu, &pit_of(rimmed_pit(FAR, alpha), albedo), of(2));
+        let of = |count, azimuths| Bounces { count, azimuths, ..thrown(BounceEngine::Brute) };
+        let all = bounced(&mut gpu, &pit_of(rimmed_pit(FAR, alpha), albedo), of(2, azimuths));
         let errors: Vec<f64> = (0..=2)
             .map(|count| rmse(&all[count], &bounds, pit_radiance(alpha, rho, count)))
             .collect();
@@ -161,7 +162,7 @@ fn exact_bounces_of_pits_are_within_a_five_hundredth() {
             let off = (all[0][*i] - pit_radiance(alpha, rho, 0)).abs();
             assert!(off <= *bound, "{alpha} {albedo} {i}: {off} {bound}");
         }
-        let stairs = bounced(&mut gpu, &pit_of(pit(FAR, alpha), albedo), of(0));
+        let stairs = bounced(&mut gpu, &pit_of(pit(FAR, alpha), albedo), of(0, 64));
         let error = rmse(&stairs[0], &bounds, pit_radiance(alpha, rho, 0));
         assert!(error > MOST, "{alpha} {albedo}: the staircase is not seen: {error}");
     }
