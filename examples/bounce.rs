@@ -3,7 +3,7 @@
 //! `cargo run --release --example bounce -- [FOLDER] [--side N] [--spp N] [--rim N] [-o FILE.svg]`
 //!
 //! First spherical pits, their rim N (30) cells from the middle, beside their closed form: RMSE over the radiance, at
-//! samples up to half of the rim's distance. Then the middle N² (64) samples of real fields under environments, for
+//! samples up to half of the rim's distance, with what f64 leaves on the same field, and of a rim without a staircase. Then the middle N² (64) samples of real fields under environments, for
 //! two albedos, one and three bounces, beside N (8192) light paths a sample: what is bounced alone, and the whole; and
 //! three bounces of albedo 0.8 under each field's first environment by azimuths, as FILE.svg draws them.
 //! FOLDER has `height/` and `env/`; without it, the bundled mountain and sky. Milliseconds are those of the passes
@@ -23,10 +23,13 @@ mod table;
 
 use std::path::PathBuf;
 
+use ridgelight::cpu::bounce_march::bounce_march;
+use ridgelight::cpu::light::sky_of;
+use ridgelight::cpu::oracle::Oracle;
 use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
-    Albedo, Border, BounceEngine, Bounces, HeightField, Lights, Quality, Scene, Surface,
+    Albedo, Border, BounceEngine, Bounces, HeightField, Lights, Method, Quality, Scene, Surface,
 };
 use ridgelight::{Error, Result};
 
@@ -133,13 +136,22 @@ fn off(found: &Colours, truth: &Colours) -> f64 {
     100.0 * rms(pairs.map(|(a, b)| a - b)) / mean(truth)
 }
 
-/// The spherical pit of half-angle `alpha`, its rim so many cells from the middle of a field that ends two beyond.
-fn pit(rim: f64, alpha: f64) -> Result<HeightField> {
+/// The spherical pit of half-angle `alpha`, its rim so many cells from the middle of a field that ends two beyond. Where
+/// `is_cone` samples of the plain beside the pit's stand on the cone from its lowest point through its rim, so that the
+/// middle sees no staircase.
+fn pit(rim: f64, alpha: f64, is_cone: bool) -> Result<HeightField> {
     let (sphere, middle) = (rim / alpha.sin(), rim.ceil() + 1.0);
     let side = 2 * middle as usize + 1;
+    let away = |r: f64, c: f64| (r - middle).hypot(c - middle);
     let height = |i: usize| {
-        let away = ((i / side) as f64 - middle).hypot((i % side) as f64 - middle).min(rim);
-        -(sphere * sphere - away * away).sqrt()
+        let (r, c) = ((i / side) as f64, (i % side) as f64);
+        let mut around = (0..9).map(|k| (r + f64::from(k / 3) - 1.0, c + f64::from(k % 3) - 1.0));
+        let is_beside = is_cone && around.any(|(r, c)| away(r, c) <= rim);
+        match away(r, c) - rim {
+            ..=0.0 => -(sphere * sphere - away(r, c).powi(2)).sqrt(),
+            beyond if is_beside => beyond * (0.5 * alpha).tan() - sphere * alpha.cos(),
+            _ => -sphere * alpha.cos(),
+        }
     };
     let heights: Vec<f64> = (0..side * side).map(height).collect();
     HeightField::new(side, side, &heights, [1.0; 2], None)
@@ -152,36 +164,69 @@ fn pit_radiance(alpha: f64, albedo: f64, bounces: u32) -> f64 {
     albedo * share * (1.0 - again.powi(bounces as i32 + 1)) / (1.0 - again)
 }
 
+/// What a sky of 1 and so many bounces and fewer give by quadrature in f64 on the field itself, in 32 azimuths: how far
+/// that is from the closed form is the field's.
+fn quadrature(field: &HeightField, albedo: f64, bounces: u32) -> Vec<Vec<f64>> {
+    const AZIMUTHS: u32 = 32;
+    let oracle = Oracle::new(field, Border::Plane);
+    let places = || (0..field.rows() * field.cols()).map(|i| (i / field.cols(), i % field.cols()));
+    let sky = places().map(|(r, c)| [albedo * sky_of(&oracle, r, c, AZIMUTHS as usize); 3]);
+    let mut layer: Colours = sky.collect();
+    let mut all = vec![layer.iter().map(|l| l[0]).collect::<Vec<f64>>()];
+    for _ in 0..bounces {
+        let thrown = places().map(|(r, c)| bounce_march(&oracle, &layer, AZIMUTHS, r, c));
+        layer = thrown.map(|l| l.map(|l| albedo * l)).collect();
+        let before = all.last().expect("direct light");
+        all.push(before.iter().zip(&layer).map(|(sum, l)| sum + l[0]).collect());
+    }
+    all
+}
+
 fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
     println!(
-        "Spherical pits under a sky of 1, rim {rim} cells away: RMSE over the closed form, %\n"
+        "Spherical pits under a sky of 1, rim {rim} cells away, as it falls on the grid and on a cone that hides its \
+         staircase from the middle: RMSE over the closed form, %; f64: of quadrature on the field, which is the field's own\n"
     );
-    println!("| half-angle | albedo | bounces | azimuths | brute | sweep | pyramid |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| half-angle | albedo | rim | bounces | azimuths | f64 | brute, brute's sky | brute | sweep | pyramid |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let rim = f64::from(rim) + 0.5;
-    for (alpha, albedo) in [(0.8, 0.5_f32), (1.2, 0.9)] {
-        let field = pit(rim, alpha)?;
+    for (alpha, albedo, is_cone) in
+        [(0.8, 0.5_f32, false), (0.8, 0.5, true), (1.2, 0.9, false), (1.2, 0.9, true)]
+    {
+        let field = pit(rim, alpha, is_cone)?;
         let side = field.cols();
+        let truth = quadrature(&field, albedo.into(), 4);
         let surface =
             Surface { albedo: Albedo::Constant([albedo; 3]), border: Border::Plane, phong: None };
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let scene = Scene { field, surface, lights };
         for (count, azimuths) in [(0, 64), (1, 64), (4, 64), (4, 256)] {
             let expected = pit_radiance(alpha, albedo.into(), count);
-            let mut cells = Vec::new();
-            for engine in ENGINES {
+            let middle = (side / 2) as f64;
+            let inner = |i: &usize| {
+                let [r, c] = [i / side, i % side].map(|n| n as f64 - middle);
+                r.hypot(c) <= 0.5 * rim
+            };
+            let error = |light: &dyn Fn(usize) -> f64| {
+                let inner = (0..side * side).filter(inner);
+                format!("{:.3}", 100.0 * rms(inner.map(|i| light(i) - expected)) / expected)
+            };
+            let mut cells = vec![error(&|i| truth[count as usize][i])];
+            let ways = [(Method::Brute, BounceEngine::Brute)];
+            for (method, engine) in ways.into_iter().chain(ENGINES.map(|e| (Method::Auto, e))) {
                 let bounces =
                     Bounces { count, engine, azimuths, cutoff: 0.0, ..Bounces::default() };
-                let whole = drawn(gpu, &scene, &quality(bounces))?.whole;
-                let middle = (side / 2) as f64;
-                let inner = whole.iter().enumerate().filter(|(i, _)| {
-                    let [r, c] = [i / side, i % side].map(|n| n as f64 - middle);
-                    r.hypot(c) <= 0.5 * rim
-                });
-                let error = rms(inner.map(|(_, v)| v[0] - expected)) / expected;
-                cells.push(format!("{:.3}", 100.0 * error));
+                let quality = Quality { method, ..quality(bounces) };
+                let whole = drawn(gpu, &scene, &quality)?.whole;
+                cells.push(error(&|i| whole[i][0]));
             }
-            println!("| {alpha} | {albedo} | {count} | {azimuths} | {} |", cells.join(" | "));
+            let rim = if is_cone { "cone" } else { "grid" };
+            println!(
+                "| {alpha} | {albedo} | {rim} | {count} | {azimuths} | {} |",
+                cells.join(" | ")
+            );
         }
     }
     println!();
