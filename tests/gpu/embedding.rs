@@ -311,7 +311,7 @@ fn some_passes_are_refused_until_all_have_been_recorded() {
     let contents = contents(&scene);
     let gpu = device.gpu.as_mut().expect("alive");
     let mut frame = frame(gpu, &plan, &contents);
-    let mut refused = |gpu: &mut Headless, frame: &mut Frame, few: &[usize]| {
+    let refused = |gpu: &mut Headless, frame: &mut Frame, few: &[usize]| {
         let error = gpu.draw_passes(frame, few).expect_err("nothing to go on from");
         assert!(error.to_string().contains("recording of all passes"), "{error}");
     };
