@@ -15,6 +15,7 @@ pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
 pub use environment::Environment;
 pub use field::HeightField;
+pub use hash::field_hash;
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{
