@@ -253,6 +253,57 @@ fn auto() -> Result<String> {
     Ok(out)
 }
 
+/// What each kind of `bake` is packed in and may be off by; angles in degrees.
+fn bake() -> Result<String> {
+    let figures = Figures::read("bake")?;
+    let mut out = String::from(
+        "| kind | channels | packed as | bytes a sample | stated error | worst here |\n|---|---|---|---|---|---|\n",
+    );
+    for row in figures.rows() {
+        let word = |key| figures.word(row, key);
+        let (mut stated, mut worst) = (Vec::new(), Vec::new());
+        for bound in row["bounds"].as_array().map_or(&[][..], Vec::as_slice) {
+            let number = |key| figures.number(bound, key);
+            let is_angle = figures.word(bound, "unit")? == "rad";
+            let shown = |v: f64| match is_angle {
+                _ if v == 0.0 => "0".to_owned(),
+                true => format!("{:.4}°", v.to_degrees()),
+                false => format!("{v:.2e}"),
+            };
+            let (most, share) = (number("at_most")?, number("and_of_the_value")?);
+            let of_value = format!("{share:.1e} of it");
+            let most = match (most > 0.0, share > 0.0) {
+                (true, true) => format!("{} + {of_value}", shown(most)),
+                (false, true) => of_value,
+                _ => shown(most),
+            };
+            stated.push(format!("{}: {most}", figures.word(bound, "of")?));
+            worst.push(shown(number("worst")?));
+        }
+        let bytes = figures.number(row, "bytes_a_sample")?;
+        let an_azimuth = if word("kind")? == "horizon" { " an azimuth" } else { "" };
+        writeln!(
+            out,
+            "| {} | {} | {} | {bytes}{an_azimuth} | {} | {} |",
+            word("kind")?,
+            word("channels")?,
+            word("encoding")?,
+            stated.join("; "),
+            worst.join("; ")
+        )
+        .unwrap();
+    }
+    writeln!(
+        out,
+        "\nOf decoding a .ktx2 or .png; worst of the bundled mountain, {} times as steep, {} azimuths (`examples/bake`).",
+        figures.number(&figures.all, "steeper")?,
+        figures.number(&figures.all, "azimuths")?
+    )
+    .unwrap();
+    writeln!(out, "{}", figures.caption()?).unwrap();
+    Ok(out)
+}
+
 /// `readme` with what stands between the marks of `name` replaced.
 fn with(readme: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
@@ -288,7 +339,7 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 7] = [
+    let sections: [Section; 8] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
@@ -296,6 +347,7 @@ fn run(check: bool) -> Result<bool> {
         ("auto", auto),
         ("forms", forms),
         ("edits", edits),
+        ("bake", bake),
     ];
     for (name, section) in sections {
         let new = with(&readme, name, &section()?)?;

@@ -1,5 +1,6 @@
 //! From values to texels and back, and by how much that may be off.
 
+use glam::DVec3;
 use half::f16;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -88,7 +89,7 @@ impl Component {
 }
 
 /// A promise: how far a decoded quantity may be from the value that was encoded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Bound {
     /// Of what.
     pub of: &'static str,
@@ -96,6 +97,29 @@ pub struct Bound {
     pub unit: &'static str,
     /// Times the half step of a component.
     pub half_steps: f64,
+    /// How far values are from others in this, and how large it is of the others.
+    pub off: fn(&[f64], &[f64]) -> [f64; 2],
+}
+
+/// Of the one at a place.
+const fn at<const PLACE: usize>() -> fn(&[f64], &[f64]) -> [f64; 2] {
+    |is, was| [(is[PLACE] - was[PLACE]).abs(), was[PLACE].abs()]
+}
+
+/// Of all, the one that is farthest off.
+fn farthest(is: &[f64], was: &[f64]) -> [f64; 2] {
+    let all = is.iter().zip(was).map(|(i, w)| [(i - w).abs(), w.abs()]);
+    all.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default()
+}
+
+fn sine(is: &[f64], was: &[f64]) -> [f64; 2] {
+    let (is, was) = (is[0].sin(), was[0].sin());
+    [(is - was).abs(), was.abs()]
+}
+
+fn direction(is: &[f64], was: &[f64]) -> [f64; 2] {
+    let [is, was] = [is, was].map(DVec3::from_slice);
+    [is.cross(was).length().atan2(is.dot(was)), 0.0]
 }
 
 impl Bound {
@@ -107,6 +131,13 @@ impl Bound {
             Component::F32 => 0.0,
             _ => self.half_steps * (component.half_step() + DECODER),
         }
+    }
+
+    /// By how much values are beyond what is promised of others: 1 is all of it.
+    pub fn share(&self, component: Component, is: &[f64], was: &[f64]) -> f64 {
+        let [off, value] = (self.off)(is, was);
+        let allowed = self.absolute(component) + self.relative(component) * value;
+        if off == 0.0 { 0.0 } else { off / allowed }
     }
 
     /// A share of the value itself, of floats: half a step and the decoder's.
@@ -140,6 +171,21 @@ pub struct Encoding {
     pub bounds: &'static [Bound],
 }
 
+impl Encoding {
+    /// Values as they come back from a texel, decoded in f64.
+    ///
+    /// # Panics
+    /// When there are not as many as [`values`](Self::values).
+    pub fn packed(&self, values: &[f64]) -> Vec<f64> {
+        assert_eq!(values.len(), self.values, "values of a texel");
+        let (mut texel, mut back) = (vec![0.0; self.components], vec![0.0; self.values]);
+        (self.encode)(values, &mut texel);
+        texel.iter_mut().for_each(|t| *t = self.component.rounded(*t));
+        (self.decode)(&texel, &mut back);
+        back
+    }
+}
+
 /// The one of that name.
 pub fn encoding_named(all: &'static [Encoding], name: &str) -> Option<&'static Encoding> {
     all.iter().find(|encoding| encoding.name == name)
@@ -160,7 +206,8 @@ const SCALAR: Encoding = Encoding {
     bounds: &[],
 };
 
-const ELEVATION: &[Bound] = &[Bound { of: "elevation", unit: "rad", half_steps: FRAC_PI_2 }];
+const ELEVATION: &[Bound] =
+    &[Bound { of: "elevation", unit: "rad", half_steps: FRAC_PI_2, off: at::<0>() }];
 
 const ANGLE: Encoding = Encoding {
     encode: |value, texel| texel[0] = value[0] / FRAC_PI_2,
@@ -183,13 +230,13 @@ pub static HORIZON: [Encoding; 5] = [
         encode: |value, texel| texel[0] = value[0].sin(),
         decode: |texel, value| value[0] = texel[0].min(1.0).asin(),
         decoding: "sine of the elevation = r",
-        bounds: &[Bound { of: "sine of the elevation", unit: "", half_steps: 1.0 }],
+        bounds: &[Bound { of: "sine of the elevation", unit: "", half_steps: 1.0, off: sine }],
         ..SCALAR
     },
     Encoding { bounds: ELEVATION, decoding: "elevation = r", ..SCALAR },
 ];
 
-const SHARES: &[Bound] = &[Bound { of: "share", unit: "", half_steps: 1.0 }];
+const SHARES: &[Bound] = &[Bound { of: "share", unit: "", half_steps: 1.0, off: at::<0>() }];
 
 /// Of shares, 0 to 1.
 pub static SHARE: [Encoding; 3] = [
@@ -224,8 +271,8 @@ const OCTAHEDRAL: Encoding = Encoding {
     decoding: "u = 2r - 1, v = 2g - 1, x = (u + v)/2, y = (u - v)/2, direction = normalize(x, y, 1 - |x| - |y|), \
                cone's half-angle = b π",
     bounds: &[
-        Bound { of: "direction", unit: "rad", half_steps: 4.9 },
-        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI },
+        Bound { of: "direction", unit: "rad", half_steps: 4.9, off: direction },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, off: at::<3>() },
     ],
     ..SCALAR
 };
@@ -247,8 +294,8 @@ const XYZ: Encoding = Encoding {
     },
     decoding: "direction = normalize(r, g, b), cone's half-angle = a π",
     bounds: &[
-        Bound { of: "direction", unit: "rad", half_steps: 1.7322 },
-        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI },
+        Bound { of: "direction", unit: "rad", half_steps: 1.7322, off: direction },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, off: at::<3>() },
     ],
     ..SCALAR
 };
@@ -264,8 +311,13 @@ pub static BENT_NORMAL: [Encoding; 5] = [
         components: 4,
         decoding: "direction = (r, g, b), cone's half-angle = a",
         bounds: &[
-            Bound { of: "components of the direction", unit: "", half_steps: 1.0 },
-            Bound { of: "cone's half-angle", unit: "rad", half_steps: 1.0 },
+            Bound {
+                of: "components of the direction",
+                unit: "",
+                half_steps: 1.0,
+                off: |is, was| farthest(&is[..3], &was[..3]),
+            },
+            Bound { of: "cone's half-angle", unit: "rad", half_steps: 1.0, off: at::<3>() },
         ],
         ..SCALAR
     },
@@ -275,7 +327,7 @@ const FOUR: Encoding = Encoding {
     values: 4,
     components: 4,
     decoding: "coefficients 4k to 4k + 3 of layer k = r, g, b, a",
-    bounds: &[Bound { of: "coefficient", unit: "", half_steps: 1.0 }],
+    bounds: &[Bound { of: "coefficient", unit: "", half_steps: 1.0, off: farthest }],
     ..SCALAR
 };
 
@@ -289,34 +341,9 @@ mod tests {
 
     /// The largest share of its bound that a value's decoded form is off by, over all bounds.
     fn worst(encoding: &Encoding, values: &[f64]) -> f64 {
-        let mut texel = vec![0.0; encoding.components];
-        (encoding.encode)(values, &mut texel);
-        texel.iter_mut().for_each(|t| *t = encoding.component.rounded(*t));
-        let mut back = vec![0.0; encoding.values];
-        (encoding.decode)(&texel, &mut back);
-        let turned = |a: &[f64], b: &[f64]| {
-            let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
-            let sine = (cross(0, 1).powi(2) + cross(1, 2).powi(2) + cross(2, 0).powi(2)).sqrt();
-            sine.atan2((0..3).map(|i| a[i] * b[i]).sum())
-        };
-        let off = |bound: &Bound| {
-            let (is, was) = match bound.of {
-                "elevation" | "share" => (back[0], values[0]),
-                "sine of the elevation" => (back[0].sin(), values[0].sin()),
-                "direction" => (turned(&back, values), 0.0),
-                "cone's half-angle" => (back[3], values[3]),
-                "components of the direction" | "coefficient" => {
-                    let far = |i: &usize| (back[*i] - values[*i]).abs();
-                    let i = (0..3).max_by(|i, j| far(i).total_cmp(&far(j))).expect("three");
-                    (back[i], values[i])
-                }
-                other => panic!("no test of {other}"),
-            };
-            let component = encoding.component;
-            let allowed = bound.absolute(component) + bound.relative(component) * was.abs();
-            (is - was).abs() / allowed
-        };
-        encoding.bounds.iter().map(off).fold(0.0, f64::max)
+        let back = encoding.packed(values);
+        let shares = encoding.bounds.iter().map(|b| b.share(encoding.component, &back, values));
+        shares.fold(0.0, f64::max)
     }
 
     #[test]

@@ -235,10 +235,8 @@ fn ends_hold() {
             let length = DVec3::new(bent[0], bent[1], bent[2]).length();
             assert!((length - 1.0).abs() < 1e-6 && bent[2] >= 0.0, "{elevation}: {bent:?}");
             assert!((0.0..=PI + 1e-6).contains(&bent[3]), "{elevation}: {bent:?}");
-            for order in [1, 5] {
-                let all = of(Box::new(ShTransfer::new(order)), up, horizon);
-                assert!(all.iter().all(|t| t.abs() < 0.461), "{elevation} {up}: {all:?}");
-            }
+            let all = of(Box::new(ShTransfer::new(2)), up, horizon);
+            assert!(all.iter().all(|t| t.abs() < 0.461), "{elevation} {up}: {all:?}");
         }
     }
     // All of the sphere: a cone of π, up by what is summed.

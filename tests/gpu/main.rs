@@ -3,6 +3,7 @@
 
 mod analytic;
 mod ash_host;
+mod baked;
 mod borrowed;
 mod bounce_edges;
 mod bounce_nodes;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use ridgelight::bake::{Encoding, Ray, encoding_named, normals};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
+use ridgelight::scene::{Border, HeightField, Lines, Method, Quality, field_hash};
 use ridgelight::{Error, Result, files};
 use serde_json::json;
 
@@ -66,7 +66,7 @@ pub fn help() -> String {
     }
     text += "\n\
 Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
-in the north. --method auto is brute here, exact in every azimuth; --method sweep takes a hundredth of the time, and its \
+in the north. --method auto is brute here, exact in every azimuth; --method sweep takes a hundredth of the time or less, and its \
 horizons are some hundredths of a degree off in the mean.
 
 Examples:
@@ -247,7 +247,7 @@ fn bake(
     used: &[(String, String)],
 ) -> Result<Outcome> {
     let Job { field, border, quality, wanted, making } = job;
-    let hash = format!("{:016x}", field.hash(border));
+    let hash = format!("{:016x}", field_hash(field, border));
     let count = wanted.len();
     let mut all = Vec::new();
     for (wanted, making) in wanted.into_iter().zip(making) {
@@ -325,7 +325,7 @@ fn sheet(
     sheet["field"] = json!({
         "rows": field.rows(), "cols": field.cols(), "cell_m": field.cell_m(), "base_m": field.base_m(),
         "voids": voids, "hash": hash,
-        "hash_is": "FNV-1a of 64 bits of rows, columns, cells, border, heights above the base and voids",
+        "hash_is": "FNV-1a of 64 bits of rows, columns and border (u64), cells (f64), heights above the base (f32), little-endian",
         "first_row": "north", "first_column": "west",
     });
     sheet["horizons"] = horizons.into();
