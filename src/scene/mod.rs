@@ -5,6 +5,7 @@ mod camera;
 mod directions;
 mod environment;
 mod field;
+mod hash;
 mod key;
 mod lights;
 mod quality;
