@@ -88,7 +88,7 @@ pub fn read_visible_points(
     let hash = Array::parse(path, &inside, &kept)?;
     expect_shape(path, &inside, &hash, &[8])?;
     let hash = hash.values().enumerate().fold(0, |hash, (i, byte)| hash | (byte as u64) << (8 * i));
-    let own = crate::scene::field_hash(field, border);
+    let own = field.hash(border);
     if hash != own {
         return Err(Error::file(
             path,

@@ -1,3 +1,5 @@
+mod order;
+
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -12,6 +14,7 @@ use crate::scene::{
     Albedo, Border, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
 };
 use crate::{Error, Result};
+use order::order;
 
 /// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
 /// busy where the field is small.
@@ -229,91 +232,6 @@ pub(crate) fn towards(sun: &Sun) -> DVec3 {
     DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
 }
 
-/// Which direction each path looks along at each of its steps, path after path.
-///
-/// At every step each direction is taken once before any is taken again, and is as likely everywhere, apart for every step:
-/// that is what makes the mean of paths unbiased. The first step's come in an order whose every part lies evenly over the
-/// sphere; those of later ones are as even, but dealt out to the paths at random, as they must not know the first's order.
-pub(crate) fn order(directions: &[DVec3], scatter: &Scatter, steps: u32) -> Vec<u32> {
-    let (count, paths) = (directions.len(), scatter.paths as usize);
-    let mut all = vec![0; paths * steps as usize];
-    for step in 0..steps as usize {
-        for (cycle, first) in (0..paths).step_by(count).enumerate() {
-            let mut chance = Chance::new(scatter.seed, step as u64, cycle as u64);
-            let list: Vec<u32> = (0..count as u32).collect();
-            let mut part = spread(directions, list, &mut chance);
-            part.truncate(paths - first);
-            if step > 0 {
-                // Fisher & Yates.
-                for at in 0..part.len() {
-                    let left = (part.len() - at) as f64;
-                    part.swap(at, at + (chance.next() * left) as usize);
-                }
-            }
-            for (path, i) in part.into_iter().enumerate() {
-                all[(first + path) * steps as usize + step] = i;
-            }
-        }
-    }
-    all
-}
-
-/// Directions in an order that takes evenly of all parts of the sphere from the begin on.
-///
-/// They are halved across their widest extent, and each half is put in such an order itself; of halves of l and r the j-th is
-/// of the first where ⌊(j + 1) l/n + u⌋ is more than ⌊j l/n + u⌋, u evenly in [0..1): l of n in all, and l/n of all u at every
-/// j, so that each direction is as likely at every place.
-fn spread(directions: &[DVec3], mut list: Vec<u32>, chance: &mut Chance) -> Vec<u32> {
-    let count = list.len();
-    if count < 2 {
-        return list;
-    }
-    let of = |i: &u32, axis: usize| directions[*i as usize][axis];
-    let extent = |axis: usize| {
-        let ends = list.iter().map(|i| of(i, axis));
-        let (low, high) = ends.fold((f64::MAX, f64::MIN), |(l, h), v| (v.min(l), v.max(h)));
-        high - low
-    };
-    let widest = (0..3).max_by(|a, b| extent(*a).total_cmp(&extent(*b))).expect("three axes");
-    list.sort_by(|a, b| of(a, widest).total_cmp(&of(b, widest)));
-    let right = list.split_off(count / 2);
-    let share = list.len() as f64 / count as f64;
-    let offset = chance.next();
-    let [left, right] = [list, right].map(|half| spread(directions, half, chance));
-    let (mut left, mut right) = (left.into_iter(), right.into_iter());
-    let upto = |j: usize| (j as f64 * share + offset).floor();
-    let next = |j: usize| {
-        let halves =
-            if upto(j + 1) > upto(j) { [&mut left, &mut right] } else { [&mut right, &mut left] };
-        // Where a rounding takes one half too often, the other has the rest.
-        halves.into_iter().find_map(Iterator::next).expect("as many as both halves")
-    };
-    (0..count).map(next).collect()
-}
-
-/// Numbers evenly in [0..1), the same for the same seed, step and cycle: splitmix64 (Steele, Lea & Flood 2014).
-struct Chance(u64);
-
-impl Chance {
-    fn new(seed: u32, step: u64, cycle: u64) -> Self {
-        let mut chance = Self(u64::from(seed) << 32 ^ step << 16 ^ cycle);
-        // Seeds that follow each other are states far apart.
-        chance.0 = chance.word();
-        chance
-    }
-
-    fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let a = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let b = (a ^ a >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        b ^ b >> 31
-    }
-
-    fn next(&mut self) -> f64 {
-        (self.word() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// Two a step of every path: direction and its number; the light of the sky there.
 fn link_texels(scene: &Scene, directions: &Directions, order: &[u32]) -> Vec<f32> {
     let sky = match scene.surface.phong {
@@ -369,45 +287,4 @@ pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
 fn texel_sr(environment: &Environment, row: usize) -> f64 {
     let edge = |row: usize| (PI * row as f64 / environment.height() as f64).cos();
     TAU / environment.width() as f64 * (edge(row) - edge(row + 1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Each direction once a cycle, at every step; and as often as any other in any place, over seeds: 13 of them in 5,200
-    /// orders 400 times each, off by five deviations of √400 at most.
-    #[test]
-    fn directions_are_as_likely_everywhere() {
-        let directions = Directions::fibonacci(13, -1.0, 0).expect("directions");
-        let mut found = vec![[0_u32; 13]; 2 * 20];
-        for seed in 0..5200 {
-            let scatter = Scatter { paths: 20, seed, ..Scatter::default() };
-            let order = order(directions.vectors(), &scatter, 2);
-            for (place, i) in order.iter().enumerate() {
-                found[place][*i as usize] += 1;
-            }
-            for step in 0..2 {
-                let mut cycle: Vec<u32> = (0..13).map(|path| order[2 * path + step]).collect();
-                cycle.sort_unstable();
-                assert!(cycle.into_iter().eq(0..13), "{seed} {step}");
-            }
-        }
-        for (place, counts) in found.iter().enumerate() {
-            assert!(counts.iter().all(|n| n.abs_diff(400) <= 100), "{place}: {counts:?}");
-        }
-    }
-
-    /// Of 1,024 directions the first 32 see each of the 32 parts that halving leaves once: their mean is nearer to the
-    /// sphere's middle than that of 32 at random, 1/√32 or so.
-    #[test]
-    fn the_first_directions_lie_evenly() {
-        let directions = Directions::fibonacci(1024, -1.0, 0).expect("directions");
-        for seed in 0..8 {
-            let scatter = Scatter { paths: 32, seed, ..Scatter::default() };
-            let order = order(directions.vectors(), &scatter, 1);
-            let sum: DVec3 = order.iter().map(|i| directions.vectors()[*i as usize]).sum();
-            assert!(sum.length() / 32.0 < 0.1, "{sum}");
-        }
-    }
 }

@@ -58,7 +58,7 @@ pub use quality::{
 };
 pub use scatter::Scatter;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
-pub use visible::{VisiblePoint, VisiblePoints, field_hash};
+pub use visible::{VisiblePoint, VisiblePoints};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

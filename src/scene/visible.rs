@@ -64,7 +64,7 @@ impl VisiblePoints {
             let found = format!("{} words", words.len());
             return Err(Error::setting("visible points", found, format!("{wanted} words")));
         }
-        let points = Self { directions, size, field_hash: field_hash(field, border), words };
+        let points = Self { directions, size, field_hash: field.hash(border), words };
         for direction in 0..points.directions.count() {
             for sample in 0..size[0] * size[1] {
                 let word = points.word(direction, sample);
@@ -123,7 +123,7 @@ impl VisiblePoints {
     /// # Errors
     /// Other heights, cells or border than those they were made of.
     pub fn check(&self, field: &HeightField, border: Border) -> Result<()> {
-        let hash = field_hash(field, border);
+        let hash = field.hash(border);
         if self.size == [field.rows(), field.cols()] && self.field_hash == hash {
             return Ok(());
         }
@@ -149,7 +149,7 @@ impl VisiblePoints {
         self.size
     }
 
-    /// Of the heights, cells and border that they were made of.
+    /// [`HeightField::hash`] of the field that they were made of.
     pub fn field_hash(&self) -> u64 {
         self.field_hash
     }
@@ -184,16 +184,4 @@ impl VisiblePoints {
             self.words[direction / 2 * rows * cols + sample] >> (16 * (direction % 2)) & 0xffff;
         if half >= LOST & 0xffff { 0xffff_0000 | half } else { half >> 8 << 16 | half & 0xff }
     }
-}
-
-/// FNV-1a (Fowler, Noll & Vo) of 64 bits over what decides what is seen: size, cells, border and heights; not the height
-/// that all are counted from.
-pub fn field_hash(field: &HeightField, border: Border) -> u64 {
-    let sizes = [field.rows() as u64, field.cols() as u64, border as u64];
-    let cells = field.cell_m().map(f64::to_bits);
-    let head = sizes.iter().chain(&cells).flat_map(|v| v.to_le_bytes());
-    let heights = field.heights_m().iter().flat_map(|h| h.to_bits().to_le_bytes());
-    head.chain(heights).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }

@@ -1,9 +1,9 @@
 //! Plans of what samples see: memory first, cut where a device holds less.
 
 use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
-use ridgelight::scene::{Border, Directions};
+use ridgelight::scene::{Border, Directions, Scatter};
 
-use super::flat;
+use super::{flat, under_sky};
 
 fn of(rows: usize, cols: usize, count: usize, limits: &Limits) -> Result<Plan, String> {
     let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
@@ -71,4 +71,50 @@ fn level_rays_over_repetitions_are_noted() {
         let plan = plan::visible_points(&field, border, &directions, &Limits::lavapipe());
         assert_eq!(plan.expect("a plan").notes.len(), noted, "{count} {border:?}");
     }
+}
+
+fn scattered(side: usize, bounces: u32, paths: u32, limits: &Limits) -> Plan {
+    let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
+    let scatter = Scatter { bounces, paths, ..Scatter::default() };
+    plan::scatter(&under_sky(flat(side, side)), &directions, &scatter, limits).expect("a plan")
+}
+
+/// From the far end of all paths to the samples, paths side by side; one bounce needs nothing between. Every barrier is there
+/// and each is missed.
+#[test]
+fn paths_are_walked_from_their_ends() {
+    let limits = Limits::lavapipe();
+    let labels = |plan: &Plan| plan.passes.iter().map(plan::Pass::label).collect::<Vec<_>>();
+    let of = |part: &str| format!("scatter_gather paths {part}");
+    let cells = "height_cells".to_owned();
+    let once = scattered(9, 1, 70, &limits);
+    assert_eq!(labels(&once), [cells.clone(), of("0..64"), of("64..70")]);
+    assert!(once.find("carried.0").is_none());
+    let thrice = scattered(9, 3, 5, &limits);
+    let walked = [of("0..5 step 2"), of("0..5 step 1"), of("0..5")];
+    assert_eq!(labels(&thrice), [&[cells], &walked[..]].concat());
+    for plan in [&once, &thrice] {
+        assert_eq!(missing_barriers(&plan.passes), []);
+        for i in (0..plan.passes.len()).filter(|i| plan.passes[*i].barrier_before) {
+            let mut passes = plan.passes.clone();
+            passes[i].barrier_before = false;
+            assert!(!missing_barriers(&passes).is_empty(), "{i}");
+        }
+    }
+}
+
+/// Pictures between steps take 64 MiB, or those of one path: of 1024² samples two paths', 2 · 2 · 16 MiB; where visible points
+/// are cut into several images, one path's, as each step looks at one of them.
+#[test]
+fn paths_side_by_side_have_their_room() {
+    let limits = Limits { memory_budget: 8 << 30, ..Limits::lavapipe() };
+    let carried = |plan: &Plan| {
+        let own = plan.resources.iter().filter(|r| r.name.starts_with("carried"));
+        own.map(ridgelight::plan::Resource::bytes).sum::<u64>()
+    };
+    assert_eq!(carried(&scattered(1024, 2, 9, &limits)), 64 << 20);
+    assert_eq!(carried(&scattered(2048, 2, 9, &limits)), 128 << 20);
+    let cut = scattered(300, 2, 9, &Limits { image_layers: 8, ..limits });
+    assert_eq!(carried(&cut), 2 * 16 * 90_000);
+    assert_eq!(cut.inputs().filter(|(_, r)| r.name.starts_with("visible_points.")).count(), 3);
 }

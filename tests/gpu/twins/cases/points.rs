@@ -31,6 +31,15 @@ fn along_the_grid() -> Directions {
     Directions::from_vectors(all, -1.0).expect("unit vectors")
 }
 
+/// Without data in its middle, where it is filled: filled ground hides, and is seen, like any.
+fn holed() -> HeightField {
+    let mut next = random(69);
+    let heights: Vec<f64> = (0..130).map(|_| 7.0 * next()).collect();
+    let voids =
+        (0..130).map(|i| (3..7).contains(&(i / 13)) && (4..9).contains(&(i % 13))).collect();
+    HeightField::new(10, 13, &heights, [3.0, 2.0], Some(voids)).expect("a field")
+}
+
 pub fn points() -> Vec<Case> {
     let long = |rows: usize, cols: usize| {
         field(rows, cols, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64 + 0.1 * c as f64)
@@ -44,6 +53,7 @@ pub fn points() -> Vec<Case> {
         on("points of a column that repeats", rough(13, 1, 66), Border::Periodic, sphere(16)),
         on("points of one sample", rough(1, 1, 67), Border::Open, sphere(5)),
         on("points of one sample that repeats", rough(1, 1, 68), Border::Periodic, sphere(6)),
+        on("points past voids", holed(), Border::Plane, sphere(12)),
         on("points in whole words", long(3, 257), Border::Plane, sphere(9)),
         on("points in whole words of a line", long(263, 1), Border::Periodic, sphere(8)),
     ]
