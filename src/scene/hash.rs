@@ -4,22 +4,35 @@ use super::{Border, HeightField};
 const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0100_0000_01b3;
 
-/// A number that tells fields apart, the same on every machine and in every version: what is made of a field keeps it,
-/// and what is loaded beside a field is held to it.
-///
-/// FNV-1a of, little-endian, rows, columns and border (0 plane, 1 open, 2 periodic), u64 each, cells (f64), and every
-/// height above the base (f32, row-major, voids filled). Where the base lies is no part of it: nothing depends on that.
-pub fn field_hash(field: &HeightField, border: Border) -> u64 {
-    let border = match border {
-        Border::Plane => 0,
-        Border::Open => 1,
-        Border::Periodic => 2,
-    };
-    let sizes = [field.rows() as u64, field.cols() as u64, border];
-    let cells = field.cell_m().map(f64::to_bits);
-    let head = sizes.iter().chain(&cells).flat_map(|v| v.to_le_bytes());
-    let heights = field.heights_m().iter().flat_map(|h| h.to_le_bytes());
-    head.chain(heights).fold(OFFSET, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME))
+impl HeightField {
+    /// A number that tells fields apart, the same on every machine and in every version: what is baked from a field
+    /// keeps it, and what is loaded beside a field is held to it.
+    ///
+    /// FNV-1a of, little-endian, the text "ridgelight field 1", rows and columns (u64), cells (f64), the border
+    /// (0 plane, 1 open, 2 periodic; a byte), every height above the base (f32, row-major, voids filled, -0 as 0), and
+    /// a byte a sample, 1 where it is void, if any is. Where the base lies is no part of it: nothing depends on that.
+    pub fn hash(&self, border: Border) -> u64 {
+        let mut state = OFFSET;
+        let mut take = |bytes: &[u8]| {
+            for byte in bytes {
+                state = (state ^ u64::from(*byte)).wrapping_mul(PRIME);
+            }
+        };
+        take(b"ridgelight field 1");
+        take(&(self.rows() as u64).to_le_bytes());
+        take(&(self.cols() as u64).to_le_bytes());
+        self.cell_m().iter().for_each(|cell| take(&cell.to_le_bytes()));
+        take(&[match border {
+            Border::Plane => 0,
+            Border::Open => 1,
+            Border::Periodic => 2,
+        }]);
+        self.heights_m().iter().for_each(|height| take(&(height + 0.0).to_le_bytes()));
+        for void in self.voids().unwrap_or_default() {
+            take(&[u8::from(*void)]);
+        }
+        state
+    }
 }
 
 #[cfg(test)]
@@ -28,31 +41,31 @@ mod tests {
 
     #[test]
     fn a_hash_is_of_what_results_depend_on() {
-        let field = |heights: &[f64], cell: f64| {
-            HeightField::new(2, 3, heights, [cell, 1.0], None).unwrap()
+        let field = |heights: &[f64], cell: f64, voids: Option<Vec<bool>>| {
+            HeightField::new(2, 3, heights, [cell, 1.0], voids).unwrap()
         };
         let heights = [0.0, 1.0, 2.0, 3.0, 4.0, 5.5];
-        let plain = field(&heights, 1.0);
-        let hash = field_hash(&plain, Border::Plane);
+        let plain = field(&heights, 1.0, None);
+        let hash = plain.hash(Border::Plane);
         // Written down, so that another version would be seen to make another.
         assert_eq!(hash, KNOWN, "{hash:#x}");
-        assert_eq!(hash, field_hash(&plain.clone(), Border::Plane));
+        assert_eq!(hash, plain.clone().hash(Border::Plane));
         // A base elsewhere changes nothing.
-        let above = field(&heights.map(|h| h + 1024.0), 1.0);
-        assert_eq!(hash, field_hash(&above, Border::Plane));
+        assert_eq!(hash, field(&heights.map(|h| h + 1024.0), 1.0, None).hash(Border::Plane));
         let mut other = heights;
         other[5] = 5.25;
         let tall = HeightField::new(3, 2, &heights, [1.0; 2], None).unwrap();
-        let plane = |field: HeightField| field_hash(&field, Border::Plane);
         let differ = [
-            field_hash(&plain, Border::Open),
-            field_hash(&plain, Border::Periodic),
-            plane(field(&other, 1.0)),
-            plane(field(&heights, 2.0)),
-            plane(tall),
+            plain.hash(Border::Open),
+            plain.hash(Border::Periodic),
+            field(&other, 1.0, None).hash(Border::Plane),
+            field(&heights, 2.0, None).hash(Border::Plane),
+            field(&heights, 1.0, Some(vec![false, true, false, false, false, false]))
+                .hash(Border::Plane),
+            tall.hash(Border::Plane),
         ];
         assert!(differ.iter().all(|h| *h != hash), "{differ:x?}");
     }
 
-    const KNOWN: u64 = 0x869b_65f8_e1b3_1d44;
+    const KNOWN: u64 = 0xc422_1978_b9d2_1d16;
 }

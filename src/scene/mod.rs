@@ -49,7 +49,6 @@ pub use camera::{Camera, Lens};
 pub use directions::Directions;
 pub use environment::Environment;
 pub use field::HeightField;
-pub use hash::field_hash;
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{

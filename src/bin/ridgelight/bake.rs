@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use ridgelight::bake::{Encoding, Ray, encoding_named, normals};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, HeightField, Lines, Method, Quality, field_hash};
+use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
 use ridgelight::{Error, Result, files};
 use serde_json::json;
 
@@ -247,7 +247,7 @@ fn bake(
     used: &[(String, String)],
 ) -> Result<Outcome> {
     let Job { field, border, quality, wanted, making } = job;
-    let hash = format!("{:016x}", field_hash(field, border));
+    let hash = format!("{:016x}", field.hash(border));
     let count = wanted.len();
     let mut all = Vec::new();
     for (wanted, making) in wanted.into_iter().zip(making) {
@@ -325,7 +325,9 @@ fn sheet(
     sheet["field"] = json!({
         "rows": field.rows(), "cols": field.cols(), "cell_m": field.cell_m(), "base_m": field.base_m(),
         "voids": voids, "hash": hash,
-        "hash_is": "FNV-1a of 64 bits of rows, columns and border (u64), cells (f64), heights above the base (f32), little-endian",
+        "hash_is": "FNV-1a of 64 bits of the text ridgelight field 1, rows and columns (u64), cells (f64), the border (a \
+                    byte: 0 plane, 1 open, 2 periodic), heights above the base (f32, -0 as 0) and, if any sample is \
+                    void, a byte a sample, 1 where it is; little-endian",
         "first_row": "north", "first_column": "west",
     });
     sheet["horizons"] = horizons.into();
