@@ -112,7 +112,7 @@ fn gpu_every_file_is_there_and_told_of() {
         &folder,
         "bake field.npy -o out2 --what sh-visibility,sh-transfer --sh-order 2 --azimuths 8",
     );
-    let mut sheets = [json(&folder.path("out/bake.json")), json(&folder.path("out2/bake.json"))];
+    let sheets = [json(&folder.path("out/bake.json")), json(&folder.path("out2/bake.json"))];
     for (sheet, out) in sheets.iter().zip(["out", "out2"]) {
         let mut told = vec!["bake.json".to_owned()];
         for map in sheet["maps"].as_array().unwrap() {
@@ -154,10 +154,18 @@ fn gpu_every_file_is_there_and_told_of() {
     // The same is baked again, bit for bit, over what is there.
     let kept = |folder: &Folder| std::fs::read(folder.path("out2/sh_transfer.ktx2")).unwrap();
     let first = kept(&folder);
-    done(&folder, "bake field.npy -o out2 --what sh-transfer --sh-order 2 --azimuths 8 --quiet");
+    let again = "bake field.npy -o out2 --what sh-transfer,sh-visibility --sh-order 2 --azimuths 8";
+    done(&folder, &format!("{again} --quiet --format ktx2"));
     assert!(kept(&folder) == first);
-    sheets[1] = json(&folder.path("out2/bake.json"));
-    assert_eq!(sheets[1]["maps"].as_array().unwrap().len(), 1);
+    // What the earlier one had besides is gone with its sheet; what is not its own stays.
+    assert!(!folder.path("out2/sh_transfer.exr").exists());
+    folder.write("out/horizon_0009.png", b"somebody's");
+    done(&folder, &format!("bake field.npy -o out --what {kinds} --azimuths 4 --format png"));
+    let pictures = |k: usize| folder.path(&format!("out/horizon_{k:04}.png")).exists();
+    assert_eq!([0, 3, 4, 7, 9].map(pictures), [true, true, false, false, true]);
+    // Other kinds would take its sheet from it.
+    let other = "bake field.npy -o out --what horizon";
+    refused(&folder, &[(other, 2, &["-o", "out with sky-view in its bake.json"])]);
 }
 
 /// Values are those of `horizon`, and a scene file gives what flags give.

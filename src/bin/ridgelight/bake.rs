@@ -131,10 +131,30 @@ fn quality(args: &BakeArgs) -> Result<Quality> {
     Ok(quality)
 }
 
-/// Where files go: a folder that is there, or can be made.
-fn check_folder(path: &Path) -> Result<()> {
+/// The kinds that a sheet tells of, each with its files; of what is no sheet nothing.
+fn told(sheet: &Path) -> Vec<(String, Vec<String>)> {
+    let text = std::fs::read(sheet).unwrap_or_default();
+    let sheet: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
+    let word = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+    let maps = sheet["maps"].as_array().into_iter().flatten();
+    maps.map(|map| {
+        let files = map["files"].as_array().into_iter().flatten();
+        (word(&map["kind"]), files.map(|file| word(&file["file"])).collect())
+    })
+    .collect()
+}
+
+/// Where files go: a folder that is there, or can be made. A bake of other kinds there would lose its sheet.
+fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
     let shown = || path.display().to_string();
     if path.is_dir() {
+        let is_other = |kind: &String| wanted.iter().all(|w| w.kind.name != kind);
+        let told = told(&path.join(SHEET));
+        if let Some((kind, _)) = told.iter().find(|(kind, _)| is_other(kind)) {
+            let found = format!("{} with {kind} in its {SHEET}", shown());
+            let expected = "a folder without another bake, or all its kinds among --what";
+            return Err(Error::setting("-o", found, expected));
+        }
         return files::check_writable(&path.join(SHEET));
     }
     if path.exists() {
@@ -191,7 +211,7 @@ impl Job<'_> {
 
 pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let wanted = wanted(args)?;
-    check_folder(&args.output)?;
+    check_folder(&args.output, &wanted)?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
@@ -285,7 +305,20 @@ fn bake(
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
     let sheet = sheet(&metadata, &times, field, quality, &sheets);
-    files::write_json(&args.output.join(SHEET), &sheet)?;
+    let path = args.output.join(SHEET);
+    let before = told(&path);
+    files::write_json(&path, &sheet)?;
+    // Of an earlier bake what is not written again: azimuths beyond the last, other formats.
+    let now: Vec<String> = told(&path).into_iter().flat_map(|(_, files)| files).collect();
+    for (kind, names) in before {
+        let is_own = |name: &&String| name.starts_with(&kind.replace('-', "_"));
+        for name in names.iter().filter(is_own).filter(|name| !now.contains(name)) {
+            if Path::new(name).file_name().is_some_and(|own| *own == **name) {
+                // What cannot be removed stays, untold of.
+                let _ = std::fs::remove_file(args.output.join(name));
+            }
+        }
+    }
     if let Some(json) = &args.global.json {
         files::write_json(json, &sheet)?;
     }

@@ -11,7 +11,8 @@ pub struct BakeArgs {
     #[command(flatten)]
     pub input: Input,
     /// A folder, made where it is missing, for the maps, a decoder in GLSL beside each, and bake.json, which says what
-    /// every channel is, how it is decoded and by how much it may be off
+    /// every channel is, how it is decoded and by how much it may be off. An earlier bake of the same kinds is
+    /// replaced, one of others refused
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// What to bake, of the list below
