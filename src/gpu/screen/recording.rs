@@ -3,10 +3,11 @@
 use ash::vk;
 
 use super::super::allocator::MemoryUse;
-use super::super::memory::whole;
+use super::super::memory::{Backed, whole};
 use super::super::{Frame, failed};
 use super::drawer::{COPIED, Drawer};
-use super::{Panel, Part, Screen, Shot, Sight, Slot, Work, fitting};
+use super::slot::{Slot, fitting};
+use super::{Panel, Part, Screen, Shot, Sight, Work};
 use crate::plan::Rectangle;
 use crate::{Error, Result};
 
@@ -255,7 +256,7 @@ fn ordered([r, g, b, a]: [u8; 4], swaps: bool) -> [u8; 4] {
     if swaps { [b, g, r, a] } else { [r, g, b, a] }
 }
 
-fn mapped(backed: &mut super::Backed) -> Result<&mut [u8]> {
+fn mapped(backed: &mut Backed) -> Result<&mut [u8]> {
     let mapped = backed.mapped();
     mapped.ok_or_else(|| failed("uploading")(vk::Result::ERROR_MEMORY_MAP_FAILED))
 }
