@@ -283,6 +283,36 @@ const FOUR: Encoding = Encoding {
 pub static COEFFICIENTS: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..FOUR }, FOUR];
 
+const SIX: Encoding = Encoding {
+    decoding: "layer 0: centre = (r, g), axis = (b, a); layer 1: 1 / radius along the axis = r, across it = g",
+    bounds: &[Bound { of: "number", unit: "", half_steps: 1.0 }],
+    ..FOUR
+};
+
+/// Of ellipses: six numbers in two layers.
+pub static ELLIPSE: [Encoding; 2] =
+    [Encoding { name: "f16", component: Component::F16, ..SIX }, SIX];
+
+/// Of rows and columns up to 65532, -1 for sky and -2 for ground: whole numbers that come back as they were.
+pub static POINTS: [Encoding; 1] = [Encoding {
+    name: "unorm16",
+    component: Component::Unorm16,
+    values: 2,
+    components: 2,
+    encode: |value, texel| {
+        for (t, v) in texel.iter_mut().zip(value) {
+            *t = (v + 2.0) / 65535.0;
+        }
+    },
+    decode: |texel, value| {
+        for (v, t) in value.iter_mut().zip(texel) {
+            *v = (65535.0 * t).round() - 2.0;
+        }
+    },
+    decoding: "row = round(65535 r) - 2, column = round(65535 g) - 2",
+    bounds: &[Bound { of: "row and column", unit: "samples", half_steps: 0.0 }],
+}];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -305,9 +335,11 @@ mod tests {
                 "sine of the elevation" => (back[0].sin(), values[0].sin()),
                 "direction" => (turned(&back, values), 0.0),
                 "cone's half-angle" => (back[3], values[3]),
-                "components of the direction" | "coefficient" => {
+                "components of the direction" | "coefficient" | "number" | "row and column" => {
                     let far = |i: &usize| (back[*i] - values[*i]).abs();
-                    let i = (0..3).max_by(|i, j| far(i).total_cmp(&far(j))).expect("three");
+                    let i = (0..values.len().min(3))
+                        .max_by(|i, j| far(i).total_cmp(&far(j)))
+                        .expect("three");
                     (back[i], values[i])
                 }
                 other => panic!("no test of {other}"),
@@ -352,6 +384,21 @@ mod tests {
                 let v = 4.0 * dense(i, 40_009) - 2.0;
                 hold(encoding, &[v, v * 1e-3, v * 1e-7, v * v]);
             });
+        }
+        for encoding in &ELLIPSE {
+            (0..=4009).for_each(|i| {
+                let v = 4.0 * dense(i, 4009);
+                hold(encoding, &[v, v - 2.0, 40.0 * v, 1.0 - v]);
+            });
+        }
+        for n in -2..=65_532 {
+            let of = |v: i32| f64::from(v);
+            let mut texel = [0.0; 2];
+            (POINTS[0].encode)(&[of(n), of(65_530 - n)], &mut texel);
+            let mut back = [0.0; 2];
+            // As the decoder has it, in f32.
+            (POINTS[0].decode)(&texel.map(|t| f64::from(t as f32)), &mut back);
+            assert_eq!(back, [of(n), of(65_530 - n)]);
         }
         // Bounds are near what happens, not far beyond it.
         assert!(largest > 0.99, "{largest}");
