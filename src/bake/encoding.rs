@@ -335,6 +335,36 @@ const FOUR: Encoding = Encoding {
 pub static COEFFICIENTS: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..FOUR }, FOUR];
 
+const SIX: Encoding = Encoding {
+    decoding: "layer 0: centre = (r, g), axis = (b, a); layer 1: 1 / radius along the axis = r, across it = g",
+    bounds: &[Bound { of: "number", unit: "", half_steps: 1.0, off: farthest }],
+    ..FOUR
+};
+
+/// Of ellipses: six numbers in two layers.
+pub static ELLIPSE: [Encoding; 2] =
+    [Encoding { name: "f16", component: Component::F16, ..SIX }, SIX];
+
+/// Of rows and columns up to 65532, -1 for sky and -2 for ground: whole numbers that come back as they were.
+pub static POINTS: [Encoding; 1] = [Encoding {
+    name: "unorm16",
+    component: Component::Unorm16,
+    values: 2,
+    components: 2,
+    encode: |value, texel| {
+        for (t, v) in texel.iter_mut().zip(value) {
+            *t = (v + 2.0) / 65535.0;
+        }
+    },
+    decode: |texel, value| {
+        for (v, t) in value.iter_mut().zip(texel) {
+            *v = (65535.0 * t).round() - 2.0;
+        }
+    },
+    decoding: "row = round(65535 r) - 2, column = round(65535 g) - 2",
+    bounds: &[Bound { of: "row and column", unit: "samples", half_steps: 0.0, off: farthest }],
+}];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -379,6 +409,21 @@ mod tests {
                 let v = 4.0 * dense(i, 40_009) - 2.0;
                 hold(encoding, &[v, v * 1e-3, v * 1e-7, v * v]);
             });
+        }
+        for encoding in &ELLIPSE {
+            (0..=4009).for_each(|i| {
+                let v = 4.0 * dense(i, 4009);
+                hold(encoding, &[v, v - 2.0, 40.0 * v, 1.0 - v]);
+            });
+        }
+        for n in -2..=65_532 {
+            let of = |v: i32| f64::from(v);
+            let mut texel = [0.0; 2];
+            (POINTS[0].encode)(&[of(n), of(65_530 - n)], &mut texel);
+            let mut back = [0.0; 2];
+            // As the decoder has it, in f32.
+            (POINTS[0].decode)(&texel.map(|t| f64::from(t as f32)), &mut back);
+            assert_eq!(back, [of(n), of(65_530 - n)]);
         }
         // Bounds are near what happens, not far beyond it.
         assert!(largest > 0.99, "{largest}");

@@ -9,6 +9,8 @@
 //!
 //! Each kind is defined where it is computed: [`SkyView`] and [`VisibleSky`] (two things: light of the sky on the
 //! ground as it lies, and how much of the sky is seen), [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
+//! [`Ellipse`]s of visible sky and visible points come off the device as they are ([`plan::ellipses`](crate::plan::ellipses),
+//! [`plan::visible_points`](crate::plan::visible_points)).
 //! [`Encoding`]s take values to texels and back, within errors that they state.
 
 mod bent;
@@ -23,9 +25,11 @@ use std::thread;
 use crate::cpu::light::normal;
 use crate::scene::{Border, HeightField};
 
+pub use crate::cpu::ellipse_fit::Ellipse;
 pub use bent::BentNormal;
 pub use encoding::{
-    BENT_NORMAL, Bound, COEFFICIENTS, Component, Encoding, HORIZON, SHARE, encoding_named,
+    BENT_NORMAL, Bound, COEFFICIENTS, Component, ELLIPSE, Encoding, HORIZON, POINTS, SHARE,
+    encoding_named,
 };
 pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};
 pub use sky::{SkyView, VisibleSky};

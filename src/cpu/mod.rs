@@ -16,6 +16,7 @@ pub mod bounce_walk;
 pub mod cast_gather;
 pub mod dirty_list;
 pub mod dirty_mark;
+pub mod ellipse_fit;
 pub mod env_tables;
 pub mod env_turns;
 pub mod env_wedges;

@@ -17,7 +17,9 @@ use crate::cpu::bounce_shade::LEAST_SHARE;
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
-pub use points::{MET_SHARE, gathered, seen_elevation};
+pub use points::{
+    MET_SHARE, ellipse_moment, ellipse_reach, ellipse_start, gathered, seen_elevation,
+};
 
 /// The largest relative error of one rounding to f32.
 pub const EPSILON: f64 = 1.0 / (1 << 24) as f64;

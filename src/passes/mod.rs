@@ -7,6 +7,7 @@ pub(crate) mod bounce_walk;
 pub(crate) mod cast_gather;
 pub(crate) mod dirty_list;
 pub(crate) mod dirty_mark;
+pub(crate) mod ellipse_fit;
 pub(crate) mod env_tables;
 pub(crate) mod env_turns;
 pub(crate) mod env_wedges;

@@ -1,4 +1,7 @@
+use glam::DVec3;
+
 use super::{Border, Directions, HeightField};
+use crate::basis::triangles::Triangles;
 use crate::{Error, Result};
 
 /// What every sample of a field sees of it in each of a set of directions (Heidrich et al. 2000, §3).
@@ -172,6 +175,31 @@ impl VisiblePoints {
                 VisiblePoint::Sample(row * self.size[1] + col)
             }
         }
+    }
+
+    /// The points' directions that a light lies between, and their shares, which sum to 1: its triangle's corners, less
+    /// those at or below horizontal, which see the ground whatever the field (Heidrich et al. 2000, §4). The same for all
+    /// samples. `None` for a light that no triangle covers or that has only such corners.
+    pub fn around(&self, triangles: &Triangles, light: DVec3) -> Option<[(usize, f64); 3]> {
+        let vectors = self.directions.vectors();
+        let mut corners = triangles.around(vectors, light)?.map(|(i, share)| (i as usize, share));
+        let is_above = |i: usize| vectors[i].z > 0.0;
+        let sum: f64 = corners.iter().filter(|c| is_above(c.0)).map(|c| c.1).sum();
+        if sum <= 0.0 {
+            return None;
+        }
+        corners.iter_mut().for_each(|c| c.1 = if is_above(c.0) { c.1 / sum } else { 0.0 });
+        Some(corners)
+    }
+
+    /// How much of a light [`around`](Self::around) which these lie arrives, 0 to 1: the share of those in which the sample
+    /// sees the sky.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn lit_share(&self, around: &[(usize, f64); 3], sample: usize) -> f64 {
+        let sees_sky = |i: usize| self.seen(i, sample) == VisiblePoint::Sky;
+        around.iter().filter(|c| sees_sky(c.0)).map(|c| c.1).sum()
     }
 
     /// As of a large field.

@@ -1,6 +1,8 @@
 //! What is baked, held to closed forms of horizons that are known: level ground, a basin, a wall, a canyon, planes; and to
 //! the f64 quadrature on fields.
 
+mod ellipses;
+
 use glam::DVec3;
 use ridgelight::bake::{
     BentNormal, MAX_TRANSFER_ORDER, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing,

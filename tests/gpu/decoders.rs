@@ -15,6 +15,7 @@ use crate::Device;
 
 const AZIMUTHS: u32 = 8;
 const ORDER: usize = 3;
+const DIRECTIONS: usize = 8;
 
 /// A shader of `decoders/`, its decoder, and the constants that the written decoder has by name.
 struct Decoder {
@@ -73,7 +74,7 @@ fn count(_: &Encoding) -> Vec<(&'static str, Constant)> {
     vec![("SH_COUNT", Constant::Int((ORDER * ORDER) as i32))]
 }
 
-fn all() -> [Decoder; 6] {
+fn all() -> [Decoder; 8] {
     let horizon = |encoding: &Encoding| {
         let is_angle = encoding.name.ends_with("-angle");
         let scale = if is_angle { FRAC_PI_2 } else { 1.0 };
@@ -94,6 +95,8 @@ fn all() -> [Decoder; 6] {
         decoder!("bent_normal", "bent-normal", bake::BENT_NORMAL, false, 4, bent),
         decoder!("sh_visibility", "sh-visibility", bake::COEFFICIENTS, true, squared, count),
         decoder!("sh_transfer", "sh-transfer", bake::COEFFICIENTS, true, squared, count),
+        decoder!("ellipse", "ellipse", bake::ELLIPSE, true, 7, none),
+        decoder!("visible_points", "visible-points", bake::POINTS, true, 2 * DIRECTIONS, none),
     ]
 }
 
@@ -109,6 +112,7 @@ fn baked(folder: &Path, number: usize) -> serde_json::Value {
         .arg("bake")
         .arg(field)
         .args("--cell 66,92.6 --z-scale 3 --method sweep --format ktx2,npy --quiet".split(' '))
+        .args(["--directions", &DIRECTIONS.to_string()])
         .args(["--azimuths", &AZIMUTHS.to_string(), "--sh-order", &ORDER.to_string()])
         .args(["--what", &kinds.join(","), "--encoding", &encodings.join(",")])
         .arg("-o")
@@ -174,7 +178,7 @@ fn worst(
                     let (sine, elevation) = each(p);
                     hold(sine, elevation.sin());
                 }),
-                "elevation" | "share" | "coefficient" => {
+                "elevation" | "share" | "coefficient" | "number" | "row and column" => {
                     (0..truth.planes.len()).for_each(|p| hold(each(p).0, each(p).1));
                 }
                 other => panic!("no test of {other}"),
@@ -220,14 +224,19 @@ fn decoders_keep_what_sheets_promise() {
             // The comparison hears: what is off by three bounds.
             let mut off = found.clone();
             let (_, absolute, relative) = promised[promised.len() - 1].clone();
-            let last = off.len() - 1;
+            let last = truth.planes.len() * truth.rows * truth.cols - 1;
             let is_sine = promised[0].0.starts_with("sine");
             let value =
                 f64::from(truth.planes[truth.planes.len() - 1].last().copied().expect("some"));
             let value = if is_sine { value.sin() } else { value };
-            off[last] = (value + 3.0 * (absolute + relative * value.abs() + slack) + 1e-6) as f32;
+            off[last] = (value
+                + 3.0 * (absolute + relative * value.abs() + slack)
+                + 1e-6 * value.abs().max(1.0)) as f32;
             assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: deaf", decoder.kind);
 
+            if decoder.kind == "ellipse" {
+                lit_as_told(&found, &truth, promised[0].2);
+            }
             // Between two azimuths both count alike.
             if is_horizon && !is_sine {
                 let found = decode(gpu, decoder, &bits, &texture, 0.5);
@@ -241,6 +250,26 @@ fn decoders_keep_what_sheets_promise() {
             }
         }
     }
+}
+
+/// The last plane is the test of the ellipses for a light, but where what is promised of a number (centre up to 4, radii) may
+/// put it over the edge: 1 / radius times that of the centre and the axis' 1.6 at most, and of itself, squared.
+fn lit_as_told(found: &[f32], truth: &Planes, share: f64) {
+    let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
+    let mut counts = [0; 2];
+    for i in 0..samples {
+        let of = |plane: usize| truth.planes[plane][i];
+        let ellipse = bake::Ellipse::of_texels([0, 1, 2, 3].map(of), [of(4), of(5)]);
+        let [a, b] = ellipse.inverse_radii;
+        let centre = ellipse.centre.length();
+        let place = (1.0 + 3.0 * centre) * (a + b);
+        if (ellipse.reach(light) - 1.0).abs() > 4.0 * share * (1.0 + place) {
+            let is_lit = ellipse.holds(light);
+            assert_eq!(found[6 * samples + i], f32::from(u8::from(is_lit)), "{i}: {ellipse:?}");
+            counts[usize::from(is_lit)] += 1;
+        }
+    }
+    assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
 }
 
 const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {

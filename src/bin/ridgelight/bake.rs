@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use ridgelight::bake::{Encoding, Ray, encoding_named, normals};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
+use ridgelight::scene::{Border, Directions, HeightField, Lines, Method, Quality};
 use ridgelight::{Error, Result, files};
 use serde_json::json;
 
@@ -17,7 +17,7 @@ use crate::args::{BakeArgs, MethodName};
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
 pub use kinds::Kind;
-use kinds::{Asked, KINDS, Making};
+use kinds::{Asked, KINDS, Looked, Making, OfDirections, Source};
 pub use map::Format;
 use map::{MapFiles, Wanted};
 
@@ -72,6 +72,7 @@ horizons are some hundredths of a degree off in the mean.
 Examples:
   ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
   ridgelight bake dem.tif --what horizon --encoding horizon=unorm16-sin -o baked
+  ridgelight bake moss.png --what ellipse --directions 512 -o baked
   ridgelight bake moss.png --border periodic --what sh-transfer --sh-order 3 -o baked
   ridgelight bake dem.tif --what horizon,sky-view,visible-sky --plan -o baked";
     text
@@ -131,6 +132,13 @@ fn quality(args: &BakeArgs) -> Result<Quality> {
     Ok(quality)
 }
 
+/// Of kinds that look along directions: ellipses spend none below horizontal.
+fn directions(args: &BakeArgs) -> Result<Directions> {
+    let has_points = args.what.iter().any(|kind| kind.name == "visible-points");
+    let lowest_z = if has_points { -1.0 } else { 0.0 };
+    Directions::fibonacci(args.directions.unwrap_or(256), lowest_z, 0)
+}
+
 /// The kinds that a sheet tells of, each with its files; of what is no sheet nothing.
 fn told(sheet: &Path) -> Vec<(String, Vec<String>)> {
     let text = std::fs::read(sheet).unwrap_or_default();
@@ -177,6 +185,7 @@ struct Job<'a> {
     field: &'a HeightField,
     border: Border,
     quality: &'a Quality,
+    directions: &'a Directions,
     wanted: Vec<Wanted>,
     making: Vec<Making>,
 }
@@ -197,15 +206,38 @@ impl Job<'_> {
     /// Bytes on this side: sums, planes that wait for their files, normals, and azimuths as they come.
     fn host_bytes(&self, limits: &Limits) -> u64 {
         let samples = self.samples();
-        let of = |(w, m): (&Wanted, &Making)| m.maker.bytes() + w.held_bytes(&m.map, samples);
+        let of = |(w, m): (&Wanted, &Making)| {
+            m.source.bytes(self.directions, samples) + w.held_bytes(&m.map, samples)
+        };
         let pairs = self.wanted.iter().zip(&self.making);
         let azimuths = u64::from(horizon::at_once(self.field, limits).min(self.quality.azimuths));
         pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * samples as u64
     }
 
-    fn plan(&self, limits: &Limits) -> Result<Plan> {
-        let most = horizon::at_once(self.field, limits);
-        horizon::plan_from(self.field, self.border, self.quality, limits, (0, most), false)
+    /// Kinds of directions.
+    fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
+        self.making.iter().filter_map(|m| match m.source {
+            Source::Directions(of) => Some(of),
+            Source::Horizons(_) => None,
+        })
+    }
+
+    fn has_horizons(&self) -> bool {
+        self.of_directions().count() < self.making.len()
+    }
+
+    /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions.
+    fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
+        let (field, border) = (self.field, self.border);
+        let mut all = Vec::new();
+        if self.has_horizons() {
+            let most = horizon::at_once(field, limits);
+            all.push(horizon::plan_from(field, border, self.quality, limits, (0, most), false)?);
+        }
+        for of in self.of_directions() {
+            all.push((of.plan)(field, border, self.directions, limits)?);
+        }
+        Ok(all)
     }
 }
 
@@ -219,17 +251,25 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let field = setup::field(&args.input.path, &args.surface, &args.global)?;
     let border = setup::border(&args.surface);
     let samples = field.rows() * field.cols();
+    let directions = directions(args)?;
     let making = wanted.iter().map(|w| {
-        (w.kind.begin)(&Asked { border, quality: &quality, encoding: w.encoding, samples })
+        let (quality, directions, encoding) = (&quality, &directions, w.encoding);
+        (w.kind.begin)(&Asked { border, quality, directions, encoding, samples })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
-    let job = Job { field: &field, border, quality: &quality, wanted, making };
+    let job =
+        Job { field: &field, border, quality: &quality, directions: &directions, wanted, making };
+    if let Some(count) = args.directions.filter(|_| job.of_directions().next().is_none()) {
+        let expected = "--what ellipse or visible-points, which alone look along directions";
+        return Err(Error::setting("--directions", count.to_string(), expected));
+    }
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
     let mut outputs: Vec<_> = paths.iter().map(|path| ("-o", Some(path.as_path()))).collect();
     outputs.push(("--json", args.global.json.as_deref()));
     setup::check_distinct(&outputs, &[&args.input.path])?;
-    setup::check_plan(&args.global, |limits| job.plan(limits))?;
+    let first = |plans: Vec<Plan>| plans.into_iter().next().expect("--what has a kind");
+    setup::check_plan(&args.global, |limits| job.plans(limits).map(first))?;
     if args.plan {
         return say_plan(args, &job);
     }
@@ -238,7 +278,10 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let room: Vec<_> = room.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     files::check_room(&room)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
-    let mut used = horizon::used(&field, border, &quality, &limits, false)?;
+    let mut used = match job.has_horizons() {
+        true => horizon::used(&field, border, &quality, &limits, false)?,
+        false => job.plans(&limits).map(first)?.settings,
+    };
     if args.what.iter().any(|kind| kind.name.starts_with("sh-")) {
         used.push(("sh_order".into(), quality.sh_order.to_string()));
     }
@@ -266,35 +309,58 @@ fn bake(
     limits: &Limits,
     used: &[(String, String)],
 ) -> Result<Outcome> {
-    let Job { field, border, quality, wanted, making } = job;
+    let (has_horizons, looks_along) = (job.has_horizons(), job.of_directions().next().is_some());
+    let Job { field, border, quality, directions, wanted, making } = job;
     let hash = format!("{:016x}", field.hash(border));
     let count = wanted.len();
     let mut all = Vec::new();
     for (wanted, making) in wanted.into_iter().zip(making) {
         let files = MapFiles::create(&args.output, wanted, making.map, field, &hash)?;
-        all.push((making.maker, files));
+        all.push((making.source, files));
     }
     let normals = normals(field, border);
     let bar = crate::render::progress(args.global.quiet, "baking");
     let azimuths = plan::circle_rad(quality, field.cell_m())?;
     let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
     let started = std::time::Instant::now();
-    let (times, plan) =
-        horizon::for_each(gpu, field, border, quality, limits, false, &mut |k, elevations, _| {
+    let (mut times, mut plan) = (Vec::new(), None);
+    if has_horizons {
+        let mut each = |k: u32, elevations: &[f32], _: &[f32]| {
             bar.set_message(format!("baking: azimuth {} of {}", k + 1, azimuths.len()));
             let ray = Ray { azimuth_rad: azimuths[k as usize], width_rad };
-            let mut each = all.iter_mut();
-            each.try_for_each(|(maker, files)| maker.add(ray, elevations, &normals, files))
+            all.iter_mut().try_for_each(|(source, files)| match source {
+                Source::Horizons(maker) => maker.add(ray, elevations, &normals, files),
+                Source::Directions(_) => Ok(()),
+            })
+        };
+        let found = horizon::for_each(gpu, field, border, quality, limits, false, &mut each)?;
+        (times, plan) = (found.0, Some(found.1));
+    }
+    for (source, files) in &mut all {
+        let Source::Directions(of) = source else { continue };
+        bar.set_message("baking: what samples see".to_owned());
+        let own = (of.plan)(field, border, directions, limits)?;
+        let count = own.outputs().count();
+        plan.get_or_insert_with(|| own.clone());
+        let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
+            times.extend(gpu.draw(frame)?);
+            let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
+            outputs.collect::<Result<Vec<_>>>()
         })?;
+        (of.take)(&Looked { field, border, directions, outputs: &outputs }, files)?;
+    }
+    let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
     metadata
         .extend(used.iter().filter(|(name, _)| name == "azimuths" || name == "sh_order").cloned());
     metadata.extend(setup::asked(&args.input.path, &args.surface, None));
     metadata.push(("field_hash".into(), hash));
     let mut sheets = Vec::new();
-    for (i, (maker, mut files)) in all.into_iter().enumerate() {
+    for (i, (source, mut files)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
-        maker.end(&normals, &mut files)?;
+        if let Source::Horizons(maker) = source {
+            maker.end(&normals, &mut files)?;
+        }
         if let Some(note) = files.note().filter(|_| !args.global.quiet) {
             // A closed stderr is no panic.
             let _ = bar.suspend(|| writeln!(std::io::stderr(), "{note}"));
@@ -304,7 +370,14 @@ fn bake(
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let sheet = sheet(&metadata, &times, field, quality, &sheets);
+    let mut sheet = sheet(&metadata, &times, field, quality, &sheets);
+    if !has_horizons {
+        sheet["horizons"] = serde_json::Value::Null;
+    }
+    if looks_along {
+        let vectors = directions.vectors().iter();
+        sheet["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
+    }
     let path = args.output.join(SHEET);
     let before = told(&path);
     files::write_json(&path, &sheet)?;
@@ -325,11 +398,14 @@ fn bake(
     if !args.global.quiet {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
         crate::say!(
-            "{}: {count} of {} × {}, {} azimuths, {seconds:.1} s, {ms:.1} ms of them on {}",
+            "{}: {count} of {} × {}, {}, {seconds:.1} s, {ms:.1} ms of them on {}",
             args.output.display(),
             field.cols(),
             field.rows(),
-            quality.azimuths,
+            match has_horizons {
+                true => format!("{} azimuths", quality.azimuths),
+                false => format!("{} directions", directions.count()),
+            },
             gpu.report().name
         );
     }
@@ -374,7 +450,7 @@ fn sheet(
 /// What would be written and what it takes.
 fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let (name, limits) = crate::plan::limits(&args.global)?;
-    let plan = job.plan(&limits)?;
+    let plans = job.plans(&limits)?;
     if args.global.quiet {
         return Ok(Outcome::Done);
     }
@@ -382,8 +458,8 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     for (name, bytes) in job.files() {
         crate::say!("{bytes:>14}  {name}");
     }
-    let device = plan.bytes();
-    crate::say!("{device:>14}  memory of {name}, a batch of azimuths at a time");
+    let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
+    crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
     Ok(Outcome::Done)
 }

@@ -1,6 +1,7 @@
 //! What rays of `visible_points` err by against its twin.
 
 use super::{EPSILON, Land};
+use crate::cpu::ellipse_fit::Ellipse;
 
 /// By how much a place that is met may be off along either axis of the grid, in cells and as a share of the cells to it:
 /// direction and advance 12 ε (normalised, a quotient by the cell, one by the faster axis), the crossing's distance 7 ε
@@ -35,4 +36,28 @@ pub fn gathered(
     let apart = 4.0 * normal + 16.0 * EPSILON;
     let lobe = n.max(1.0).sqrt() * apart + 16.0 * EPSILON + 4e-7;
     [0, 1, 2].map(|c| facing[c] * cosine + mirrored[c] * lobe + 16.0 * EPSILON * light[c])
+}
+
+/// By how much equation 4 of an ellipse of `ellipse_fit` may be off near its edge, where neither term is over 1.
+///
+/// A place along an axis errs by 6 ε (the direction's rounding, two products and a sum; its axis), that of the centre c away by
+/// 8 ε c, turned there and back; over the radius, squared, twice that; the quotients here and the inverse that is written (5 ε each, Vulkan's 2.5 ulp), a root of
+/// 10 ε, their squares twice that, and three roundings, 48 ε.
+pub fn ellipse_reach(ellipse: &Ellipse) -> f64 {
+    let [along, across] = ellipse.inverse_radii;
+    let place = 6.0 + 8.0 * ellipse.centre.length();
+    EPSILON * (2.0 * place * (along + across) + 48.0)
+}
+
+/// By how much the mean or a covariance of n directions in the unit disc may be off: n terms of at most 1, each weighed and
+/// squared within 8 ε, and their sums' roundings, of numerator and of weight.
+pub fn ellipse_moment(directions: usize) -> f64 {
+    EPSILON * 2.0 * (directions as f64 + 8.0)
+}
+
+/// [`ellipse_reach`] of where the search starts: of a mean that is off by m, and a radius r = 2 √v by 2 m / r.
+pub fn ellipse_start(ellipse: &Ellipse, directions: usize) -> f64 {
+    let m = ellipse_moment(directions);
+    let of = |inverse: f64| 2.0 * inverse * (m + 2.0 * m * inverse);
+    ellipse_reach(ellipse) + ellipse.inverse_radii.map(of).iter().sum::<f64>()
 }

@@ -4,6 +4,7 @@
 mod bounce;
 mod cases;
 mod edit;
+mod ellipses;
 mod gloss;
 mod light;
 mod nodes;
@@ -73,6 +74,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
     ("visible_points", points::visible_points),
+    ("ellipse_fit", ellipses::ellipse_fit),
     ("scatter_gather", scatter::scatter_gather),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
@@ -343,6 +345,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::references(),
         cases::points(),
         cases::scatters(),
+        cases::ellipses(),
         cases::walks(),
         cases::throws(),
         cases::glosses(),
@@ -479,6 +482,14 @@ fn points_are_their_twins() {
 fn scattered_light_is_its_twins() {
     let mut device = Device::new();
     for case in cases::scatters() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn ellipses_are_their_twins() {
+    let mut device = Device::new();
+    for case in cases::ellipses() {
         check(&mut device, &case);
     }
 }

@@ -24,6 +24,11 @@ pub struct BakeArgs {
     /// How a kind's values are packed in .ktx2 and .png, as horizon=unorm16-sin; default the first that is listed below
     #[arg(long, value_name = "KIND=ENCODING,…", value_delimiter = ',', value_parser = bake::packing)]
     pub encoding: Vec<bake::Packing>,
+    /// Directions of ellipse and visible-points, [4..4096]: a spherical Fibonacci set, the upper hemisphere of ellipses alone,
+    /// the whole sphere where visible-points is baked. More are finer, and each takes a word a sample on the device [default:
+    /// 256]
+    #[arg(long, value_name = "N")]
+    pub directions: Option<usize>,
     /// Says what would be written, its bytes, and the memory that it takes; runs nothing
     #[arg(long)]
     pub plan: bool,

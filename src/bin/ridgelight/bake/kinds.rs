@@ -1,27 +1,32 @@
 //! What can be baked: one file a kind, and a line of [`KINDS`].
 
 mod bent_normal;
+mod ellipse;
 mod horizon;
 mod sh_transfer;
 mod sh_visibility;
 mod sky_view;
+mod visible_points;
 mod visible_sky;
 
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::bake::{Encoding, Ray, Sum, Summing};
-use ridgelight::scene::{Border, Quality};
+use ridgelight::plan::{Limits, Plan};
+use ridgelight::scene::{Border, Directions, HeightField, Quality};
 
 use super::map::{Format, MapFiles};
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 6] = [
+pub static KINDS: [&Kind; 8] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
     &bent_normal::KIND,
     &sh_visibility::KIND,
     &sh_transfer::KIND,
+    &ellipse::KIND,
+    &visible_points::KIND,
 ];
 
 /// What can be baked.
@@ -44,6 +49,7 @@ pub struct Kind {
 pub struct Asked<'a> {
     pub border: Border,
     pub quality: &'a Quality,
+    pub directions: &'a Directions,
     pub encoding: &'static Encoding,
     /// Of the field.
     pub samples: usize,
@@ -74,7 +80,42 @@ pub struct Value {
 /// A kind on its way.
 pub struct Making {
     pub map: Map,
-    pub maker: Box<dyn Maker>,
+    pub source: Source,
+}
+
+/// What a kind is made of.
+pub enum Source {
+    Horizons(Box<dyn Maker>),
+    Directions(OfDirections),
+}
+
+impl Source {
+    /// Bytes that it holds until the end.
+    pub fn bytes(&self, directions: &Directions, samples: usize) -> u64 {
+        match self {
+            Source::Horizons(maker) => maker.bytes(),
+            Source::Directions(of) => (of.bytes)(directions) * samples as u64,
+        }
+    }
+}
+
+/// A kind that the device makes of what samples see in directions.
+#[derive(Clone, Copy)]
+pub struct OfDirections {
+    pub plan: fn(&HeightField, Border, &Directions, &Limits) -> Result<Plan>,
+    /// Bytes a sample of what comes off the device and waits for files.
+    pub bytes: fn(&Directions) -> u64,
+    /// To files.
+    pub take: fn(&Looked, &mut MapFiles) -> Result<()>,
+}
+
+/// What came of its plan.
+pub struct Looked<'a> {
+    pub field: &'a HeightField,
+    pub border: Border,
+    pub directions: &'a Directions,
+    /// Components of each output, 32 bits each.
+    pub outputs: &'a [Vec<f32>],
 }
 
 /// Makes a map of the horizons of a circle.
@@ -107,7 +148,7 @@ impl Sums {
         let bytes =
             Summing::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
         let summing = Summing::new(what, asked.samples);
-        Making { map, maker: Box::new(Self { summing, bytes }) }
+        Making { map, source: Source::Horizons(Box::new(Self { summing, bytes })) }
     }
 }
 

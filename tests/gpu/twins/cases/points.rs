@@ -59,6 +59,25 @@ pub fn points() -> Vec<Case> {
     ]
 }
 
+/// `ellipse_fit`: all borders, both kinds of words, all lit and nothing, directions over half a sphere and a whole one.
+pub fn ellipses() -> Vec<Case> {
+    let of = |name, field, border, directions| Case {
+        wanted: Wanted::Ellipses(directions),
+        ..on(name, field, border, sphere(4))
+    };
+    let above = |count| Directions::fibonacci(count, 0.0, 3).expect("directions");
+    let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
+    let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
+    vec![
+        of("ellipses on a plane", rough(19, 13, 91), Border::Plane, above(64)),
+        of("ellipses of an open field", rough(11, 17, 92), Border::Open, sphere(61)),
+        of("ellipses of a field that repeats", rough(7, 11, 93), Border::Periodic, above(33)),
+        of("ellipses of a shaft", deep, Border::Plane, above(16)),
+        of("ellipses of whole words", long, Border::Plane, above(17)),
+        of("an ellipse of one sample", rough(1, 1, 94), Border::Open, sphere(5)),
+    ]
+}
+
 /// Towards a sun's middle.
 pub fn towards(sun: &Sun) -> DVec3 {
     let (sin, cos) = sun.elevation_rad.sin_cos();

@@ -5,7 +5,7 @@ use ridgelight::{Error, Result};
 use std::f64::consts::FRAC_PI_2;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Maker, Making, Map, Value};
+use super::{Asked, Kind, Maker, Making, Map, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "horizon",
@@ -45,7 +45,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("const float HORIZON_SCALE = {scale:?};"),
         ],
     };
-    Ok(Making { map, maker: Box::new(Horizon) })
+    Ok(Making { map, source: Source::Horizons(Box::new(Horizon)) })
 }
 
 struct Horizon;

@@ -1,0 +1,148 @@
+//! Shadows by what samples see: ellipses of sets that are known, and what lies between directions.
+
+use glam::{DVec2, DVec3};
+use ridgelight::cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius, moments, score, start};
+use ridgelight::cpu::visible_points::visible_points;
+use ridgelight::scene::{Border, Directions, HeightField, VisiblePoints};
+
+const COUNT: usize = 1000;
+
+fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
+    let directions = Directions::fibonacci(COUNT, 0.0, 0).expect("directions");
+    directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
+}
+
+/// Directions that the ellipse has wrong.
+fn wrong(ellipse: &Ellipse, seen: &[Seen]) -> usize {
+    seen.iter().filter(|(e, is_lit)| ellipse.holds(*e) != *is_lit).count()
+}
+
+/// That the ellipse of what another holds is that: its ends along the axes, and whatever it has wrong, lie within a direction's
+/// own radius of the other's.
+fn close(found: &Ellipse, truth: &Ellipse, seen: &[Seen]) {
+    let off = least_radius(COUNT);
+    assert!((found.centre - truth.centre).length() <= off, "{found:?} {truth:?}");
+    for (found, truth) in found.inverse_radii.iter().zip(truth.inverse_radii) {
+        assert!((1.0 / found - 1.0 / truth).abs() <= off, "{found} {truth}");
+    }
+    let grown = |by: f64| Ellipse {
+        inverse_radii: truth.inverse_radii.map(|r| 1.0 / (1.0 / r + by)),
+        ..*truth
+    };
+    let near = seen.iter().filter(|(e, _)| grown(off).holds(*e) && !grown(-off).holds(*e)).count();
+    assert!(wrong(found, seen) <= near, "{} of {near}", wrong(found, seen));
+}
+
+/// A pit's centre sees a cone of half-angle a about the zenith: a disc of radius sin a.
+#[test]
+fn a_pit_is_a_disc() {
+    for a in [0.3_f64, 0.8, 1.3] {
+        let seen = seen(|e| e.z > a.cos());
+        let (found, of) = fit(&seen);
+        let truth =
+            Ellipse { centre: DVec2::ZERO, axis: DVec2::X, inverse_radii: [1.0 / a.sin(); 2] };
+        close(&found, &truth, &seen);
+        assert_eq!(of, score(&found, &seen));
+    }
+}
+
+/// A groove's bottom sees |x| < z tan a between its walls, x across: x² < (1 - x² - y²) tan²a, which is x²/sin²a + y² < 1,
+/// an ellipse however steep.
+#[test]
+fn a_groove_is_an_ellipse() {
+    for (a, azimuth) in [(0.3_f64, 0.0_f64), (0.8, 0.7), (1.2, 2.0)] {
+        let across = DVec2::from_angle(azimuth);
+        let seen = seen(|e| across.dot(e.truncate()).abs() < e.z * a.tan());
+        let truth = Ellipse {
+            centre: DVec2::ZERO,
+            axis: across.perp(),
+            inverse_radii: [1.0, 1.0 / a.sin()],
+        };
+        assert!(wrong(&truth, &seen) <= 1, "one on the edge");
+        let (found, _) = fit(&seen);
+        close(&found, &truth, &seen);
+        assert!(found.axis.dot(across).abs() <= least_radius(COUNT), "{found:?}");
+    }
+}
+
+/// At the foot of an endless wall half of the disc is lit, which no ellipse is. Its middle is 4/3π away from the wall, its
+/// variances are 1/4 - (4/3π)² across and 1/4 along it. The sums' errors are those of the half's edges, √(πN) of N directions
+/// long. The search leaves no more wrong than there was, and some: what lies in two corners of the half disc.
+#[test]
+fn a_wall_is_no_ellipse() {
+    use std::f64::consts::PI;
+    let middle = 4.0 / (3.0 * PI);
+    let allowed = 2.0 / (COUNT as f64 * PI).sqrt();
+    for azimuth in [0.0, 0.7, 2.0, 4.0] {
+        let towards = DVec2::from_angle(azimuth);
+        let seen = seen(|e| towards.dot(e.truncate()) < 0.0);
+        let (mean, [xx, xy, yy]) = moments(&seen);
+        assert!((mean + middle * towards).length() <= allowed, "{mean}");
+        let along = |a: DVec2| a.x * a.x * xx + 2.0 * a.x * a.y * xy + a.y * a.y * yy;
+        assert!((along(towards) - (0.25 - middle * middle)).abs() <= allowed);
+        assert!((along(towards.perp()) - 0.25).abs() <= allowed);
+        let begun = start(&seen);
+        let (found, _) = fit(&seen);
+        let [first, last] = [begun, found].map(|e| wrong(&e, &seen));
+        println!("{azimuth}: {first}, then {last} of {COUNT} wrong; {found:?}");
+        assert!(0 < last && last <= first, "{first} {last}");
+        assert!(found.centre.dot(towards) < 0.0, "{found:?}");
+        // All the sky or none would have a half of it wrong.
+        assert!(4 * last < COUNT, "{last}");
+    }
+}
+
+/// All and nothing are what they are called; lit spots on two sides come out as one ellipse that has no more right than the
+/// better of one spot alone, all and nothing.
+#[test]
+fn what_is_alike_needs_no_search() {
+    assert_eq!(fit(&seen(|_| true)), (Ellipse::WHOLE, COUNT as i64));
+    assert_eq!(fit(&seen(|_| false)), (Ellipse::EMPTY, 0));
+    for e in seen(|_| true) {
+        assert!(Ellipse::WHOLE.holds(e.0) && !Ellipse::EMPTY.holds(e.0));
+    }
+    // Two thin sectors of sky low in the east and in the west: none of the ellipses holds both alone.
+    let two = seen(|e| e.x.abs() > 0.9);
+    let (found, _) = fit(&two);
+    assert!(wrong(&found, &two) > 0, "{found:?}");
+}
+
+/// Along one of the directions a light is as visible as that direction; between some that agree as they do. On level ground
+/// all is lit.
+#[test]
+fn between_directions_light_goes_over() {
+    let heights: Vec<f64> = (0..63).map(|i| if i % 9 == 6 { 5.0 } else { 0.0 }).collect();
+    let wall = HeightField::new(7, 9, &heights, [1.0; 2], None).expect("a field");
+    let level = HeightField::new(3, 3, &[2.0; 9], [1.0; 2], None).expect("a field");
+    let directions = Directions::fibonacci(100, -1.0, 0).expect("directions");
+    let triangles = directions.triangles().expect("a net");
+    let points = |field: &HeightField| {
+        let seen = visible_points(field, Border::Plane, &directions);
+        VisiblePoints::from_points(field, Border::Plane, directions.clone(), &seen).expect("points")
+    };
+    let (of_wall, of_level) = (points(&wall), points(&level));
+    let above = Directions::fibonacci(200, 0.0, 1).expect("lights");
+    let own = directions.vectors().iter().filter(|e| e.z > 0.0);
+    let mut between = 0;
+    for light in own.chain(above.vectors()) {
+        // Nearly horizontal ones lie among directions below.
+        let Some(around) = of_wall.around(&triangles, *light) else {
+            assert!(light.z < 0.2, "{light}");
+            continue;
+        };
+        let sum: f64 = around.iter().map(|c| c.1).sum();
+        assert!((sum - 1.0).abs() < 1e-12 && around.iter().all(|c| c.1 >= 0.0));
+        assert!((of_level.lit_share(&around, 4) - 1.0).abs() < 1e-12);
+        for sample in 0..63 {
+            let share = of_wall.lit_share(&around, sample);
+            let own = directions.vectors().iter().position(|e| e == light);
+            if let Some(own) = own {
+                let is_lit = of_wall.seen(own, sample) == ridgelight::scene::VisiblePoint::Sky;
+                assert!((share - f64::from(u8::from(is_lit))).abs() < 1e-9, "{share}");
+            } else if share > 1e-9 && share < 1.0 - 1e-9 {
+                between += 1;
+            }
+        }
+    }
+    assert!(between > 0, "no penumbra");
+}
