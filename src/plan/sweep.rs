@@ -94,7 +94,7 @@ pub enum Sweep {
 }
 
 /// Samples of a periodic field that are marched before the period whose horizons are kept: whole periods,
-/// two or more, and as many as make [`LEAST_WARM_UP`] samples.
+/// two or more, and as many as make 512 samples.
 ///
 /// What lies farther is not seen: an error of at most atan(relief / their length).
 pub fn warm_up(steps: u32) -> u32 {

@@ -22,7 +22,7 @@ impl Directions {
     /// What the height of the lowest ones may be: from the whole sphere to the upper hemisphere.
     pub const LOWEST_Z: RangeInclusive<f64> = -1.0..=0.0;
 
-    /// A spherical Fibonacci set: heights in the middles of equal parts of [`lowest_z`..1], turned from one to the
+    /// A spherical Fibonacci set: heights in the middles of equal parts from `lowest_z` to 1, turned from one to the
     /// next by the golden section of the circle (Hannay & Nye 2004); `seed` turns all about the vertical.
     ///
     /// Of N over the sphere none is nearer to horizontal than 1/N where N is even; of an odd number one is horizontal.
