@@ -101,6 +101,7 @@ pub mod gpu;
 pub mod measure;
 mod passes;
 pub mod plan;
+mod random;
 pub mod scene;
 
 pub use error::Error;

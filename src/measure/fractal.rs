@@ -3,6 +3,7 @@
 //! Only integer hashing and IEEE addition, multiplication and division enter (no libm, no fused
 //! operations), so a time measured here and one measured elsewhere are of the same field.
 
+use crate::random::{STEP, mixed, unit};
 use crate::scene::HeightField;
 use crate::{Error, Result};
 
@@ -106,17 +107,9 @@ fn basis(t: f64) -> [f64; 4] {
     ]
 }
 
-/// Hashes a value into a key: the finaliser of SplitMix64 (Steele, Lea & Flood 2014) over their sum.
+/// Hashes a value into a key.
 fn mix(key: u64, value: u64) -> u64 {
-    let mut z = key.wrapping_add(value.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-/// The upper 53 bits as a number in [0, 1): exact.
-fn unit(bits: u64) -> f64 {
-    (bits >> 11) as f64 / (1_u64 << 53) as f64
+    mixed(key.wrapping_add(value.wrapping_add(1).wrapping_mul(STEP)))
 }
 
 #[cfg(test)]

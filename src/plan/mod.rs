@@ -86,7 +86,7 @@ pub use resource::{Format, Kind, Owner, Resource};
 pub use scatter::{scatter, scatter_inputs};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
-pub use view::{Draw, Drawn, View, ViewOptions, surface_error_m};
+pub use view::{View, ViewOptions, ViewPass, ViewResource, surface_error_m};
 pub use visible_points::visible_points;
 
 use crate::{Error, Result};

@@ -198,16 +198,19 @@ pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
 }
 
 /// The same of bounced light alone, of a [`reference_at`] so many samples all together: the root of the mean square over
-/// them. What no path of any of them has met has a share of at most 3 / (N · samples) of all; its variance is W²/N times
-/// its mean share, with W the most that a path can bring when it has been reflected once.
+/// them, but for a `chance` in (0, 1). What no path of any of them has met has a share of at most
+/// -ln(chance) / (N · samples) of all (the rule of three: of 5 %, 3); its variance is W²/N times its mean share, with W
+/// the most that a path can bring when it has been reflected once.
 pub fn unmet_bounced_error(
     scene: &Scene,
     bounces: u32,
     (paths, samples): (u32, usize),
+    chance: f64,
 ) -> [f64; 3] {
     let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
     let most = most_light(scene, later);
-    let scale = (3.0 / samples as f64).sqrt() * scene.surface.most_reflected() / f64::from(paths);
+    let share = -chance.ln() / samples as f64;
+    let scale = share.sqrt() * scene.surface.most_reflected() / f64::from(paths);
     most.map(|most| scale * most)
 }
 

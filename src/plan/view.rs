@@ -14,7 +14,7 @@ use crate::passes::terrain_draw::{TILE, TerrainDrawPush};
 use crate::scene::{Border, Camera, Lens, Scene, corners};
 use crate::{Error, Result};
 
-pub use passes::{Draw, Drawn};
+pub use passes::{ViewPass, ViewResource};
 pub use reduced::surface_error_m;
 
 /// How a picture is drawn.

@@ -146,7 +146,10 @@ fn gpu_a_max_error_holds_with_bounces() {
     let settings = settings(&folder);
     let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
     assert!(stated <= at_most && at_most <= 0.02, "{stated} {at_most}");
-    assert!(number(&settings, "error_paths") >= 512.0);
+    // Batches of 64, eight or more and 256 at most; as many as are told.
+    let paths = number(&settings, "error_paths");
+    assert!((512.0..=16384.0).contains(&paths) && paths % 64.0 == 0.0, "{paths}");
+    assert!(run.out.contains(&format!("{paths} light paths each")), "{paths}: {}", run.out);
     let exr = read(&folder.path("out.exr"));
     let field = ridgelight::files::read_heights(
         &folder.path("field.npy"),

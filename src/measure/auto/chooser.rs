@@ -6,7 +6,7 @@ use super::candidates::{candidates, is_exact, is_finer};
 use super::model::{Costs, Model};
 use super::probes::Measured;
 use super::statistics::Statistics;
-use crate::scene::{Quality, Scene};
+use crate::scene::{BounceEngine, Bounces, Quality, Scene};
 
 /// Frames that are tried at most, and exact ones beyond them.
 const TRIALS: usize = 16;
@@ -179,14 +179,15 @@ impl<'a> Chooser<'a> {
     }
 
     /// What to draw where nothing holds, or all that was chosen turned out not to: of exact horizons, which
-    /// have no errors that few samples see, what is well expected to hold. None where one holds.
+    /// have no errors that few samples see, what is well expected to hold; with bounces of every sample and what it
+    /// sees itself. None where one holds.
     pub fn last_resort(&self, has_failed: bool) -> Option<Quality> {
         let Goal::MaxError(most) = self.goal else { return None };
-        let is_held = |t: &Trial| self.goal.is_reached(t) && (!has_failed || is_exact(&t.quality));
+        let is_held = |t: &Trial| self.goal.is_reached(t) && (!has_failed || is_surest(&t.quality));
         if self.trials.len() >= TRIALS + RESORTS || self.trials.iter().any(is_held) {
             return None;
         }
-        let exact = || self.open().filter(|q| is_exact(q));
+        let exact = || self.open().filter(|q| is_surest(q));
         let least = exact().map(|q| self.error(q)).min_by(f64::total_cmp)?;
         let enough = (most / CONTROL).max(least);
         exact()
@@ -202,7 +203,7 @@ impl<'a> Chooser<'a> {
 
     /// The same of exact horizons alone, where any reach the goal.
     pub fn exact(&self) -> Option<&Trial> {
-        self.surest_of(|t| is_exact(&t.quality)).or_else(|| self.surest())
+        self.surest_of(|t| is_surest(&t.quality)).or_else(|| self.surest())
     }
 
     fn surest_of(&self, is_asked: impl Fn(&Trial) -> bool) -> Option<&Trial> {
@@ -319,6 +320,12 @@ impl<'a> Chooser<'a> {
         let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
         self.cheapest_within(NEARLY * least)
     }
+}
+
+/// Exact horizons, and bounces of every sample without means of the ground in place of what is seen.
+fn is_surest(quality: &Quality) -> bool {
+    let Bounces { count, engine, .. } = quality.bounces;
+    is_exact(quality) && (count == 0 || quality.subsample == 1 && engine != BounceEngine::Pyramid)
 }
 
 /// The normal distribution, to 0.01, by a logistic one (Bowling et al. 2009).

@@ -1,5 +1,6 @@
 use crate::cpu::lit::Lit;
 use crate::cpu::oracle::PERIOD_CAP;
+use crate::random::{STEP, mixed, unit};
 use crate::scene::{Border, Scene};
 use crate::{Error, Result};
 
@@ -72,6 +73,13 @@ impl Probes {
     /// (Bonferroni).
     pub const FOUR_LOOKS: f64 = 2.241;
 
+    /// That 5 %/8 lie beyond: with bounces, each of four looks may miss by its probes or by light that no path has met
+    /// ([`CHANCE_OF_UNMET`](Self::CHANCE_OF_UNMET)), and eight bounds hold together.
+    pub const EACH_OF_FOUR_LOOKS: f64 = 2.498;
+
+    /// Of more light being left unmet than is said, in one of four looks: the other 5 %/8.
+    pub const CHANCE_OF_UNMET: f64 = (1.0 - Self::CONFIDENCE) / 8.0;
+
     /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
     /// all cores.
     ///
@@ -127,20 +135,26 @@ impl Probes {
         self.off = (self.off.powi(2) + unmet).sqrt();
     }
 
-    /// Relative RMSE that the chance of paths alone may add to a bound so many `deviations` above: s² of each light's
-    /// variance is known to √2 s² or so, of so many probes together to √(2 / probes) of their mean.
-    pub fn chance(&self, deviations: f64) -> f64 {
-        let count = self.len() as f64;
-        let fourth: f64 =
-            self.noise.iter().zip(&self.factors).map(|(n, f)| (f * n).powi(2)).sum::<f64>();
-        self.relative(deviations * (2.0 * fourth).sqrt() / count)
+    /// Relative RMSE that the chance of paths alone may add to the bound, so many `deviations` above, of a picture that
+    /// is off by a relative `error` everywhere: the bound is the root of the sum of both squares. Of `count` probes
+    /// like these whose paths leave a `share` of these' variance.
+    pub fn chance(&self, error: f64, share: f64, count: usize, deviations: f64) -> f64 {
+        let square = (error * self.mean()).powi(2);
+        let each = self.noise.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(n, f)| f.powi(2) * wavering(square, share * n)).sum();
+        self.relative(deviations * (sum / self.len() as f64 / count as f64).sqrt())
+    }
+
+    /// Mean of the light.
+    fn mean(&self) -> f64 {
+        let each = self.light.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
+        (sum / self.len() as f64).abs()
     }
 
     /// The root of a mean square over the mean of the light.
     fn relative(&self, square: f64) -> f64 {
-        let each = self.light.iter().zip(&self.factors);
-        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
-        if square == 0.0 { 0.0 } else { square.sqrt() / (sum / self.len() as f64).abs() }
+        if square == 0.0 { 0.0 } else { square.sqrt() / self.mean() }
     }
 
     /// Takes others in, of another seed and by the same `unsure`; nothing where all samples are known.
@@ -171,6 +185,13 @@ impl Probes {
     /// By how much the oracle's light may be off itself, over the mean of it.
     pub fn own_error(&self) -> f64 {
         self.relative(self.off.powi(2))
+    }
+
+    /// By how much more it may be off than that of the `same` probes before [`add_bounced`](Self::add_bounced): by light
+    /// that no path has met, over the mean of all light.
+    pub(super) fn off_since(&self, same: &Self) -> f64 {
+        // Below 0 by rounding alone: each is added to the square.
+        self.relative((self.off.powi(2) - same.off.powi(2)).max(0.0))
     }
 
     /// How many there are.
@@ -251,8 +272,7 @@ impl Probes {
                 shift += factor * (l - k) / (3.0 * count);
             }
             rest.push(factor * (square - of_control));
-            // Of (d + ε)² - s², channels that waver together: 4 d² s² + 2 s⁴, and as much again of s² itself.
-            wavering += factor.powi(2) * 4.0 * (square.max(0.0) * noise + noise.powi(2));
+            wavering += factor.powi(2) * self::wavering(square.max(0.0), *noise);
         }
         let mean_rest = rest.iter().sum::<f64>() / count;
         let variance =
@@ -268,6 +288,12 @@ impl Probes {
         let quantile = quantile(deviations, skew, count);
         Square { estimate, at_most: estimate + quantile * deviation, mean }
     }
+}
+
+/// Variance of (d + ε)² - s², of d² and the variance of ε, of channels that waver together: 4 d² ε² + 2 ε⁴, and 2 ε⁴ of
+/// s², its estimate, which is as much as two batches leave of it.
+fn wavering(square: f64, noise: f64) -> f64 {
+    4.0 * (square * noise + noise.powi(2))
 }
 
 /// Deviations from a mean of so many values to its bound: z, more where few values are large (Chen 1995,
@@ -316,13 +342,7 @@ fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     if wanted >= count {
         return ((0..count).collect(), vec![1.0; count]);
     }
-    // SplitMix64 (Steele, Lea & Flood 2014).
-    let chance = |k: u64| {
-        let mut z = seed.wrapping_add((k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let chance = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
     let sum: f64 = weights.iter().sum();
     // In units of the mean chance.
     let of = |i: usize| {

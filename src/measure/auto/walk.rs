@@ -80,8 +80,9 @@ pub type Trace<'t> = dyn FnMut(&[usize], u32, u32) -> Result<Vec<Traced>> + 't;
 /// Batches that tell how many are wanted; at most.
 const FIRST_BATCHES: u32 = 8;
 const MOST_BATCHES: u32 = 256;
-/// Share of the goal that the chance of paths may be of a bound: so much is wanted (which takes the bound up by
-/// √(1 + 0.4²), 8 %), and beyond so much the goal is refused.
+/// Share of the goal that the chance of paths may be of the bound of what is chosen ([`Probes::chance`]): so much is
+/// wanted, which takes the bound of such an error up by √(1 + 0.4²), 8 %; more, up to √(1 + 0.8²), 28 %, is taken where
+/// [`MOST_BATCHES`] tell no better, and beyond that the goal is refused.
 const CHANCE_WANTED: f64 = 0.4;
 const CHANCE_AT_MOST: f64 = 0.8;
 /// Share of that which light that no path has met may be.
@@ -135,31 +136,39 @@ impl<'a> Judge<'a> {
         };
         let direct = judge.probes.clone();
         judge.trace_first()?;
-        let (wanted, most) = match goal {
-            Goal::MaxError(most) => (CHANCE_WANTED * most, CHANCE_AT_MOST * most),
-            Goal::MaxCost(_) => (CHANCE_OF_TIMED, f64::INFINITY),
+        let (wanted, error) = match goal {
+            Goal::MaxError(most) => (CHANCE_WANTED * most, most),
+            Goal::MaxCost(_) => (CHANCE_OF_TIMED, 0.0),
         };
-        let chance = judge.probes.chance(Probes::FOUR_LOOKS);
-        let unmet = (judge.probes.own_error().powi(2) - direct.own_error().powi(2)).max(0.0).sqrt();
-        // A root of variances, which fall with the number of paths; what was not met falls itself.
-        let more =
-            (chance / wanted).powi(2).max(unmet / (UNMET * wanted)) * f64::from(FIRST_BATCHES);
-        let least = chance * (f64::from(FIRST_BATCHES) / f64::from(MOST_BATCHES)).sqrt();
-        if least > most {
+        let known = scene.field.rows() * scene.field.cols()
+            - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
+        let judging = known.min(CONFIRMING_PROBES * judge.probes.len());
+        let chance = |batches: u32, error: f64| {
+            let share = f64::from(FIRST_BATCHES) / f64::from(batches);
+            judge.probes.chance(error, share, judging, Probes::EACH_OF_FOUR_LOOKS)
+        };
+        let least = chance(MOST_BATCHES, error);
+        if error > 0.0 && least > CHANCE_AT_MOST * error {
+            // The chance grows with the root of the error or less: each step halves what is wrong of the logarithm.
+            let told = (0..30).fold(error, |e, _| chance(MOST_BATCHES, e) / CHANCE_AT_MOST);
             return Err(Error::Limit {
-                what: format!("a goal of {}", figures(most / CHANCE_AT_MOST)),
+                what: format!("a goal of {}", figures(error)),
                 needs: "bounced light that is known so well".into(),
                 limit: format!(
-                    "{}, as the chance of {} light paths from each of {} samples would be {}",
-                    figures(least / CHANCE_AT_MOST),
+                    "{}, as the chance of {} light paths from each of {judging} samples would be {}",
+                    figures(told),
                     MOST_BATCHES * REFERENCE_BATCH,
-                    judge.probes.len(),
                     figures(least)
                 ),
             });
         }
-        if more > f64::from(FIRST_BATCHES) {
-            judge.batches = (more.ceil() as u32).min(MOST_BATCHES);
+        // What was not met falls with the number of paths itself.
+        let unmet = judge.probes.off_since(&direct) / (UNMET * wanted) * f64::from(FIRST_BATCHES);
+        let enough = (FIRST_BATCHES..MOST_BATCHES)
+            .find(|b| chance(*b, error) <= wanted && unmet <= f64::from(*b))
+            .unwrap_or(MOST_BATCHES);
+        if enough > FIRST_BATCHES {
+            judge.batches = enough;
             judge.probes = direct;
             judge.trace_first()?;
         }
@@ -189,7 +198,8 @@ impl<'a> Judge<'a> {
         let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.len());
-        probes.add_bounced(&traced, unmet_bounced_error(self.scene, bounced.count, of));
+        let chance = Probes::CHANCE_OF_UNMET;
+        probes.add_bounced(&traced, unmet_bounced_error(self.scene, bounced.count, of, chance));
         Ok(())
     }
 
@@ -317,8 +327,9 @@ pub fn choose<'a>(
         let quality = best.quality;
         let Drawn { planes, passes } = draw(&quality)?;
         let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
+        let looks = if count > 0 { Probes::EACH_OF_FOUR_LOOKS } else { Probes::FOUR_LOOKS };
         let ns = passes.iter().map(|p| p.1).sum();
-        let measured = fresh.error(&planes, judge.control(), Probes::FOUR_LOOKS);
+        let measured = fresh.error(&planes, judge.control(), looks);
         let trial = chooser.confirmed(&quality, measured, ns).copied();
         if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
             return Ok(Chosen {

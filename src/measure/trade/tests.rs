@@ -1,17 +1,15 @@
 //! Walks over models whose whole grid is known.
 
 use super::*;
+use crate::random::{STEP, mixed, unit};
 
-/// SplitMix64 (Steele, Lea & Flood 2014), to [0, 1).
+/// Numbers in [0, 1).
 struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        self.0 = self.0.wrapping_add(STEP);
+        unit(mixed(self.0))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::random::{STEP, mixed, unit};
 use crate::scene::Scatter;
 
 /// Which direction each path looks along at each of its steps, path after path.
@@ -78,14 +79,12 @@ impl Chance {
     }
 
     fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let a = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let b = (a ^ a >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        b ^ b >> 31
+        self.0 = self.0.wrapping_add(STEP);
+        mixed(self.0)
     }
 
     fn next(&mut self) -> f64 {
-        (self.word() >> 11) as f64 / (1_u64 << 53) as f64
+        unit(self.word())
     }
 }
 

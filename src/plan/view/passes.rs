@@ -9,7 +9,7 @@ use crate::plan::batch::bytes_text;
 
 /// A graphics pass of a [`View`].
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Draw {
+pub struct ViewPass {
     /// Its name: its shaders', its debug label, its timing row.
     pub pass: &'static str,
     /// Why it is drawn.
@@ -26,7 +26,7 @@ pub struct Draw {
 
 /// An image or a buffer that drawing a [`View`] takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Drawn {
+pub struct ViewResource {
     /// By content.
     pub name: &'static str,
     /// Whose it is: the caller's, or made by [`ViewRenderer`](crate::gpu::ViewRenderer).
@@ -46,7 +46,7 @@ impl View {
     }
 
     /// Passes in their order; `for_screen` where the picture is one of codes, which the tone curve makes.
-    pub fn passes(&self, for_screen: bool) -> Vec<Draw> {
+    pub fn passes(&self, for_screen: bool) -> Vec<ViewPass> {
         let (pixels, samples) = (self.pixels(), u64::from(self.samples));
         let field = u64::from(self.field[0]) * u64::from(self.field[1]);
         let side = u64::from(TILE) + 1;
@@ -71,7 +71,7 @@ impl View {
         if samples > 1 {
             written.extend(["picture_samples", "picture_depth"]);
         }
-        let terrain = Draw {
+        let terrain = ViewPass {
             pass: "terrain_draw",
             why: mesh + &why_samples,
             vertices,
@@ -80,7 +80,7 @@ impl View {
             writes: written.clone(),
         };
         let [width, height] = self.environment.unwrap_or([0, 0]);
-        let sky = Draw {
+        let sky = ViewPass {
             pass: "sky_draw",
             why: match self.environment {
                 Some(_) => "behind the ground: sky and environment, where no ground is seen",
@@ -94,7 +94,7 @@ impl View {
             reads: self.environment.map(|_| "environment").into_iter().collect(),
             writes: written,
         };
-        let tone = for_screen.then(|| Draw {
+        let tone = for_screen.then(|| ViewPass {
             pass: "picture_tone",
             why: "the picture is of codes: exposure, clip, sRGB".to_owned(),
             vertices: 3,
@@ -107,10 +107,10 @@ impl View {
 
     /// Images and buffers beside those of the plan that lights the field, whose "heights", "radiance" and
     /// "environment" are read.
-    pub fn memory(&self, for_screen: bool) -> Vec<Drawn> {
+    pub fn memory(&self, for_screen: bool) -> Vec<ViewResource> {
         let (pixels, samples) = (self.pixels(), u64::from(self.samples));
-        let own = |name, bytes| Drawn { name, owner: Owner::Internal, bytes };
-        let given = |name, owner, bytes| Drawn { name, owner, bytes };
+        let own = |name, bytes| ViewResource { name, owner: Owner::Internal, bytes };
+        let given = |name, owner, bytes| ViewResource { name, owner, bytes };
         let mut all = Vec::new();
         if self.has_voids {
             let field = u64::from(self.field[0]) * u64::from(self.field[1]);
@@ -155,27 +155,19 @@ impl fmt::Display for View {
             writeln!(f, "  {:<32} {vertices:>18} {traffic:>11}  {}", draw.pass, draw.why)?;
         }
         writeln!(f, "\n{:<24} {:>9} {:>26} {:>12}", "image or buffer", "whose", "", "memory")?;
-        let memory = self.memory(false);
-        let all = Drawn {
-            name: "all",
-            owner: Owner::Internal,
-            bytes: memory.iter().map(|drawn| drawn.bytes).sum(),
+        let mut row = |name: &str, whose: &str, bytes: u64| {
+            writeln!(f, "{name:<24} {whose:>9} {:>26} {:>12}", "", bytes_text(bytes))
         };
-        for drawn in memory.iter().chain([&all]) {
-            let whose = match drawn.owner {
-                _ if drawn.name == all.name => "",
+        let memory = self.memory(false);
+        for resource in &memory {
+            let whose = match resource.owner {
                 Owner::Internal => "ours",
                 Owner::Input | Owner::InputBuffer => "input",
                 Owner::Output => "output",
             };
-            writeln!(
-                f,
-                "{:<24} {whose:>9} {:>26} {:>12}",
-                drawn.name,
-                "",
-                bytes_text(drawn.bytes)
-            )?;
+            row(resource.name, whose, resource.bytes)?;
         }
+        row("all", "", memory.iter().map(|resource| resource.bytes).sum())?;
         writeln!(f, "\nnote: {}", self.tone_note())
     }
 }

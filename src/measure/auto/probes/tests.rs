@@ -136,15 +136,78 @@ fn probes_are_spread() {
     assert!((mean - 1.0).abs() < 0.02, "{mean}");
 }
 
-/// A number of mean 0 and variance 1, near to normal: twelve even ones of SplitMix64 (Steele, Lea & Flood 2014).
+/// A number of mean 0 and variance 1, near to normal: twelve even ones.
 fn normal(k: u64) -> f64 {
-    let even = |j: u64| {
-        let mut z = (12 * k + j + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let even = |j: u64| unit(mixed((12 * k + j + 1).wrapping_mul(STEP))) - 0.5;
     (0..12).map(even).sum()
+}
+
+/// Of a whole field, in which nothing but paths is left to chance, the chance is what takes the bound of an error above
+/// its estimate: a picture off by 0.04 everywhere, of a light of 1 that wavers by 0.02. Of four times the probes and
+/// half the variance it is what they would have.
+#[test]
+fn the_chance_of_paths_is_that_of_a_bound() {
+    let count = SIDE * SIDE;
+    let of = |count: usize, noise: f64| Probes {
+        is_whole: true,
+        places: (0..count).collect(),
+        factors: vec![1.0; count],
+        // The mean of a square is then that of what is off and of what wavers.
+        light: vec![[1.0; 3]; count],
+        noise: vec![noise; count],
+        off: 0.0,
+    };
+    let off = (0.04_f64.powi(2) + 4e-4).sqrt();
+    let picture = vec![vec![(1.0 + off) as f32; count]];
+    let probes = of(count, 4e-4);
+    let seen = probes.error(&picture, None, Probes::FOUR_LOOKS);
+    let chance = probes.chance(0.04, 1.0, count, Probes::FOUR_LOOKS);
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
+    near(seen.error, 0.04);
+    near(seen.at_most, 0.04_f64.hypot(chance));
+    let few = of(count / 4, 8e-4).chance(0.04, 0.5, count, Probes::FOUR_LOOKS);
+    near(few, chance);
+}
+
+/// Direct light of 1 that is off by 0.01, bounced light of 0.3 of which 0.008 may be unmet: 0.008 / 1.3 of all. Over
+/// the mean of direct light alone the oracle's share would be the greater one, and nothing left.
+#[test]
+fn unmet_light_is_over_the_mean_of_all_light() {
+    let direct = Probes {
+        is_whole: true,
+        places: vec![0, 1],
+        factors: vec![1.0; 2],
+        light: vec![[1.0; 3]; 2],
+        noise: vec![0.0; 2],
+        off: 0.01,
+    };
+    let mut all = direct.clone();
+    let traced = Traced { mean: [0.3; 3], standard_error: [0.0; 3] };
+    all.add_bounced(&[traced; 2], [0.008; 3]);
+    assert!(all.own_error() < direct.own_error());
+    let unmet = all.off_since(&direct);
+    assert!((unmet - 0.008 / 1.3).abs() < 1e-12, "{unmet}");
+    assert_eq!(direct.off_since(&direct), 0.0);
+}
+
+/// Eight bounds of 5 %/8 each: the normal distribution's tail beyond z, by Simpson's rule, and what is unmet.
+#[test]
+fn bounds_of_bounced_light_share_what_may_miss() {
+    let density = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
+    let tail = |z: f64| {
+        let step = (12.0 - z) / 4000.0;
+        let weight = |k: u32| if k == 0 || k == 4000 { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
+        (0..=4000).map(|k| weight(k) * density(z + f64::from(k) * step)).sum::<f64>() * step / 3.0
+    };
+    // To the last digit that is written of each.
+    for (z, looks) in
+        [(Probes::ONE_LOOK, 1.0), (Probes::FOUR_LOOKS, 4.0), (Probes::EACH_OF_FOUR_LOOKS, 8.0)]
+    {
+        let slack = 0.0005 * density(z);
+        assert!((tail(z) - 0.05 / looks).abs() <= slack, "{z}: {}", tail(z));
+    }
+    let all = 4.0 * (tail(Probes::EACH_OF_FOUR_LOOKS) + Probes::CHANCE_OF_UNMET);
+    assert!((all - (1.0 - Probes::CONFIDENCE)).abs() < 1e-4, "{all}");
 }
 
 /// Light that wavers by as much as the picture is off: its variance, known to √(2 / 7) of itself as of eight batches, is
@@ -184,16 +247,26 @@ fn light_that_wavers_leaves_errors_as_they_are() {
             mean += seen.error.powi(2) / truth.powi(2) / SEEDS as f64;
             let steady = Probes { noise: vec![0.0; probes.len()], ..probes.clone() };
             bare += steady.error(&picture, None, 0.0).error.powi(2) / truth.powi(2) / SEEDS as f64;
-            // √(z √2 s² / √probes), s⁴ as of eight batches (1 + 2/7) times as much, and to a half.
-            let fourth = 2.0 * (1.0 + 2.0 / 7.0) / wanted as f64;
-            let chance = (Probes::FOUR_LOOKS * fourth.sqrt()).sqrt() * WAVER;
-            let found = probes.chance(Probes::FOUR_LOOKS);
-            assert!((found / chance - 1.0).abs() < 0.12, "{found} {chance}");
+            // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 + 2/7) times as much.
+            // χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: its square wavers by 1.13 of itself, the fourth
+            // root of a mean by a quarter of 1.13 / √probes, s² by less, and the mean light by s / √probes. Five of these.
+            let squared: f64 = 1.0 + 2.0 / 7.0;
+            let one = (9009.0_f64 / 2401.0 - squared.powi(2)).sqrt() / squared;
+            let slack = 5.0 * (0.25 * one + WAVER) / (wanted as f64).sqrt();
+            for error in [0.0, 2.0 * WAVER] {
+                let square = 4.0 * ((error * WAVER).powi(2) + squared * WAVER.powi(4));
+                let chance = (Probes::FOUR_LOOKS * (square / wanted as f64).sqrt()).sqrt();
+                let found = probes.chance(error, 1.0, wanted, Probes::FOUR_LOOKS);
+                assert!((found / chance - 1.0).abs() < slack, "{found} {chance}");
+            }
         }
         let said = format!("{wanted}: {held} held, mean {mean}, bare {bare}");
         assert!(held as f64 >= promised() * SEEDS as f64, "{said}");
         // One look's square wavers by a fifth or less of 300 or more.
         assert!((mean - 1.0).abs() < 3.0 * 0.2 / (SEEDS as f64).sqrt(), "{said}");
-        assert!(bare > 1.8, "{said}");
+        // d² + s², of which one look's mean wavers by √((4 d² s² + 2 s⁴ + 0.8 d⁴) / probes): an even d² by 0.8 d⁴.
+        let (d, s) = (truth.powi(2), WAVER.powi(2));
+        let one = ((4.0 * d * s + 2.0 * s * s + 0.8 * d * d) / wanted as f64).sqrt() / d;
+        assert!((bare - (1.0 + s / d)).abs() < 3.0 * one / (SEEDS as f64).sqrt(), "{said}");
     }
 }

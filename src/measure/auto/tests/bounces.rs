@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::cpu::bounce::{self, Fineness};
-use crate::scene::{Albedo, Bounces};
+use crate::scene::{Albedo, BounceEngine, Bounces};
 
 /// Two bounces of an albedo of 0.8, by the f64 quadrature, which the paths that are told waver about by 5 % of it. Pictures
 /// are the truth but for what settings of bounces leave: of bounces that are not drawn all, of what azimuths they have
@@ -72,7 +72,8 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
                     ..Quality::default()
                 })
         );
-        assert_eq!(chosen.paths % crate::plan::REFERENCE_BATCH, 0);
+        // As many as the probes that judged what is chosen were traced with, the last.
+        assert_eq!(chosen.paths, told[told.len() - 1] * crate::plan::REFERENCE_BATCH);
         assert!(told.iter().all(|batches| (8..=256).contains(batches)), "{told:?}");
         let azimuths: Vec<u32> = chosen.trials.iter().map(|t| t.quality.bounces.azimuths).collect();
         assert!(azimuths.iter().any(|a| *a != azimuths[0]), "{azimuths:?}");
@@ -89,6 +90,29 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     // 128 azimuths leave 2.5 % of the first bounce.
     let refused = found(1e-4, 0.0).0.unwrap_err().to_string();
     assert!(refused.contains("nearest found"), "{refused}");
+}
+
+/// A goal that all are expected to hold: exact horizons are the last resort, and with bounces every sample's own,
+/// though at every second one and by means of the ground they are cheaper.
+#[test]
+fn the_last_resort_leaves_nothing_to_means() {
+    let mut scene = scene();
+    scene.surface.albedo = Albedo::Constant([0.8; 3]);
+    let statistics = Statistics::of(&scene);
+    for count in [0, 2] {
+        let chooser = Chooser::new(&scene, &statistics, Goal::MaxError(1e6), count);
+        let quality = chooser.last_resort(true).unwrap();
+        let all = crate::measure::auto::candidates::candidates(&scene, count);
+        let exact = all.iter().filter(|q| crate::measure::auto::candidates::is_exact(q));
+        let cheaper = exact.filter(|q| chooser.cost(q) < chooser.cost(&quality));
+        if count == 0 {
+            assert_eq!(cheaper.count(), 0);
+            continue;
+        }
+        let is_mean = |q: &Quality| q.subsample > 1 || q.bounces.engine == BounceEngine::Pyramid;
+        assert!(!is_mean(&quality), "{quality:?}");
+        assert!(cheaper.filter(|q| is_mean(q)).count() > 0, "means are no cheaper");
+    }
 }
 
 /// Candidates of bounces are valid and none is there twice; of few bounces no two energies leave out the same ones.
