@@ -649,7 +649,7 @@ void ridgelight_view_destroy(struct RidgelightView *view);
 // after ridgelight_record. `camera` may be another each time, of the same picture size and samples; null: the last.
 // Checks everything first: after an error nothing has been recorded.
 //
-// Returns OK, ARGUMENT or SETTING.
+// Returns OK, ARGUMENT, SETTING, or LIMIT for a camera whose picture is beyond the device's.
 //
 // # Safety
 // As ridgelight_record: of `images` and `camera`, which are null or structs whose struct_size is set.

@@ -356,6 +356,31 @@ fn gpu_a_window_outlives_its_sizes() {
     assert_same(&folder, "last.png", "render.png");
 }
 
+/// Three pictures and the columns between them take 7 pixels: in 6 ours alone is shown, all of it, and paths that
+/// nobody sees are refused; so are those that never come.
+#[test]
+fn gpu_pictures_side_by_side_need_place() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nkey c\nframes 2\nsize 6,24\nframes 2\nscreenshot narrow.png\nkey c\nframes 1\n\
+        screenshot alone.png\nkey c\nsize 64,48\npaths 64\nscreenshot wide.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+    assert_same(&folder, "narrow.png", "alone.png");
+    assert_eq!(folder.picture("wide.png").cols, 64);
+    for (script, says) in [
+        ("key c\nframes 1\nsize 6,24\npaths 64\n", "a window 6 pixels wide"),
+        ("paths 64\n", "no reference beside the light"),
+        ("key c\nkey w\npaths 64\n", "a field that moves"),
+        ("key c\npaths 4097\n", "found 4097, expected 4096 or less"),
+    ] {
+        folder.write("script", script.as_bytes());
+        let mut command =
+            folder.command(&format!("view hills.asc {LIT} --size 64x48 --script script"));
+        let Output { status, stderr, .. } = command.env("DISPLAY", &display.name).output().unwrap();
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(!status.success() && said.contains(says), "{script}: {said}");
+    }
+}
+
 /// Real events, from another client of the display.
 #[test]
 fn gpu_keys_and_the_mouse_are_heard() {

@@ -11,6 +11,7 @@ use ash::vk;
 use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
+use super::screen::Work;
 use super::shaders::BindingKind;
 use super::{Host, requirements};
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
@@ -162,6 +163,11 @@ impl Renderer {
         for pass in plan.passes_after(&self.plan, &[]) {
             self.pending[pass] = true;
         }
+        // Pieces go on from the first pass that is not of this plan.
+        let first = self.pending.iter().position(|p| *p);
+        if let Some(first) = first.filter(|_| self.begun < self.pending.len()) {
+            self.begun = self.begun.min(first);
+        }
         self.plan = plan;
         self.slots.iter_mut().for_each(|slot| slot.is_told = false);
         Ok((0..self.pending.len()).filter(|p| self.pending[*p]).collect())
@@ -234,6 +240,31 @@ impl Renderer {
         passes.iter().for_each(|pass| self.pending[*pass] = false);
         self.plan.add_followers(&mut self.pending);
         Ok(())
+    }
+
+    /// What [`record_passes`](Self::record_passes) refuses, or of a rectangle [`record_edit`](Self::record_edit), with
+    /// nothing recorded.
+    pub(super) fn check_recording(
+        &self,
+        slot: usize,
+        inputs: &[ImageArg],
+        outputs: &[ImageArg],
+        work: Work<'_>,
+    ) -> Result<()> {
+        let inputs: Vec<InputArg> = inputs.iter().map(|input| (*input).into()).collect();
+        self.check(slot, &inputs, outputs)?;
+        match work {
+            Work::Passes([]) => Ok(()),
+            Work::Passes(passes) => self.check_passes(passes),
+            Work::Edit(edit) => self.plan.check_edit(edit).and_then(|()| self.check_drawn(outputs)),
+        }
+    }
+
+    /// Of what was recorded last nothing ran: nothing counts as recorded.
+    pub(super) fn forget(&mut self) {
+        self.begun = 0;
+        self.pending.fill(true);
+        self.slots.iter_mut().for_each(|slot| slot.recorded.clear());
     }
 
     /// Appends what an edit needs, a rectangle of heights in which alone the input differs from the last

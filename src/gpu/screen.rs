@@ -251,7 +251,13 @@ impl Screen {
     /// Parts that do not fit, or a device out of memory or lost.
     pub fn draw(&mut self, parts: &mut [Part<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
         let slot = self.next;
-        let Some(image) = self.acquire(slot)? else { return Ok(None) };
+        if self.chain.is_none() {
+            return Ok(None);
+        }
+        let waited = [self.slots[slot].done];
+        // SAFETY: the fence is this slot's.
+        unsafe { self.gpu.host().device.wait_for_fences(&waited, true, u64::MAX) }
+            .map_err(failed("waiting for a frame"))?;
         let mut timings = Vec::new();
         for (n, part) in parts.iter_mut().enumerate() {
             let was_lit = self.slots[slot].was_lit.get(n).is_some_and(|was| *was);
@@ -259,8 +265,18 @@ impl Screen {
             let drawing = self.drawers.get(n).map(|d| d.timings(slot)).unwrap_or_default();
             timings.push(PartTimes { light: light.unwrap_or_default(), drawing });
         }
+        // All that may be refused comes before a picture is taken, which must be handed back.
         self.prepare(slot, parts, shot)?;
-        self.record(slot, image, parts, shot)?;
+        let Some(image) = self.acquire(slot)? else { return Ok(None) };
+        if let Err(error) = self.record(slot, image, parts, shot) {
+            for part in parts.iter_mut().filter(|part| !part.work.is_none()) {
+                part.frame.renderer().forget();
+            }
+            self.slots[slot].was_lit.clear();
+            // Where this fails too, so does what comes next.
+            let _ = self.hand_back(slot, image);
+            return Err(error);
+        }
         self.slots[slot].was_lit = parts.iter().map(|part| !part.work.is_none()).collect();
         self.submit(slot, image)?;
         self.present(slot, image)?;
@@ -269,12 +285,18 @@ impl Screen {
         Ok(Some(Shown { timings, pixels }))
     }
 
-    /// The number of the picture to draw into, once the slot is free.
+    /// Shows a picture that was taken without anything in it: its semaphore is waited for, and the window has it again.
+    fn hand_back(&mut self, slot: usize, image: usize) -> Result<()> {
+        self.record_nothing(slot, image)?;
+        self.submit(slot, image)?;
+        self.present(slot, image)?;
+        self.next = (slot + 1) % SLOTS;
+        Ok(())
+    }
+
+    /// The number of the picture to draw into; the slot is free.
     fn acquire(&mut self, slot: usize) -> Result<Option<usize>> {
-        let Slot { done, acquired, .. } = self.slots[slot];
-        // SAFETY: the fence is this slot's.
-        let waited = unsafe { self.gpu.host().device.wait_for_fences(&[done], true, u64::MAX) };
-        waited.map_err(failed("waiting for a frame"))?;
+        let acquired = self.slots[slot].acquired;
         let Some(chain) = &mut self.chain else { return Ok(None) };
         /// Compositors may hold pictures of windows that nobody sees.
         const PATIENCE_NS: u64 = 500_000_000;

@@ -159,7 +159,7 @@ impl Plan {
     /// an image that the renderer makes, of `texels`; it counts among [`internal_bytes`](Self::internal_bytes).
     ///
     /// # Errors
-    /// An input that the plan does not have, or texels of another kind: of a
+    /// An input that the plan does not have, of words, or of several layers; or texels of another kind: of a
     /// [`reference`](crate::plan::reference()) any but its own.
     pub fn take_buffer(&mut self, input: &str, texels: Format) -> Result<()> {
         let names: Vec<_> = self.inputs().map(|(_, r)| r.name.clone()).collect();
@@ -171,9 +171,16 @@ impl Plan {
         let Some(resource) = found else {
             return Err(Error::setting("input", input, names.join(" or ")));
         };
-        let Kind::Image { format, .. } = &mut resource.kind else {
+        let Kind::Image { format, layers, .. } = &mut resource.kind else {
             return Err(Error::setting(input, "a buffer of words", "an image"));
         };
+        if format.is_uint() {
+            let found = format!("an image of words, {format:?}");
+            return Err(Error::setting(input, found, "an image of numbers"));
+        }
+        if *layers > 1 {
+            return Err(Error::setting(input, format!("an image of {layers} layers"), "one layer"));
+        }
         let one = [Format::R32Float, Format::R16Float, Format::R16Unorm];
         let four =
             [Format::Rgba32Float, Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8Srgb];

@@ -38,7 +38,7 @@ pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Res
 /// the same bits.
 ///
 /// # Errors
-/// As there.
+/// As there; bands of no rows.
 pub fn reference_in_bands(
     scene: &Scene,
     bounces: u32,
@@ -46,6 +46,9 @@ pub fn reference_in_bands(
     limits: &Limits,
     band_rows: u32,
 ) -> Result<Plan> {
+    if band_rows == 0 {
+        return Err(Error::setting("rows of a band", "0", "1 or more"));
+    }
     traced(scene, (bounces, seed), None, band_rows, limits)
 }
 
@@ -74,13 +77,21 @@ pub fn reference_at(
 
 /// Texels of the list of a [`reference_at`]: samples by their place in the field, row-major, in rows as long as the
 /// field's, the last filled up with none.
-pub fn listed_places(scene: &Scene, samples: &[usize]) -> Vec<f32> {
+///
+/// # Errors
+/// A place beyond the field, by its position in the list.
+pub fn listed_places(scene: &Scene, samples: &[usize]) -> Result<Vec<f32>> {
     let cols = scene.field.cols();
+    let count = cols * scene.field.rows();
+    if let Some(at) = samples.iter().position(|i| *i >= count) {
+        let (name, found) = (format!("samples of a reference: position {at}"), samples[at]);
+        return Err(Error::setting(name, found.to_string(), format!("less than {count}")));
+    }
     let texel = |i: &usize| [(i % cols) as f32, (i / cols) as f32, 0.0, 0.0];
     let mut all: Vec<f32> = samples.iter().flat_map(texel).collect();
     let whole = samples.len().next_multiple_of(cols);
     all.extend([-1.0, -1.0, 0.0, 0.0].repeat(whole - samples.len()));
-    all
+    Ok(all)
 }
 
 fn traced(
@@ -155,7 +166,6 @@ fn traced(
     ]);
     blocks.record(&mut builder, field, heights, Some([batch_mean, lost_rays]));
     let rows = summed[1];
-    let band_rows = band_rows.max(1);
     let parts = path_trace::parts(scene, &blocks, bounces);
     if parts.len() > 1 {
         let sum = builder.image("part_sum", Owner::Internal, rgba, [size[0], rows, 1], false);

@@ -57,7 +57,7 @@ pub(crate) fn traced_by(
 fn traced_at(device: &mut Device, scene: &Scene, bounces: u32, samples: &[usize]) -> Traced {
     let limits = device.limits();
     let plan = plan::reference_at(scene, bounces, 1, samples.len(), &limits).expect("a plan");
-    let list = plan::listed_places(scene, samples);
+    let list = plan::listed_places(scene, samples).expect("of the field");
     let ([light, error], lost) = traced_by(device, scene, plan, BATCHES, &[list]);
     assert_eq!(lost, 0, "rays were lost");
     [light, error].map(|texels| texels[..samples.len()].to_vec())

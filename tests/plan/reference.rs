@@ -72,11 +72,16 @@ fn a_reference_at_some_samples() {
     assert_eq!(size("cells"), [512, 515]);
     let last = plan.passes.last().expect("passes");
     assert_eq!((last.label().as_str(), last.groups), ("path_trace", [64, 1, 1]));
-    let texels = plan::listed_places(&scene, &[0, 513, 513]);
+    let texels = plan::listed_places(&scene, &[0, 513, 513]).expect("of the field");
     assert_eq!(texels[..12], [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
     assert_eq!((texels.len(), &texels[12..14]), (4 * 512, &[-1.0, -1.0][..]));
     for samples in [0, 515 * 512 + 1] {
         let refused = of(samples).unwrap_err().to_string();
         assert!(refused.contains("1 to 263680"), "{refused}");
     }
+    let refused = plan::listed_places(&scene, &[263_679, 263_680]).unwrap_err().to_string();
+    assert!(refused.contains("position 1: found 263680, expected less than 263680"), "{refused}");
+    let bands = plan::reference_in_bands(&scene, 1, 0, &Limits::lavapipe(), 0);
+    let refused = bands.unwrap_err().to_string();
+    assert!(refused.contains("rows of a band: found 0, expected 1 or more"), "{refused}");
 }

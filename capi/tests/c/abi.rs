@@ -404,6 +404,12 @@ fn a_camera_of_c_sees_what_rusts_does() {
                 refused(record(&camera, &of_buffer), argument, "heights: found a buffer");
                 let wide = RidgelightCamera { size: [64, 64], ..camera };
                 refused(record(&wide, &images), setting, "view: found another shape");
+                let vast = RidgelightCamera { size: [1 << 30, 1], ..camera };
+                refused(
+                    record(&vast, &images),
+                    RidgelightResult::Limit,
+                    "a picture of 1073741824 × 1",
+                );
                 good(ridgelight_record(renderer, commands, 0, &input, 1, &of_light, 1));
                 let of = RidgelightViewImages { heights, ..images };
                 good(record(if slot == 0 { ptr::null() } else { &camera }, &of));

@@ -125,7 +125,7 @@ fn trace(
     let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
     let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
     let mut contents = plan::reference_inputs(scene);
-    contents.push(plan::listed_places(scene, samples));
+    contents.push(plan::listed_places(scene, samples)?);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let [means, errors] = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;

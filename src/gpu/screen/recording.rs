@@ -26,12 +26,21 @@ impl Screen {
     pub(super) fn prepare(
         &mut self,
         slot: usize,
-        parts: &[Part<'_>],
+        parts: &mut [Part<'_>],
         shot: &Shot<'_>,
     ) -> Result<()> {
-        let chain = self.chain.as_ref().expect("acquired from");
+        let chain = self.chain.as_ref().expect("draw asks");
         let (size, swaps, is_readable) = (chain.size, chain.swaps(), chain.is_readable);
-        parts.iter().try_for_each(|part| check(part, size, swaps))?;
+        for part in parts.iter_mut() {
+            check(part, size, swaps)?;
+            let (inputs, outputs) = (part.frame.inputs(), part.frame.outputs());
+            part.frame.renderer().check_recording(slot, &inputs, &outputs, part.work)?;
+        }
+        let columns: Vec<[u32; 2]> = parts.iter().map(|part| [part.left, part.size()[0]]).collect();
+        check_apart(&columns)?;
+        for (n, panel) in shot.panels.iter().enumerate() {
+            check_panel(n, panel)?;
+        }
         let gpu = &mut self.gpu;
         let of_slot = &mut self.slots[slot];
         of_slot.heights.resize_with(of_slot.heights.len().max(parts.len()), || None);
@@ -90,17 +99,7 @@ impl Screen {
         parts: &mut [Part<'_>],
         shot: &Shot<'_>,
     ) -> Result<()> {
-        let device = self.gpu.host().device.clone();
-        let Slot { pool, commands, .. } = self.slots[slot];
-        let begin = vk::CommandBufferBeginInfo::default()
-            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the slot's commands have run.
-        unsafe {
-            device
-                .reset_command_pool(pool, vk::CommandPoolResetFlags::empty())
-                .and_then(|()| device.begin_command_buffer(commands, &begin))
-        }
-        .map_err(failed("recording a frame"))?;
+        let commands = self.begin(slot)?;
         for (n, part) in parts.iter_mut().enumerate() {
             if let (Some((_, at)), Some(from)) = (part.heights, &self.slots[slot].heights[n]) {
                 self.copy_heights(commands, (from.buffer, at), part.frame);
@@ -119,7 +118,34 @@ impl Screen {
         }
         self.fill(slot, image, parts, shot);
         // SAFETY: recording was begun above.
-        unsafe { device.end_command_buffer(commands) }.map_err(failed("recording a frame"))
+        unsafe { self.gpu.host().device.end_command_buffer(commands) }
+            .map_err(failed("recording a frame"))
+    }
+
+    /// What leaves a picture as windows take it, without contents.
+    pub(super) fn record_nothing(&self, slot: usize, image: usize) -> Result<()> {
+        let commands = self.begin(slot)?;
+        let chain = self.chain.as_ref().expect("acquired from");
+        self.change(commands, chain.images[image], NEW, SHOWN);
+        // SAFETY: recording was begun above.
+        unsafe { self.gpu.host().device.end_command_buffer(commands) }
+            .map_err(failed("recording a frame"))
+    }
+
+    /// Begins the slot's commands anew.
+    fn begin(&self, slot: usize) -> Result<vk::CommandBuffer> {
+        let device = &self.gpu.host().device;
+        let Slot { pool, commands, .. } = self.slots[slot];
+        let begin = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the slot's commands have run, or were never handed to the device.
+        unsafe {
+            device
+                .reset_command_pool(pool, vk::CommandPoolResetFlags::empty())
+                .and_then(|()| device.begin_command_buffer(commands, &begin))
+        }
+        .map_err(failed("recording a frame"))?;
+        Ok(commands)
     }
 
     /// From a buffer of a rectangle's into the frame's first input, which is in GENERAL: what used it before and will
@@ -303,6 +329,32 @@ fn check(part: &Part<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
     Ok(())
 }
 
+/// Whether parts, each the column where it begins and its columns, stand beside one another: all begin in the first row,
+/// and copies into the same pixels would come in any order.
+fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
+    let end = |[left, width]: [u32; 2]| left.saturating_add(width);
+    for (later, part) in columns.iter().enumerate() {
+        let over = |other: &&[u32; 2]| part[0] < end(**other) && other[0] < end(*part);
+        if let Some(other) = columns[..later].iter().find(over) {
+            let found =
+                format!("{} to {}, over {} to {}", part[0], end(*part), other[0], end(*other));
+            return Err(Error::setting(format!("part {later}: columns"), found, "its own"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a panel, by its position in the shot, has a pixel a place.
+fn check_panel(n: usize, panel: &Panel<'_>) -> Result<()> {
+    let [width, height] = panel.size;
+    let expected = u64::from(width) * u64::from(height);
+    if panel.pixels.len() as u64 == expected {
+        return Ok(());
+    }
+    let expected = format!("{expected} of {width} × {height}");
+    Err(Error::setting(format!("panel {n}: pixels"), panel.pixels.len().to_string(), expected))
+}
+
 /// All of an image of one layer, rows packed.
 fn copied([width, height]: [u32; 2]) -> vk::BufferImageCopy {
     vk::BufferImageCopy::default()
@@ -322,7 +374,29 @@ fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImag
     let seen = [left(0), left(1)];
     let [x, y] = panel.at.map(|at| at as i32);
     let region = copied(seen).buffer_row_length(width).buffer_image_height(height);
-    let is_whole = panel.pixels.len() == width as usize * height as usize;
     let region = region.image_offset(vk::Offset3D { x, y, z: 0 }).buffer_offset(offset);
-    (is_whole && !seen.contains(&0)).then_some(region)
+    (!seen.contains(&0)).then_some(region)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parts may touch, in any order; one column in common is too many.
+    #[test]
+    fn parts_share_no_column() {
+        check_apart(&[[8, 8], [0, 8], [16, 4]]).expect("apart");
+        let refused = check_apart(&[[0, 8], [20, 2], [7, 8]]).unwrap_err().to_string();
+        assert!(refused.contains("part 2: columns: found 7 to 15, over 0 to 8"), "{refused}");
+        assert!(check_apart(&[[3, 2], [0, 20]]).is_err());
+    }
+
+    #[test]
+    fn panels_have_a_pixel_a_place() {
+        let pixels = [[0_u8; 4]; 6];
+        let panel = Panel { at: [0; 2], size: [3, 2], pixels: &pixels };
+        check_panel(0, &panel).expect("whole");
+        let refused = check_panel(1, &Panel { size: [2, 2], ..panel }).unwrap_err().to_string();
+        assert!(refused.contains("panel 1: pixels: found 6, expected 4 of 2 × 2"), "{refused}");
+    }
 }

@@ -106,7 +106,7 @@ impl State {
             is_split: false,
             message: None,
         };
-        state.brush.radius_m = state.side_m() / 16.0;
+        state.brush.radius_m = (state.side_m() / 16.0).max(state.brush_radii_m()[0]);
         state
     }
 

@@ -75,9 +75,10 @@ impl Strokes {
         [self.done.len(), self.undone.len()]
     }
 
-    /// Whether heights are other than they were read.
+    /// Whether heights are other than they were read, by a stroke that is still drawn too.
     pub fn have_changed(&self) -> bool {
-        self.is_past || !self.done.is_empty()
+        let is_drawn = matches!(self.begun, Some((_, Some(_))));
+        self.is_past || is_drawn || !self.done.is_empty()
     }
 }
 
@@ -103,11 +104,14 @@ mod tests {
         let brush = Brush { radius_m: 3.0, strength: 0.3 };
         let mut strokes = Strokes::default();
         let mut all = vec![field.clone()];
+        strokes.begin(&field);
+        assert!(!strokes.have_changed());
         for (work, place) in [(Work::Raise, 5.0), (Work::Erode, 9.0), (Work::Lower, 16.0)] {
             strokes.begin(&field);
             for step in [0.0, 1.5] {
                 let at = brush.dab(&mut field, work, [place + step, 8.0]).unwrap();
                 strokes.reach(at.unwrap());
+                assert!(strokes.have_changed(), "{work:?}");
             }
             strokes.end(&field);
             assert!(*all.last().unwrap() != field, "{work:?}");

@@ -49,7 +49,7 @@ impl App<'_> {
             self.state.message = Some("C shows the reference first".into());
             return;
         };
-        if let Err(why) = compare.find_error(screen, lit, &self.state.scene.field) {
+        if let Err(why) = compare.find_error(screen, lit, &self.state) {
             self.state.message = Some(why.to_string());
         }
     }
@@ -193,7 +193,9 @@ impl Shown {
         let scale = if self.window.scale_factor() >= 1.5 { 2 } else { 1 };
         let letters = panel::letters(size[0], scale);
         let text = panel::draw(&state.lines(lit.plan(), &self.figures, letters), scale);
-        let labels = self.compare.as_ref().map(Compare::labels).filter(|_| text.size[0] > 0);
+        // Where there is place for one picture alone it is ours.
+        let mut compare = self.compare.as_mut().filter(|_| lefts.len() > 1);
+        let labels = compare.as_ref().map(|c| c.labels()).filter(|_| text.size[0] > 0);
         let drawn = panels(state, text, (&lefts, part_size), labels.as_ref(), scale);
         let panels: Vec<Panel<'_>> = drawn
             .iter()
@@ -214,7 +216,7 @@ impl Shown {
         let heights = new.map(|at| (field.heights_m(), at));
 
         // In the order that they stand in: each with its heights and its passes.
-        let [off, truth] = self.compare.as_mut().map_or([None, None], Compare::frames);
+        let [off, truth] = compare.as_mut().map_or([None, None], |c| c.frames());
         let mut frames = Vec::new();
         frames.extend(off.map(|(frame, passes)| {
             let heights = (!passes.is_empty()).then_some((field.heights_m(), whole));
@@ -241,7 +243,7 @@ impl Shown {
         }
         let shot = Shot { tone: state.tone(), voids: field.voids(), panels: &panels, keeps };
         let Some(mut done) = self.screen.draw(&mut parts, &shot)? else { return Ok(None) };
-        if let Some(compare) = &mut self.compare {
+        if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
         self.last_edit = edit.or(self.last_edit);

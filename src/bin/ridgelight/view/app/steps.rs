@@ -6,6 +6,8 @@ use ridgelight::{Error, Result, files};
 use winit::dpi::PhysicalSize;
 
 use super::super::script::Step;
+use super::compare::MOST_PATHS;
+use super::drawing::places;
 use super::{App, Shown};
 
 /// How long a window may take to become as large as a script wants it.
@@ -63,6 +65,7 @@ impl App<'_> {
                 files::write_text(&path, &text).map(|()| None)?
             }
             Step::Paths(count) => {
+                self.check_paths(count)?;
                 let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
                 let has_all = compare.is_some_and(|c| c.paths() >= count);
                 if !has_all {
@@ -91,6 +94,23 @@ impl App<'_> {
             steps.push_front(again);
         }
         Ok(true)
+    }
+
+    /// Whether so many paths a sample will ever have been traced.
+    fn check_paths(&self, count: u32) -> Result<()> {
+        let width = self.shown.as_ref().map_or(0, |shown| shown.size[0]);
+        let (found, expected) = if count > MOST_PATHS {
+            (format!("{count}"), format!("{MOST_PATHS} or less"))
+        } else if !self.state.is_split {
+            ("no reference beside the light".to_owned(), "key c before".to_owned())
+        } else if self.state.is_moving() {
+            ("a field that moves".to_owned(), "key w or key g before, which stops it".to_owned())
+        } else if width > 0 && places([width, 1], true).0.len() < 3 {
+            (format!("a window {width} pixels wide"), "place for three pictures".to_owned())
+        } else {
+            return Ok(());
+        };
+        Err(Error::setting("--script: paths", found, expected))
     }
 
     /// Asks for a size until pictures have it.

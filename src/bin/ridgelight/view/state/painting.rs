@@ -79,11 +79,26 @@ impl State {
         }
     }
 
+    /// The least radius of a brush and the most, m. Half a cell: a stroke has not more dabs than eight a cell that it
+    /// crosses.
+    pub(super) fn brush_radii_m(&self) -> [f64; 2] {
+        let field = &self.scene.field;
+        let [x, y] = field.cell_m();
+        [0.5 * x.min(y), (field.cols() as f64 * x).max(field.rows() as f64 * y)]
+    }
+
     pub(super) fn change_brush(&mut self, key: &str) -> Wish {
+        let [least, most] = self.brush_radii_m();
         let brush = &mut self.brush;
         match key {
-            "[" => brush.radius_m *= 0.8,
-            "]" => brush.radius_m *= 1.25,
+            "[" if brush.radius_m <= least => {
+                return self.say("the brush is at its smallest, half a cell");
+            }
+            "]" if brush.radius_m >= most => {
+                return self.say("the brush is at its largest, the field's longer side");
+            }
+            "[" => brush.radius_m = (brush.radius_m * 0.8).max(least),
+            "]" => brush.radius_m = (brush.radius_m * 1.25).min(most),
             ";" => brush.strength *= 0.8,
             _ => brush.strength = (brush.strength * 1.25).min(1.0),
         }
