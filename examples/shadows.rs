@@ -15,7 +15,7 @@ mod seen;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use ridgelight::cpu::ellipse_fit::Ellipse;
+use ridgelight::cpu::ellipse_fit::{Ellipse, seen as sky_of, start};
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan;
@@ -185,6 +185,11 @@ fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellip
             "| ellipses of {count} | {seen_ms:.1} | {fit_ms:.1} | {ms:.3} | 12 | {} |",
             wrong.row(lights, samples)
         );
+        if count == COUNTS[COUNTS.len() - 1] {
+            let begun: Vec<Ellipse> = (0..samples).map(|at| start(&sky_of(&points, at))).collect();
+            let (wrong, _) = Wrong::of(&truth, |k, at| begun[at].holds(lights.vectors()[k]));
+            println!("| covariances of {count} | | | | 12 | {} |", wrong.row(lights, samples));
+        }
         last = found;
     }
     println!();
@@ -214,7 +219,7 @@ fn run() -> Result<()> {
     println!(
         "{LIGHTS} lights evenly over the upper hemisphere; directions evenly over the sphere, half of them above horizontal. \
          Found and fitted: the device's own ms, as a light by rays; a light of the others: one core of the processor, look-ups \
-         alone. Bytes: of ellipses six numbers of 16 bits.\n"
+         alone. Bytes: of ellipses six numbers of 16 bits. Covariances: ellipses before their centres and radii are searched for.\n"
     );
     let lights = Directions::fibonacci(LIGHTS, 0.0, 7)?;
     let mut drawn = Vec::new();

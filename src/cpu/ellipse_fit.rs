@@ -69,7 +69,8 @@ pub type Seen = (DVec3, bool);
 pub const FIRST_STEP: f64 = 0.25;
 /// See [`FIRST_STEP`].
 pub const LAST_STEP: f64 = 1.0 / 64.0;
-const MOST_STEPS: usize = 48;
+/// See [`FIRST_STEP`].
+pub const MOST_STEPS: usize = 48;
 
 /// Of centre and radius along an axis, by steps: either end, both to one side, both apart.
 pub const MOVES: [(f64, f64); 8] = [

@@ -92,8 +92,8 @@ fn a_wall_is_no_ellipse() {
     }
 }
 
-/// All and nothing are what they are called; lit spots on two sides come out as one ellipse that has no more right than the
-/// better of one spot alone, all and nothing.
+/// All and nothing are what they are called. Two patches of sky low in the east and in the west come out wrong: an ellipse
+/// that holds some of both holds what lies between, too, which is not lit.
 #[test]
 fn what_is_alike_needs_no_search() {
     assert_eq!(fit(&seen(|_| true)), (Ellipse::WHOLE, COUNT as i64));
@@ -101,7 +101,6 @@ fn what_is_alike_needs_no_search() {
     for e in seen(|_| true) {
         assert!(Ellipse::WHOLE.holds(e.0) && !Ellipse::EMPTY.holds(e.0));
     }
-    // Two thin sectors of sky low in the east and in the west: none of the ellipses holds both alone.
     let two = seen(|e| e.x.abs() > 0.9);
     let (found, _) = fit(&two);
     assert!(wrong(&found, &two) > 0, "{found:?}");

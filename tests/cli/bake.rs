@@ -46,6 +46,10 @@ fn wrong_requests_are_told() {
         (horizon("--azimuths 3"), 2, &["--azimuths: found 3"]),
         (horizon("--method sweep --lines exact"), 2, &["--lines: found exact", "--method brute"]),
         (horizon("--memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
+        (horizon("--directions 8"), 2, &["--directions: found 8", "ellipse or visible-points"]),
+        (with("--what ellipse --directions 3"), 2, &["directions: found 3", "4 to 4096"]),
+        (with("--what ellipse --format png"), 2, &["found png with f16 of ellipse"]),
+        (with("--what ellipse --memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
         (horizon("--sky 1"), 2, &["--sky"]),
         (horizon("--json out.txt"), 2, &["--json: found out.txt"]),
         ("bake none.asc -o out --what horizon".to_owned(), 1, &["none.asc"]),
@@ -112,8 +116,12 @@ fn gpu_every_file_is_there_and_told_of() {
         &folder,
         "bake field.npy -o out2 --what sh-visibility,sh-transfer --sh-order 2 --azimuths 8",
     );
-    let sheets = [json(&folder.path("out/bake.json")), json(&folder.path("out2/bake.json"))];
-    for (sheet, out) in sheets.iter().zip(["out", "out2"]) {
+    done(
+        &folder,
+        "bake field.npy -o out3 --what ellipse,visible-points --directions 9 --format exr,npy,ktx2",
+    );
+    let sheets = ["out", "out2", "out3"].map(|out| json(&folder.path(&format!("{out}/bake.json"))));
+    for (sheet, out) in sheets.iter().zip(["out", "out2", "out3"]) {
         let mut told = vec!["bake.json".to_owned()];
         for map in sheet["maps"].as_array().unwrap() {
             told.push(map["decoder"].as_str().unwrap().to_owned());
@@ -145,6 +153,8 @@ fn gpu_every_file_is_there_and_told_of() {
     };
     assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
     assert_eq!(sheets[0]["settings"]["azimuths"], 8);
+    assert_eq!(sheets[2]["directions"].as_array().unwrap().len(), 9);
+    assert!(sheets[0]["directions"].is_null() && sheets[2]["horizons"].is_null());
     assert_eq!(sheets[0]["settings"]["method"], "brute");
     // The hash is of the field, whatever is baked of it, and stands in what is written.
     let hash = sheets[0]["field"]["hash"].as_str().unwrap().to_owned();
@@ -237,14 +247,16 @@ fn gpu_extremes() {
     folder.write("row.asc", b"ncols 5 nrows 1 cellsize 1 0 1e6 0 -1e6 3");
     folder.write("column.asc", b"ncols 1 nrows 3 cellsize 1e-3 0 5 0");
     folder.write("flat.asc", b"ncols 3 nrows 2 cellsize 1e9 0 0 0 0 0 1e-6");
-    let kinds = "horizon,sky-view,visible-sky,bent-normal,sh-visibility,sh-transfer";
+    let kinds =
+        "horizon,sky-view,visible-sky,bent-normal,sh-visibility,sh-transfer,ellipse,visible-points";
     for field in ["one", "row", "column", "flat"] {
         for border in ["plane", "open", "periodic"] {
             let out = format!("{field}_{border}");
             done(
                 &folder,
                 &format!(
-                    "bake {field}.asc -o {out} --border {border} --what {kinds} --azimuths 4 --format npy,ktx2 --quiet"
+                    "bake {field}.asc -o {out} --border {border} --what {kinds} --azimuths 4 --directions 4 \
+                     --format npy,ktx2 --quiet"
                 ),
             );
             let sheet = json(&folder.path(&out).join("bake.json"));

@@ -1,4 +1,5 @@
 use ridgelight::bake;
+use ridgelight::cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
 use ridgelight::scene::Directions;
 use ridgelight::{Result, plan};
 
@@ -21,9 +22,11 @@ fn begin(_: &Asked) -> Result<Making> {
     let axis = "of the unit axis";
     let radius = "one over the radius; 0 where all is lit";
     let largest = (*Directions::COUNT.end() as f64 / 2.0).sqrt();
+    // From within the disc, as far as all steps of the search go to one side.
+    let far = 1.0 + MOST_STEPS as f64 * FIRST_STEP;
     let numbers = [
-        value("centre_x", centre, [-4.0, 4.0]),
-        value("centre_y", centre, [-4.0, 4.0]),
+        value("centre_x", centre, [-far, far]),
+        value("centre_y", centre, [-far, far]),
         value("axis_x", axis, [0.0, 1.0]),
         value("axis_y", axis, [-1.0, 1.0]),
         value("inverse_along", radius, [0.0, largest]),
