@@ -118,3 +118,24 @@ fn paths_side_by_side_have_their_room() {
     assert_eq!(carried(&cut), 2 * 16 * 90_000);
     assert_eq!(cut.inputs().filter(|(_, r)| r.name.starts_with("visible_points.")).count(), 3);
 }
+
+/// Ellipses look at all directions at once: one image, which a device with fewer layers refuses by what is missing; and at
+/// those above horizontal, of which there must be one.
+#[test]
+fn ellipses_want_one_image() {
+    let limits = Limits::lavapipe();
+    let directions = Directions::fibonacci(40, -1.0, 0).expect("directions");
+    let of = |directions: &Directions, limits: &Limits| {
+        plan::ellipses(&flat(300, 20), Border::Plane, directions, limits)
+    };
+    let plan = of(&directions, &limits).expect("a plan");
+    assert_eq!(missing_barriers(&plan.passes), []);
+    assert_eq!(layers(&plan), [1, 1]);
+    let last = plan.passes.last().expect("passes");
+    assert_eq!((last.name(), last.groups), ("ellipse_fit", [3, 38, 1]));
+    let few = of(&directions, &Limits { image_layers: 39, ..limits }).unwrap_err().to_string();
+    assert!(few.contains("40 directions") && few.contains("39 layers"), "{few}");
+    let down = Directions::from_vectors(vec![-glam::DVec3::Z], -1.0).expect("a direction");
+    let none = of(&down, &limits).unwrap_err().to_string();
+    assert!(none.contains("above horizontal"), "{none}");
+}
