@@ -362,7 +362,7 @@ fn gpu_a_window_outlives_its_sizes() {
 fn gpu_pictures_side_by_side_need_place() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nkey c\nframes 2\nsize 6,24\nframes 2\nscreenshot narrow.png\nkey c\nframes 1\n\
-        screenshot alone.png\nkey c\nsize 64,48\npaths 64\nscreenshot wide.png\n";
+        screenshot alone.png\nsize 64,48\nkey c\npaths 64\nscreenshot wide.png\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
     assert_same(&folder, "narrow.png", "alone.png");
     assert_eq!(folder.picture("wide.png").cols, 64);
