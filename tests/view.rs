@@ -381,6 +381,28 @@ fn gpu_pictures_side_by_side_need_place() {
     }
 }
 
+/// Radii of brushes end where strokes would have dabs without number, and at the field's side: a sixteenth of 48 m times
+/// 0.8 and 1.25 to the fortieth is beyond both.
+#[test]
+fn gpu_brushes_have_a_least_and_a_most() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let keys = |key: &str| format!("key {key}\n").repeat(40);
+    let script = format!(
+        "frames 1\n{}text small.txt\n{}{}text large.txt\n",
+        keys("["),
+        keys("]"),
+        keys("]")
+    );
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), &script);
+    for (name, says) in [
+        ("small.txt", "the brush is at its smallest, half a cell"),
+        ("large.txt", "the brush is at its largest, the field's longer side"),
+    ] {
+        let text = std::fs::read_to_string(folder.0.path().join(name)).unwrap();
+        assert!(text.contains(says), "{text}");
+    }
+}
+
 /// Real events, from another client of the display.
 #[test]
 fn gpu_keys_and_the_mouse_are_heard() {
