@@ -362,7 +362,7 @@ fn gpu_a_window_outlives_its_sizes() {
 fn gpu_pictures_side_by_side_need_place() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nkey c\nframes 2\nsize 6,24\nframes 2\nscreenshot narrow.png\nkey c\nframes 1\n\
-        screenshot alone.png\nkey c\nsize 64,48\npaths 64\nscreenshot wide.png\n";
+        screenshot alone.png\nsize 64,48\nkey c\npaths 64\nscreenshot wide.png\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
     assert_same(&folder, "narrow.png", "alone.png");
     assert_eq!(folder.picture("wide.png").cols, 64);
@@ -378,6 +378,28 @@ fn gpu_pictures_side_by_side_need_place() {
         let Output { status, stderr, .. } = command.env("DISPLAY", &display.name).output().unwrap();
         let said = String::from_utf8(stderr).unwrap();
         assert!(!status.success() && said.contains(says), "{script}: {said}");
+    }
+}
+
+/// Radii of brushes end where strokes would have dabs without number, and at the field's side: a sixteenth of 48 m times
+/// 0.8 and 1.25 to the fortieth is beyond both.
+#[test]
+fn gpu_brushes_have_a_least_and_a_most() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let keys = |key: &str| format!("key {key}\n").repeat(40);
+    let script = format!(
+        "frames 1\n{}text small.txt\n{}{}text large.txt\n",
+        keys("["),
+        keys("]"),
+        keys("]")
+    );
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), &script);
+    for (name, says) in [
+        ("small.txt", "the brush is at its smallest, half a cell"),
+        ("large.txt", "the brush is at its largest, the field's longer side"),
+    ] {
+        let text = std::fs::read_to_string(folder.0.path().join(name)).unwrap();
+        assert!(text.contains(says), "{text}");
     }
 }
 

@@ -156,6 +156,34 @@ fn a_plan_of_other_images_is_refused_and_the_old_one_stays() {
     gpu.end(frame);
 }
 
+/// All but the last pass, and then another plan: its pieces begin where the first of its own is, and leave what all of it
+/// does at once.
+#[test]
+fn pieces_of_two_plans_do_not_mix() {
+    let mut device = Device::new();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut scene = scene();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let count = plan.passes.len();
+    let [heights, texels] = contents(&scene);
+    let mut frame = gpu.frame(plan, &[&heights, &texels]).expect("a frame");
+    let first: Vec<usize> = (0..count - 1).collect();
+    gpu.draw_passes(&mut frame, &first).expect("the first piece");
+    let environment = scene.lights.environment.take().expect("one");
+    let texels = environment.texels().to_vec();
+    scene.lights.environment = Environment::new(32, 16, texels, 3.0).ok();
+    let plan = planned(gpu, &scene, (&qualities()[0], true));
+    let due = gpu.replace_plan(&mut frame, plan).expect("the same passes");
+    assert!(due[0] < count - 1, "{due:?}");
+    assert!(gpu.draw_passes(&mut frame, &[count - 1]).is_err(), "light of two plans");
+    let rest: Vec<usize> = (due[0]..count).collect();
+    gpu.draw_passes(&mut frame, &rest).expect("the next piece");
+    let pieces = bits(gpu, &frame);
+    gpu.draw(&mut frame).expect("drawn");
+    assert!(bits(gpu, &frame) == pieces);
+    gpu.end(frame);
+}
+
 #[test]
 fn two_changes_before_a_recording_are_both_drawn() {
     let mut device = Device::new();

@@ -79,6 +79,17 @@ fn scattered(side: usize, bounces: u32, paths: u32, limits: &Limits) -> Plan {
     plan::scatter(&under_sky(flat(side, side)), &directions, &scatter, limits).expect("a plan")
 }
 
+/// Words, and several layers, are copied from no buffer of texels.
+#[test]
+fn points_come_in_images_alone() {
+    let mut plan = scattered(32, 1, 16, &Limits::lavapipe());
+    let (_, points) =
+        plan.inputs().find(|(_, r)| r.name.starts_with("visible_points")).expect("it");
+    let (name, format) = (points.name.clone(), points.format().expect("an image"));
+    let refused = plan.take_buffer(&name, format).unwrap_err().to_string();
+    assert!(refused.contains(&format!("{name}: found an image of words, {format:?}")), "{refused}");
+}
+
 /// From the far end of all paths to the samples, paths side by side; one bounce needs nothing between. Every barrier is there
 /// and each is missed.
 #[test]
