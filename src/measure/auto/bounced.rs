@@ -1,15 +1,17 @@
 //! What errors and costs are expected of bounces.
 
-use super::model::spacing;
 use super::statistics::Statistics;
 use crate::scene::{BounceEngine, Lines, Method, Quality, Scene};
 
 /// Parts of the error: pyramids in place of what is seen, azimuths, nodes between samples, bounces that are left out.
 pub(super) const PARTS: usize = 4;
 
-/// Shares of bounced light that each part is off at 32 azimuths, 2× sub-sampled, and the standard deviation of their
-/// ln: about what `benches/results/bounce.txt` and `bounce_table.txt` have of mountains and fractals. Of what is left
-/// out, all.
+/// Shares of bounced light that each part is off at 32 azimuths, 2× sub-sampled, from columns "bounced" that
+/// `cargo run --release --example bounce` and the same with `-- table` print (`benches/results/bounce.txt`,
+/// `bounce_table.txt`). Pyramids: √(pyramid² - chance²) of Mt Washington under the sky, one bounce; nodes: sweep, one
+/// bounce, 2×; azimuths: √(sweep's 32² - sweep's three bounces, 2×²), as what is off there are both. Of what is left
+/// out, all. Second: the standard deviation of their ln, no fit: a factor of two either way (ln 2), of what is left
+/// out, which depends on where light stays, e.
 const SHARES: [[f64; 2]; PARTS] = [[0.2, 0.7], [0.018, 0.7], [0.03, 0.7], [1.0, 1.0]];
 
 /// The engines that an engine can come to, in the order of [`work`].
@@ -64,12 +66,14 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
     }
 }
 
-/// ns an azimuth and sample of a walk, of a march and each sample of the side, of a gather: lavapipe's
-/// (`benches/results/bounce_table.txt`, the mountain's middle 128²).
+/// ns an azimuth and sample of a walk, of a march and each sample of the side, of a gather, on lavapipe: "ms" of one
+/// bounce, 1×, of `cargo run --release --example bounce -- table` (`benches/results/bounce_table.txt`, sub-sampled
+/// bounces) over 32 · 128² · 10⁻⁶, of brute force over 128 more. The frames that are drawn correct each.
 const WALK: f64 = 126.0;
 const MARCH: f64 = 4.2;
 const GATHER: f64 = 261.0;
-/// Of a walk's time what a later, sub-sampled bounce takes that reads what the first has met.
+/// Of a walk's time at every sample what a later, sub-sampled bounce takes that reads what the first has met: sweep, 2×,
+/// there, (three bounces - one) / 2 over one bounce's 1×.
 const CAST: f64 = 0.07;
 
 /// Work of walks, marches and gathers, one of which there is where bounces are drawn.
@@ -77,7 +81,7 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     let drawn = f64::from(quality.bounces.worth_drawing(scene.surface.most_reflected()));
     let azimuths = f64::from(quality.bounces.azimuths);
     let side = scene.field.rows().max(scene.field.cols()) as f64;
-    // Nodes are the square of it fewer, but each still costs the sweep or levels of all.
+    // Nodes are the square of it fewer, but each still costs the sweep or levels of all: "over 1×" of one bounce, sweep.
     let nodes = match quality.subsample {
         1 => 1.0,
         2 => 0.4,
@@ -87,12 +91,11 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     if drawn == 0.0 {
         return all;
     }
-    let finer = if spacing(quality) < 2 { 0.7 } else { 1.0 };
     match engine(quality) {
         BounceEngine::Brute => all[1] = azimuths * drawn * nodes * MARCH * side,
         BounceEngine::Pyramid => all[2] = azimuths * drawn * nodes * GATHER,
-        _ if quality.subsample == 1 => all[0] = azimuths * drawn * finer * WALK,
-        _ => all[0] = azimuths * finer * WALK * (nodes + CAST * (drawn - 1.0)),
+        _ if quality.subsample == 1 => all[0] = azimuths * drawn * WALK,
+        _ => all[0] = azimuths * WALK * (nodes + CAST * (drawn - 1.0)),
     }
     all
 }
