@@ -1,8 +1,8 @@
 //! What samples of a field see, kept as a NumPy archive: `numpy.load` opens it.
 //!
 //! Members: `visible_points` [N, rows, cols, 2], row and column of the sample that is seen, u2, or u1 of fields of at most
-//! 255 by 255; both of the type's largest number where nothing is, and one less where the level ground beyond the field
-//! is. `directions` [N, 3] f8, east, north, up; `lowest_direction_z` f8; `field_hash` [8] u1, little-endian, of the field
+//! 255 by 255; both of the type's largest number where nothing is, the largest and one less where the level ground beyond
+//! the field is: no field has a row of that number. `directions` [N, 3] f8, east, north, up; `lowest_direction_z` f8; `field_hash` [8] u1, little-endian, of the field
 //! that they were made of.
 
 use super::atomic::Temporary;
@@ -49,7 +49,7 @@ pub fn write_visible_points(path: &Path, points: &VisiblePoints) -> Result<()> {
                 let pair = match points.seen(direction, row * cols + col) {
                     VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as u16),
                     VisiblePoint::Sky => [u16::MAX; 2],
-                    VisiblePoint::Ground => [u16::MAX - 1; 2],
+                    VisiblePoint::Ground => [u16::MAX, u16::MAX - 1],
                 };
                 for number in pair {
                     let bytes = number.to_le_bytes();
@@ -125,17 +125,24 @@ pub fn read_visible_points(
     }
     let largest = 256_f64.powi(bytes_each as i32) - 1.0;
     let mut values = array.values();
-    let mut points = Vec::with_capacity(count * rows * cols);
+    let wanted = count * rows * cols;
+    let mut points = Vec::new();
+    if points.try_reserve_exact(wanted).is_err() {
+        let found = format!("{wanted} points");
+        return Err(Error::file(path, inside, found, "as many as memory holds"));
+    }
     while let (Some(row), Some(col)) = (values.next(), values.next()) {
         points.push(match [row, col] {
             [r, c] if r == largest && c == largest => VisiblePoint::Sky,
-            [r, c] if r == largest - 1.0 && c == largest - 1.0 => VisiblePoint::Ground,
+            [r, c] if r == largest && c == largest - 1.0 => VisiblePoint::Ground,
             [r, c] if r < rows as f64 && c < cols as f64 => {
                 VisiblePoint::Sample(r as usize * cols + c as usize)
             }
             [r, c] => {
                 let place = format!("{inside}point {}", points.len());
-                let expected = format!("a sample of {cols} × {rows}, {largest} or one less");
+                let expected = format!(
+                    "a sample of {cols} × {rows}, or the row {largest} with the column {largest} or one less"
+                );
                 return Err(Error::file(path, place, format!("row {r}, column {c}"), expected));
             }
         });

@@ -53,19 +53,27 @@ impl VisiblePoints {
     /// Of a field, from the words that [`plan::visible_points`](crate::plan::visible_points) leaves, layer after layer.
     ///
     /// # Errors
-    /// Too few or too many words, a point outside the field, a ray that the device has lost.
+    /// A side beyond [`LARGEST_SIDE`](Self::LARGEST_SIDE), too few or too many words, a point outside the field, a ray that
+    /// the device has lost.
     pub fn new(
         field: &HeightField,
         border: Border,
         directions: Directions,
-        words: Vec<u32>,
+        mut words: Vec<u32>,
     ) -> Result<Self> {
         let size = [field.rows(), field.cols()];
-        let layers = Self::layers(directions.count(), Self::is_small(size[0], size[1]));
+        check_sides(size)?;
+        let is_small = Self::is_small(size[0], size[1]);
+        let layers = Self::layers(directions.count(), is_small);
         let wanted = layers * size[0] * size[1];
         if words.len() != wanted {
             let found = format!("{} words", words.len());
             return Err(Error::setting("visible points", found, format!("{wanted} words")));
+        }
+        if is_small && directions.count() % 2 == 1 {
+            // The half of no direction says nothing: points that are alike compare so.
+            let last = (layers - 1) * size[0] * size[1];
+            words[last..].iter_mut().for_each(|word| *word &= 0xffff);
         }
         let points = Self { directions, size, field_hash: field.hash(border), words };
         for direction in 0..points.directions.count() {
@@ -98,11 +106,21 @@ impl VisiblePoints {
         points: &[VisiblePoint],
     ) -> Result<Self> {
         let (rows, cols) = (field.rows(), field.cols());
+        check_sides([rows, cols])?;
         let (samples, is_small) = (rows * cols, Self::is_small(rows, cols));
+        if points.len() != directions.count() * samples {
+            let expected = format!("{} points", directions.count() * samples);
+            return Err(Error::setting("visible points", points.len().to_string(), expected));
+        }
         let mut words = vec![0; Self::layers(directions.count(), is_small) * samples];
-        for (i, point) in points.iter().take(directions.count() * samples).enumerate() {
+        for (i, point) in points.iter().enumerate() {
             let (direction, sample) = (i / samples, i % samples);
             let word = match *point {
+                VisiblePoint::Sample(at) if at >= samples => {
+                    let name = format!("visible points: direction {direction}, sample {sample}");
+                    let expected = format!("one of {samples}, {cols} × {rows}");
+                    return Err(Error::setting(name, format!("sample {at}"), expected));
+                }
                 VisiblePoint::Sample(at) => (((at / cols) << 16) | (at % cols)) as u32,
                 VisiblePoint::Sky => SKY,
                 VisiblePoint::Ground => GROUND,
@@ -113,10 +131,6 @@ impl VisiblePoints {
             } else {
                 words[direction * samples + sample] = word;
             }
-        }
-        if points.len() != directions.count() * samples {
-            let expected = format!("{} points", directions.count() * samples);
-            return Err(Error::setting("visible points", points.len().to_string(), expected));
         }
         Self::new(field, border, directions, words)
     }
@@ -212,4 +226,14 @@ impl VisiblePoints {
             self.words[direction / 2 * rows * cols + sample] >> (16 * (direction % 2)) & 0xffff;
         if half >= LOST & 0xffff { 0xffff_0000 | half } else { half >> 8 << 16 | half & 0xff }
     }
+}
+
+/// # Errors
+/// A side that 16 bits a coordinate do not hold beside the marks.
+fn check_sides([rows, cols]: [usize; 2]) -> Result<()> {
+    if rows.max(cols) <= VisiblePoints::LARGEST_SIDE {
+        return Ok(());
+    }
+    let expected = format!("at most {} samples a side", VisiblePoints::LARGEST_SIDE);
+    Err(Error::setting("visible points", format!("a field of {cols} × {rows}"), expected))
 }

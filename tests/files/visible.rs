@@ -32,6 +32,28 @@ fn visible_points_round_trip() {
     }
 }
 
+/// The largest field of a byte an axis has a sample (254, 254), which is no mark; neither is the last row's or column's.
+#[test]
+fn the_last_sample_of_a_small_field_is_no_mark() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.npz");
+    for side in [255, 256] {
+        let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None).unwrap();
+        let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
+        let kinds = [side * side - 1, side * side - side, side - 1].map(VisiblePoint::Sample);
+        let kinds = [&kinds[..], &[VisiblePoint::Sky, VisiblePoint::Ground]].concat();
+        let seen: Vec<_> = (0..5 * side * side).map(|i| kinds[i % 5]).collect();
+        let points =
+            VisiblePoints::from_points(&field, Border::Plane, directions, &seen).expect("points");
+        write_visible_points(&path, &points).unwrap();
+        let read = read_visible_points(&path, &field, Border::Plane).unwrap();
+        assert_eq!(read, points);
+        for (i, point) in seen.iter().enumerate() {
+            assert_eq!(read.seen(i / (side * side), i % (side * side)), *point);
+        }
+    }
+}
+
 #[test]
 fn points_of_another_field_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -78,4 +100,33 @@ fn points_that_are_none_are_refused() {
     // Row 5 of 5; a lost ray in the second of a pair.
     assert!(of(vec![0x0500; 70]).unwrap_err().contains("row 5, column 0"));
     assert!(of(vec![0xfffd_0000; 70]).unwrap_err().contains("direction 1"));
+    // Row 256 has the same byte as row 0.
+    for outside in [35, 7 * 256, usize::MAX] {
+        let mut seen = vec![VisiblePoint::Sky; 4 * 35];
+        seen[36] = VisiblePoint::Sample(outside);
+        let said = VisiblePoints::from_points(&field, Border::Plane, directions.clone(), &seen);
+        let said = said.unwrap_err().to_string();
+        assert!(said.contains("direction 1, sample 1"), "{said}");
+    }
+    let long = waves(1, 65_534, 1.0);
+    for said in [
+        VisiblePoints::new(&long, Border::Plane, directions.clone(), vec![0; 4 * 65_534]),
+        VisiblePoints::from_points(&long, Border::Plane, directions.clone(), &[]),
+    ] {
+        let said = said.unwrap_err().to_string();
+        assert!(said.contains("at most 65533 samples a side"), "{said}");
+    }
+}
+
+/// Of an odd number of directions the last word's upper half is of none, whatever stands in it.
+#[test]
+fn points_compare_by_what_is_seen() {
+    let field = waves(2, 2, 1.0);
+    let directions = Directions::fibonacci(5, -1.0, 0).expect("directions");
+    let of = |padding: u32| {
+        let words = [vec![0; 8], vec![padding << 16 | 0x0101; 4]].concat();
+        VisiblePoints::new(&field, Border::Plane, directions.clone(), words).expect("points")
+    };
+    assert_eq!(of(0xffff), of(0));
+    assert_eq!(of(0).seen(4, 2), VisiblePoint::Sample(3));
 }
