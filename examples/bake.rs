@@ -57,9 +57,10 @@ fn summed(field: &HeightField, horizons: &[Vec<f32>], what: Box<dyn Sum>) -> Vec
     let width_rad = TAU / f64::from(AZIMUTHS);
     let mut sums = Summing::new(what, SIDE * SIDE);
     for (k, elevations) in horizons.iter().enumerate() {
-        sums.add(Ray { azimuth_rad: width_rad * k as f64, width_rad }, elevations, &normals);
+        sums.add(Ray { azimuth_rad: width_rad * k as f64, width_rad }, elevations, &normals)
+            .expect("memory");
     }
-    sums.end(&normals)
+    sums.end(&normals).expect("memory")
 }
 
 fn all(field: &HeightField, horizons: Vec<Vec<f32>>) -> Vec<Baked> {

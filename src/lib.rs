@@ -70,6 +70,7 @@
 //! | [`measure`] | how far two results are off each other, in numbers and to the eye; tolerances |
 //! | [`golden`] | results that a repository keeps for its tests |
 //! | [`cpu`] | a twin of every pass in f64, and brute force that all are judged by |
+//! | [`bake`] | maps for engines: sums of horizons, and how values become texels |
 //! | [`basis`] | Legendre polynomials and spherical harmonics, from which tables are filled |
 //!
 //! # Conventions

@@ -24,6 +24,7 @@ use std::thread;
 
 use crate::cpu::light::normal;
 use crate::scene::{Border, HeightField};
+use crate::{Error, Result};
 
 pub use crate::cpu::ellipse_fit::Ellipse;
 pub use bent::BentNormal;
@@ -77,13 +78,15 @@ pub fn normals(field: &HeightField, border: Border) -> Vec<DVec3> {
 /// A kind's sums over a field, azimuth by azimuth.
 pub struct Summing {
     what: Box<dyn Sum>,
+    samples: usize,
+    /// None before the first azimuth.
     sums: Vec<f64>,
 }
 
 impl Summing {
-    /// Of so many samples, all sums 0.
+    /// Of so many samples, all sums 0; their memory is taken with the first azimuth.
     pub fn new(what: Box<dyn Sum>, samples: usize) -> Self {
-        Self { sums: vec![0.0; samples * what.sums()], what }
+        Self { what, samples, sums: Vec::new() }
     }
 
     /// Bytes of the sums.
@@ -93,12 +96,18 @@ impl Summing {
 
     /// Adds an azimuth: elevations of the horizon, radians, and unit normals, row-major.
     ///
+    /// # Errors
+    /// More sums than there is memory for.
+    ///
     /// # Panics
     /// When there are not as many of either as samples.
-    pub fn add(&mut self, ray: Ray, elevations_rad: &[f32], normals: &[DVec3]) {
+    pub fn add(&mut self, ray: Ray, elevations_rad: &[f32], normals: &[DVec3]) -> Result<()> {
         let (what, count) = (&*self.what, self.what.sums());
-        let samples = self.sums.len() / count;
+        let samples = self.samples;
         assert_eq!([elevations_rad.len(), normals.len()], [samples; 2], "one a sample");
+        if self.sums.is_empty() {
+            self.sums = zeros(samples, count)?;
+        }
         let turn = what.turn(ray);
         in_parts(samples, &mut self.sums, count, |first, part| {
             for (i, sums) in part.chunks_exact_mut(count).enumerate() {
@@ -108,18 +117,25 @@ impl Summing {
                 what.add(&turn, normals[at], elevation, sums);
             }
         });
+        Ok(())
     }
 
     /// The values: a plane each, row-major.
     ///
+    /// # Errors
+    /// More values than there is memory for.
+    ///
     /// # Panics
-    /// When there are not as many normals as samples.
-    pub fn end(self, normals: &[DVec3]) -> Vec<Vec<f32>> {
-        let Self { what, sums } = self;
+    /// When there are not as many normals as samples, or no azimuth was added.
+    pub fn end(self, normals: &[DVec3]) -> Result<Vec<Vec<f32>>> {
+        let Self { what, samples, sums } = self;
         let count = what.values();
-        let samples = normals.len();
-        assert_eq!(sums.len(), samples * what.sums(), "one normal a sample");
-        let mut planes = vec![vec![0.0; samples]; count];
+        assert_eq!(normals.len(), samples, "one normal a sample");
+        assert_eq!(sums.len(), samples * what.sums(), "an azimuth at least");
+        let mut planes = Vec::new();
+        for _ in 0..count {
+            planes.push(zeros(samples, 1)?);
+        }
         let mut values = vec![0.0; count];
         for (at, sums) in sums.chunks_exact(what.sums()).enumerate() {
             what.end(normals[at], sums, &mut values);
@@ -127,8 +143,21 @@ impl Summing {
                 plane[at] = *value as f32;
             }
         }
-        planes
+        Ok(planes)
     }
+}
+
+/// As many a sample, all 0.
+fn zeros<T: Clone + Default>(samples: usize, each: usize) -> Result<Vec<T>> {
+    let mut all = Vec::new();
+    let count = samples.saturating_mul(each);
+    all.try_reserve_exact(count).map_err(|_| Error::Limit {
+        what: format!("{each} numbers of each of {samples} samples"),
+        needs: format!("{} bytes", count.saturating_mul(size_of::<T>())),
+        limit: "the memory of this machine".into(),
+    })?;
+    all.resize(count, T::default());
+    Ok(all)
 }
 
 /// Fewer samples are not worth a thread.
@@ -152,4 +181,17 @@ fn in_parts<T: Send>(
             scope.spawn(move || work(i * part, part_values));
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More sums than an address space holds: nothing is taken to begin with, and then it is said.
+    #[test]
+    fn more_sums_than_memory_are_an_error() {
+        assert!(matches!(zeros::<f64>(1 << 60, 36), Err(Error::Limit { .. })));
+        assert!(zeros::<f64>(3, 2).is_ok_and(|all| all == [0.0; 6]));
+        drop(Summing::new(Box::new(ShTransfer::new(5)), 1 << 60));
+    }
 }

@@ -252,21 +252,7 @@ impl NpyWriter {
 /// A file with an array's header, for its values to follow.
 fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
     let mut file = Temporary::create(path)?;
-    let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
-    let mut header = format!(
-        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
-        sizes.trim_end()
-    );
-    // The data begins at a multiple of 64 bytes, after a 10-byte preamble and a line feed.
-    let padded = (10 + header.len() + 1).next_multiple_of(64);
-    header.push_str(&" ".repeat(padded - 10 - header.len() - 1));
-    header.push('\n');
-    let length = u16::try_from(header.len()).map_err(|_| {
-        Error::setting("shape", format!("{} dimensions", shape.len()), "a few dimensions")
-    })?;
-    file.write(b"\x93NUMPY\x01\x00")?;
-    file.write(&length.to_le_bytes())?;
-    file.write(header.as_bytes())?;
+    file.write(&header(descr, shape)?)?;
     Ok(file)
 }
 

@@ -26,9 +26,10 @@ fn of(what: Box<dyn Sum>, normal: DVec3, horizon: impl Fn(f64) -> f64) -> Vec<f6
     let width_rad = TAU / COUNT as f64;
     for k in 0..COUNT {
         let azimuth_rad = width_rad * k as f64;
-        sums.add(Ray { azimuth_rad, width_rad }, &[horizon(azimuth_rad) as f32], &[normal]);
+        sums.add(Ray { azimuth_rad, width_rad }, &[horizon(azimuth_rad) as f32], &[normal])
+            .unwrap();
     }
-    sums.end(&[normal]).iter().map(|plane| f64::from(plane[0])).collect()
+    sums.end(&[normal]).unwrap().iter().map(|plane| f64::from(plane[0])).collect()
 }
 
 /// What `COUNT` even azimuths may be off by: the rule errs by (2π/COUNT)²/8 times a kink's change of slope, of which these
@@ -205,9 +206,9 @@ fn fields_agree_with_their_twins() {
                 horizons[i].push([azimuth_rad, width_rad, elevation.tan()]);
             }
             let ray = Ray { azimuth_rad, width_rad };
-            sums.iter_mut().for_each(|sum| sum.add(ray, &elevations, &normals));
+            sums.iter_mut().for_each(|sum| sum.add(ray, &elevations, &normals).unwrap());
         }
-        let [view, series] = sums.map(|sum| sum.end(&normals));
+        let [view, series] = sums.map(|sum| sum.end(&normals).unwrap());
         for i in (0..samples).step_by(7) {
             let (row, col) = (i / 17, i % 17);
             assert_eq!(normals[i], normal(&field, border, row, col));

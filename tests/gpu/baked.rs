@@ -31,9 +31,10 @@ fn sky_view_of_bundled_terrain_is_the_oracles() {
         let width_rad = TAU / f64::from(AZIMUTHS) * every as f64;
         let azimuths = horizons.chunks_exact(SIDE * SIDE).step_by(every).enumerate();
         for (k, elevations) in azimuths {
-            sums.add(Ray { azimuth_rad: width_rad * k as f64, width_rad }, elevations, &normals);
+            sums.add(Ray { azimuth_rad: width_rad * k as f64, width_rad }, elevations, &normals)
+                .expect("memory");
         }
-        sums.end(&normals).remove(0)
+        sums.end(&normals).expect("memory").remove(0)
     };
     let (oracle, mut next) = (Oracle::new(&ground, Border::Plane), random(11));
     let picks: Vec<usize> = (0..300).map(|_| (next() * (SIDE * SIDE) as f64) as usize).collect();

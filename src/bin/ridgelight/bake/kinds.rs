@@ -164,12 +164,11 @@ impl Maker for Sums {
         normals: &[DVec3],
         _: &mut MapFiles,
     ) -> Result<()> {
-        self.summing.add(ray, elevations_rad, normals);
-        Ok(())
+        self.summing.add(ray, elevations_rad, normals)
     }
 
     fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()> {
-        let planes = self.summing.end(normals);
+        let planes = self.summing.end(normals)?;
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
         planes.chunks(files.planes_at_once()).try_for_each(|layer| files.take(layer))
     }

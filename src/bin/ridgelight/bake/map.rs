@@ -132,8 +132,8 @@ pub struct MapFiles<'a> {
     texts: Vec<(String, String)>,
     open: Vec<Open>,
     taken: usize,
-    /// Components that were beyond their range by more than half a step, and the most that one was.
-    clamped: (u64, f64),
+    /// Values beyond their stated range, and the most that one was.
+    beyond: (u64, f64),
 }
 
 impl<'a> MapFiles<'a> {
@@ -177,7 +177,7 @@ impl<'a> MapFiles<'a> {
         });
         let open = open.collect::<Result<_>>()?;
         let folder = folder.to_owned();
-        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, clamped: (0, 0.0) })
+        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, beyond: (0, 0.0) })
     }
 
     /// As many planes as a layer's texels stand for.
@@ -187,6 +187,7 @@ impl<'a> MapFiles<'a> {
 
     /// Takes a layer: as many planes as [`planes_at_once`](Self::planes_at_once), fewer in the last.
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
+        self.count_beyond(planes);
         let (texels, picture) = self.coded(planes);
         let voids = self.field.voids();
         let masked = |plane: &[f32]| {
@@ -217,6 +218,23 @@ impl<'a> MapFiles<'a> {
         Ok(())
     }
 
+    /// Counts values that are no part of their range, whatever holds them.
+    fn count_beyond(&mut self, planes: &[&[f32]]) {
+        let (values, voids) = (&self.map.values, self.field.voids());
+        let first = self.taken * self.wanted.encoding.values;
+        for (at, plane) in planes.iter().enumerate() {
+            let [low, high] = values[(first + at) % values.len()].range;
+            // Roundings of f32, in which a right angle is more than one, and of the device's functions.
+            let rounding = 8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs());
+            for (i, value) in plane.iter().enumerate() {
+                let beyond = (f64::from(*value) - high).max(low - f64::from(*value));
+                if beyond > rounding && !voids.is_some_and(|v| v[i]) {
+                    self.beyond = (self.beyond.0 + 1, self.beyond.1.max(beyond));
+                }
+            }
+        }
+    }
+
     fn has(&self, format: Format) -> bool {
         self.wanted.formats.contains(&format)
     }
@@ -227,7 +245,7 @@ impl<'a> MapFiles<'a> {
     }
 
     /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, 16 bits big-endian.
-    fn coded(&mut self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
+    fn coded(&self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
         let (encoding, voids) = (self.wanted.encoding, self.field.voids());
         let (component, format) = (encoding.component, self.wanted.texels());
         let samples = self.field.rows() * self.field.cols();
@@ -241,7 +259,6 @@ impl<'a> MapFiles<'a> {
             return (texels, picture);
         }
         let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
-        let least = if component.is_signed() { -1.0 } else { 0.0 };
         let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
         for at in 0..samples {
             for (value, plane) in values.iter_mut().zip(planes) {
@@ -249,12 +266,6 @@ impl<'a> MapFiles<'a> {
             }
             (encoding.encode)(values, parts);
             let is_void = voids.is_some_and(|v| v[at]);
-            for part in parts.iter() {
-                let beyond = (part - 1.0).max(least - part);
-                if component.is_normalised() && beyond > component.half_step() && !is_void {
-                    self.clamped = (self.clamped.0 + 1, self.clamped.1.max(beyond));
-                }
-            }
             if has_texels {
                 parts.iter().for_each(|part| component.put(*part, &mut texels));
                 if parts.len() < format.count {
@@ -274,14 +285,19 @@ impl<'a> MapFiles<'a> {
         (texels, picture)
     }
 
-    /// A line on values that the encoding does not reach, where there are any.
+    /// A line on values beyond their range, where there are any.
     pub fn note(&self) -> Option<String> {
-        let (count, most) = self.clamped;
+        let (count, most) = self.beyond;
         (count > 0).then(|| {
-            let (kind, encoding) = (self.wanted.kind.name, self.wanted.encoding.name);
+            let kind = self.wanted.kind.name;
+            let ends = match self.wanted.encoding.component.is_normalised() {
+                true if self.has(Format::Ktx2) || self.has(Format::Png) => {
+                    ", whose end is in .ktx2 and .png"
+                }
+                _ => "",
+            };
             format!(
-                "note: {kind}: {count} components lie beyond what {encoding} holds, by up to {most:.2e} of its range, and \
-                 are its ends: few azimuths for such slopes"
+                "note: {kind}: {count} values lie beyond their range{ends}, by up to {most:.2e}: few azimuths for such slopes"
             )
         })
     }
@@ -300,9 +316,8 @@ impl<'a> MapFiles<'a> {
                     });
                     let layers: Vec<Layer> = layers.collect();
                     let mut all = metadata.to_vec();
-                    all.extend(
-                        self.texts.iter().filter(|(name, _)| !name.contains("cod")).cloned(),
-                    );
+                    // It holds the values themselves, and the field's hash is of the metadata.
+                    all.push(("ridgelight.kind".into(), self.wanted.kind.name.into()));
                     files::write_exr(&path, size[1], size[0], &layers, &all)?;
                     sheets.push(self.sheet(Format::Exr, &path, "f32")?);
                 }
@@ -339,9 +354,9 @@ impl<'a> MapFiles<'a> {
             "kind": self.wanted.kind.name, "about": self.wanted.kind.about, "values": values,
             "planes": self.map.planes, "encoding": self.wanted.encoding.name, "decoder": decoder, "files": sheets,
         });
-        if self.clamped.0 > 0 {
-            let (count, most) = self.clamped;
-            sheet["beyond_range"] = json!({ "components": count, "at_most": most });
+        if self.beyond.0 > 0 {
+            let (count, most) = self.beyond;
+            sheet["beyond_range"] = json!({ "values": count, "at_most": most });
         }
         Ok(sheet)
     }
@@ -376,6 +391,12 @@ impl<'a> MapFiles<'a> {
             "file": path.file_name().map(|n| n.to_string_lossy()), "format": format.name(), "bytes": about.len(),
             "texels": holds, "decoding": decoding, "error": bounds,
         });
+        if format == Format::Ktx2 && component.is_normalised() && component.bytes() == 2 {
+            sheet["sampled"] = format!(
+                "by devices that say so of VK_FORMAT_{holds} (VkFormatProperties): Vulkan asks it of none"
+            )
+            .into();
+        }
         if self.field.voids().is_some() {
             sheet["voids"] = match format {
                 Format::Exr | Format::Npy => "NaN",
