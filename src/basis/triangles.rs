@@ -51,6 +51,16 @@ impl Triangles {
         Some(Self { corners: outside.map(|face| face.map(|i| i as u32)).collect() })
     }
 
+    /// Those alone whose middles are not below a height, of the points that they were made of: without the lid over a cap
+    /// that has no points.
+    pub fn above(mut self, points: &[DVec3], lowest_z: f64) -> Self {
+        self.corners.retain(|face| {
+            let sum: DVec3 = face.iter().map(|i| points[*i as usize]).sum();
+            sum.z >= lowest_z * sum.length()
+        });
+        self
+    }
+
     /// Positions in the list of points, counter-clockwise seen from outside.
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners

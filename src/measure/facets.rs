@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use crate::basis::MAX_ORDER;
 use crate::basis::harmonics::evaluate;
 use crate::cpu::scatter_gather::Samples;
 use crate::scene::{Scene, VisiblePoint, VisiblePoints};
@@ -83,19 +84,28 @@ impl Facets {
     /// Of all pairs of the directions of `shown`: `radiance` is that of all samples under a light of irradiance 1 facing it
     /// from each direction, all its bounces included.
     ///
+    /// What arrives is counted as what is seen is, by [`Shown::mean_share`], not by cos θ: near horizontal, where samples and
+    /// cells differ, light and view are thereby treated alike, and the table stays reciprocal.
+    ///
     /// # Errors
-    /// The first error of `radiance`.
+    /// A direction that shows no sample, for which nothing can be told; the first error of `radiance`.
     pub fn of(
         shown: &Shown,
         mut radiance: impl FnMut(usize) -> Result<Vec<[f64; 3]>>,
     ) -> Result<Self> {
         let directions = shown.points.directions().vectors().to_vec();
+        let irradiances: Vec<f64> = (0..directions.len()).map(|i| shown.mean_share(i)).collect();
+        if let Some(i) = irradiances.iter().position(|share| *share <= 0.0) {
+            let expected = "one from which some sample that faces it is seen";
+            return Err(Error::setting(
+                format!("direction {i}"),
+                directions[i].to_string(),
+                expected,
+            ));
+        }
         let mut values = Vec::new();
-        for light in 0..directions.len() {
+        for (light, irradiance) in irradiances.into_iter().enumerate() {
             let leaving = radiance(light)?;
-            // What arrives is what the field fills of the light's view, as what is seen is counted: so that either end of a
-            // path is treated alike.
-            let irradiance = shown.mean_share(light).max(f64::MIN_POSITIVE);
             values.extend(
                 (0..directions.len())
                     .map(|view| shown.mean_from(view, &leaving).map(|m| m / irradiance)),
@@ -119,6 +129,9 @@ impl Facets {
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views of the table times cos θ, each view
     /// for the same solid angle of the hemisphere. What is left out by a set of directions is as much as it misses of ∫ cos.
+    ///
+    /// Near horizontal samples may fill less of a view than cos θ: by so much it may be above the albedo. Weighted by
+    /// [`Shown::mean_share`] in the place of cos θ it is not.
     pub fn reflected(&self, light: usize) -> [f64; 3] {
         let cosines: f64 = self.directions.iter().map(|v| v.z).sum();
         let mut sum = [0.0; 3];
@@ -164,8 +177,12 @@ impl FacetHarmonics {
     /// is not reciprocal.
     ///
     /// # Errors
-    /// Fewer directions than harmonics.
+    /// An order outside of [1..6]; fewer directions than harmonics.
     pub fn of(table: &Facets, order: usize) -> Result<Self> {
+        if !(1..=MAX_ORDER).contains(&order) {
+            let expected = format!("a whole number from 1 to {MAX_ORDER}");
+            return Err(Error::setting("order", order.to_string(), expected));
+        }
         let count = table.directions.len();
         let terms = order * order;
         if terms > count {

@@ -1,6 +1,6 @@
 use super::batch::bytes_text;
 use super::blocks::Blocks;
-use super::visible_points::{check_side, images, record, texels};
+use super::visible_points::{check_field, images, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan};
 use crate::passes::ellipse_fit as pass;
 use crate::scene::{Border, Directions, HeightField, VisiblePoints};
@@ -29,7 +29,7 @@ pub fn ellipses(
     limits: &Limits,
 ) -> Result<Plan> {
     let size = limits.check_size(field.rows(), field.cols())?;
-    check_side(field)?;
+    check_field(field)?;
     if directions.vectors().iter().all(|e| e.z <= 0.0) {
         return Err(Error::setting("directions", "none above horizontal", "one or more"));
     }

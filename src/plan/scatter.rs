@@ -37,7 +37,7 @@ const MOST_AT_ONCE: u64 = 64;
 /// decides, apart for every step.
 ///
 /// # Errors
-/// As [`Scatter::check`]; more memory than there is.
+/// As [`Scatter::check`]; a field of unknown heights; more memory than there is.
 pub fn scatter(
     scene: &Scene,
     directions: &Directions,
@@ -47,7 +47,7 @@ pub fn scatter(
     scatter.check(scene)?;
     let Scene { field, surface, lights } = scene;
     let size = limits.check_size(field.rows(), field.cols())?;
-    super::visible_points::check_side(field)?;
+    super::visible_points::check_field(field)?;
     let mut builder = Builder::new();
     let rgba = Format::Rgba32Float;
     let mut image = |name: &str, owner: Owner, format: Format| {
@@ -136,6 +136,8 @@ pub fn scatter(
         ("method", "scattering by visible points".to_owned()),
         ("border", format!("{:?}", surface.border).to_lowercase()),
         ("directions", directions.count().to_string()),
+        ("lowest_direction_z", directions.lowest_z().to_string()),
+        ("directions_hash", hash_text(directions)),
         ("bounces", scatter.bounces.to_string()),
         ("paths", scatter.paths.to_string()),
         ("paths_at_once", at_once.to_string()),
@@ -143,7 +145,19 @@ pub fn scatter(
         ("carried", bytes_text(carried.len() as u64 * 16 * samples * u64::from(at_once))),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), settings, limits)
+    let is_level = field.heights_m().iter().all(|h| *h == field.heights_m()[0]);
+    let mut notes = Vec::new();
+    if directions.lowest_z() > -1.0 && !is_level {
+        notes.push(format!(
+            "directions reach down to a height of {} alone: slopes lose what light comes from below it",
+            directions.lowest_z()
+        ));
+    }
+    Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
+}
+
+fn hash_text(directions: &Directions) -> String {
+    format!("{:016x}", directions.hash())
 }
 
 /// Texels of the inputs of a [`scatter`](scatter()), in its plan's order: "heights"; "direct", the exit radiance of each
@@ -160,6 +174,15 @@ pub fn scatter_inputs(
 ) -> Result<Vec<Vec<f32>>> {
     let Scene { field, surface, .. } = scene;
     points.check(field, surface.border)?;
+    let own = hash_text(points.directions());
+    let wanted = plan.settings.iter().find(|(name, _)| name == "directions_hash");
+    let wanted = wanted.map_or("a plan of scattered light", |(_, value)| value);
+    if own != wanted {
+        let count = points.directions().count();
+        let found = format!("{count} with the hash {own}");
+        let expected = format!("those of the plan, {wanted}: vectors and lowest height alike");
+        return Err(Error::setting("directions of the visible points", found, expected));
+    }
     let samples = field.rows() * field.cols();
     if direct.len() != samples {
         let found = format!("{} colours", direct.len());
@@ -256,7 +279,8 @@ fn sun_texels(suns: &[Sun]) -> Vec<f32> {
 }
 
 /// Radiance of sky and environment in each direction: of an image the mean of the texels that are nearest to it, so that
-/// none of its light is lost between them. Below horizontal under `open` alone.
+/// none of its light is lost between them: above horizontal among the directions above it, which alone may see it. Below
+/// horizontal under `open` alone, down to where there are directions.
 pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
     let vectors = directions.vectors();
     let uniform = scene.lights.sky.unwrap_or_default().map(f64::from);
@@ -264,19 +288,24 @@ pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
     let mut all: Vec<[f64; 3]> =
         vectors.iter().map(|v| if is_open || v.z > 0.0 { uniform } else { [0.0; 3] }).collect();
     let Some(environment) = &scene.lights.environment else { return all };
+    let looking: Vec<usize> =
+        (0..vectors.len()).filter(|i| is_open || vectors[*i].z > 0.0).collect();
     let rows = environment.rows_above_ground(scene.surface.border);
     let [width, height] = [environment.width(), environment.height()];
     for row in 0..rows {
         let (sin, cos) = (PI * (row as f64 + 0.5) / height as f64).sin_cos();
+        if cos < directions.lowest_z() {
+            continue;
+        }
         let solid = texel_sr(environment, row);
         for col in 0..width {
             let azimuth = PI - TAU * (col as f64 + 0.5) / width as f64 + environment.rotation_rad();
             let e = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos);
-            let nearest = (0..vectors.len())
-                .max_by(|a, b| vectors[*a].dot(e).total_cmp(&vectors[*b].dot(e)))
-                .expect("some");
+            let along = |i: &&usize| vectors[**i].dot(e);
+            let nearest = looking.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+            let Some(nearest) = nearest else { return all };
             let light = environment.texels()[row * width + col].map(f64::from);
-            for (sum, light) in all[nearest].iter_mut().zip(light) {
+            for (sum, light) in all[*nearest].iter_mut().zip(light) {
                 *sum += light * solid / directions.share_sr();
             }
         }
@@ -287,4 +316,43 @@ pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
 fn texel_sr(environment: &Environment, row: usize) -> f64 {
     let edge = |row: usize| (PI * row as f64 / environment.height() as f64).cos();
     TAU / environment.width() as f64 * (edge(row) - edge(row + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{HeightField, Lights, Surface};
+
+    /// An image of 1 everywhere sends 2π above horizontal as the uniform sky does, and 4π under `open`, however few
+    /// directions: a texel's light and its sums are off by a rounding each.
+    #[test]
+    fn no_light_of_an_image_is_lost() {
+        let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).expect("a field");
+        let total = |border: Border, count: usize, is_image: bool| -> f64 {
+            let image = Environment::new(32, 16, vec![[1.0; 3]; 32 * 16], 0.3).expect("an image");
+            let lights = match is_image {
+                true => Lights { environment: Some(image), ..Lights::default() },
+                false => Lights { sky: Some([1.0; 3]), ..Lights::default() },
+            };
+            let surface = Surface { border, ..Surface::default() };
+            let scene = Scene { field: field.clone(), surface, lights };
+            let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
+            let all = sky_of(&scene, &directions);
+            let below = directions.vectors().iter().zip(&all).filter(|(v, _)| v.z <= 0.0);
+            let is_dark = below.map(|(_, sky)| sky[0]).sum::<f64>() == 0.0;
+            assert_eq!(is_dark, border != Border::Open);
+            all.iter().map(|sky| sky[0] * directions.share_sr()).sum()
+        };
+        for count in [4, 16, 64, 1024] {
+            for (border, whole) in
+                [(Border::Plane, TAU), (Border::Periodic, TAU), (Border::Open, 2.0 * TAU)]
+            {
+                for is_image in [false, true] {
+                    let off = (total(border, count, is_image) - whole).abs();
+                    let bound = f64::EPSILON * whole * (1024.0 + 512.0);
+                    assert!(off <= bound, "{count} {border:?} {is_image}: {off:e} {bound:e}");
+                }
+            }
+        }
+    }
 }

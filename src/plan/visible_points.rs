@@ -20,7 +20,7 @@ const BAND_RAYS: u64 = 1 << 24;
 /// far and then see the sky, or, level or falling, black ground: a note says how many directions are.
 ///
 /// # Errors
-/// A field too large for 16 bits a coordinate, or beyond the limits: memory is stated before anything is made.
+/// A field of unknown heights, one too large for 16 bits a coordinate, or beyond the limits: memory is stated before anything is made.
 pub fn visible_points(
     field: &HeightField,
     border: Border,
@@ -28,7 +28,7 @@ pub fn visible_points(
     limits: &Limits,
 ) -> Result<Plan> {
     let size = limits.check_size(field.rows(), field.cols())?;
-    check_side(field)?;
+    check_field(field)?;
     let mut builder = Builder::new();
     let heights =
         builder.image("heights", Owner::Input, Format::R32Float, [size[0], size[1], 1], false);
@@ -70,8 +70,12 @@ pub fn visible_points(
 }
 
 /// # Errors
-/// A side whose numbers could be taken for marks.
-pub(super) fn check_side(field: &HeightField) -> Result<()> {
+/// Heights that nobody knows, above the highest of which rays end; a side whose numbers could be taken for marks.
+pub(super) fn check_field(field: &HeightField) -> Result<()> {
+    if field.is_unknown() {
+        let expected = "heights: rays end above the highest";
+        return Err(Error::setting("field of visible points", "unknown heights", expected));
+    }
     let longest = field.rows().max(field.cols());
     if longest <= VisiblePoints::LARGEST_SIDE {
         return Ok(());

@@ -87,15 +87,17 @@ impl Directions {
         TAU * (1.0 - self.lowest_z) / self.vectors.len() as f64
     }
 
-    /// The net between them.
+    /// The net between them: down to the lowest, whose rim is ragged by about the distance between two; what lies below
+    /// [`lowest_z`](Self::lowest_z) has no triangle.
     ///
     /// # Errors
     /// Fewer than four, two alike, or all on one circle.
     pub fn triangles(&self) -> Result<Triangles> {
-        Triangles::of(&self.vectors).ok_or_else(|| {
+        let net = Triangles::of(&self.vectors).ok_or_else(|| {
             let found = format!("{} that span no hull", self.vectors.len());
             Error::setting("directions", found, "four or more, no two alike, not on one circle")
-        })
+        })?;
+        Ok(net.above(&self.vectors, self.lowest_z))
     }
 }
 

@@ -21,6 +21,7 @@ pub struct HeightField {
     base_m: f64,
     heights_m: Vec<f32>,
     voids: Option<Vec<bool>>,
+    is_unknown: bool,
 }
 
 impl HeightField {
@@ -96,19 +97,26 @@ impl HeightField {
         if let Some(voids) = &voids {
             fill_voids(rows, cols, &mut offsets, voids);
         }
-        Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids })
+        Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids, is_unknown: false })
     }
 
     /// A field whose heights only the device knows: planned as level ground at height 0, so that what an
     /// engine hands in are heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
     ///
-    /// Not for what looks at heights beforehand: precision `packed`, [`plan::reference`](crate::plan::reference).
+    /// Not for what looks at heights beforehand: precision `packed`, [`plan::reference`](crate::plan::reference),
+    /// [`plan::visible_points`](crate::plan::visible_points()) and [`plan::scatter`](crate::plan::scatter()), which refuse it.
     /// Balls of light are looked for as far as level ground would see them: a `light_cutoff` of 0 looks at all.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn unknown(rows: usize, cols: usize, cell_m: [f64; 2]) -> Result<Self> {
-        Self::new(rows, cols, &vec![0.0; rows.saturating_mul(cols)], cell_m, None)
+        let level = Self::new(rows, cols, &vec![0.0; rows.saturating_mul(cols)], cell_m, None)?;
+        Ok(Self { is_unknown: true, ..level })
+    }
+
+    /// Whether only the device knows its heights: [`unknown`](Self::unknown).
+    pub fn is_unknown(&self) -> bool {
+        self.is_unknown
     }
 
     /// Number of rows (south to north extent).

@@ -1,4 +1,4 @@
-use super::{Border, HeightField};
+use super::{Border, Directions, HeightField};
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo): the start, and what each byte multiplies by.
 const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
@@ -32,6 +32,15 @@ impl HeightField {
             take(&[u8::from(*void)]);
         }
         state
+    }
+}
+
+impl Directions {
+    /// A number that tells sets apart: FNV-1a of all vectors, in order, and the lowest height (f64, little-endian).
+    pub fn hash(&self) -> u64 {
+        let numbers = self.vectors().iter().flat_map(|v| v.to_array()).chain([self.lowest_z()]);
+        let bytes = numbers.flat_map(f64::to_le_bytes);
+        bytes.fold(OFFSET, |state, byte| (state ^ u64::from(byte)).wrapping_mul(PRIME))
     }
 }
 

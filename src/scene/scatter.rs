@@ -14,7 +14,7 @@ pub struct Scatter {
     /// Paths of every sample, [1..4096], default 100. Fewer: faster; samples alike are wrong alike, as all look along the same
     /// directions: no noise, but a tint of whole slopes. 40 to 100 in Heidrich et al. 2000.
     pub paths: u32,
-    /// Which directions follow each other.
+    /// Which directions follow each other, any number, default 0: the same seed, the same light.
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,

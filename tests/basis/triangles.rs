@@ -87,6 +87,25 @@ fn hemispheres_are_covered_from_above() {
     assert!((0.9 * 2.0 * PI..2.0 * PI).contains(&covered), "{covered}");
 }
 
+/// Of a part of the sphere: no lid over the cap that is left out. The rim is as ragged as two roots of the solid angle that
+/// each direction stands for, farther than which no place is from a direction, all along the cap's edge.
+#[test]
+fn caps_without_directions_are_left_open() {
+    for (count, lowest_z) in [(333, -0.4_f64), (1024, -0.4), (1024, -0.1), (4096, -0.8)] {
+        let directions = Directions::fibonacci(count, lowest_z, 0).expect("directions");
+        let net = directions.triangles().expect("a net");
+        let points = directions.vectors();
+        let covered: f64 = net.areas_sr(points).iter().sum();
+        let edge = 2.0 * PI * (1.0 - lowest_z * lowest_z).sqrt();
+        let bound = edge * 2.0 * directions.share_sr().sqrt();
+        let off = (covered - 2.0 * PI * (1.0 - lowest_z)).abs();
+        assert!(off <= bound, "{count} {lowest_z}: {covered}, {off} of {bound}");
+        assert!(2.0 * PI * (1.0 + lowest_z) > bound, "{count}: a lid would pass");
+        assert!(net.around(points, -DVec3::Z).is_none());
+        assert!(net.around(points, DVec3::Z).is_some());
+    }
+}
+
 /// A vector's mean over the sphere is nothing, and that of its height over a cap the middle of the cap's heights.
 #[test]
 fn directions_are_even() {

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use ridgelight::cpu::scatter_gather::Samples;
 use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::measure::facets::{FacetHarmonics, Facets, Shown};
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scene, VisiblePoints};
@@ -49,7 +50,10 @@ fn the_level_is_as_diffuse_from_afar() {
         let got = of.at(between, DVec3::Z)[0];
         assert!((got - f64::from(ALBEDO[0]) / PI).abs() < 1e-3, "{got}");
     }
-    assert!(FacetHarmonics::of(&table, 8).is_err());
+    for order in [0, 7, 8, usize::MAX] {
+        let said = FacetHarmonics::of(&table, order).unwrap_err().to_string();
+        assert!(said.contains("from 1 to 6"), "{said}");
+    }
 }
 
 /// Direct light and masking are the same test from either end: exchanging light and view changes nothing but the order of
@@ -75,9 +79,39 @@ fn direct_light_is_reciprocal() {
         let reflected = table.reflected(light)[0];
         assert!(reflected > 0.2 && reflected <= 0.8 * most, "{light}: {reflected} {most}");
     }
+    // Views weighted as they are counted: a sample reflects its albedo of what it is counted to receive, but for how well the
+    // directions sum up the cosines about its normal.
+    let samples = Samples::of(&scene);
+    let vectors = points.directions().vectors();
+    let cosines: f64 = vectors.iter().map(|v| v.z).sum();
+    let about = |at: usize| {
+        vectors.iter().map(|v| samples.normal(at).dot(*v).max(0.0)).sum::<f64>() / cosines
+    };
+    let sums = (0..64).map(about).fold(0.0, f64::max);
+    for light in 0..80 {
+        let counted =
+            |view: usize| table.at(light, view)[0] * shown.mean_share(view) * PI / cosines;
+        let reflected: f64 = (0..80).map(counted).sum();
+        assert!(reflected <= 0.8 * sums * (1.0 + 1e-6), "{light}: {reflected} {sums}");
+    }
+    println!("{sums} of a cosine's sum");
     let left = [2, 3, 4, 5].map(|n| FacetHarmonics::of(&table, n).expect("a series").residual);
     assert!(left.windows(2).all(|two| two[1] < two[0]) && left[3] < 0.3, "{left:?}");
     println!("{left:?} {most}");
+}
+
+/// Teeth that rise by 1 a sample to the east for three and fall back: from the west, nearly level, the slopes that face the
+/// light are hidden by the teeth before them, and the tops lean away.
+#[test]
+fn lights_that_reach_no_sample_are_refused() {
+    let scene = scene(|_, c| (c % 4) as f64, 8);
+    let low = DVec3::new(-1.0, 0.0, 0.02).normalize();
+    let directions = Directions::from_vectors(vec![DVec3::Z, low], 0.0).expect("directions");
+    let points = shown(&scene, directions);
+    let shown = Shown::of(&scene, &points).expect("above horizontal");
+    assert!(shown.mean_share(0) > 0.0 && shown.mean_share(1) == 0.0);
+    let said = Facets::of(&shown, |light| Ok(shown.lit_from(light))).unwrap_err().to_string();
+    assert!(said.contains("direction 1"), "{said}");
 }
 
 #[test]

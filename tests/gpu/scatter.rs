@@ -168,6 +168,33 @@ fn grooves_scatter_as_their_closed_form() {
     }
 }
 
+/// Under walls of even direct light each place scatters its albedo's share of what is not sky, whichever sample stands for
+/// what is seen: off by the sum over directions alone. In the mean over the walls a tenth less, of the weight of a direction or
+/// of its cosine, is seen to be wrong.
+#[test]
+fn even_walls_scatter_what_is_not_sky() {
+    let mut device = Device::new();
+    let mut scene = under_sky(grooves(4), Border::Periodic);
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+    let count = scene.field.heights_m().len();
+    let points = points(&mut device, &scene, &sphere(4096));
+    // Each direction once.
+    let scatter = Scatter { bounces: 1, paths: 4096, ..Scatter::default() };
+    let light = scattered(&mut device, &scene, &points, &vec![[0.5; 3]; count], &scatter);
+    let (mut got, mut known, mut walls) = (0.0, 0.0, 0.0);
+    for i in (0..count).filter(|i| !(i % HALF).is_multiple_of(HALF)) {
+        let s = (i % (2 * HALF)).abs_diff(HALF) as f64 * 2_f64.sqrt();
+        got += light[i][0];
+        known += 0.5 * 0.5 * (1.0 - groove_sky(s));
+        walls += 1.0;
+    }
+    let (got, known) = (got / walls, known / walls);
+    let allowed = 0.5 * 0.5 * by_directions(4096);
+    println!("{got} of {known}, within {allowed}");
+    assert!((got - known).abs() <= allowed, "{got} {known} {allowed}");
+    assert!((0.9 * got - known).abs() > allowed, "{got} {known}: a tenth less would do");
+}
+
 /// What cannot be scattered is refused by name.
 #[test]
 fn scattering_is_refused_by_name() {

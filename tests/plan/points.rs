@@ -1,7 +1,7 @@
 //! Plans of what samples see: memory first, cut where a device holds less.
 
 use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
-use ridgelight::scene::{Border, Directions, Scatter};
+use ridgelight::scene::{Border, Directions, HeightField, Scatter, VisiblePoint, VisiblePoints};
 
 use super::{flat, under_sky};
 
@@ -149,4 +149,58 @@ fn ellipses_want_one_image() {
     let down = Directions::from_vectors(vec![-glam::DVec3::Z], -1.0).expect("a direction");
     let none = of(&down, &limits).unwrap_err().to_string();
     assert!(none.contains("above horizontal"), "{none}");
+}
+
+/// As many of other seeds, other depths, or as many words of one fewer, are not those of the plan.
+#[test]
+fn points_of_other_directions_are_refused() {
+    let scene = under_sky(flat(3, 4));
+    let of = |count: usize, lowest_z: f64, seed: u32| {
+        Directions::fibonacci(count, lowest_z, seed).expect("directions")
+    };
+    let own = of(16, -1.0, 1);
+    let plan = plan::scatter(&scene, &own, &Scatter::default(), &Limits::lavapipe());
+    let plan = plan.expect("a plan");
+    let inputs = |directions: Directions| {
+        let seen = vec![VisiblePoint::Sky; 12 * directions.count()];
+        let border = scene.surface.border;
+        let points = VisiblePoints::from_points(&scene.field, border, directions, &seen);
+        let direct = [[1.0; 3]; 12];
+        plan::scatter_inputs(&plan, &scene, &points.expect("points"), &direct)
+    };
+    assert!(inputs(own.clone()).is_ok());
+    let deeper = Directions::from_vectors(own.vectors().to_vec(), -0.5).expect("directions");
+    for other in [of(16, -1.0, 2), of(16, -0.5, 1), deeper, of(15, -1.0, 1), of(18, -1.0, 1)] {
+        let said = inputs(other).unwrap_err().to_string();
+        assert!(said.contains("directions of the visible points"), "{said}");
+    }
+}
+
+/// Rays end above the highest sample: of heights that only the device knows there is none.
+#[test]
+fn unknown_heights_are_refused() {
+    let field = HeightField::unknown(4, 4, [1.0; 2]).expect("a field");
+    let directions = Directions::fibonacci(8, -1.0, 0).expect("directions");
+    let limits = Limits::lavapipe();
+    let said = plan::visible_points(&field, Border::Plane, &directions, &limits).unwrap_err();
+    assert!(said.to_string().contains("unknown heights"), "{said}");
+    let scene = under_sky(field);
+    let said = plan::scatter(&scene, &directions, &Scatter::default(), &limits).unwrap_err();
+    assert!(said.to_string().contains("unknown heights"), "{said}");
+}
+
+/// A slope sees below horizontal, the level does not.
+#[test]
+fn light_from_below_that_is_left_out_is_noted() {
+    let notes = |slope: f64, lowest_z: f64| {
+        let heights: Vec<f64> = (0..16).map(|i| slope * f64::from(i % 4)).collect();
+        let field = HeightField::new(4, 4, &heights, [1.0; 2], None).expect("a field");
+        let directions = Directions::fibonacci(8, lowest_z, 0).expect("directions");
+        let limits = Limits::lavapipe();
+        let plan = plan::scatter(&under_sky(field), &directions, &Scatter::default(), &limits);
+        plan.expect("a plan").notes
+    };
+    assert_eq!([notes(0.0, 0.0), notes(1.0, -1.0)], [Vec::<String>::new(), Vec::new()]);
+    let said = notes(1.0, -0.25);
+    assert!(said.len() == 1 && said[0].contains("-0.25"), "{said:?}");
 }
