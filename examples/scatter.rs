@@ -11,6 +11,8 @@
 mod brdf;
 #[path = "scatter/converge.rs"]
 mod converge;
+#[path = "shared/seen.rs"]
+mod seen;
 #[path = "scatter/table.rs"]
 mod table;
 #[path = "shared/traced.rs"]
@@ -18,10 +20,10 @@ mod traced;
 
 use std::path::PathBuf;
 
-use ridgelight::gpu::{Frame, Headless, HeadlessOptions};
+use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
+    Albedo, Border, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
 };
 use ridgelight::{Error, Result};
 
@@ -60,26 +62,6 @@ fn colours(values: &[f32]) -> Colours {
     values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
 }
 
-/// What samples see, and the milliseconds of finding it, hierarchy and all.
-fn points(
-    gpu: &mut Headless,
-    field: &HeightField,
-    border: Border,
-    directions: &Directions,
-) -> Result<(VisiblePoints, f64)> {
-    let plan = plan::visible_points(field, border, directions, &gpu.report().limits)?;
-    let outputs = plan.outputs().count();
-    let (words, ms) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
-        let ms = timed(gpu, frame)?;
-        let mut words = Vec::new();
-        for output in 0..outputs {
-            words.extend(gpu.pixels(frame, output)?.values.iter().map(|v| v.to_bits()));
-        }
-        Ok((words, ms))
-    })?;
-    Ok((VisiblePoints::new(field, border, directions.clone(), words)?, ms))
-}
-
 /// Scattered light, and the milliseconds of it.
 fn scattered(
     gpu: &mut Headless,
@@ -92,18 +74,9 @@ fn scattered(
     let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
-        let ms = timed(gpu, frame)?;
+        let ms = seen::timed(gpu, frame)?;
         Ok((colours(&gpu.pixels(frame, 0)?.values), ms))
     })
-}
-
-/// Milliseconds of the device for a frame; of small ones, which a first draw's warming up would tell in, for a second.
-fn timed(gpu: &mut Headless, frame: &mut Frame) -> Result<f64> {
-    let [cols, rows] = frame.plan().size;
-    if cols * rows < 1 << 18 {
-        gpu.draw(frame)?;
-    }
-    Ok(gpu.draw(frame)?.iter().map(|t| t.ns).sum::<f64>() / 1e6)
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {

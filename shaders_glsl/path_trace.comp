@@ -67,9 +67,9 @@ layout(push_constant) uniform PathTracePush {
     int cells_y;
     int padded_rows;
     int top_level;
-    float highest_m;
     float cell_x_m;
     float cell_y_m;
+    float highest_m;
     float rotation_turns;  // of the environment
     float exponent;        // of the lobe, where it is constant
     float lobe_share;      // what it reflects

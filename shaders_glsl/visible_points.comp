@@ -31,9 +31,9 @@ layout(push_constant) uniform VisiblePointsPush {
     int cells_y;
     int padded_rows;
     int top_level;
-    float highest_m;
     float cell_x_m;
     float cell_y_m;
+    float highest_m;
     int first_layer;      // of the image
     int first_direction;  // the image's first, among the texels of directions
     int end_direction;    // there are no more from here on

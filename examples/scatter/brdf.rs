@@ -12,8 +12,9 @@ use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
 };
 
+use crate::seen::points;
 use crate::traced::traced;
-use crate::{colours, grooves, points};
+use crate::{colours, grooves};
 
 /// Directions of the table, for lights and for views.
 const TABLE: usize = 100;

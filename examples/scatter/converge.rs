@@ -7,9 +7,10 @@ use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
 
+use crate::seen::points;
 use crate::table::bumps;
 use crate::traced::traced;
-use crate::{Asked, Colours, colours, grooves, lights, mean, points, rms, scattered};
+use crate::{Asked, Colours, colours, grooves, lights, mean, rms, scattered};
 
 const BOUNCES: u32 = 3;
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];

@@ -4,7 +4,8 @@ use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
 
-use crate::{grooves, lights, points, scattered};
+use crate::seen::points;
+use crate::{grooves, lights, scattered};
 
 /// Courses of bricks, 16 by 8 samples each with mortar of one sample, three deep.
 fn bricks(side: usize) -> Result<HeightField> {

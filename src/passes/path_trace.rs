@@ -1,5 +1,6 @@
 use std::ops::Range;
 
+use super::LandPush;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Builder, ResourceId};
 use crate::scene::{Albedo, Lobe, Phong, Scene};
@@ -14,15 +15,8 @@ pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct PathTracePush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
+    land: LandPush,
     highest_m: f32,
-    cell_x_m: f32,
-    cell_y_m: f32,
     rotation_turns: f32,
     exponent: f32,
     lobe_share: f32,
@@ -43,15 +37,8 @@ struct PathTracePush {
 same_layout!(
     PathTracePush,
     path_trace_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
+    land = COLS,
     highest_m = HIGHEST_M,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
     rotation_turns = ROTATION_TURNS,
     exponent = EXPONENT,
     lobe_share = LOBE_SHARE,
@@ -175,15 +162,8 @@ pub(crate) fn plan(
             (14, u32::from(listed.is_some())),
         ],
         &PathTracePush {
-            cols: cols as i32,
-            rows: rows as i32,
-            cells_x: blocks.cells[0] as i32,
-            cells_y: blocks.cells[1] as i32,
-            padded_rows: blocks.padded_rows as i32,
-            top_level: blocks.top_level as i32,
+            land: LandPush::of(field, blocks),
             highest_m,
-            cell_x_m: field.cell_m()[0] as f32,
-            cell_y_m: field.cell_m()[1] as f32,
             rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
             exponent: lobe.exponent,
             lobe_share: lobe.scale,

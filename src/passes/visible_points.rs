@@ -1,5 +1,6 @@
 use std::ops::Range;
 
+use super::LandPush;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Blocks, Builder, ResourceId};
 use crate::scene::{Border, HeightField};
@@ -7,15 +8,8 @@ use crate::scene::{Border, HeightField};
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct VisiblePointsPush {
-    cols: i32,
-    rows: i32,
-    cells_x: i32,
-    cells_y: i32,
-    padded_rows: i32,
-    top_level: i32,
+    land: LandPush,
     highest_m: f32,
-    cell_x_m: f32,
-    cell_y_m: f32,
     first_layer: i32,
     first_direction: i32,
     end_direction: i32,
@@ -24,15 +18,8 @@ struct VisiblePointsPush {
 same_layout!(
     VisiblePointsPush,
     visible_points_push,
-    cols = COLS,
-    rows = ROWS,
-    cells_x = CELLS_X,
-    cells_y = CELLS_Y,
-    padded_rows = PADDED_ROWS,
-    top_level = TOP_LEVEL,
+    land = COLS,
     highest_m = HIGHEST_M,
-    cell_x_m = CELL_X_M,
-    cell_y_m = CELL_Y_M,
     first_layer = FIRST_LAYER,
     first_direction = FIRST_DIRECTION,
     end_direction = END_DIRECTION,
@@ -67,15 +54,8 @@ pub(crate) fn plan(
             (4, u32::from(is_small)),
         ],
         &VisiblePointsPush {
-            cols: cols as i32,
-            rows: rows as i32,
-            cells_x: blocks.cells[0] as i32,
-            cells_y: blocks.cells[1] as i32,
-            padded_rows: blocks.padded_rows as i32,
-            top_level: blocks.top_level as i32,
+            land: LandPush::of(field, blocks),
             highest_m,
-            cell_x_m: field.cell_m()[0] as f32,
-            cell_y_m: field.cell_m()[1] as f32,
             first_layer: layers.start as i32,
             first_direction: texels.start as i32,
             end_direction: texels.end as i32,
