@@ -35,6 +35,7 @@ mod camera;
 mod directions;
 mod environment;
 mod field;
+mod finer;
 mod hash;
 mod key;
 mod lights;

@@ -2,6 +2,7 @@
 //! the f64 quadrature on fields.
 
 mod ellipses;
+mod facets;
 
 use glam::DVec3;
 use ridgelight::bake::{

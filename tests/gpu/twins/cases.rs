@@ -12,7 +12,7 @@ use ridgelight::scene::{
 };
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
-pub(super) use points::{ellipses, points, scatters, towards};
+pub(super) use points::{ellipses, facets, points, scatters, towards};
 
 use crate::{field, random};
 
@@ -25,6 +25,7 @@ pub(super) enum Wanted {
     Reference(u32),
     Points(Directions),
     Ellipses(Directions),
+    Facets(Directions),
     /// Whether images hold no more than two layers.
     Scatter(Directions, Scatter, bool),
 }
@@ -60,6 +61,9 @@ impl Case {
             Wanted::Ellipses(directions) => {
                 plan::ellipses(&self.scene.field, self.scene.surface.border, directions, limits)
             }
+            Wanted::Facets(directions) => {
+                plan::facet_mask(&self.scene.field, self.scene.surface.border, directions, limits)
+            }
             Wanted::Scatter(directions, scatter, is_cut) => {
                 let image_layers = if *is_cut { 2 } else { limits.image_layers };
                 let limits = Limits { image_layers, ..*limits };
@@ -71,7 +75,9 @@ impl Case {
 
     pub fn directions(&self) -> Option<Directions> {
         match &self.wanted {
-            Wanted::Points(directions) | Wanted::Ellipses(directions) => Some(directions.clone()),
+            Wanted::Points(directions)
+            | Wanted::Ellipses(directions)
+            | Wanted::Facets(directions) => Some(directions.clone()),
             Wanted::Scatter(..) => {
                 let e = self.scene.lights.suns.iter().map(towards).collect();
                 Directions::from_vectors(e, -1.0).ok()
