@@ -12,6 +12,8 @@
 //! `… -- table [--side N] [--samples K]` the paper's table 1 (Nowrouzezahrai & Snyder 2009): a frame of N² (512)
 //! samples, 2× sub-sampled, with one, two and three bounces over one without; and what sub-sampling takes off.
 
+#[path = "shared/middle.rs"]
+mod middle;
 #[path = "bounce/nodes.rs"]
 mod nodes;
 #[path = "soft/plot.rs"]
@@ -238,15 +240,6 @@ fn pits(gpu: &mut Headless, rim: u32) -> Result<()> {
     }
     println!();
     Ok(())
-}
-
-/// The middle of a field, at most `side`² samples.
-fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
-    let [rows, cols] = [field.rows(), field.cols()].map(|n| n.min(side));
-    let first = [(field.rows() - rows) / 2, (field.cols() - cols) / 2];
-    let at = |i: usize| (first[0] + i / cols) * field.cols() + first[1] + i % cols;
-    let heights: Vec<f64> = (0..rows * cols).map(|i| f64::from(field.heights_m()[at(i)])).collect();
-    HeightField::new(rows, cols, &heights, field.cell_m(), None)
 }
 
 fn run() -> Result<()> {
