@@ -88,7 +88,7 @@ pub use lend::{Lent, LentBuffer};
 pub use look::Seen;
 pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
-pub use screen::{Panel, Part, PartTimes, Screen, Shot, Shown, Sight, Work};
+pub use screen::{Pane, PaneTimes, Panel, Screen, Shot, Shown, Sight, Work};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;
