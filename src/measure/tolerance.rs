@@ -279,7 +279,8 @@ pub fn twin_sun_gloss(exponent: f64, normal_error: f64, facing: f64) -> f64 {
     peak * (turned + part + 44.0 * EPSILON)
 }
 
-/// `light_resolve` from given sums: two products a light, and a sum for each of `lights`.
+/// `light_resolve` from given sums: two products a light, whose colours' own are the twin's, and a sum for each of
+/// `lights`.
 pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
     (2.0 + lights as f64) * EPSILON * radiance.abs()
 }

@@ -68,7 +68,7 @@ mod visible_points;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use blocks::Blocks;
-pub(crate) use bounce_nodes::BounceNodes;
+pub(crate) use bounce_nodes::NodeSum;
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
@@ -172,6 +172,7 @@ impl Plan {
         let Some(resource) = found else {
             return Err(Error::setting("input", input, names.join(" or ")));
         };
+        let may_differ = !is_traced && resource.may_be_narrow();
         let Kind::Image { format, layers, .. } = &mut resource.kind else {
             return Err(Error::setting(input, "a buffer of words", "an image"));
         };
@@ -186,7 +187,6 @@ impl Plan {
         let four =
             [Format::Rgba32Float, Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8Srgb];
         let alike = [&one[..], &four[..]].into_iter().find(|all| all.contains(format));
-        let may_differ = !is_traced && matches!(input, "heights" | "environment" | "albedo");
         let alike = alike.filter(|_| may_differ).map_or(vec![*format], <[Format]>::to_vec);
         if !alike.contains(&texels) {
             let all: Vec<_> = alike.iter().map(|f| format!("{f:?}")).collect();

@@ -50,7 +50,7 @@ pub use camera::{Camera, Lens};
 pub use curvature::Curvature;
 pub use directions::Directions;
 pub use environment::Environment;
-pub use field::HeightField;
+pub use field::{HeightField, fill_voids};
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{

@@ -122,6 +122,12 @@ impl Case {
                 all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
             }
         }
+        if let Wanted::Picture(Picture { colours_on_device: true, .. }) = self.wanted {
+            let Lights { sky, suns, keys, .. } = &self.scene.lights;
+            let (mut next, count) =
+                (random(73), usize::from(sky.is_some()) + suns.len() + keys.len());
+            all.push((0..4 * count).map(|_| 3.0 * next() as f32).collect());
+        }
         all
     }
 }
@@ -357,6 +363,10 @@ pub(super) fn pictures() -> Vec<Case> {
         }),
         loses_lines: false,
     };
+    let of_device = Case {
+        wanted: Wanted::Picture(Picture { colours_on_device: true, ..Picture::default() }),
+        ..picture("colours on the device", grey.clone(), quality, false, false)
+    };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
     let soft = |sh_order, sun_azimuths| Quality {
@@ -426,6 +436,7 @@ pub(super) fn pictures() -> Vec<Case> {
     vec![
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
+        of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("balls of light", balls.clone(), quality, true, false),
         picture(
