@@ -42,8 +42,8 @@ const ROWS: usize = 33;
 /// Rows whose samples are compared: what lies across the grooves is the same in all, but for the ends.
 const COMPARED: [usize; 3] = [8, 16, 24];
 const RADII: [f64; 9] = [100.0, 70.0, 50.0, 35.0, 25.0, 18.0, 12.0, 8.0, 5.0];
-/// What four of five ellipses are fitted at, 1/m.
-const STEP: f64 = 1.0 / 100.0;
+/// What four of five ellipses are fitted at, outwards and inwards, 1/m.
+const STEPS: [f64; 2] = [1.0 / 25.0, 1.0 / 100.0];
 const ALBEDO: f64 = 0.8;
 /// Nothing within a groove lies beyond its end; what does is the field's edge.
 const BORDER: Border = Border::Open;
@@ -125,9 +125,9 @@ fn five(
     gpu: &mut Headless,
     field: &HeightField,
     directions: &Directions,
-    step: f64,
+    steps: [f64; 2],
 ) -> Result<Vec<[Ellipse; 5]>> {
-    let plan = plan::curved_ellipses(field, BORDER, directions, step, &gpu.report().limits)?;
+    let plan = plan::curved_ellipses(field, BORDER, directions, steps, &gpu.report().limits)?;
     gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
         gpu.draw(frame)?;
         let images = (0..10).map(|i| Ok(gpu.pixels(frame, i)?.values));
@@ -230,7 +230,7 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
     let here = |(n, at): (usize, &usize)| fit(&seen_bent(&flat.points, &bent[n], *at)).0;
     let fitted: Vec<Ellipse> = all.iter().enumerate().map(here).collect();
     let between: Vec<CurvedEllipses> =
-        all.iter().map(|at| CurvedEllipses::of(&flat.five[*at], STEP)).collect();
+        all.iter().map(|at| CurvedEllipses::of(&flat.five[*at], STEPS)).collect();
     let shadows = [
         flat.wrong(&lit, |n, l| flat.by_directions(&as_is, &level[n], all[n], l)),
         flat.wrong(&lit, |n, l| flat.by_directions(&adapted, &bent[n], all[n], l)),
@@ -347,7 +347,7 @@ fn run() -> Result<()> {
     let net = directions.triangles()?;
     let fans = Fans::of(&net, directions.vectors());
     let lights = Directions::fibonacci(LIGHTS, 0.0, 7)?;
-    let five = five(&mut gpu, &field, &directions, STEP)?;
+    let five = five(&mut gpu, &field, &directions, STEPS)?;
     let (_, level) = truth(&Mesh::bent(&field, 0.0), &field, &lights);
     let surface =
         Surface { border: BORDER, albedo: Albedo::Constant([ALBEDO as f32; 3]), phong: None };
@@ -356,11 +356,12 @@ fn run() -> Result<()> {
     println!(
         "{GROOVES} grooves of {PERIOD} by {} cells, {ROWS} long; {DIRECTIONS} directions over the sphere, {LIGHTS} lights over each sample's \
          hemisphere, {RAYS} rays. A radius above 0: valleys widen. Changed: share of the hemisphere in which something else is \
-         seen, at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at a radius of {}. \
+         seen, at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
          Off: RMSE over the mean.\n",
         PERIOD / 2,
         100.0 * Curvature::MOST_CHANGED,
-        1.0 / STEP
+        1.0 / STEPS[0],
+        1.0 / STEPS[1]
     );
     let mut rows = Vec::new();
     let outwards = RADII.iter().rev().map(|r| 1.0 / r);

@@ -16,13 +16,13 @@ pub struct CurvedEllipses {
     /// Centre (east, north), P's xx, yy and xy; of the flat base, of curvature towards east above 0 and below, towards north above
     /// and below.
     pub numbers: [[f64; 5]; 5],
-    /// The curvature that the four were fitted at, 1/m.
-    pub step_per_m: f64,
+    /// The curvatures that they were fitted at, 1/m, both above 0: outwards, inwards.
+    pub steps_per_m: [f64; 2],
 }
 
 impl CurvedEllipses {
     /// Of what [`plan::curved_ellipses`](crate::plan::curved_ellipses) leaves of a sample.
-    pub fn of(five: &[Ellipse; 5], step_per_m: f64) -> Self {
+    pub fn of(five: &[Ellipse; 5], steps_per_m: [f64; 2]) -> Self {
         // What is nothing has no centre: that of the flat base, or of all others that have one.
         let own = five.iter().filter(|e| **e != Ellipse::EMPTY).map(centre);
         let (sum, count) = own.fold((DVec2::ZERO, 0.0), |(s, n), c| (s + c, n + 1.0));
@@ -37,15 +37,16 @@ impl CurvedEllipses {
             let of = |i: usize, j: usize| along * a[i] * a[j] + across * b[i] * b[j];
             [c.x, c.y, of(0, 0), of(1, 1), of(0, 1)]
         });
-        Self { numbers, step_per_m }
+        Self { numbers, steps_per_m }
     }
 
     /// Centre and P on a base of some curvature: between the five, and beyond them on as they change there.
     pub fn at(&self, curvature: Curvature) -> [f64; 5] {
         let mut numbers = self.numbers[0];
         for (axis, k) in curvature.per_m.into_iter().enumerate() {
-            let share = k.abs() / self.step_per_m;
-            let towards = &self.numbers[1 + 2 * axis + usize::from(k < 0.0)];
+            let side = usize::from(k < 0.0);
+            let share = k.abs() / self.steps_per_m[side];
+            let towards = &self.numbers[1 + 2 * axis + side];
             for (number, (to, from)) in numbers.iter_mut().zip(towards.iter().zip(&self.numbers[0]))
             {
                 *number += share * (to - from);

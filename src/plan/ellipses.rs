@@ -34,27 +34,28 @@ pub fn ellipses(
     begun.finish(("ellipses of visible sky", None), limits)
 }
 
-/// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent by `curvature_per_m` and by as much
-/// the other way, towards east and then towards north (Heidrich et al. 2000, §5). Between them ellipses change linearly:
+/// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent towards east and then towards north by the
+/// two curvatures, both above 0, outwards and inwards (Heidrich et al. 2000, §5): hollows can be bent less before what is seen
+/// changes. Between them ellipses change linearly:
 /// [`CurvedEllipses`](crate::bake::CurvedEllipses).
 ///
 /// Input: "heights". Outputs: "ellipse_axes.k" and "ellipse_radii.k" of k = 0 to 4: flat, east +, east -, north +, north -.
 ///
 /// # Errors
-/// As [`ellipses`]; a curvature that is not above 0, or that [`Curvature::check`] refuses; directions that span no net.
+/// As [`ellipses`]; curvatures that are not above 0, or that [`Curvature::check`] refuses; directions that span no net.
 pub fn curved_ellipses(
     field: &HeightField,
     border: Border,
     directions: &Directions,
-    curvature_per_m: f64,
+    [outwards, inwards]: [f64; 2],
     limits: &Limits,
 ) -> Result<Plan> {
-    if !(curvature_per_m > 0.0 && curvature_per_m.is_finite()) {
-        let found = curvature_per_m.to_string();
-        return Err(Error::setting("curvature of ellipses", found, "a number above 0, 1/m"));
+    if ![outwards, inwards].iter().all(|k| *k > 0.0 && k.is_finite()) {
+        let found = format!("{outwards} and {inwards}");
+        return Err(Error::setting("curvatures of ellipses", found, "two numbers above 0, 1/m"));
     }
-    let k = curvature_per_m;
-    let four = [[k, 0.0], [-k, 0.0], [0.0, k], [0.0, -k]].map(|per_m| Curvature { per_m });
+    let four = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
+    let four = four.map(|per_m| Curvature { per_m });
     four.iter().try_for_each(|curvature| curvature.check(field, border))?;
     let mut begun = Begun::new(field, border, directions, limits)?;
     let bends = Bends::make(&mut begun.builder, begun.size, directions, limits)?;
@@ -68,7 +69,7 @@ pub fn curved_ellipses(
         bends.record(&mut begun.builder, (field, border), curvature, seen);
         begun.fit((Some(bends.bent), name), *outputs);
     }
-    begun.finish(("ellipses of visible sky on curved bases", Some(k)), limits)
+    begun.finish(("ellipses of visible sky on curved bases", Some([outwards, inwards])), limits)
 }
 
 /// A plan whose visible points are found.
@@ -131,14 +132,18 @@ impl<'a> Begun<'a> {
         }
     }
 
-    fn finish(self, (method, curvature): (&str, Option<f64>), limits: &Limits) -> Result<Plan> {
+    fn finish(
+        self,
+        (method, curvature): (&str, Option<[f64; 2]>),
+        limits: &Limits,
+    ) -> Result<Plan> {
         let settings = [
             ("method", method.to_owned()),
             ("border", format!("{:?}", self.border).to_lowercase()),
             ("directions", self.directions.count().to_string()),
             ("lowest_direction_z", self.directions.lowest_z().to_string()),
         ];
-        let curvature = curvature.map(|k| ("curvature_per_m", k.to_string()));
+        let curvature = curvature.map(|k| ("curvatures_per_m", format!("{k:?}")));
         let settings = settings.into_iter().chain(curvature);
         let settings = settings.map(|(name, value)| (name.to_owned(), value)).collect();
         let none = (Vec::new(), Vec::new(), Vec::new());

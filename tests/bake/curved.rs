@@ -225,7 +225,7 @@ fn ellipses_open_and_close_with_the_base() {
     let step = 0.02;
     let fitted = |k: f64| fit(&seen(|e| e.x.abs() < e.z * opening(k).tan())).0;
     let five = [fitted(0.0), fitted(step), fitted(-step), fitted(0.0), fitted(0.0)];
-    let between = CurvedEllipses::of(&five, step);
+    let between = CurvedEllipses::of(&five, [step; 2]);
     for k in [-0.02, -0.013, -0.005, 0.0, 0.004, 0.01, 0.02] {
         let [x, y, across, along, mixed] = between.at(Curvature { per_m: [k, 0.03] });
         let want = opening(k).sin();
@@ -252,7 +252,8 @@ fn flat_ellipses_are_as_they_were() {
     };
     let lights = seen(|_| true);
     for own in [patch, Ellipse::WHOLE, Ellipse::EMPTY] {
-        let between = CurvedEllipses::of(&[own, patch, Ellipse::EMPTY, Ellipse::WHOLE, patch], 0.1);
+        let between =
+            CurvedEllipses::of(&[own, patch, Ellipse::EMPTY, Ellipse::WHOLE, patch], [0.1, 0.2]);
         for (light, _) in lights.iter().filter(|l| (own.reach(l.0) - 1.0).abs() > 1e-9) {
             assert_eq!(
                 between.holds(Curvature::FLAT, *light),
@@ -261,10 +262,12 @@ fn flat_ellipses_are_as_they_were() {
             );
         }
     }
-    let between = CurvedEllipses::of(&[Ellipse::EMPTY, patch, patch, patch, patch], 0.1);
+    let between = CurvedEllipses::of(&[Ellipse::EMPTY, patch, patch, patch, patch], [0.1, 0.2]);
     let half = Ellipse { inverse_radii: [4.0, 10.0], ..patch };
     for (light, _) in lights.iter().filter(|l| (half.reach(l.0) - 1.0).abs() > 1e-9) {
-        let curvature = Curvature { per_m: [0.05, 0.0] };
-        assert_eq!(between.holds(curvature, *light), half.holds(*light), "{light}");
+        for per_m in [[0.05, 0.0], [0.0, -0.1]] {
+            let now = between.holds(Curvature { per_m }, *light);
+            assert_eq!(now, half.holds(*light), "{per_m:?} {light}");
+        }
     }
 }

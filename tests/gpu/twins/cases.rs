@@ -26,7 +26,7 @@ pub(super) enum Wanted {
     Points(Directions),
     Ellipses(Directions),
     /// Of five bases.
-    CurvedEllipses(Directions, f64),
+    CurvedEllipses(Directions, [f64; 2]),
     /// Whether images hold no more than two layers.
     Scatter(Directions, Scatter, bool),
 }

@@ -83,13 +83,13 @@ pub fn ellipses() -> Vec<Case> {
         of("ellipses of a shaft", deep, Border::Plane, above(16)),
         of("ellipses of whole words", long, Border::Plane, above(17)),
         of("an ellipse of one sample", rough(1, 1, 94), Border::Open, sphere(5)),
-        bent("ellipses on curved bases", hills(11, 9), Border::Plane, sphere(40), 1e-3),
+        bent("ellipses on curved bases", hills(11, 9), Border::Plane, sphere(40), [0.01, 1e-3]),
         bent(
             "ellipses of a field that repeats on curved bases",
             hills(9, 16),
             Border::Periodic,
             above(32),
-            1e-3,
+            [1e-3, 2e-3],
         ),
     ]
 }
