@@ -10,7 +10,8 @@ use ridgelight::bake::{Angles, Brdf, Facets, Factors, pairs};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::Limits;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Surface, VisiblePoints,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Surface,
+    VisiblePoints,
 };
 use ridgelight::{Error, Result};
 
@@ -24,7 +25,8 @@ const BETWEEN: usize = 64;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-pub const SCATTER: Scatter = Scatter { bounces: 4, paths: 256, seed: 0, view: DVec3::Z };
+pub const SCATTER: Scatter =
+    Scatter { bounces: 4, paths: 256, seed: 0, view: DVec3::Z, curvature: Curvature::FLAT };
 const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
 /// Kept as `bake --what brdf-factors` keeps them.
 pub const KEPT: usize = 8;

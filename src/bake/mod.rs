@@ -11,12 +11,13 @@
 //! ground as it lies, and how much of the sky is seen), [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
 //! [`Ellipse`]s of visible sky and visible points come off the device as they are ([`plan::ellipses`](crate::plan::ellipses),
 //! [`plan::visible_points`](crate::plan::visible_points)).
-//! [`Facets`] are a field as its flat triangles, [`Brdf`] what it reflects as seen
-//! from afar, [`Factors`] that in short.
+//! [`CurvedEllipses`] go between those of [`plan::curved_ellipses`](crate::plan::curved_ellipses) on a curved base.
+//! [`Facets`] are a field as its flat triangles, [`Brdf`] what it reflects as seen from afar, [`Factors`] that in short.
 //! [`Encoding`]s take values to texels and back, within errors that they state.
 
 mod bent;
 mod brdf;
+mod curved;
 mod encoding;
 mod facets;
 mod factors;
@@ -34,6 +35,7 @@ use crate::{Error, Result};
 pub use crate::cpu::ellipse_fit::Ellipse;
 pub use bent::BentNormal;
 pub use brdf::{Angles, Brdf, pairs};
+pub use curved::CurvedEllipses;
 pub use encoding::{
     BENT_NORMAL, Bound, COEFFICIENTS, Component, ELLIPSE, Encoding, HORIZON, POINTS, RADIANCE,
     REFLECTED, SHARE, TEXELS, encoding_named,

@@ -6,12 +6,13 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::batch::bytes_text;
+use super::bend::Bends;
 use super::blocks::Blocks;
-use super::visible_points::{images, record, texels};
+use super::visible_points::{images, one_image, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
-    Albedo, Border, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Border, Curvature, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
 };
 use crate::{Error, Result};
 use order::order;
@@ -32,6 +33,9 @@ const MOST_AT_ONCE: u64 = 64;
 /// What is diffuse starts from the direct light of all lights, that of sky and environment among it; paths that leave the
 /// field then bring nothing. Lobes reflect towards where their path comes from: what they mirror of suns, as points in
 /// their middles, and of the sky where a path leaves the field is added at each vertex.
+///
+/// On a curved base ([`Scatter::curvature`]) samples see along directions of their own: 20 bytes a sample and direction more,
+/// in one image. The direct light that is handed in is then that on the curved base.
 ///
 /// Of `directions` count those that paths choose: as often as each other until none is left, in an order that the seed
 /// decides, apart for every step.
@@ -64,7 +68,8 @@ pub fn scatter(
     let scattered = image("scattered", Owner::Output, rgba);
     let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
     let blocks = Blocks::make(&mut builder, size, surface.border);
-    bound.push(("ground", blocks.images.ground));
+    let ground = blocks.images.ground;
+    bound.push(("ground", ground));
     let has_lobe = surface.phong.is_some();
     let suns = suns_of(scene)?;
     match &suns {
@@ -82,6 +87,13 @@ pub fn scatter(
         let (_, first) = builder.constants(&texels(suns));
         record(&mut builder, (field, surface.border), &blocks, (links, first), suns, all.clone());
         bound.push(("sun_points", all.0));
+    }
+    if scatter.curvature != Curvature::FLAT {
+        let seen = one_image(field, directions, &points, limits)?;
+        let bends = Bends::make(&mut builder, size, directions, limits)?;
+        bends.record(&mut builder, (field, surface.border), scatter.curvature, [seen, ground]);
+        bound.push(("bent", bends.bent));
+        bound.push(("fan_weights", bends.weigh(&mut builder, field)));
     }
     let samples = u64::from(size[0]) * u64::from(size[1]);
     let is_chained = steps > 1;
@@ -105,6 +117,7 @@ pub fn scatter(
         count: steps,
         weight_sr: directions.share_sr() * directions.count() as f64,
         view: scatter.view,
+        curvature: scatter.curvature,
     };
     let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
     for first in (0..scatter.paths).step_by(at_once as usize) {
@@ -142,6 +155,7 @@ pub fn scatter(
         ("paths", scatter.paths.to_string()),
         ("paths_at_once", at_once.to_string()),
         ("seed", scatter.seed.to_string()),
+        ("curvature_per_m", format!("{:?}", scatter.curvature.per_m)),
         ("carried", bytes_text(carried.len() as u64 * 16 * samples * u64::from(at_once))),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();

@@ -2,8 +2,8 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::Scene;
 use super::quality::within;
+use super::{Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -18,11 +18,14 @@ pub struct Scatter {
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,
+    /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
+    /// each direction counts for, follow the base. Of what is diffuse alone.
+    pub curvature: Curvature,
 }
 
 impl Default for Scatter {
     fn default() -> Self {
-        Self { bounces: 3, paths: 100, seed: 0, view: DVec3::Z }
+        Self { bounces: 3, paths: 100, seed: 0, view: DVec3::Z, curvature: Curvature::FLAT }
     }
 }
 
@@ -35,7 +38,8 @@ impl Scatter {
     /// Checks every range, and that the scene is one that can be scattered.
     ///
     /// # Errors
-    /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds.
+    /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
+    /// a base bent more than [`Curvature::check`] allows.
     pub fn check(&self, scene: &Scene) -> Result<()> {
         within("--bounces", self.bounces, Self::BOUNCES)?;
         within("--paths", self.paths, Self::PATHS)?;
@@ -53,6 +57,14 @@ impl Scatter {
                 "lobes under sky, environment and suns alone",
             ));
         }
-        Ok(())
+        if scene.surface.phong.is_some() && self.curvature != Curvature::FLAT {
+            // Samples along one direction see a place from directions of their own there, and it has one light for all.
+            return Err(Error::setting(
+                "scattered light on a curved base",
+                "a lobe",
+                "diffuse surfaces alone",
+            ));
+        }
+        self.curvature.check(&scene.field, scene.surface.border)
     }
 }

@@ -1,6 +1,7 @@
 //! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
 //! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
+mod bend;
 mod bounce;
 mod cases;
 mod edit;
@@ -75,6 +76,8 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
     ("visible_points", points::visible_points),
+    ("points_bend", bend::points_bend),
+    ("fan_weigh", bend::fan_weigh),
     ("ellipse_fit", ellipses::ellipse_fit),
     ("facet_mask", facets::facet_mask),
     ("scatter_gather", scatter::scatter_gather),
@@ -229,6 +232,14 @@ impl<'a> Run<'a> {
 
     fn directions(&self) -> Directions {
         self.directions.clone().expect("a case with directions")
+    }
+
+    /// Of what lies on a curved base.
+    fn bent_directions(&self) -> Directions {
+        match &self.points {
+            Some(points) => points.directions().clone(),
+            None => self.directions(),
+        }
     }
 
     fn border(&self) -> Border {
