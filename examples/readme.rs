@@ -4,6 +4,9 @@
 //! `cargo run --example readme` writes README.md; with `-- --check` it changes nothing and fails where
 //! README.md is not what would be written.
 
+#[path = "readme/brdf.rs"]
+mod brdf;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -398,7 +401,7 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 11] = [
+    let sections: [Section; 12] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
@@ -410,6 +413,7 @@ fn run(check: bool) -> Result<bool> {
         ("bounces", bounces),
         ("goals", goals),
         ("bake", bake),
+        ("brdf", brdf::brdf),
     ];
     for (name, section) in sections {
         let new = with(&readme, name, &section()?)?;
