@@ -352,6 +352,40 @@ fn gpu_trade_takes_lobes() {
     assert_eq!(settings.len() % (6 * 6 * 5 * 3 * 4), 0, "{}", settings.len());
 }
 
+/// With bounces, those over visible points stand beside them: more directions and paths take longer, err no more than by
+/// chance, and are told in words, in the order in which they were drawn; without bounces there are none.
+#[test]
+fn gpu_trade_tells_what_may_be_baked() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let scene = "--sky 1 --sun 100,40 --albedo 0.8 --bounces 2";
+    let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
+    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let args =
+        format!("trade field.npy -o out --budget 30 --max-error 1 --reference truth.exr {scene}");
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let report = json(&folder.path("out/trade.json"));
+    let baked = report["baked"].as_array().unwrap();
+    assert!(!baked.is_empty() && run.out.contains("64 directions, 40 paths: "), "{}", run.out);
+    let number = |b: &serde_json::Value, name: &str| b[name].as_f64().unwrap();
+    for b in baked {
+        // All of the scattered light is no third of what leaves so flat a field; of 64 directions, a tenth of it is missed.
+        assert!((0.0..0.1).contains(&number(b, "relative_rmse")), "{b}");
+        assert!(number(b, "time_ns") > 0.0 && number(b, "found_once_ns") > 0.0, "{b}");
+        // Two bytes a sample and direction.
+        assert_eq!(number(b, "bytes"), 2.0 * 256.0 * number(b, "directions"));
+    }
+    assert!(run.out.contains("visible points that are found once"), "{}", run.out);
+    let none = folder.run(&["trade", "field.npy", "-o", "none", "--budget", "1"]);
+    assert_eq!(
+        json(&folder.path("none/trade.json"))["baked"],
+        serde_json::json!([]),
+        "{}",
+        none.err
+    );
+}
+
 /// A pass that there is not is told before the light is verified.
 #[test]
 fn gpu_a_pass_that_is_not_is_told_at_once() {
