@@ -211,6 +211,26 @@ fn edits() -> Result<String> {
     Ok(format!("{summary}\n*{device}{}*\n", made(&path)?))
 }
 
+/// What bounces add to a frame, as `examples/bounce table` printed it.
+fn bounces() -> Result<String> {
+    let path = Path::new(RESULTS).join("bounce_table.txt");
+    let text = text(&path)?;
+    let table = text.split("\n\n").find(|part| part.starts_with("| engine | bounce azimuths |"));
+    let table =
+        table.ok_or_else(|| wrong(&path, "no table", "the text of examples/bounce table"))?;
+    Ok(format!("{table}\n\n*{}*\n", made(&path)?.trim_start_matches("; ")))
+}
+
+/// How often `render --max-error` holds with bounces, as `examples/goals` counts it.
+fn goals() -> Result<String> {
+    let path = Path::new(RESULTS).join("goals.txt");
+    let text = text(&path)?;
+    let counted = text.trim_end().rsplit_once("\n\n").filter(|(_, last)| last.ends_with("refused"));
+    let (_, counted) =
+        counted.ok_or_else(|| wrong(&path, "no count", "the text of examples/goals"))?;
+    Ok(format!("{counted}.\n\n*{}*\n", made(&path)?.trim_start_matches("; ")))
+}
+
 /// What examples/auto found of `render --max-error`.
 fn auto() -> Result<String> {
     let figures = Figures::read("auto")?;
@@ -339,7 +359,7 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 8] = [
+    let sections: [Section; 10] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
@@ -347,6 +367,8 @@ fn run(check: bool) -> Result<bool> {
         ("auto", auto),
         ("forms", forms),
         ("edits", edits),
+        ("bounces", bounces),
+        ("goals", goals),
         ("bake", bake),
     ];
     for (name, section) in sections {

@@ -17,6 +17,8 @@
 
 #[path = "soft/converge.rs"]
 mod converge;
+#[path = "shared/middle.rs"]
+mod middle;
 #[path = "soft/plot.rs"]
 mod plot;
 #[path = "soft/rivals.rs"]
@@ -28,6 +30,7 @@ mod wedges;
 
 use std::path::{Path, PathBuf};
 
+use middle::middle;
 use ridgelight::files;
 use ridgelight::gpu::{Headless, HeadlessOptions, Pixels, Timing};
 use ridgelight::measure::error::ImageError;
@@ -79,15 +82,6 @@ fn asked() -> Result<Asked> {
         }
     }
     Ok(asked)
-}
-
-/// The middle of a field, at most `side`² samples.
-fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
-    let [rows, cols] = [field.rows(), field.cols()].map(|n| n.min(side));
-    let first = [(field.rows() - rows) / 2, (field.cols() - cols) / 2];
-    let at = |i: usize| (first[0] + i / cols) * field.cols() + first[1] + i % cols;
-    let heights: Vec<f64> = (0..rows * cols).map(|i| f64::from(field.heights_m()[at(i)])).collect();
-    HeightField::new(rows, cols, &heights, field.cell_m(), None)
 }
 
 fn under(field: HeightField, environment: Environment) -> Scene {

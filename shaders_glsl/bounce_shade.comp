@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Samples from node to node: 2 or 4.
+// Samples from node to node: 2, 4 or 8.
 layout(constant_id = 0) const int NODE_STRIDE = 2;
 
 layout(binding = 0, rgba32f) uniform readonly image2D ground;

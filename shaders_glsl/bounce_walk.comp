@@ -4,7 +4,7 @@
 // (Timonen 2012): all between a sample and what it meets lies below the straight line between the two.
 // Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey). Reads and writes: bounce_sum (exit
 // radiance for albedo 1; until the last dispatch not yet divided by its A, what whole hemispheres would give). Writes:
-// casting_sets.
+// casting_sets (of every second node).
 // One invocation is one sample, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -19,8 +19,12 @@ layout(constant_id = 2) const bool MARCHES_ROWS = false;
 layout(constant_id = 3) const bool GREY = false;
 // Samples from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// Whether what is seen is kept, for later bounces.
-layout(constant_id = 5) const bool KEEPS_CASTS = false;
+// From which nodes: all, or those of every second lane and of the last, of which every second along and the last keep
+// what is seen for later bounces, or those of the other lanes. Whole lanes, as steps side by side walk alike.
+layout(constant_id = 5) const uint FROM = 0u;
+const uint FROM_KEPT = 1u;
+const uint FROM_REST = 2u;
+const bool KEEPS_CASTS = FROM == FROM_KEPT;
 const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -58,7 +62,9 @@ int steps;
 int own_lane;
 int own_step;
 float own_height;
-ivec2 own_node;
+ivec2 own_node;      // where its sum lies
+ivec2 own_kept_node; // and its casting sets, where they are kept
+bool own_is_kept;
 
 // A place of the sample's own line: two lanes and how far it lies between them.
 struct Place {
@@ -285,7 +291,9 @@ vec4 walked(vec3 normal, float plane) {
     if (KEEPS_CASTS) {
         vec4 steps_to = ring_moments / max(ring_weights, vec4(1e-30));
         uvec4 kept = casts_of(steps_to, ring_weights / azimuth.wedge_rad);
-        imageStore(casting_sets, ivec3(own_node, int(azimuth_index - begin)), kept);
+        if (own_is_kept) {
+            imageStore(casting_sets, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
+        }
     }
     return vec4(thrown, whole);
 }
@@ -295,7 +303,22 @@ void main() {
     steps = MARCHES_ROWS ? rows : cols;
     int along = int(gl_GlobalInvocationID.x);
     int across = int(gl_GlobalInvocationID.y);
-    if (across >= node_count(lanes, NODE_STRIDE) || along >= node_count(steps, NODE_STRIDE)) {
+    int nodes_across = node_count(lanes, NODE_STRIDE);
+    int nodes_along = node_count(steps, NODE_STRIDE);
+    if (FROM == FROM_KEPT) {
+        if (across >= node_count(lanes, 2 * NODE_STRIDE)) {
+            return;
+        }
+        own_is_kept = is_second(along, nodes_along);
+        own_kept_node = texel_at(across, (along + 1) / 2);
+        across = second_node(across, nodes_across);
+    } else if (FROM == FROM_REST) {
+        across = 2 * across + 1;
+        if (is_second(across, nodes_across)) {
+            return;
+        }
+    }
+    if (across >= nodes_across || along >= nodes_along) {
         return;
     }
     own_node = texel_at(across, along);

@@ -1,7 +1,7 @@
 // Computes: what every node sees of one more bounce: the radiance of each ring of its casting sets, which the first
 // bounce has left, times its weight.
-// Reads: casting_sets, azimuths, exit_radiance (or exit_grey). Reads and writes: bounce_sum (exit radiance for albedo 1;
-// in A what whole hemispheres would give, which divides it, and stays).
+// Reads: casting_sets, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce, whose every second node
+// this one's are: in A what whole hemispheres would give, which divides). Writes: bounce_sum (exit radiance for albedo 1).
 // One invocation is one node.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,14 +11,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint BORDER = 0u;
 // Radiance of one channel.
 layout(constant_id = 1) const bool GREY = false;
-// Samples from node to node: 2 or 4.
-layout(constant_id = 2) const int NODE_STRIDE = 2;
+// Samples from node to node: 4 or 8.
+layout(constant_id = 2) const int NODE_STRIDE = 4;
 
 layout(binding = 0, rgba32ui) uniform readonly uimage2DArray casting_sets;
 layout(binding = 1) uniform textureBuffer azimuths;
 layout(binding = 2, rgba32f) uniform readonly image2D exit_radiance;
 layout(binding = 3, r32f) uniform readonly image2D exit_grey;
-layout(binding = 4, rgba32f) uniform image2D bounce_sum;
+layout(binding = 4, rgba32f) uniform readonly image2D node_sum;
+layout(binding = 5, rgba32f) uniform writeonly image2D bounce_sum;
 
 layout(push_constant) uniform CastGatherPush {
     int cols;
@@ -73,6 +74,8 @@ void main() {
             thrown += weights[ring] * leaving(sample_at(azimuth, here, steps_to[ring]));
         }
     }
-    float whole = imageLoad(bounce_sum, node).a;
+    ivec2 walked = ivec2(second_node(node.x, node_count(cols, NODE_STRIDE / 2)),
+                         second_node(node.y, node_count(rows, NODE_STRIDE / 2)));
+    float whole = imageLoad(node_sum, walked).a;
     imageStore(bounce_sum, node, vec4(thrown / max(whole, 1e-30), whole));
 }

@@ -7,7 +7,8 @@ use ridgelight::files::{HeightOptions, read_environment, read_heights};
 use ridgelight::gpu::Headless;
 use ridgelight::scene::{Albedo, Bounces, Lights, Quality, Scene, Surface};
 
-use crate::{ENGINES, drawn, middle, off, quality};
+use crate::middle::middle;
+use crate::{ENGINES, drawn, off, quality};
 
 const SIDE: usize = 128;
 

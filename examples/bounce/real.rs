@@ -10,8 +10,9 @@ use ridgelight::scene::{
     Albedo, BounceEngine, Bounces, Environment, HeightField, Lights, Scene, Surface,
 };
 
+use crate::middle::middle;
 use crate::plot::{Curve, Panel, svg};
-use crate::{Colours, ENGINES, colours, drawn, mean, middle, off, quality, rms};
+use crate::{Colours, ENGINES, colours, drawn, mean, off, quality, rms};
 
 type Named<T> = Vec<(&'static str, T)>;
 

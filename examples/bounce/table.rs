@@ -11,7 +11,7 @@ use ridgelight::scene::{
     Albedo, Basis, BounceEngine, Bounces, KeyLight, Lights, Quality, Scene, Surface,
 };
 
-use crate::{Drawn, drawn, off};
+use crate::{Drawn, drawn, median, off};
 
 /// Its frames a second at 512², 2× sub-sampled, with 1, 2 and 3 bounces, on a GTX 285.
 const PAPER_HZ: [f64; 3] = [35.5, 32.0, 30.0];
@@ -42,11 +42,6 @@ fn quality(engine: BounceEngine, azimuths: u32, count: u32) -> Quality {
         bounces,
         ..Quality::default()
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 /// Frames with 0 to 3 bounces, drawn in turn: times of all draws after the first, by frame.

@@ -8,8 +8,9 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Basis, Fuse, Lines, Method, Quality, Scene, Wedges};
 
+use crate::middle::middle;
 use crate::plot::{Curve, Panel, svg};
-use crate::{colours, median, middle, off, truth, under};
+use crate::{colours, median, off, truth, under};
 
 /// Errors that are asked for, %.
 const TARGETS: [f64; 7] = [20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2];

@@ -5,7 +5,7 @@ use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::pyramid::Pyramid;
 use crate::plan::sweep::warm_up;
-use crate::plan::{Bounce, Builder, ResourceId};
+use crate::plan::{Bounce, Builder, NodeSum, ResourceId};
 use crate::scene::{HeightField, Levels, Receiver};
 
 /// Of this pass and of `gloss_gather`.
@@ -133,7 +133,7 @@ pub(crate) fn plan(
     [heights, ground]: [ResourceId; 2],
 ) {
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
-    let (nodes, sum) = bounce.found_at();
+    let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([cols, rows]);
     let samples = u64::from(across) * u64::from(along);
     let is_stack = of.heights.stored == Levels::Stack;

@@ -1,7 +1,7 @@
 use super::LandPush;
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Blocks, Bounce, Builder};
+use crate::plan::{Blocks, Bounce, Builder, NodeSum};
 use crate::scene::Scene;
 
 #[repr(C)]
@@ -31,7 +31,7 @@ pub(crate) fn plan(
     bounce: &Bounce,
 ) {
     let field = &scene.field;
-    let (nodes, sum) = bounce.found_at();
+    let NodeSum { nodes, sum } = bounce.found_at();
     let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
     let [thin_rows, thin_cols] = blocks.thin(field);
     let samples = u64::from(across) * u64::from(along);

@@ -1,5 +1,5 @@
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Bounce, BounceNodes, Builder, ResourceId};
+use crate::plan::{Bounce, Builder, ResourceId};
 use crate::scene::HeightField;
 
 #[repr(C)]
@@ -24,10 +24,10 @@ same_layout!(
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
-    at: &BounceNodes,
     bounce: &Bounce,
-    ground: ResourceId,
+    [ground, sky_share]: [ResourceId; 2],
 ) {
+    let at = bounce.found_at();
     let size = [field.cols() as u32, field.rows() as u32];
     let [cell_x, cell_y] = field.cell_m();
     let samples = u64::from(size[0]) * u64::from(size[1]);
@@ -45,7 +45,7 @@ pub(crate) fn plan(
         },
         &[
             ("ground", ground),
-            ("sky_share", at.sky_share),
+            ("sky_share", sky_share),
             ("node_sum", at.sum),
             ("bounce_sum", bounce.sum),
         ],

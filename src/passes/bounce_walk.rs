@@ -1,6 +1,6 @@
 use super::sphere_shade::MOST_TURNS;
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Batch, Bounce, Builder, ResourceId};
+use crate::plan::{Batch, Bounce, Builder, NodeSum, Nodes, ResourceId};
 use crate::scene::Border;
 
 #[repr(C)]
@@ -42,6 +42,18 @@ pub(crate) struct Swept {
     /// Where the circle begins, and whether it ends with the batch.
     pub begin: u32,
     pub is_last: bool,
+    /// Where what is seen from every second node is kept.
+    pub casts: Option<ResourceId>,
+}
+
+/// Which nodes a dispatch walks from, as the shader's constant.
+#[derive(Clone, Copy, PartialEq)]
+enum From {
+    All,
+    /// Those of every second lane and of the last, of which every second along keeps its casting sets.
+    Kept,
+    /// Those of other lanes.
+    Rest,
 }
 
 /// What every sample, or every node, sees of the ground in the azimuths of a batch, in as many dispatches as its turns need.
@@ -56,53 +68,62 @@ pub(crate) fn plan(
     let [cols, rows] = axis.size();
     let at_once = (MOST_TURNS / (axis.steps + axis.warm_up + 1)).max(1);
     let all = batch.azimuths();
-    let (nodes, sum) = bounce.found_at();
+    let NodeSum { nodes, sum } = bounce.found_at();
     let [along, across] = nodes.size([axis.steps, axis.lanes]);
-    let found = u64::from(along) * u64::from(across);
-    let casts = bounce.at_nodes.and_then(|at| at.casts);
-    let mut bound = vec![
+    let [_, kept] = Nodes { stride: 2 * nodes.stride }.size([axis.steps, axis.lanes]);
+    let dispatches = match swept.casts {
+        None => vec![(From::All, "", across)],
+        Some(_) => vec![(From::Kept, " kept", kept), (From::Rest, " not kept", across - kept)],
+    };
+    let bound = [
         ("lane_heights", swept.lane_heights),
         ("azimuths", swept.azimuths),
         ("occluders", swept.occluders),
         (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
         ("bounce_sum", sum),
     ];
-    bound.extend(casts.map(|c| ("casting_sets", c)));
     for first in all.clone().step_by(at_once as usize) {
         let last = all.end.min(first + at_once);
-        let part = match last - first == batch.count {
-            true => part.to_owned(),
-            false => format!("{part} azimuths {}..{}", first - all.start, last - all.start),
+        let turn = match last - first == batch.count {
+            true => String::new(),
+            false => format!(" azimuths {}..{}", first - all.start, last - all.start),
         };
-        let pass = builder.pass(
-            &shaders::BOUNCE_WALK,
-            &part,
-            format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
-            [along.div_ceil(8), across.div_ceil(8), 1],
-            &[
-                (0, swept.line_shift),
-                (1, border as u32),
-                (2, u32::from(axis.marches_rows)),
-                (3, u32::from(bounce.grey)),
-                (4, nodes.stride),
-                (5, u32::from(casts.is_some())),
-            ],
-            &BounceWalkPush {
-                cols: cols as i32,
-                rows: rows as i32,
-                cell_x_m: cell_m[0] as f32,
-                cell_y_m: cell_m[1] as f32,
-                warm_up: axis.warm_up as i32,
-                first_azimuth: first,
-                azimuth_count: last - first,
-                clears: u32::from(batch.is_first && first == all.start),
-                is_last: u32::from(swept.is_last && last == all.end),
-                begin: swept.begin,
-            },
-            &bound,
-            found * (4 + 32 + u64::from(last - first) * if casts.is_some() { 18 } else { 2 }),
-            found * u64::from(last - first),
-        );
-        pass.azimuths = first..last;
+        for (from, which, across) in dispatches.iter().filter(|d| d.2 > 0) {
+            let found = u64::from(along) * u64::from(*across);
+            let mut bound = bound.to_vec();
+            bound.extend(swept.casts.filter(|_| *from == From::Kept).map(|c| ("casting_sets", c)));
+            // Of two nodes one keeps 16 bytes.
+            let bytes_an_azimuth = if *from == From::Kept { 10 } else { 2 };
+            let pass = builder.pass(
+                &shaders::BOUNCE_WALK,
+                &format!("{part}{which}{turn}"),
+                format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
+                [along.div_ceil(8), across.div_ceil(8), 1],
+                &[
+                    (0, swept.line_shift),
+                    (1, border as u32),
+                    (2, u32::from(axis.marches_rows)),
+                    (3, u32::from(bounce.grey)),
+                    (4, nodes.stride),
+                    (5, *from as u32),
+                ],
+                &BounceWalkPush {
+                    cols: cols as i32,
+                    rows: rows as i32,
+                    cell_x_m: cell_m[0] as f32,
+                    cell_y_m: cell_m[1] as f32,
+                    warm_up: axis.warm_up as i32,
+                    first_azimuth: first,
+                    azimuth_count: last - first,
+                    clears: u32::from(batch.is_first && first == all.start),
+                    is_last: u32::from(swept.is_last && last == all.end),
+                    begin: swept.begin,
+                },
+                &bound,
+                found * (4 + 32 + u64::from(last - first) * bytes_an_azimuth),
+                found * u64::from(last - first),
+            );
+            pass.azimuths = first..last;
+        }
     }
 }

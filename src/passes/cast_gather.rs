@@ -1,5 +1,5 @@
 use crate::gpu::shaders::{self, same_layout};
-use crate::plan::{Bounce, BounceNodes, Builder, ResourceId};
+use crate::plan::{Bounce, Builder, NodeSum, ResourceId};
 use crate::scene::Border;
 use std::ops::Range;
 
@@ -21,14 +21,16 @@ same_layout!(
     count = COUNT,
 );
 
-/// What every node sees of one more bounce, by the casting sets that the first one left along some of the `azimuths`.
+/// What every node sees of one more bounce, by the casting sets that the first one left along some of the `azimuths`
+/// where it was `walked`, at every second node of it.
 pub(crate) fn plan(
     builder: &mut Builder,
     (size, border): ([u32; 2], Border),
     (azimuths, circle): (ResourceId, Range<u32>),
-    (at, casts): (&BounceNodes, ResourceId),
+    (walked, casts): (&NodeSum, ResourceId),
     bounce: &Bounce,
 ) {
+    let at = bounce.found_at();
     let [nodes_x, nodes_y] = at.nodes.size(size);
     let count = circle.len() as u32;
     let seen = at.count(size) * u64::from(count);
@@ -43,6 +45,7 @@ pub(crate) fn plan(
             ("casting_sets", casts),
             ("azimuths", azimuths),
             (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
+            ("node_sum", walked.sum),
             ("bounce_sum", at.sum),
         ],
         at.count(size) * 32 + seen * (16 + if bounce.grey { 16 } else { 64 }),

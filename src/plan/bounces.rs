@@ -4,7 +4,7 @@
 //! writes what arrives at every sample; `light_resolve` makes that the bounce's own exit radiance.
 
 use super::blocks::Blocks;
-use super::bounce_nodes::BounceNodes;
+use super::bounce_nodes::{BounceNodes, NodeSum};
 use super::glossy::{Glossy, Thrown, Vectors};
 use super::pyramid::Pyramid;
 use super::sweep::Sweep;
@@ -28,16 +28,13 @@ pub(crate) struct Bounce {
     /// To be written: exit radiance for albedo 1, R, G, B; the fourth channel is the engine's own.
     pub sum: ResourceId,
     /// Where the engine finds what arrives, in place of every sample.
-    pub at_nodes: Option<BounceNodes>,
+    pub at_nodes: Option<NodeSum>,
 }
 
 impl Bounce {
     /// Where an engine finds what arrives, and what it writes there.
-    pub fn found_at(&self) -> (Nodes, ResourceId) {
-        match &self.at_nodes {
-            Some(at) => (at.nodes, at.sum),
-            None => (Nodes { stride: 1 }, self.sum),
-        }
+    pub fn found_at(&self) -> NodeSum {
+        self.at_nodes.unwrap_or(NodeSum { nodes: Nodes { stride: 1 }, sum: self.sum })
     }
 }
 
@@ -189,7 +186,7 @@ impl Bouncing {
             },
             grey: self.grey,
             sum: self.sum,
-            at_nodes: self.at_nodes,
+            at_nodes: self.at_nodes.map(|at| at.later.filter(|_| k > 1).unwrap_or(at.first)),
         };
         let size = [scene.field.cols() as u32, scene.field.rows() as u32];
         let blocks = || blocks.expect("made for engines that read cells and ground");
@@ -197,14 +194,14 @@ impl Bouncing {
             Engine::Brute => bounce_march::plan(builder, scene, blocks(), self.azimuths, &bounce),
             Engine::Sweep => {
                 let (sweeping, batches) = swept.expect("swept for walks");
-                match self.at_nodes.and_then(|at| Some((at, at.casts?))) {
-                    Some((at, casts)) if k > 1 => {
+                match self.at_nodes.and_then(|at| Some((at.first, at.casts?))) {
+                    Some((walked, casts)) if k > 1 => {
                         let first = batches[0].first;
                         let circle = (sweeping.azimuths, first..first + self.azimuths);
                         let field = (size, scene.surface.border);
-                        cast_gather::plan(builder, field, circle, (&at, casts), &bounce);
+                        cast_gather::plan(builder, field, circle, (&walked, casts), &bounce);
                     }
-                    _ => walk(builder, scene, k, (sweeping, batches), &bounce),
+                    _ => walk(builder, scene, k, (sweeping, batches), (&bounce, &self.at_nodes)),
                 }
             }
             Engine::Pyramid(of) => {
@@ -214,7 +211,8 @@ impl Bouncing {
             }
         }
         if let Some(at) = &self.at_nodes {
-            bounce_shade::plan(builder, &scene.field, at, &bounce, blocks().images.ground);
+            let ids = [blocks().images.ground, at.sky_share];
+            bounce_shade::plan(builder, &scene.field, &bounce, ids);
         }
         (self.sum, self.exits[k - 1])
     }
@@ -232,7 +230,7 @@ impl Bouncing {
         let mut used = Vec::new();
         let mut add = |name: &str, value: String| used.push((name.to_owned(), value));
         add("bounce_azimuths", self.azimuths.to_string());
-        add("subsample", self.at_nodes.map_or(1, |at| at.nodes.stride).to_string());
+        add("subsample", self.at_nodes.map_or(1, |at| at.first.nodes.stride).to_string());
         let engine = match &self.engine {
             Engine::Brute => BounceEngine::Brute,
             Engine::Sweep => BounceEngine::Sweep,
@@ -261,7 +259,7 @@ fn walk(
     scene: &Scene,
     k: usize,
     (sweeping, batches): (&Sweeping, &[Batch]),
-    bounce: &Bounce,
+    (bounce, at_nodes): (&Bounce, &Option<BounceNodes>),
 ) {
     for (i, batch) in batches.iter().enumerate() {
         let part = part(&bounce.name, batch, batches);
@@ -273,7 +271,7 @@ fn walk(
             sweeping.record(builder, batch, &part);
         }
         let field = (scene.surface.border, scene.field.cell_m());
-        if let Some(at) = bounce.at_nodes.filter(|at| at.finds_share && k == 1) {
+        if let Some(at) = at_nodes.filter(|at| at.finds_share && k == 1) {
             let images = sky_shade::Images {
                 lane_heights: sweeping.lane_heights(batch),
                 lattice: sweeping.lattice(batch),
@@ -294,6 +292,7 @@ fn walk(
             line_shift: sweeping.sweep.line_shift(),
             begin: batches[0].first,
             is_last: i + 1 == batches.len(),
+            casts: at_nodes.and_then(|at| at.casts),
         };
         bounce_walk::plan(builder, field, (batch, &part), &swept, bounce);
     }

@@ -67,7 +67,7 @@ mod visible_points;
 pub use azimuths::Azimuth;
 pub use batch::{Axis, Batch};
 pub(crate) use blocks::Blocks;
-pub(crate) use bounce_nodes::BounceNodes;
+pub(crate) use bounce_nodes::NodeSum;
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};

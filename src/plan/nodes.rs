@@ -3,7 +3,7 @@
 /// Every `stride`-th sample along each axis, from the first, and the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Nodes {
-    /// Samples from one to the next: 1, 2 or 4.
+    /// Samples from one to the next: 1, 2, 4, or, of later bounces, 8.
     pub stride: u32,
 }
 
@@ -39,7 +39,8 @@ mod tests {
 
     #[test]
     fn first_and_last_are_nodes_and_every_sample_lies_between_two() {
-        for (stride, samples) in [1, 2, 4].into_iter().flat_map(|s| (1..40).map(move |n| (s, n))) {
+        for (stride, samples) in [1, 2, 4, 8].into_iter().flat_map(|s| (1..40).map(move |n| (s, n)))
+        {
             let nodes = Nodes { stride };
             let last = nodes.count(samples) - 1;
             assert_eq!([nodes.place(0, samples), nodes.place(last, samples)], [0, samples - 1]);

@@ -50,7 +50,8 @@ fn the_planner_takes_walks_where_there_are_lines() {
     assert!(!dark.notes.iter().any(|n| n.contains("engine")), "{:?}", dark.notes);
 }
 
-/// An engine works at nodes and every sample is lit from them. Of sweeps later bounces go by casting sets, which take
+/// An engine works at nodes, later bounces at every second of them, and every sample is lit from them. Of sweeps later
+/// bounces go by casting sets, which take
 /// no more than a quarter of what is left: else each is swept and walked.
 #[test]
 fn bounces_at_nodes() {
@@ -68,28 +69,39 @@ fn bounces_at_nodes() {
             let plan = drawn(&scene, &quality(engine, 3, stride), ROOMY);
             let samples = plan.passes.iter().filter(|p| p.name() == name).map(|p| p.samples);
             let walks_once = engine == BounceEngine::Sweep;
-            let bounces = if walks_once { 1 } else { 3 };
-            assert_eq!(samples.sum::<u64>(), bounces * nodes(stride) * 8, "{name} {stride}");
+            let later = if walks_once { 0 } else { 2 * nodes(2 * stride) };
+            assert_eq!(samples.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
             assert_eq!(count(&plan, "bounce_shade"), 3);
             assert_eq!(count(&plan, "cast_gather"), if walks_once { 2 } else { 0 });
             assert_eq!(missing_barriers(&plan.passes), vec![]);
             let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
             assert_eq!(bytes("node_sum"), nodes(stride) * 16);
+            assert_eq!(bytes("later_node_sum"), nodes(2 * stride) * 16);
             let has = |s: &(String, String)| *s == ("subsample".into(), stride.to_string());
             assert!(plan.settings.iter().any(has), "{:?}", plan.settings);
             if walks_once {
-                assert_eq!(bytes("casting_sets"), nodes(stride) * 8 * 16);
+                assert_eq!(bytes("casting_sets"), nodes(2 * stride) * 8 * 16);
             }
         }
     }
-    let (large, walks) = (under_sky(flat(50, 70)), quality(BounceEngine::Sweep, 3, 2));
+    // Of many azimuths the sets are most of the memory.
+    let few = quality(BounceEngine::Sweep, 3, 2);
+    let walks = Quality { bounces: Bounces { azimuths: 128, ..few.bounces }, ..few };
+    let large = under_sky(flat(50, 70));
     let plan = drawn(&large, &walks, ROOMY);
     let sets = plan.resources[plan.find("casting_sets").expect("kept").0].bytes();
     let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
     // What is swept anew takes a little more than what was swept once.
     let tight = drawn(&large, &walks, all - sets + sets / 8);
     assert!(tight.find("casting_sets").is_none() && count(&tight, "cast_gather") == 0);
-    assert_eq!(count(&tight, "bounce_walk"), 3 * count(&plan, "bounce_walk"));
+    let walked = |plan: &Plan| -> u64 {
+        plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.samples).sum()
+    };
+    let found = |stride: u32| {
+        u64::from(49_u32.div_ceil(stride) + 1) * u64::from(69_u32.div_ceil(stride) + 1)
+    };
+    assert_eq!(walked(&plan), found(2) * 128);
+    assert_eq!(walked(&tight), (found(2) + 2 * found(4)) * 128);
     assert!(tight.notes.iter().any(|n| n.contains("anew")), "{:?}", tight.notes);
     // One bounce is not looked at again, and none is not found anywhere.
     let once = drawn(&scene, &quality(BounceEngine::Sweep, 1, 2), ROOMY);

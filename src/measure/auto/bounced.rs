@@ -69,33 +69,38 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
 /// ns an azimuth and sample of a walk, of a march and each sample of the side, of a gather, on lavapipe: "ms" of one
 /// bounce, 1×, of `cargo run --release --example bounce -- table` (`benches/results/bounce_table.txt`, sub-sampled
 /// bounces) over 32 · 128² · 10⁻⁶, of brute force over 128 more. The frames that are drawn correct each.
-const WALK: f64 = 126.0;
-const MARCH: f64 = 4.2;
-const GATHER: f64 = 261.0;
+const WALK: f64 = 108.0;
+const MARCH: f64 = 4.7;
+const GATHER: f64 = 330.0;
 /// Of a walk's time at every sample what a later, sub-sampled bounce takes that reads what the first has met: sweep, 2×,
 /// there, (three bounces - one) / 2 over one bounce's 1×.
-const CAST: f64 = 0.07;
+const CAST: f64 = 0.08;
 
 /// Work of walks, marches and gathers, one of which there is where bounces are drawn.
 pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     let drawn = f64::from(quality.bounces.worth_drawing(scene.surface.most_reflected()));
     let azimuths = f64::from(quality.bounces.azimuths);
     let side = scene.field.rows().max(scene.field.cols()) as f64;
-    // Nodes are the square of it fewer, but each still costs the sweep or levels of all: "over 1×" of one bounce, sweep.
-    let nodes = match quality.subsample {
+    // Nodes are the square of it fewer, but each still costs the sweep or levels of all: "over 1×" of one bounce, sweep;
+    // every eighth sample by halving once more.
+    let nodes = |stride: u32| match stride {
         1 => 1.0,
         2 => 0.4,
-        _ => 0.19,
+        4 => 0.19,
+        _ => 0.09,
     };
+    let stride = quality.subsample;
+    let later = nodes(if stride == 1 { 1 } else { 2 * stride });
+    let found = nodes(stride) + later * (drawn - 1.0);
     let mut all = [0.0; ENGINES.len()];
     if drawn == 0.0 {
         return all;
     }
     match engine(quality) {
-        BounceEngine::Brute => all[1] = azimuths * drawn * nodes * MARCH * side,
-        BounceEngine::Pyramid => all[2] = azimuths * drawn * nodes * GATHER,
-        _ if quality.subsample == 1 => all[0] = azimuths * drawn * WALK,
-        _ => all[0] = azimuths * WALK * (nodes + CAST * (drawn - 1.0)),
+        BounceEngine::Brute => all[1] = azimuths * found * MARCH * side,
+        BounceEngine::Pyramid => all[2] = azimuths * found * GATHER,
+        _ if stride == 1 => all[0] = azimuths * found * WALK,
+        _ => all[0] = azimuths * WALK * (nodes(stride) + CAST * (drawn - 1.0)),
     }
     all
 }

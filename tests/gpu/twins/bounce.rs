@@ -1,5 +1,7 @@
 //! The passes that throw light from ground to ground.
 
+use std::collections::HashSet;
+
 use ridgelight::cpu::bounce_gather::BounceGather;
 use ridgelight::cpu::bounce_march::stretches_along;
 use ridgelight::cpu::bounce_walk::walked_along;
@@ -201,7 +203,13 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let is_last = word(IS_LAST) == 1;
     let nodes = Nodes { stride: constant(pass, 4) };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
+    let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
     let places = places(run, nodes);
+    let from = constant(pass, 5);
+    // All of them, those of lanes whose casting sets are kept, the others.
+    let across_of = |[row, col]: [usize; 2]| if constant(pass, 2) == 1 { col } else { row };
+    let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();
+    let is_walked = |i: usize| from == 0 || (from == 1) == lanes.contains(&across_of(places[i]));
     let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
     let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
     let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
@@ -217,6 +225,9 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
     };
     let mut pairs = each(&got, of, [range.len(), across]);
-    pairs.extend(casts(run, pass, first..range.end, &places));
+    let walked: HashSet<[usize; 2]> =
+        (0..places.len()).filter(|i| is_walked(*i)).map(|i| [i / across, i % across]).collect();
+    pairs.retain(|pair| walked.contains(&[pair.at[1], pair.at[2]]));
+    pairs.extend(casts(run, pass, first..range.end));
     pairs
 }

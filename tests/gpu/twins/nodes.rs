@@ -1,5 +1,6 @@
 //! Bounces that are found at nodes.
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -29,12 +30,8 @@ pub(super) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
 /// The casting sets that a walk has left of some azimuths, if it leaves any: they throw ground of radiance 1 as the walk
 /// does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
 /// mean does, within a sample: it stands half a step away, and across it as much again.
-pub(super) fn casts(
-    run: &mut Run,
-    pass: &Pass,
-    azimuths: Range<usize>,
-    places: &[[usize; 2]],
-) -> Vec<Pair> {
+pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
+    let places = &places(run, Nodes { stride: 2 * constant(pass, 4) });
     let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
     let Some(sets) = casting_sets(run, pass, begin, places) else {
         return Vec::new();
@@ -110,10 +107,16 @@ pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         None => run.exit(pass),
     };
     let texels = run.floats(pass, "bounce_sum").expect("written");
+    let walked = Nodes { stride: constant(pass, 2) / 2 };
+    let sums = run.floats(pass, "node_sum").expect("bound");
+    let wholes: HashMap<[usize; 2], f64> = self::places(run, walked)
+        .into_iter()
+        .zip(sums.chunks_exact(4).map(|texel| f64::from(texel[3])))
+        .collect();
     let mut pairs = Vec::new();
     for (node, ([row, col], got)) in places.iter().zip(texels.chunks_exact(4)).enumerate() {
         let seen: Vec<&Cast> = sets.iter().flat_map(|set| &set[node]).collect();
-        let whole = f64::from(got[3]);
+        let whole = wholes[&[*row, *col]];
         let want = gather_twin(seen.iter().copied(), &exit).map(|v| v / whole);
         let weights: f64 = seen.iter().map(|c| c.weight).sum();
         let terms = (seen.len() + 10) as f64;

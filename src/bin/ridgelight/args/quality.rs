@@ -96,7 +96,8 @@ pub struct QualityArgs {
     /// What tames the ringing of a light's series; with --basis sh or --light-basis sh
     #[arg(long, default_value = "none")]
     pub window: WindowName,
-    /// What is seen is found at every so many samples, light at all of them; with --basis sh
+    /// What is seen is found at every so many samples, light at all of them; with --basis sh, and with --bounces,
+    /// of which later ones are found at every second of those
     #[arg(long, default_value = "1")]
     pub subsample: SubsampleName,
     /// Horizons of either side of a table of wedges, 4..256; with --wedges table
