@@ -9,7 +9,8 @@ use ridgelight::gpu::Headless;
 use ridgelight::measure::facets::{FacetHarmonics, Facets, Shown};
 use ridgelight::plan;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface,
+    VisiblePoints,
 };
 
 use crate::seen::points;
@@ -21,7 +22,15 @@ const TABLE: usize = 100;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-const SCATTER: Scatter = Scatter { bounces: 4, paths: 256, seed: 0, view: glam::DVec3::Z };
+const SCATTER: Scatter = Scatter {
+    bounces: 4,
+    paths: 256,
+    first_path: 0,
+    cutoff: 1.0 / 65536.0,
+    seed: 0,
+    view: glam::DVec3::Z,
+    curvature: Curvature::FLAT,
+};
 /// Of 64 light paths.
 const BATCHES: u32 = 16;
 

@@ -6,6 +6,7 @@
 //! diagonal at 1/(1 + shear) of the first. Slopes err the most there, by the error of the rise over
 //! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
 
+mod bend;
 mod bounce;
 mod gloss;
 mod light;
@@ -14,11 +15,13 @@ mod points;
 use std::f64::consts::PI;
 
 use crate::cpu::bounce_shade::LEAST_SHARE;
+pub use bend::{bent, fan_weight, way};
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
 pub use points::{
-    MET_SHARE, ellipse_moment, ellipse_reach, ellipse_start, gathered, seen_elevation,
+    MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, gathered,
+    seen_elevation,
 };
 
 /// The largest relative error of one rounding to f32.

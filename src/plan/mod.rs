@@ -35,6 +35,7 @@
 
 pub mod azimuths;
 mod batch;
+mod bend;
 mod blocks;
 mod bounce_nodes;
 mod bounces;
@@ -71,7 +72,7 @@ pub(crate) use bounce_nodes::NodeSum;
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
-pub use ellipses::ellipses;
+pub use ellipses::{curved_ellipses, ellipses};
 pub use horizons::horizons;
 pub use limits::Limits;
 pub use map::{Map, map};

@@ -32,6 +32,7 @@
 
 mod bounces;
 mod camera;
+mod curvature;
 mod directions;
 mod environment;
 mod field;
@@ -46,6 +47,7 @@ mod visible;
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
+pub use curvature::Curvature;
 pub use directions::Directions;
 pub use environment::Environment;
 pub use field::{HeightField, fill_voids};

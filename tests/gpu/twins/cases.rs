@@ -25,6 +25,8 @@ pub(super) enum Wanted {
     Reference(u32),
     Points(Directions),
     Ellipses(Directions),
+    /// Of five bases.
+    CurvedEllipses(Directions, [f64; 2]),
     /// Whether images hold no more than two layers.
     Scatter(Directions, Scatter, bool),
 }
@@ -60,6 +62,10 @@ impl Case {
             Wanted::Ellipses(directions) => {
                 plan::ellipses(&self.scene.field, self.scene.surface.border, directions, limits)
             }
+            Wanted::CurvedEllipses(directions, per_m) => {
+                let (field, border) = (&self.scene.field, self.scene.surface.border);
+                plan::curved_ellipses(field, border, directions, *per_m, limits)
+            }
             Wanted::Scatter(directions, scatter, is_cut) => {
                 let image_layers = if *is_cut { 2 } else { limits.image_layers };
                 let limits = Limits { image_layers, ..*limits };
@@ -71,7 +77,9 @@ impl Case {
 
     pub fn directions(&self) -> Option<Directions> {
         match &self.wanted {
-            Wanted::Points(directions) | Wanted::Ellipses(directions) => Some(directions.clone()),
+            Wanted::Points(directions)
+            | Wanted::Ellipses(directions)
+            | Wanted::CurvedEllipses(directions, _) => Some(directions.clone()),
             Wanted::Scatter(..) => {
                 let e = self.scene.lights.suns.iter().map(towards).collect();
                 Directions::from_vectors(e, -1.0).ok()

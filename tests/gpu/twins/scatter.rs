@@ -5,7 +5,7 @@ use ridgelight::cpu::scatter_gather::{Gathered, Samples};
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
 use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
 use ridgelight::plan::Pass;
-use ridgelight::scene::{Directions, Scatter, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{Curvature, Directions, Scatter, VisiblePoint, VisiblePoints};
 
 use super::cases::towards;
 use super::{Pair, Run, constant, pushed};
@@ -47,7 +47,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let vector = |t: [f64; 4]| DVec3::new(t[0], t[1], t[2]);
     let links: Vec<_> = (0..paths)
         .map(|path| {
-            let at = first_link + 2 * ((first_path + path) * steps + step);
+            let at = first_link + 2 * (path * steps + step);
             let back = if sums { Scatter::default().view } else { -vector(texel(at - 2)) };
             let [ahead, sky] = [at, at + 1].map(texel);
             (vector(ahead), ahead[3] as usize, [sky[0], sky[1], sky[2]], back)
@@ -71,7 +71,25 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     });
     let written = if sums { "scattered" } else { "carried" };
     let got = run.floats(pass, written).expect("written");
-    let samples = Samples::of(run.scene);
+    if paths == 0 {
+        let pair = |(i, got): (usize, f32)| Pair {
+            got: got.into(),
+            want: 0.0,
+            tolerance: 0.0,
+            at: [0, 0, i],
+        };
+        return got.into_iter().enumerate().map(pair).collect();
+    }
+    let curvature = Curvature {
+        per_m: [push::CURVATURE_X, push::CURVATURE_Y]
+            .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
+    };
+    let samples = Samples::of(run.scene).on(curvature);
+    // On a curved base, the device's own directions and weights.
+    let bent = (curvature != Curvature::FLAT).then(|| {
+        let looks = super::bend::of_samples(run, pass, points.directions().count());
+        (looks, run.floats(pass, "fan_weights").expect("bound"))
+    });
     let [cols, rows] = run.size();
     let count = rows * cols;
     let mut before = std::mem::take(&mut run.scattered);
@@ -79,10 +97,18 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for at in 0..count {
         let here = [at / cols, at % cols];
-        let turned = Land::normal_at(&run.scene.field, run.border(), here);
+        // Slopes of a field that is drawn apart or pushed together by s are turned as much as they were, s or 1/s times; a quotient
+        // and a sum more.
+        let height = f64::from(run.scene.field.heights_m()[at]);
+        let stretch = curvature.per_m.map(|k| (1.0 + k * height).max(1.0 / (1.0 + k * height)));
+        let flat = Land::normal_at(&run.scene.field, run.border(), here);
+        let turned = match &bent {
+            None => flat,
+            Some(_) => stretch[0].max(stretch[1]) * (flat + 8.0 * EPSILON),
+        };
         let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
-            let mut off = gathered((of.light, of.facing, of.mirrored), n, turned);
+            let mut off = gathered(of, n, turned);
             // A lobe ends at the sample's own plane.
             if samples.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
                 off = [0, 1, 2].map(|c| off[c] + of.mirrored[c]);
@@ -99,9 +125,15 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             };
             let sees_sky = !sums && seen == VisiblePoint::Sky;
             let mirrored = if sees_sky { *sky } else { arrives };
-            let of = samples.scattered(at, (*e, weight), *back, [arrives, mirrored]);
+            let (e, weight) = match &bent {
+                None => (*e, weight),
+                Some((looks, weights)) => {
+                    (looks[at][*direction].0, weight * f64::from(weights[direction * count + at]))
+                }
+            };
+            let of = samples.scattered(at, (e, weight), *back, [arrives, mirrored]);
             let mut of_path = Sum::default();
-            of_path.add(of.light, off(&of, *e));
+            of_path.add(of.light, off(&of, e));
             if !sums {
                 of_path.add(direct[at], [0.0; 3]);
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
