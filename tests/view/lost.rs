@@ -1,7 +1,7 @@
 //! What befalls windows: drivers that fail, surfaces that are lost, no area, other programs.
 
 use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use super::{Display, Folder, LIT, assert_same, silent};
 
@@ -172,17 +172,14 @@ fn gpu_a_window_without_area_waits() {
 fn treated(folder: &Folder, display: &Display, how: &str) -> Output {
     let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200"));
     view.env("DISPLAY", &display.name).stdout(Stdio::null()).stderr(Stdio::piped());
-    let mut view: Child = view.spawn().unwrap();
+    let view = view.spawn().unwrap();
     let mut xdotool = Command::new("xdotool");
     // Its title says so once it has drawn.
     xdotool.args(["search", "--sync", "--name", "hills.asc - ridgelight - ", how]);
     let done = xdotool.env("DISPLAY", &display.name).status();
-    let has_failed = !done.expect("xdotool: run tools/setup --tests").success();
-    if has_failed {
-        let _ = view.kill();
-    }
     let ended = view.wait_with_output().unwrap();
-    assert!(!has_failed, "{how}: {}", String::from_utf8_lossy(&ended.stderr));
+    let is_done = done.expect("xdotool: run tools/setup --tests").success();
+    assert!(is_done, "{how}: {}", String::from_utf8_lossy(&ended.stderr));
     ended
 }
 

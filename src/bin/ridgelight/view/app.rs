@@ -261,7 +261,10 @@ impl App<'_> {
                 self.due = self.due.max(1);
             }
             WindowEvent::ModifiersChanged(keys) => self.keys = keys.state(),
-            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
+            // Keys that are down as the window gets the keyboard were pressed for another, or are told again.
+            WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
+                if event.state == ElementState::Pressed =>
+            {
                 if let Some(name) = name(&event.logical_key, self.keys) {
                     return self.key(&name);
                 }
