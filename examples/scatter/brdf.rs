@@ -22,8 +22,15 @@ const TABLE: usize = 100;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-const SCATTER: Scatter =
-    Scatter { bounces: 4, paths: 256, seed: 0, view: glam::DVec3::Z, curvature: Curvature::FLAT };
+const SCATTER: Scatter = Scatter {
+    bounces: 4,
+    paths: 256,
+    first_path: 0,
+    cutoff: 1.0 / 65536.0,
+    seed: 0,
+    view: glam::DVec3::Z,
+    curvature: Curvature::FLAT,
+};
 /// Of 64 light paths.
 const BATCHES: u32 = 16;
 
