@@ -51,7 +51,7 @@ fn text(cases: &[Case], methods: &[Method], found: &[Found]) -> String {
             out.push('\n');
         }
     }
-    out += "\n## Inputs that are refused\n\n| input | what is said |\n|---|---|\n";
+    out += page::INPUTS;
     for (name, offer, _) in inputs::ALL {
         writeln!(out, "{}", page::refused(name, &inputs::said(*offer))).unwrap();
     }

@@ -50,11 +50,11 @@ layout(binding = 11) uniform texture2DArray fan_weights;
 layout(push_constant) uniform ScatterGatherPush {
     int cols;
     int rows;
-    int first_link;       // texel of the first path's first step
+    int first_link;       // texel of the first step of this pass's first path
     int steps;            // of a path
     int step;             // this one
-    int first_path;
-    int paths;
+    int first_path;       // how many the mean holds before
+    int paths;            // 0 where nothing is scattered
     int first_direction;  // of the image of visible points
     int first_sun;        // texel
     int suns;
@@ -86,6 +86,10 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
+    if (paths == 0) {
+        imageStore(scattered, at, vec4(0.0));
+        return;
+    }
     vec4 own = texelFetch(ground, at, 0);
     vec3 normal = vec3(-own.y, -own.z, 1.0);
     if (BENT) {
@@ -105,7 +109,7 @@ void main() {
     int end = SUMS ? paths : first + 1;
     vec3 sum = vec3(0.0);
     for (int path = first; path < end; path++) {
-        int link = first_link + 2 * ((first_path + path) * steps + step);
+        int link = first_link + 2 * (path * steps + step);
         vec4 ahead = texelFetch(links, link);
         int i = int(ahead.w) - first_direction;
         uint seen = point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);

@@ -25,8 +25,15 @@ const BETWEEN: usize = 64;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-pub const SCATTER: Scatter =
-    Scatter { bounces: 4, paths: 256, seed: 0, view: DVec3::Z, curvature: Curvature::FLAT };
+pub const SCATTER: Scatter = Scatter {
+    bounces: 4,
+    paths: 256,
+    first_path: 0,
+    cutoff: 1.0 / 65536.0,
+    seed: 0,
+    view: DVec3::Z,
+    curvature: Curvature::FLAT,
+};
 const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
 /// Kept as `bake --what brdf-factors` keeps them.
 pub const KEPT: usize = 8;

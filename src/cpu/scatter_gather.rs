@@ -14,6 +14,8 @@ pub struct Gathered {
     pub facing: [f64; 3],
     /// That of the lobe in its middle.
     pub mirrored: [f64; 3],
+    /// Cosine to the lobe's middle.
+    pub along: f64,
 }
 
 /// Reflectances and normals of a field's samples.
@@ -72,15 +74,16 @@ impl<'a> Samples<'a> {
         let (n, albedo) = (self.normals[at], self.albedo(at));
         let cosine = n.dot(e).max(0.0);
         let facing = [0, 1, 2].map(|c| solid_sr * albedo[c] / PI * diffuse[c]);
-        let mut of = Gathered { light: facing.map(|f| f * cosine), facing, mirrored: [0.0; 3] };
+        let light = facing.map(|f| f * cosine);
+        let mut of = Gathered { light, facing, ..Gathered::default() };
         if let Some(Phong { exponent, scale }) = self.lobe(at) {
             let (exponent, scale) = (f64::from(exponent), f64::from(scale));
             let mirror = 2.0 * n.dot(back) * n - back;
             let middle = scale * (exponent + 1.0) / TAU;
             of.mirrored = mirrored.map(|m| solid_sr * middle * m);
-            let along = mirror.dot(e);
-            if cosine > 0.0 && along > 0.0 {
-                let power = along.min(1.0).powf(exponent);
+            of.along = mirror.dot(e);
+            if cosine > 0.0 && of.along > 0.0 {
+                let power = of.along.min(1.0).powf(exponent);
                 of.light = [0, 1, 2].map(|c| of.light[c] + of.mirrored[c] * power);
             }
         }

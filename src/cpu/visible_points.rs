@@ -27,19 +27,33 @@ pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoin
     possible_points(oracle, here, e, 0.0, 0.0)[0]
 }
 
-/// All that it may see where the direction's elevation is off by `elevation_rad` and what is met by `of_way` of the
-/// distance to it along either axis: the answer of no error, and of every other within.
+/// All that it may see where the direction's elevation is off by `elevation_rad`: see [`possible_within`].
+///
+/// # Panics
+/// When the sample lies outside the field.
+pub fn possible_points(
+    oracle: &Oracle,
+    here: [usize; 2],
+    e: DVec3,
+    elevation_rad: f64,
+    of_way: f64,
+) -> Vec<VisiblePoint> {
+    possible_within(oracle, here, e, |_| elevation_rad, of_way)
+}
+
+/// All that it may see where the elevation of each stretch's upper end is off by `elevation_rad` and what is met by
+/// `of_way` of the distance to it along either axis: the answer of no error, and of every other within.
 ///
 /// What is seen along an azimuth are stretches of the surface one above the other, so that the elevations within the
 /// error see a part of each that they cross, and the sky beyond the last.
 ///
 /// # Panics
 /// When the sample lies outside the field.
-pub fn possible_points(
+pub fn possible_within(
     oracle: &Oracle,
     [row, col]: [usize; 2],
     e: DVec3,
-    elevation_rad: f64,
+    elevation_rad: impl Fn(&Stretch) -> f64,
     of_way: f64,
 ) -> Vec<VisiblePoint> {
     // Straight up or down there is no azimuth: nothing, or the sample itself.
@@ -50,7 +64,6 @@ pub fn possible_points(
     let elevation = e.z.atan2(e.x.hypot(e.y));
     let mut seen = Vec::new();
     oracle.stretches(row, col, e.y.atan2(e.x), &mut seen);
-    let [low, high] = [elevation - elevation_rad, elevation + elevation_rad];
     let free = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
     let beyond = |elevation: f64| match oracle.border() {
         Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,
@@ -67,12 +80,18 @@ pub fn possible_points(
         Some(stretch) => add(met(oracle, stretch, stretch.distance_m(elevation), [0.0; 2])),
         None => add(beyond(elevation)),
     }
-    if elevation_rad == 0.0 {
-        return all;
-    }
-    for stretch in seen.iter().filter(|s| s.low_rad <= high && s.high_rad >= low) {
-        let [near, far] = [low.max(stretch.low_rad), high.min(stretch.high_rad)]
-            .map(|elevation| stretch.distance_m(elevation));
+    // Of the one below, whose upper end is where this one begins.
+    let mut below = 0.0_f64;
+    for stretch in &seen {
+        let above = elevation_rad(stretch);
+        let ends = [stretch.low_rad - below, stretch.high_rad + above];
+        let off = below.max(above);
+        below = above;
+        if off == 0.0 || elevation < ends[0] || elevation > ends[1] {
+            continue;
+        }
+        let [near, far] = [elevation - off, elevation + off]
+            .map(|e| stretch.distance_m(e.clamp(stretch.low_rad, stretch.high_rad)));
         let [cell_x, cell_y] = oracle.field().cell_m();
         // Steps of a quarter of a cell pass no sample by.
         let steps = (4.0 * (far - near).abs() / cell_x.min(cell_y)).ceil().clamp(1.0, 1e5) as usize;
@@ -84,9 +103,9 @@ pub fn possible_points(
             }
         }
     }
-    if high >= free {
-        add(beyond(high));
-        add(beyond(low.max(free)));
+    if below > 0.0 && elevation + below >= free {
+        add(beyond(elevation + below));
+        add(beyond((elevation - below).max(free)));
     }
     all
 }

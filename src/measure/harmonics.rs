@@ -6,20 +6,22 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::tolerance::{ShadeError, twin_light_matrix, twin_sh_shade, twin_turn};
+use super::tolerance::{ShadeError, twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
 use crate::basis::bands;
+use crate::basis::harmonics::evaluate;
 use crate::basis::light::receiver;
 use crate::basis::wedge::WedgeTable;
+use crate::basis::zonal::phong_bands;
 use crate::cpu::env_turns::env_turns;
 use crate::cpu::light_matrix::{
     add_sky, gloss_matrix, is_fitted, light_matrix, row_weights, series,
 };
-use crate::cpu::sh_shade::light_on;
+use crate::cpu::sh_shade::{gloss_on, light_on};
 use crate::cpu::sh_visibility::{Series, seen_above};
 use crate::cpu::sh_wedges::sh_wedges;
 use crate::plan::Azimuth;
 use crate::plan::sh::lowest_rad;
-use crate::scene::{Border, Environment, Quality, Wedges};
+use crate::scene::{Border, Environment, Phong, Quality, Wedges};
 
 /// What a sample sees: coefficients, and how far a device's may be from each.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,21 +64,55 @@ pub struct Harmonics {
 impl Harmonics {
     /// The light's matrix of a quality.
     pub fn new(environment: &Environment, border: Border, quality: &Quality) -> Self {
+        Self::of(Some(environment), None, border, quality)
+    }
+
+    /// The same for lobes, by all bands of what is seen of an environment and a sky.
+    pub fn of_lobes(
+        environment: Option<&Environment>,
+        sky: [f32; 3],
+        border: Border,
+        quality: &Quality,
+    ) -> Self {
+        Self::of(environment, Some(sky), border, quality)
+    }
+
+    fn of(
+        environment: Option<&Environment>,
+        gloss: Option<[f32; 3]>,
+        border: Border,
+        quality: &Quality,
+    ) -> Self {
         let order = quality.sh_order as usize;
-        let light_order = quality.light_order();
-        let (height, fitted) = (environment.height(), is_fitted(quality, border));
-        let rows = if fitted { height.div_ceil(2) } else { height };
-        let turns = env_turns(environment, rows, light_order);
-        let matrix = light_matrix(quality, &series(&turns, height, light_order, fitted));
-        let width = environment.width();
-        let turned = |row: usize| {
-            let texels = environment.texels()[row * width..].iter().take(width);
-            let sum: DVec3 = texels.map(|l| DVec3::from_array(l.map(f64::from))).sum();
-            vec![twin_turn(width) * sum / width as f64; 2 * light_order - 1]
+        let light_order = if gloss.is_some() { order } else { quality.light_order() };
+        let (height, fitted) =
+            (environment.map_or(1, Environment::height), is_fitted(quality, border));
+        let rows = match environment {
+            Some(_) if fitted => height.div_ceil(2),
+            Some(_) => height,
+            None => 0,
         };
-        let turned: Vec<Vec<DVec3>> = (0..rows).map(turned).collect();
-        let summed = matrix_magnitudes(quality, border, height, &turns, None);
-        let turned = matrix_magnitudes(quality, border, height, &turned, None);
+        let turns = environment.map_or(Vec::new(), |e| env_turns(e, rows, light_order));
+        let mut light = series(&turns, height, light_order, fitted);
+        let matrix = match gloss {
+            None => light_matrix(quality, &light),
+            Some(sky) => {
+                add_sky(&mut light, sky);
+                gloss_matrix(quality, &light)
+            }
+        };
+        let turned = |environment: &Environment| -> Vec<Vec<DVec3>> {
+            let width = environment.width();
+            let of_row = |row: usize| {
+                let texels = environment.texels()[row * width..].iter().take(width);
+                let sum: DVec3 = texels.map(|l| DVec3::from_array(l.map(f64::from))).sum();
+                vec![twin_turn(width) * sum / width as f64; 2 * light_order - 1]
+            };
+            (0..rows).map(of_row).collect()
+        };
+        let turned = environment.map_or(Vec::new(), turned);
+        let summed = matrix_magnitudes(quality, border, height, &turns, gloss);
+        let turned = matrix_magnitudes(quality, border, height, &turned, gloss.map(|_| [0.0; 3]));
         let rounded = twin_light_matrix(height);
         let entry = |(s, t): (&DVec3, &DVec3)| rounded * *s + *t;
         let row = |(s, t): (&Vec<DVec3>, &Vec<DVec3>)| s.iter().zip(t).map(entry).collect();
@@ -115,6 +151,32 @@ impl Harmonics {
         let tolerance = off + twin_sh_shade(self.series.order, error.normal()) * summed;
         let light = light_on(normal, &seen.values, &self.matrix);
         [light.max(DVec3::ZERO), tolerance]
+    }
+
+    /// What a lobe mirrors straight upwards, of the matrix [`of_lobes`](Self::of_lobes), and how far a device's may be from
+    /// it.
+    pub fn mirrored(
+        &self,
+        normal: DVec3,
+        phong: Phong,
+        seen: &Seen,
+        error: &ShadeError,
+    ) -> [DVec3; 2] {
+        let order = self.series.order;
+        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
+        let mirrored = evaluate(order, 2.0 * normal.z * normal - DVec3::Z);
+        let kept = phong_bands(order, phong.exponent.into());
+        for (k, (l, _)) in bands(order).enumerate() {
+            let share = (kept[l] * mirrored[k]).abs();
+            for (j, (entry, error)) in self.matrix[k].iter().zip(&self.errors[k]).enumerate() {
+                let (value, of_seen) = (seen.values[j].abs(), seen.errors[j]);
+                off += share * (entry.abs() * of_seen + *error * (value + of_seen));
+                summed += kept[l] * entry.abs() * value;
+            }
+        }
+        let tolerance = off + twin_sh_gloss(order, error.normal()) * summed;
+        let light = gloss_on(normal, phong, &seen.values, &self.matrix);
+        [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
     }
 }
 

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
-use crate::scene::{Albedo, Curvature, Lobe, Phong, Scene, VisiblePoints};
+use crate::scene::{Albedo, Curvature, HeightField, Lobe, Phong, VisiblePoints};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -60,11 +60,18 @@ pub(crate) enum Source {
 
 /// What is the same in all steps.
 pub(crate) struct Steps<'a> {
-    pub scene: &'a Scene,
+    pub field: &'a HeightField,
+    pub albedo: &'a Albedo,
+    /// Where it reflects anything.
+    pub lobe: Option<&'a Lobe>,
+    /// That it mirrors.
+    pub suns: usize,
     /// Texels of the first path's first step, and of the first sun.
     pub texels: [usize; 2],
     /// Steps of a path.
     pub count: u32,
+    /// Paths that the output holds before.
+    pub first_path: u32,
     /// Solid angle of all directions, sr.
     pub weight_sr: f64,
     /// Towards the view.
@@ -80,15 +87,15 @@ pub(crate) fn plan(
     first_direction: u32,
     bound: &[(&str, ResourceId)],
 ) {
-    let Scene { field, surface, lights } = steps.scene;
+    let field = steps.field;
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let count = paths.end - paths.start;
     let sums = step == 0;
-    let (albedo, is_map) = match surface.albedo {
+    let (albedo, is_map) = match *steps.albedo {
         Albedo::Constant([r, g, b]) => ([r, g, b, 1.0], false),
         Albedo::Map(_) => ([0.0; 4], true),
     };
-    let lobe = match &surface.phong {
+    let lobe = match steps.lobe {
         Some(Lobe::Constant(phong)) => *phong,
         _ => Phong { exponent: 0.0, scale: 0.0 },
     };
@@ -112,21 +119,21 @@ pub(crate) fn plan(
             (1, u32::from(sums)),
             (2, u32::from(is_small)),
             (3, u32::from(is_map)),
-            (4, u32::from(surface.phong.is_some())),
-            (5, u32::from(matches!(surface.phong, Some(Lobe::Map(_))))),
+            (4, u32::from(steps.lobe.is_some())),
+            (5, u32::from(matches!(steps.lobe, Some(Lobe::Map(_))))),
             (6, u32::from(steps.curvature != Curvature::FLAT)),
         ],
         &ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,
-            first_link: steps.texels[0] as i32,
+            first_link: steps.texels[0] as i32 + (2 * paths.start * steps.count) as i32,
             steps: steps.count as i32,
             step: step as i32,
-            first_path: paths.start as i32,
+            first_path: (steps.first_path + paths.start) as i32,
             paths: count as i32,
             first_direction: first_direction as i32,
             first_sun: steps.texels[1] as i32,
-            suns: if surface.phong.is_some() { lights.suns.len() as i32 } else { 0 },
+            suns: steps.suns as i32,
             weight_sr: steps.weight_sr as f32,
             exponent: lobe.exponent,
             lobe_share: lobe.scale,
@@ -139,5 +146,22 @@ pub(crate) fn plan(
         bound,
         looks * (4 + 16 + 16 + 16),
         looks,
+    );
+}
+
+/// No light, where nothing is scattered.
+pub(crate) fn plan_nothing(builder: &mut Builder, field: &HeightField, scattered: ResourceId) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let samples = u64::from(cols) * u64::from(rows);
+    builder.pass(
+        &shaders::SCATTER_GATHER,
+        "nothing",
+        "no light: nothing is scattered",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &[(0, Source::None as u32), (1, 1)],
+        &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
+        &[("scattered", scattered)],
+        16 * samples,
+        samples,
     );
 }

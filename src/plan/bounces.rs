@@ -373,7 +373,7 @@ pub(super) fn bounce_name(k: usize) -> String {
 }
 
 /// Why bounces are left out.
-fn dropped(bounces: &Bounces, count: u32, albedo: f64) -> String {
+pub(super) fn dropped(bounces: &Bounces, count: u32, albedo: f64) -> String {
     if albedo == 0.0 {
         return "no bounces: the surface reflects nothing".into();
     }

@@ -117,6 +117,10 @@ impl Builder {
     pub(super) fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
     }
+
+    pub(super) fn bytes_of(&self, id: ResourceId) -> u64 {
+        self.resources[id.0].bytes()
+    }
 }
 
 impl Plan {

@@ -1,4 +1,5 @@
 mod order;
+mod wanted;
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -16,6 +17,7 @@ use crate::scene::{
 };
 use crate::{Error, Result};
 use order::order;
+use wanted::Wanted;
 
 /// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
 /// busy where the field is small.
@@ -40,6 +42,13 @@ const MOST_AT_ONCE: u64 = 64;
 /// Of `directions` count those that paths choose: as often as each other until none is left, in an order that the seed
 /// decides, apart for every step.
 ///
+/// What the scene does not need is left out, and a note says so: bounces within [`Scatter::cutoff`], paths of one step that
+/// would look along all directions once more, lobes that reflect nothing, what they mirror of lights that give none. Where
+/// nothing is scattered, on black ground or where no place sees another, "scattered" is 0, and there are no inputs.
+///
+/// More paths are added to those that "scattered" holds by a plan of [`Scatter::first_path`]
+/// ([`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan)), where both have as many.
+///
 /// # Errors
 /// As [`Scatter::check`]; a field of unknown heights; more memory than there is.
 pub fn scatter(
@@ -49,119 +58,139 @@ pub fn scatter(
     limits: &Limits,
 ) -> Result<Plan> {
     scatter.check(scene)?;
-    let Scene { field, surface, lights } = scene;
+    let Scene { field, surface, .. } = scene;
     let size = limits.check_size(field.rows(), field.cols())?;
     super::visible_points::check_field(field)?;
+    let mut notes = Vec::new();
+    let wanted = Wanted::of(scene, directions.count(), scatter, &mut notes);
     let mut builder = Builder::new();
     let rgba = Format::Rgba32Float;
     let mut image = |name: &str, owner: Owner, format: Format| {
         builder.image(name, owner, format, [size[0], size[1], 1], false)
     };
-    let heights = image("heights", Owner::Input, Format::R32Float);
-    let mut bound = vec![("direct", image("direct", Owner::Input, rgba))];
-    if matches!(surface.albedo, Albedo::Map(_)) {
-        bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
-    }
-    if matches!(surface.phong, Some(Lobe::Map(_))) {
-        bound.push(("phong_map", image("phong", Owner::Input, rgba)));
-    }
     let scattered = image("scattered", Owner::Output, rgba);
-    let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
-    let blocks = Blocks::make(&mut builder, size, surface.border);
-    let ground = blocks.images.ground;
-    bound.push(("ground", ground));
-    let has_lobe = surface.phong.is_some();
-    let suns = suns_of(scene)?;
-    match &suns {
-        Some(_) => blocks.record(&mut builder, field, heights, None),
-        None => blocks.record_ground(&mut builder, field, heights, None),
-    }
-    // One step more than bounces where what is met mirrors the sky.
-    let steps = scatter.bounces + u32::from(has_lobe);
-    let order = order(directions.vectors(), scatter, steps);
-    let (links, first_link) = builder.constants(&link_texels(scene, directions, &order));
-    let (_, first_sun) = builder.constants(&sun_texels(&lights.suns));
-    bound.push(("links", links));
-    if let Some(suns) = &suns {
-        let all = images_of_suns(&mut builder, size, suns, limits)?;
-        let (_, first) = builder.constants(&texels(suns));
-        record(&mut builder, (field, surface.border), &blocks, (links, first), suns, all.clone());
-        bound.push(("sun_points", all.0));
-    }
-    if scatter.curvature != Curvature::FLAT {
-        let seen = one_image(field, directions, &points, limits)?;
-        let bends = Bends::make(&mut builder, size, directions, limits)?;
-        bends.record(&mut builder, (field, surface.border), scatter.curvature, [seen, ground]);
-        bound.push(("bent", bends.bent));
-        bound.push(("fan_weights", bends.weigh(&mut builder, field)));
-    }
-    let samples = u64::from(size[0]) * u64::from(size[1]);
-    let is_chained = steps > 1;
-    let fitting = CARRIED_BYTES / (2 * 16 * samples);
-    // Paths side by side look at one image of visible points.
-    let most = match (points.len(), is_chained) {
-        (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
-        (1, false) => MOST_AT_ONCE as u32,
-        _ => 1,
-    };
-    let at_once = most.min(scatter.paths);
-    let carried: Vec<ResourceId> = (0..if is_chained { 2 } else { 0 })
-        .map(|k| {
-            let extent = [size[0], size[1], at_once];
-            builder.image(format!("carried.{k}"), Owner::Internal, rgba, extent, true)
-        })
-        .collect();
-    let of = Steps {
-        scene,
-        texels: [first_link, first_sun],
-        count: steps,
-        weight_sr: directions.share_sr() * directions.count() as f64,
-        view: scatter.view,
-        curvature: scatter.curvature,
-    };
-    let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
-    for first in (0..scatter.paths).step_by(at_once as usize) {
-        let paths = first..scatter.paths.min(first + at_once);
-        let deepest = steps - 1;
-        for step in (0..=deepest).rev() {
-            let source = match () {
-                () if step < deepest => Source::Carried,
-                () if has_lobe => Source::None,
-                () => Source::Direct,
-            };
-            let looked = order[(first * steps + step) as usize] / of_layer;
-            let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&looked);
-            let (seen, layers) = points.iter().find(holds).expect("every direction has a layer");
-            let mut bound = bound.clone();
-            bound.push(("visible_points", *seen));
-            if source == Source::Carried {
-                bound.push(("carried_in", carried[(step as usize + 1) % 2]));
+    let mut at_once = 0;
+    let mut carried = Vec::new();
+    if wanted.bounces == 0 {
+        pass::plan_nothing(&mut builder, field, scattered);
+    } else {
+        let heights = image("heights", Owner::Input, Format::R32Float);
+        let mut bound = vec![("direct", image("direct", Owner::Input, rgba))];
+        if matches!(surface.albedo, Albedo::Map(_)) {
+            bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
+        }
+        if matches!(wanted.lobe, Some(Lobe::Map(_))) {
+            bound.push(("phong_map", image("phong", Owner::Input, rgba)));
+        }
+        let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
+        let blocks = Blocks::make(&mut builder, size, surface.border);
+        bound.push(("ground", blocks.images.ground));
+        let suns = wanted.towards_suns()?;
+        match &suns {
+            Some(_) => blocks.record(&mut builder, field, heights, None),
+            None => blocks.record_ground(&mut builder, field, heights, None),
+        }
+        let steps = wanted.steps();
+        let order = order(directions.vectors(), scatter, wanted.paths, steps);
+        let (links, first_link) =
+            builder.constants(&link_texels(scene, directions, &order, wanted.mirrors_sky));
+        let (_, first_sun) = builder.constants(&sun_texels(&wanted.suns));
+        bound.push(("links", links));
+        if let Some(suns) = &suns {
+            let all = images_of_suns(&mut builder, size, suns, limits)?;
+            let (_, first) = builder.constants(&texels(suns));
+            record(
+                &mut builder,
+                (field, surface.border),
+                &blocks,
+                (links, first),
+                suns,
+                all.clone(),
+            );
+            bound.push(("sun_points", all.0));
+        }
+        if scatter.curvature != Curvature::FLAT {
+            let seen = one_image(field, directions, &points, limits)?;
+            let bends = Bends::make(&mut builder, size, directions, limits)?;
+            let ids = [seen, blocks.images.ground];
+            bends.record(&mut builder, (field, surface.border), scatter.curvature, ids);
+            bound.push(("bent", bends.bent));
+            bound.push(("fan_weights", bends.weigh(&mut builder, field)));
+        }
+        let samples = u64::from(size[0]) * u64::from(size[1]);
+        let is_chained = steps > 1;
+        let fitting = CARRIED_BYTES / (2 * 16 * samples);
+        // Paths side by side look at one image of visible points.
+        let most = match (points.len(), is_chained) {
+            (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
+            (1, false) => MOST_AT_ONCE as u32,
+            _ => 1,
+        };
+        at_once = most.min(wanted.paths);
+        carried = (0..if is_chained { 2 } else { 0 })
+            .map(|k| {
+                let extent = [size[0], size[1], at_once];
+                builder.image(format!("carried.{k}"), Owner::Internal, rgba, extent, true)
+            })
+            .collect::<Vec<ResourceId>>();
+        let of = Steps {
+            field,
+            albedo: &surface.albedo,
+            lobe: wanted.lobe,
+            suns: wanted.suns.len(),
+            texels: [first_link, first_sun],
+            count: steps,
+            first_path: scatter.first_path,
+            weight_sr: directions.share_sr() * directions.count() as f64,
+            view: scatter.view,
+            curvature: scatter.curvature,
+        };
+        let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
+        for first in (0..wanted.paths).step_by(at_once as usize) {
+            let paths = first..wanted.paths.min(first + at_once);
+            let deepest = steps - 1;
+            for step in (0..=deepest).rev() {
+                let source = match () {
+                    () if step < deepest => Source::Carried,
+                    () if wanted.mirrors_lights() => Source::None,
+                    () => Source::Direct,
+                };
+                let looked = order[(first * steps + step) as usize] / of_layer;
+                let holds = |(_, layers): &&(ResourceId, Range<u32>)| layers.contains(&looked);
+                let (seen, layers) =
+                    points.iter().find(holds).expect("every direction has a layer");
+                let mut bound = bound.clone();
+                bound.push(("visible_points", *seen));
+                if source == Source::Carried {
+                    bound.push(("carried_in", carried[(step as usize + 1) % 2]));
+                }
+                bound.push(match step {
+                    0 => ("scattered", scattered),
+                    _ => ("carried", carried[step as usize % 2]),
+                });
+                let what = (step, paths.clone(), source);
+                pass::plan(&mut builder, &of, what, of_layer * layers.start, &bound);
             }
-            bound.push(match step {
-                0 => ("scattered", scattered),
-                _ => ("carried", carried[step as usize % 2]),
-            });
-            let what = (step, paths.clone(), source);
-            pass::plan(&mut builder, &of, what, of_layer * layers.start, &bound);
         }
     }
+    let carried_bytes: u64 = carried.iter().map(|id| builder.bytes_of(*id)).sum();
     let settings = [
         ("method", "scattering by visible points".to_owned()),
         ("border", format!("{:?}", surface.border).to_lowercase()),
         ("directions", directions.count().to_string()),
         ("lowest_direction_z", directions.lowest_z().to_string()),
         ("directions_hash", hash_text(directions)),
-        ("bounces", scatter.bounces.to_string()),
-        ("paths", scatter.paths.to_string()),
+        ("bounces", wanted.bounces.to_string()),
+        ("bounce_cutoff", scatter.cutoff.to_string()),
+        ("paths", wanted.paths.to_string()),
+        ("paths_before", scatter.first_path.to_string()),
         ("paths_at_once", at_once.to_string()),
         ("seed", scatter.seed.to_string()),
         ("curvature_per_m", format!("{:?}", scatter.curvature.per_m)),
-        ("carried", bytes_text(carried.len() as u64 * 16 * samples * u64::from(at_once))),
+        ("carried", bytes_text(carried_bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    let is_level = field.heights_m().iter().all(|h| *h == field.heights_m()[0]);
-    let mut notes = Vec::new();
-    if directions.lowest_z() > -1.0 && !is_level {
+    if directions.lowest_z() > -1.0 && wanted.bounces > 0 {
         notes.push(format!(
             "directions reach down to a height of {} alone: slopes lose what light comes from below it",
             directions.lowest_z()
@@ -205,11 +234,17 @@ pub fn scatter_inputs(
     let four = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
     };
+    // Of a plan that scatters nothing: nothing.
+    if plan.inputs().next().is_none() {
+        return Ok(Vec::new());
+    }
     let mut all = vec![field.heights_m().to_vec(), four(direct)];
     if let Albedo::Map(map) = &surface.albedo {
         all.push(four(map));
     }
-    if let Some(Lobe::Map(map)) = &surface.phong {
+    if let Some(Lobe::Map(map)) = &surface.phong
+        && plan.inputs().any(|(_, r)| r.name == "phong")
+    {
         all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
     }
     let mut words = points.words();
@@ -232,15 +267,6 @@ pub fn scatter_inputs(
         return Err(Error::setting("directions of the visible points", found, "those of the plan"));
     }
     Ok(all)
-}
-
-/// Where lobes look for suns: their middles.
-fn suns_of(scene: &Scene) -> Result<Option<Directions>> {
-    let suns = &scene.lights.suns;
-    if scene.surface.phong.is_none() || suns.is_empty() {
-        return Ok(None);
-    }
-    Ok(Some(Directions::from_vectors(suns.iter().map(towards).collect(), -1.0)?))
 }
 
 fn images_of_suns(
@@ -270,10 +296,15 @@ pub(crate) fn towards(sun: &Sun) -> DVec3 {
 }
 
 /// Two a step of every path: direction and its number; the light of the sky there.
-fn link_texels(scene: &Scene, directions: &Directions, order: &[u32]) -> Vec<f32> {
-    let sky = match scene.surface.phong {
-        Some(_) => sky_of(scene, directions),
-        None => vec![[0.0; 3]; directions.count()],
+fn link_texels(
+    scene: &Scene,
+    directions: &Directions,
+    order: &[u32],
+    mirrors_sky: bool,
+) -> Vec<f32> {
+    let sky = match mirrors_sky {
+        true => sky_of(scene, directions),
+        false => vec![[0.0; 3]; directions.count()],
     };
     let vectors = directions.vectors();
     let link = |i: &u32| {

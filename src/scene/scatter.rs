@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::quality::within;
-use super::{Curvature, Scene};
+use super::{Bounces, Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -14,6 +14,13 @@ pub struct Scatter {
     /// Paths of every sample, [1..4096], default 100. Fewer: faster; samples alike are wrong alike, as all look along the same
     /// directions: no noise, but a tint of whole slopes. 40 to 100 in Heidrich et al. 2000.
     pub paths: u32,
+    /// Paths that the output holds already, [0..2²⁴], default 0: these are added to them, as those that come next. Each
+    /// sample's light is then the mean of all.
+    pub first_path: u32,
+    /// Share of the direct light's energy that may be left out, [0..1], default 1/65536. Of a surface that
+    /// reflects at most the share a, all bounces from the k-th on carry at most aᵏ + aᵏ⁺¹ + …: the last
+    /// ones are dropped. More: faster, darker hollows. 0: none is dropped.
+    pub cutoff: f64,
     /// Which directions follow each other, any number, default 0: the same seed, the same light.
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
@@ -25,7 +32,15 @@ pub struct Scatter {
 
 impl Default for Scatter {
     fn default() -> Self {
-        Self { bounces: 3, paths: 100, seed: 0, view: DVec3::Z, curvature: Curvature::FLAT }
+        Self {
+            bounces: 3,
+            paths: 100,
+            first_path: 0,
+            cutoff: Bounces::NONE.cutoff,
+            seed: 0,
+            view: DVec3::Z,
+            curvature: Curvature::FLAT,
+        }
     }
 }
 
@@ -34,6 +49,8 @@ impl Scatter {
     pub const BOUNCES: RangeInclusive<u32> = 1..=64;
     /// What [`paths`](Self::paths) may be.
     pub const PATHS: RangeInclusive<u32> = 1..=4096;
+    /// What [`first_path`](Self::first_path) may be.
+    pub const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
 
     /// Checks every range, and that the scene is one that can be scattered.
     ///
@@ -43,6 +60,8 @@ impl Scatter {
     pub fn check(&self, scene: &Scene) -> Result<()> {
         within("--bounces", self.bounces, Self::BOUNCES)?;
         within("--paths", self.paths, Self::PATHS)?;
+        within("first path", self.first_path, Self::FIRST_PATH)?;
+        Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;
         let length = self.view.length();
         if !(1.0 - 1e-6..=1.0 + 1e-6).contains(&length) {
             return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));

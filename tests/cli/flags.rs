@@ -219,6 +219,8 @@ fn lobes() {
         &[
             (&format!("trade a.asc -o out {both}"), 2, &["--phong with trade", "a lobe"]),
             (&format!("{RENDER} {both} --max-error 1"), 2, &["--phong with --max-error"]),
+            (&format!("bench a.asc {both} --bounces 1"), 2, &["--phong with bench --bounces"]),
+            (&format!("bench --sizes 64 {both}"), 2, &["--phong with bench --sizes"]),
             ("horizon a.asc -o out.npy --phong 10,0.5", 2, &["--phong"]),
         ],
     );

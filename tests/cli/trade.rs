@@ -352,6 +352,44 @@ fn gpu_trade_takes_lobes() {
     assert_eq!(settings.len() % (6 * 6 * 5 * 3 * 4), 0, "{}", settings.len());
 }
 
+/// With bounces, those over visible points are told beside them, from few directions and paths on; without bounces none are.
+#[test]
+fn gpu_trade_tells_what_may_be_baked() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let scene = "--sun 100,40 --albedo 0.8 --bounces 2";
+    let truth = format!(
+        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {scene}"
+    );
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let args =
+        format!("trade field.npy -o out --budget 4 --max-error 1 --reference truth.exr {scene}");
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("over visible points that are found once"), "{}", run.out);
+    let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(" paths: ")).collect();
+    assert!(rows[0].starts_with("64 directions, 40 paths: "), "{rows:?}");
+    // What every report lists of settings that were not tried takes long to read.
+    let report = text(&folder.path("out/trade.json"));
+    assert_eq!(report.matches("\"found_once_ns\"").count(), rows.len());
+    for row in rows {
+        let number = |after: &str, unit: &str| -> f64 {
+            let rest = row.split_once(after).expect(row).1;
+            rest.split_once(unit).expect(row).0.parse().expect(row)
+        };
+        let directions: f64 = row.split(' ').next().and_then(|n| n.parse().ok()).expect(row);
+        assert!(number("paths: ", " ms") > 0.0 && number("once in ", " ms") > 0.0, "{row}");
+        // Of all light a third at most is scattered on so flat a field, and most of that is found.
+        assert!((0.0..20.0).contains(&number("a frame, ", " %")), "{row}");
+        // Two bytes a sample and direction, in three digits.
+        let megabytes = 2e-6 * 256.0 * directions;
+        assert!((number("ms, ", " MB") / megabytes - 1.0).abs() < 0.01, "{row}");
+    }
+    let none = folder.run(&["trade", "field.npy", "-o", "none", "--budget", "1"]);
+    let report = text(&folder.path("none/trade.json"));
+    assert!(!report.contains("found_once_ns") && !none.out.contains("visible points"));
+}
+
 /// A pass that there is not is told before the light is verified.
 #[test]
 fn gpu_a_pass_that_is_not_is_told_at_once() {

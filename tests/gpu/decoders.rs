@@ -105,7 +105,7 @@ fn all() -> [Decoder; 8] {
         decoder!("sh_visibility", "sh-visibility", bake::COEFFICIENTS, true, squared, count),
         decoder!("sh_transfer", "sh-transfer", bake::COEFFICIENTS, true, squared, count),
         decoder!("ellipse", "ellipse", bake::ELLIPSE, true, 7, none),
-        decoder!("visible_points", "visible-points", bake::POINTS, true, 2 * DIRECTIONS, none),
+        decoder!("visible_points", "visible-points", bake::POINTS, true, 2 * DIRECTIONS + 1, none),
     ]
 }
 
@@ -271,6 +271,9 @@ fn decoders_keep_what_sheets_promise() {
             if decoder.kind == "ellipse" {
                 lit_as_told(&found, &truth, promised[0].2);
             }
+            if decoder.kind == "visible-points" {
+                shared_as_told(&found, &truth);
+            }
             // Between two azimuths both count alike.
             if is_horizon && !is_sine {
                 let found = decode(gpu, decoder, &bits, &texture, 0.5);
@@ -306,6 +309,21 @@ fn lit_as_told(found: &[f32], truth: &Planes, share: f64) {
         }
     }
     assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
+}
+
+/// The last plane is how much of a light arrives whose shares of the first three directions are 0.5, 0.3 and 0.2: sums of those
+/// in which the sky is seen, a rounding each.
+fn shared_as_told(found: &[f32], truth: &Planes) {
+    let samples = truth.rows * truth.cols;
+    let mut told = std::collections::BTreeSet::new();
+    for i in 0..samples {
+        let sees_sky = |k: &usize| truth.planes[2 * k][i] == -1.0;
+        let want: f64 = (0..3).filter(sees_sky).map(|k| [0.5, 0.3, 0.2][k]).sum();
+        let got = f64::from(found[2 * DIRECTIONS * samples + i]);
+        assert!((got - want).abs() <= 3.0 / f64::from(1 << 24), "{i}: {got} {want}");
+        told.insert((10.0 * want).round() as u32);
+    }
+    assert!(told.len() > 1, "all alike: {told:?}");
 }
 
 const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {

@@ -1,8 +1,12 @@
 //! Light scattered by what samples see of each other: what its paths tend to, and closed forms.
 
+use std::f64::consts::PI;
+
 use ridgelight::cpu::scatter_gather::expected;
 use ridgelight::plan;
-use ridgelight::scene::{Albedo, Border, Directions, Scatter, Scene, VisiblePoints};
+use ridgelight::scene::{
+    Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
+};
 
 use crate::reference_page::{
     HALF, WALL, from_the_other_wall, groove_parts, groove_sky, grooves, pit, pit_bounds,
@@ -136,6 +140,47 @@ fn pits_scatter_as_their_closed_form() {
     }
 }
 
+/// The pit's second bounce as the device draws it, texel by texel: the mean of seeds is within six of their standard errors
+/// of what the paths tend to, and that as near to the closed form as the test before says.
+#[test]
+fn pits_scatter_twice_as_their_closed_form() {
+    const SEEDS: u32 = 8;
+    let mut device = Device::new();
+    let (rim, alpha, rho) = (12.5, 1.2, f64::from(0.9_f32));
+    let mut scene = under_sky(pit(rim, alpha), Border::Plane);
+    scene.surface.albedo = Albedo::Constant([0.9; 3]);
+    let side = scene.field.cols();
+    let middle = (side / 2) as f64;
+    let away = |i: usize| ((i / side) as f64 - middle).hypot((i % side) as f64 - middle);
+    let own = |i: usize| if away(i) < rim { pit_radiance(alpha, rho, 0) } else { rho };
+    let direct: Vec<[f32; 3]> = (0..side * side).map(|i| [own(i) as f32; 3]).collect();
+    let points = points(&mut device, &scene, &sphere(4096));
+    let mut sums = vec![[0.0; 2]; side * side];
+    for seed in 0..SEEDS {
+        let scatter = Scatter { bounces: 2, paths: 256, seed, ..Scatter::default() };
+        let light = scattered(&mut device, &scene, &points, &direct, &scatter);
+        for (sum, light) in sums.iter_mut().zip(light) {
+            *sum = [sum[0] + light[0], sum[1] + light[0] * light[0]];
+        }
+    }
+    let twice = pit_radiance(alpha, rho, 2) - pit_radiance(alpha, rho, 0);
+    let grid = pit_bounds(rim, alpha, rho, 2).pop().expect("bounds");
+    let again = rho * 0.5 * (1.0 - alpha.cos());
+    let most = alpha.sin() * pit_radiance(alpha, rho, 1000);
+    let by_directions = rho * most * by_directions(4096) / (1.0 - again);
+    let n = f64::from(SEEDS);
+    let mut worst = [0.0_f64; 2];
+    for (i, bound) in &grid {
+        let mean = sums[*i][0] / n;
+        let sigma = ((sums[*i][1] / n - mean * mean).max(0.0) / (n - 1.0)).sqrt();
+        let allowed = 2.0 * bound + by_directions + 6.0 * sigma;
+        worst[0] = worst[0].max((mean - twice).abs() / allowed);
+        worst[1] = worst[1].max((0.67 * mean - twice).abs() / allowed);
+    }
+    println!("{:.2} of what is allowed; {:.2} of two thirds of it", worst[0], worst[1]);
+    assert!(worst[0] <= 1.0 && worst[1] > 1.0, "{worst:?}");
+}
+
 /// A wall of a groove at right angles is lit by the other: a closed form for one bounce and for two. The sample that stands
 /// for what is seen is up to half a cell of √2 away, where direct light, ½ · (½ + ½ s/√(s² + a²)), differs by 1/4a of that
 /// at most; of half of all that is seen.
@@ -193,6 +238,133 @@ fn even_walls_scatter_what_is_not_sky() {
     println!("{got} of {known}, within {allowed}");
     assert!((got - known).abs() <= allowed, "{got} {known} {allowed}");
     assert!((0.9 * got - known).abs() > allowed, "{got} {known}: a tenth less would do");
+}
+
+/// Of walls at right angles the eastern one faces a sun, and mirrors it by lobes alone; the western one, which the sun passes
+/// by, scatters that diffusely and towards a view that faces it. With directions u from its plane up across the groove and v
+/// along it, a sample sees the other wall's lit samples between u₀ and u₁ and all v, dω = cos v du dv; the cosine to its own
+/// normal is sin u cos v, and that which the other wall's lobe is about, back to its sun, cos u cos v. Bottom and ridge are
+/// black: what is nearest to them is no wall.
+///
+/// A sum over N directions of w = 4π/N errs at the edges, arcs of v with √(N/4π) directions a radian each of which is wrong by up
+/// to a half, as if by chance: thrice √(w² √(N/4π) ∮ f² / 12); and by its rule over a function that changes within 1/(n + 2)
+/// radians, w (n + 2)² / 24 of itself.
+#[test]
+fn walls_scatter_what_lobes_mirror_as_their_integral() {
+    const COUNT: usize = 4096;
+    let mut device = Device::new();
+    let (irradiance, albedo) = (2.0_f32, 0.5_f32);
+    let towards = glam::DVec3::new(-0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt());
+    for (exponent, share) in [(1.0_f32, 0.0_f32), (5.0, 0.0), (1.0, 0.4), (6.0, 0.4)] {
+        let n = f64::from(exponent);
+        let mut scene = under_sky(grooves(4), Border::Periodic);
+        scene.lights = Lights {
+            suns: vec![Sun {
+                azimuth_rad: PI,
+                elevation_rad: 0.25 * PI,
+                diameter_rad: 0.0,
+                irradiance: [irradiance; 3],
+            }],
+            ..Lights::default()
+        };
+        let count = scene.field.heights_m().len();
+        let scale = |i: usize| match i % (2 * HALF) {
+            0 | HALF => 0.0,
+            column if column < HALF => share,
+            _ => 0.25,
+        };
+        let lobes = (0..count).map(|i| Phong { exponent, scale: scale(i) }).collect();
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        scene.surface.phong = Some(Lobe::Map(lobes));
+        let points = points(&mut device, &scene, &sphere(COUNT));
+        let view = glam::DVec3::new(-towards.x, 0.0, towards.z);
+        let paths = COUNT as u32;
+        let scatter = Scatter { bounces: 1, paths, view, ..Scatter::default() };
+        let light = scattered(&mut device, &scene, &points, &vec![[0.0; 3]; count], &scatter);
+        let peak = (n + 1.0) / (2.0 * PI);
+        let lit = 0.25 * peak * f64::from(irradiance);
+        let reflected = |own: f64, other: f64| {
+            let lobe = f64::from(share) * peak * own.powf(n);
+            (f64::from(albedo) / PI * own + lobe) * lit * other.powf(n)
+        };
+        let at = |u: f64, v: f64| reflected(u.sin() * v.cos(), u.cos() * v.cos());
+        // Midpoints.
+        let sum = |low: f64, high: f64, of: &dyn Fn(f64) -> f64| -> f64 {
+            let step = (high - low) / 256.0;
+            (0..256).map(|k| of(low + (f64::from(k) + 0.5) * step) * step).sum()
+        };
+        let along = |of: &dyn Fn(f64) -> f64| sum(-0.5 * PI, 0.5 * PI, of);
+        let (mut got, mut known, mut most) = (0.0, 0.0, 0.0_f64);
+        for i in (0..count).filter(|i| (1..HALF).contains(&(i % (2 * HALF)))) {
+            let cells = (HALF - i % (2 * HALF)) as f64;
+            let ends = [0.5, HALF as f64 - 0.5].map(|t| (t / cells).atan());
+            let want = sum(ends[0], ends[1], &|u| along(&|v| at(u, v) * v.cos()));
+            let edges: f64 = ends.iter().map(|u| along(&|v| at(*u, v).powi(2))).sum();
+            let w = 4.0 * PI / COUNT as f64;
+            let by_edges = 3.0 * w * (edges / w.sqrt() / 12.0).sqrt();
+            let allowed = by_edges + want * w * (n + 2.0).powi(2) / 24.0;
+            let off = (light[i][0] - want).abs();
+            assert!(off <= allowed, "{exponent} {share} {i}: {} {want} {allowed}", light[i][0]);
+            (got, known, most) = (got + light[i][0], known + want, most.max(allowed));
+        }
+        let samples = (4 * (HALF - 1)) as f64;
+        let (got, known) = (got / samples, known / samples);
+        println!("{exponent}, {share}: {got:.6} of {known:.6}, within {most:.6} each");
+        // A tenth less of lobe, of cosine or of the weight of a direction is seen.
+        assert!((0.9 * got - known).abs() > 0.5 * most, "{exponent}: a tenth less would do");
+    }
+}
+
+/// 50 paths and 50 more by a plan that replaces the first are 100: sums of terms in another order, each rounded within 16 ε.
+/// Paths that began anew would say 50.
+#[test]
+fn paths_are_added_to_those_before() {
+    let mut device = Device::new();
+    let mut next = random(82);
+    let noise: Vec<f64> = (0..63).map(|_| 2.0 * next()).collect();
+    let mut scene = under_sky(field(7, 9, [1.0; 2], |r, c| noise[9 * r + c]), Border::Plane);
+    scene.surface.albedo = Albedo::Constant([0.8, 0.5, 0.3]);
+    let points = points(&mut device, &scene, &sphere(30));
+    let direct = vec![[1.0, 0.5, 2.0]; 63];
+    let all = |first_path, paths| Scatter { bounces: 2, first_path, paths, ..Scatter::default() };
+    let want = scattered(&mut device, &scene, &points, &direct, &all(0, 100));
+    let limits = device.limits();
+    let plan = |scatter| plan::scatter(&scene, points.directions(), &scatter, &limits);
+    let [first, more] = [all(0, 50), all(50, 50)].map(|scatter| plan(scatter).expect("a plan"));
+    let contents = plan::scatter_inputs(&first, &scene, &points, &direct).expect("inputs");
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let gpu = device.gpu.as_mut().expect("alive");
+    let mut frame = gpu.frame(first, &contents).expect("a frame");
+    gpu.draw(&mut frame).expect("drawn");
+    let before = gpu.pixels(&frame, 0).expect("texels").values;
+    gpu.replace_plan(&mut frame, more).expect("a plan of the same passes");
+    gpu.draw(&mut frame).expect("drawn");
+    let got = gpu.pixels(&frame, 0).expect("texels").values;
+    gpu.end(frame);
+    let mut moved = 0.0_f64;
+    for (i, want) in want.iter().enumerate() {
+        assert_eq!((before[4 * i + 3], got[4 * i + 3]), (50.0, 100.0));
+        for (c, want) in want.iter().enumerate() {
+            let [had, got] = [&before, &got].map(|v| f64::from(v[4 * i + c]));
+            assert!(
+                (got - want).abs() <= 16.0 / f64::from(1 << 24) * want,
+                "{i} {c}: {got} {want}"
+            );
+            moved = moved.max((had - got).abs() / got.max(1e-30));
+        }
+    }
+    assert!(moved > 0.01, "half of the paths are as good: {moved}");
+}
+
+/// Black ground scatters 0, whatever is in the way, and says 0 paths.
+#[test]
+fn black_ground_scatters_nothing() {
+    let mut device = Device::new();
+    let mut scene = under_sky(grooves(4), Border::Periodic);
+    scene.surface.albedo = Albedo::Constant([0.0; 3]);
+    let plan = plan::scatter(&scene, &sphere(16), &Scatter::default(), &device.limits());
+    let drawn = device.draw(plan.expect("a plan"), &[]).remove(0);
+    assert!(drawn.values.iter().all(|v| *v == 0.0));
 }
 
 /// What cannot be scattered is refused by name.

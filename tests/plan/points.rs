@@ -1,7 +1,10 @@
 //! Plans of what samples see: memory first, cut where a device holds less.
 
 use ridgelight::plan::{self, Kind, Limits, Plan, missing_barriers};
-use ridgelight::scene::{Border, Directions, HeightField, Scatter, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{
+    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Scatter, Scene, Sun,
+    VisiblePoint, VisiblePoints,
+};
 
 use super::{flat, under_sky};
 
@@ -73,10 +76,18 @@ fn level_rays_over_repetitions_are_noted() {
     }
 }
 
+/// Level but for a pit, which sees itself.
+fn pitted(rows: usize, cols: usize) -> HeightField {
+    let mut heights = vec![0.0; rows * cols];
+    heights[rows / 2 * cols + cols / 2] = -1.0;
+    HeightField::new(rows, cols, &heights, [1.0; 2], None).expect("a field")
+}
+
 fn scattered(side: usize, bounces: u32, paths: u32, limits: &Limits) -> Plan {
-    let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
+    let directions = Directions::fibonacci(80, -1.0, 0).expect("directions");
     let scatter = Scatter { bounces, paths, ..Scatter::default() };
-    plan::scatter(&under_sky(flat(side, side)), &directions, &scatter, limits).expect("a plan")
+    let scene = under_sky(pitted(side, side));
+    plan::scatter(&scene, &directions, &scatter, limits).expect("a plan")
 }
 
 /// Words, and several layers, are copied from no buffer of texels.
@@ -88,6 +99,16 @@ fn points_come_in_images_alone() {
     let (name, format) = (points.name.clone(), points.format().expect("an image"));
     let refused = plan.take_buffer(&name, format).unwrap_err().to_string();
     assert!(refused.contains(&format!("{name}: found an image of words, {format:?}")), "{refused}");
+    // Of numbers no plan has any in layers: one that is made up.
+    let heights = plan.find("heights").expect("an input");
+    if let Kind::Image { layers, .. } = &mut plan.resources[heights.0].kind {
+        *layers = 2;
+    }
+    let refused = plan.take_buffer("heights", plan::Format::R32Float).unwrap_err().to_string();
+    assert!(
+        refused.contains("heights: found an image of 2 layers, expected one layer"),
+        "{refused}"
+    );
 }
 
 /// From the far end of all paths to the samples, paths side by side; one bounce needs nothing between. Every barrier is there
@@ -125,7 +146,7 @@ fn paths_side_by_side_have_their_room() {
     };
     assert_eq!(carried(&scattered(1024, 2, 9, &limits)), 64 << 20);
     assert_eq!(carried(&scattered(2048, 2, 9, &limits)), 128 << 20);
-    let cut = scattered(300, 2, 9, &Limits { image_layers: 8, ..limits });
+    let cut = scattered(300, 2, 9, &Limits { image_layers: 32, ..limits });
     assert_eq!(carried(&cut), 2 * 16 * 90_000);
     assert_eq!(cut.inputs().filter(|(_, r)| r.name.starts_with("visible_points.")).count(), 3);
 }
@@ -154,7 +175,7 @@ fn ellipses_want_one_image() {
 /// As many of other seeds, other depths, or as many words of one fewer, are not those of the plan.
 #[test]
 fn points_of_other_directions_are_refused() {
-    let scene = under_sky(flat(3, 4));
+    let scene = under_sky(pitted(3, 4));
     let of = |count: usize, lowest_z: f64, seed: u32| {
         Directions::fibonacci(count, lowest_z, seed).expect("directions")
     };
@@ -189,18 +210,105 @@ fn unknown_heights_are_refused() {
     assert!(said.to_string().contains("unknown heights"), "{said}");
 }
 
-/// A slope sees below horizontal, the level does not.
+/// What faces up on a slope sees below horizontal; where nothing is scattered nothing is lost.
 #[test]
 fn light_from_below_that_is_left_out_is_noted() {
-    let notes = |slope: f64, lowest_z: f64| {
-        let heights: Vec<f64> = (0..16).map(|i| slope * f64::from(i % 4)).collect();
-        let field = HeightField::new(4, 4, &heights, [1.0; 2], None).expect("a field");
+    let notes = |field: HeightField, lowest_z: f64| {
         let directions = Directions::fibonacci(8, lowest_z, 0).expect("directions");
         let limits = Limits::lavapipe();
         let plan = plan::scatter(&under_sky(field), &directions, &Scatter::default(), &limits);
         plan.expect("a plan").notes
     };
-    assert_eq!([notes(0.0, 0.0), notes(1.0, -1.0)], [Vec::<String>::new(), Vec::new()]);
-    let said = notes(1.0, -0.25);
+    assert_eq!(notes(pitted(4, 4), -1.0), Vec::<String>::new());
+    assert!(notes(flat(4, 4), -0.25).iter().all(|note| !note.contains("-0.25")));
+    let said = notes(pitted(4, 4), -0.25);
     assert!(said.len() == 1 && said[0].contains("-0.25"), "{said:?}");
+}
+
+/// Steps of a path, and names of the passes.
+fn parts(plan: &Plan) -> (usize, Vec<&'static str>) {
+    let names: Vec<_> = plan.passes.iter().map(plan::Pass::name).collect();
+    (names.iter().filter(|name| **name == "scatter_gather").count(), names)
+}
+
+/// Black ground, ground that sees nothing of itself: one pass, which needs nothing. No bounces beyond what carries light: ½
+/// to the 17th and later is 2⁻¹⁶. Of one bounce no more paths than directions.
+#[test]
+fn what_carries_no_light_is_not_scattered() {
+    let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
+    let of = |scene: &Scene, scatter: Scatter| {
+        plan::scatter(scene, &directions, &scatter, &Limits::lavapipe()).expect("a plan")
+    };
+    let grey = |albedo: f32, field: HeightField| {
+        let mut scene = under_sky(field);
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        scene
+    };
+    let slope: Vec<f64> = (0..16).map(f64::from).collect();
+    let slope = HeightField::new(4, 4, &slope, [1.0; 2], None).expect("a field");
+    for (scene, why) in [
+        (grey(0.0, pitted(5, 5)), "reflects nothing"),
+        (grey(0.7, flat(5, 5)), "no place sees another"),
+        (grey(0.7, slope), "no place sees another"),
+    ] {
+        let plan = of(&scene, Scatter::default());
+        assert_eq!(parts(&plan), (1, vec!["scatter_gather"]));
+        assert!(plan.notes.iter().any(|note| note.contains(why)), "{:?}", plan.notes);
+        let kept: Vec<_> = plan.resources.iter().map(|r| r.name.as_str()).collect();
+        assert_eq!((plan.inputs().count(), kept), (0, vec!["scattered"]));
+        let seen = vec![VisiblePoint::Sky; scene.field.heights_m().len() * 20];
+        let points = VisiblePoints::from_points(
+            &scene.field,
+            scene.surface.border,
+            directions.clone(),
+            &seen,
+        );
+        let direct = vec![[1.0; 3]; scene.field.heights_m().len()];
+        let inputs = plan::scatter_inputs(&plan, &scene, &points.expect("points"), &direct);
+        assert_eq!(inputs.expect("inputs"), Vec::<Vec<f32>>::new());
+    }
+    let deep = |cutoff| Scatter { bounces: 64, paths: 1, cutoff, ..Scatter::default() };
+    let scene = grey(0.5, pitted(5, 5));
+    let plan = of(&scene, deep(1.0 / 65536.0));
+    assert_eq!(parts(&plan).0, 16);
+    assert!(plan.notes[0].contains("bounces 17 to 64 dropped"), "{:?}", plan.notes);
+    assert_eq!(parts(&of(&scene, deep(0.0))).0, 64);
+    let paths = |bounces, paths, first_path| {
+        let plan = of(&scene, Scatter { bounces, paths, first_path, ..Scatter::default() });
+        plan.settings.iter().find(|(name, _)| name == "paths").expect("it").1.clone()
+    };
+    assert_eq!([paths(1, 50, 0), paths(2, 50, 0), paths(1, 50, 7)], ["20", "50", "50"]);
+}
+
+/// A lobe of scale 0 is none. One that there is takes a step more where what it meets mirrors a sun or a sky, looks for suns
+/// where they shine, and for nothing where no light is.
+#[test]
+fn lobes_look_for_what_shines() {
+    let directions = Directions::fibonacci(20, -1.0, 0).expect("directions");
+    let of = |scale: f32, lights: Lights| {
+        let mut scene = Scene { lights, ..under_sky(pitted(5, 5)) };
+        scene.surface.albedo = Albedo::Constant([0.5; 3]);
+        scene.surface.phong = Some(Lobe::Map(vec![Phong { exponent: 9.0, scale }; 25]));
+        let scatter = Scatter { bounces: 2, paths: 1, ..Scatter::default() };
+        let plan = plan::scatter(&scene, &directions, &scatter, &Limits::lavapipe());
+        let plan = plan.expect("a plan");
+        let has = |name: &str| plan.resources.iter().any(|r| r.name == name);
+        let (steps, names) = parts(&plan);
+        (steps, has("phong"), has("sun_points"), names.contains(&"visible_points"))
+    };
+    let sun = |irradiance: f32| Sun {
+        azimuth_rad: 0.0,
+        elevation_rad: 1.0,
+        diameter_rad: 0.0,
+        irradiance: [irradiance; 3],
+    };
+    let lit = |sky: Option<f32>, irradiance: f32| Lights {
+        sky: sky.map(|v| [v; 3]),
+        suns: vec![sun(irradiance)],
+        ..Lights::default()
+    };
+    assert_eq!(of(0.0, lit(Some(1.0), 1.0)), (2, false, false, false));
+    assert_eq!(of(0.5, lit(Some(0.0), 0.0)), (2, true, false, false));
+    assert_eq!(of(0.5, lit(Some(1.0), 0.0)), (3, true, false, false));
+    assert_eq!(of(0.5, lit(None, 1.0)), (3, true, true, true));
 }

@@ -11,7 +11,7 @@ use ridgelight::files;
 use ridgelight::gpu::{Frame, Headless, Timing};
 use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Pass, Picture, Plan};
-use ridgelight::scene::Quality;
+use ridgelight::scene::{Quality, Scene};
 use ridgelight::{Error, Result};
 
 use crate::args::BenchArgs;
@@ -49,7 +49,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    setup::check_diffuse(&scene, "bench")?;
+    check_lobes(&scene, &quality, args)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
     // Verifying takes long.
@@ -101,7 +101,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     if args.forms {
         let sky = ridgelight::scene::Lights { sky: Some([1.0; 3]), ..Default::default() };
-        let scene = ridgelight::scene::Scene { lights: sky, ..scene };
+        let surface = ridgelight::scene::Surface { phong: None, ..scene.surface };
+        let scene = Scene { lights: sky, surface, ..scene };
         let verifier = Verifier::new(&scene)?;
         let wanted = (args.samples, &args.passes[..]);
         let table = forms::run(&mut gpu, &scene, &quality, &limits, &verifier, wanted, &bar)?;
@@ -116,6 +117,21 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         files::write_json(path, &rows::file(&device, &driver, &all))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Refuses lobes where nothing here says what is right.
+fn check_lobes(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<()> {
+    if scene.surface.phong.is_none() {
+        return Ok(());
+    }
+    let (with, expected) = match () {
+        () if quality.bounces.count > 0 => {
+            ("--bounces", "none: what lobes throw on, `reference` and `compare` judge")
+        }
+        () if !args.sizes.is_empty() => ("--sizes", "none: its errors are of diffuse light"),
+        () => return Ok(()),
+    };
+    Err(Error::setting(format!("--phong with bench {with}"), "a lobe", expected))
 }
 
 /// Says what was written out and changes nothing; of fields, too.

@@ -1,6 +1,7 @@
 //! Speed against accuracy: settings timed on the device and held against the truth, the frontier of
 //! both, and a recommendation.
 
+mod baked;
 mod html;
 mod hull;
 mod picture;
@@ -91,6 +92,8 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     };
     let truth_s = rig.spent();
     let tones = Tones::of(&truth);
+    bar.set_message("scattering over visible points");
+    let baked = baked::measure(&mut rig, &truth, &start)?;
     let knobs = knobs(&scene, args.bounces);
     let places = places(&knobs, &start);
     let why = |place: &Place| match rig.plan(&scene, &place.quality) {
@@ -120,6 +123,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         truth_png: picture::light_png(&scene.field, &truth.planes, &tones)?,
         tones: &tones,
         hulls: &hulls,
+        baked: &baked,
         knobs: &knobs,
         places: &places,
         walk: &walk,

@@ -2,6 +2,9 @@
 
 use super::{EPSILON, Land};
 use crate::cpu::ellipse_fit::Ellipse;
+use crate::cpu::oracle::Oracle;
+use crate::cpu::profile::Stretch;
+use crate::cpu::scatter_gather::Gathered;
 
 /// By how much a place that is met may be off along either axis of the grid, in cells and as a share of the cells to it:
 /// direction and advance 12 ε (normalised, a quotient by the cell, one by the faster axis), the crossing's distance 7 ε
@@ -20,6 +23,27 @@ pub fn seen_elevation(land: &Land) -> f64 {
     EPSILON * (12.0 + 32.0 * relief_m / cell_m + 22.0 * steepest)
 }
 
+/// By how much the elevation in which a ray meets the upper end of a stretch may be off, radians.
+///
+/// At a crossing d away a ray and the surface are compared: t · rise errs by 8 ε of itself, which there is the rise of one of
+/// the triangle's corners over the sample, r at most; the surface by three differences, two products and two sums of at most
+/// r, 8 ε r, and along either axis by its place, 10 ε t, and by the direction's, 12 ε t, times the triangle's relief g a cell c,
+/// with t c at most d. A slope is off by (16 r / d + 44 g / c) ε, turned into an angle where it is flattest; the direction
+/// itself by 12 ε upwards.
+pub fn crossing_elevation(oracle: &Oracle, stretch: &Stretch, own_m: f64) -> f64 {
+    let field = oracle.field();
+    let [x, y] = field.cell_m();
+    let corners = oracle
+        .corners(stretch.triangle)
+        .map(|[row, col]| f64::from(field.heights_m()[row * field.cols() + col]) - own_m);
+    let rise = corners.iter().fold(0.0_f64, |m, h| m.max(h.abs()));
+    let high = corners.iter().fold(f64::MIN, |m, h| m.max(*h));
+    let relief = high - corners.iter().fold(f64::MAX, |m, h| m.min(*h));
+    let slope = stretch.high_rad.tan();
+    let off = EPSILON * (16.0 * rise / stretch.end_m() + 44.0 * relief / x.min(y));
+    (slope + off).atan() - (slope - off).atan() + 12.0 * EPSILON
+}
+
 /// [`seen_elevation`] from the middles of triangles, of the threefold finer field whose samples they are: there the device's
 /// height errs by 4 ε R (two differences, their sum's third, a sum), the field's own, rounded, by ε R at either end, half a
 /// finer cell apart or more.
@@ -27,22 +51,21 @@ pub fn facet_elevation(finer: &Land) -> f64 {
     seen_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
 }
 
-/// What one look-up of `scatter_gather` errs by against its twin, R, G, B: `facing` and `mirrored` are its light for a cosine
-/// of 1 and in the middle of a lobe of exponent `n`, 1 or more; the normal may be turned by `normal` radians.
+/// What one look-up of `scatter_gather` errs by against its twin, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may
+/// be turned by `normal` radians.
 ///
 /// A cosine errs by the normal's turn and 6 ε (three products, two sums, the direction's roundings). What a direction lies
-/// apart from the mirror errs by four turns, as that moves by twice the normal's and by twice the cosine's, and 16 ε; the lobe
-/// falls from 1 to (1 - a²/2)ⁿ, nowhere faster than √n. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential
-/// by (3 + 2 |x|) ulp (Vulkan), and |x| eˣ < 0.37: 16 ε and 4e-7. Products and quotients round 16 times.
-pub fn gathered(
-    (light, facing, mirrored): ([f64; 3], [f64; 3], [f64; 3]),
-    n: f64,
-    normal: f64,
-) -> [f64; 3] {
+/// apart from the mirror errs by four turns, as that moves by twice the normal's and by twice the cosine's, and 16 ε: the
+/// lobe is what it may be within. Its power x = n ln errs by 8 ε of itself and 1e-7, its exponential by (3 + 2 |x|) ulp
+/// (Vulkan): (12 |x| + 8) ε and 1e-7 of it; f32 ends at 1e-37. Products and quotients round 16 times.
+pub fn gathered(of: &Gathered, n: f64, normal: f64) -> [f64; 3] {
     let cosine = normal + 6.0 * EPSILON;
     let apart = 4.0 * normal + 16.0 * EPSILON;
-    let lobe = n.max(1.0).sqrt() * apart + 16.0 * EPSILON + 4e-7;
-    [0, 1, 2].map(|c| facing[c] * cosine + mirrored[c] * lobe + 16.0 * EPSILON * light[c])
+    let power = |along: f64| along.clamp(0.0, 1.0).powf(n);
+    let [near, far] = [power(of.along + apart), power(of.along - apart)];
+    let x = n * of.along.clamp(1e-30, 1.0).ln().abs();
+    let lobe = near - far + near * ((12.0 * x + 24.0) * EPSILON + 1e-7) + 1e-37;
+    [0, 1, 2].map(|c| of.facing[c] * cosine + of.mirrored[c] * lobe + 16.0 * EPSILON * of.light[c])
 }
 
 /// By how much equation 4 of an ellipse of `ellipse_fit` may be off near its edge, where neither term is over 1.

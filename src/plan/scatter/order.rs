@@ -10,15 +10,16 @@ use crate::scene::Scatter;
 /// At every step each direction is taken once before any is taken again, and is as likely everywhere, apart for every step:
 /// that is what makes the mean of paths unbiased. The first step's come in an order whose every part lies evenly over the
 /// sphere; those of later ones are as even, but dealt out to the paths at random, as they must not know the first's order.
-pub(super) fn order(directions: &[DVec3], scatter: &Scatter, steps: u32) -> Vec<u32> {
-    let (count, paths) = (directions.len(), scatter.paths as usize);
-    let mut all = vec![0; paths * steps as usize];
+/// Paths are those from the settings' first on: the same whichever others are asked for beside them.
+pub(super) fn order(directions: &[DVec3], scatter: &Scatter, paths: u32, steps: u32) -> Vec<u32> {
+    let (count, first_path) = (directions.len(), scatter.first_path as usize);
+    let paths = first_path..first_path + paths as usize;
+    let mut all = vec![0; paths.len() * steps as usize];
     for step in 0..steps as usize {
-        for (cycle, first) in (0..paths).step_by(count).enumerate() {
+        for cycle in paths.start / count..paths.end.div_ceil(count) {
             let mut chance = Chance::new(scatter.seed, step as u64, cycle as u64);
             let list: Vec<u32> = (0..count as u32).collect();
             let mut part = spread(directions, list, &mut chance);
-            part.truncate(paths - first);
             if step > 0 {
                 // Fisher & Yates.
                 for at in 0..part.len() {
@@ -26,8 +27,8 @@ pub(super) fn order(directions: &[DVec3], scatter: &Scatter, steps: u32) -> Vec<
                     part.swap(at, at + (chance.next() * left) as usize);
                 }
             }
-            for (path, i) in part.into_iter().enumerate() {
-                all[(first + path) * steps as usize + step] = i;
+            for (path, i) in (cycle * count..).zip(part).filter(|(path, _)| paths.contains(path)) {
+                all[(path - paths.start) * steps as usize + step] = i;
             }
         }
     }
@@ -101,7 +102,7 @@ mod tests {
         let mut found = vec![[0_u32; 13]; 2 * 20];
         for seed in 0..5200 {
             let scatter = Scatter { paths: 20, seed, ..Scatter::default() };
-            let order = order(directions.vectors(), &scatter, 2);
+            let order = order(directions.vectors(), &scatter, 20, 2);
             for (place, i) in order.iter().enumerate() {
                 found[place][*i as usize] += 1;
             }
@@ -116,6 +117,19 @@ mod tests {
         }
     }
 
+    /// Paths 5 to 40 of 13 directions are those of all 45, in parts or at once.
+    #[test]
+    fn later_paths_are_those_of_all() {
+        let directions = Directions::fibonacci(13, -1.0, 0).expect("directions");
+        let of = |first_path, paths| {
+            let scatter = Scatter { first_path, ..Scatter::default() };
+            order(directions.vectors(), &scatter, paths, 3)
+        };
+        let all = of(0, 45);
+        let parts = [of(0, 5), of(5, 35), of(40, 5)].concat();
+        assert_eq!(all, parts);
+    }
+
     /// Of 1,024 directions the first 32 see each of the 32 parts that halving leaves once: their mean is nearer to the
     /// sphere's middle than that of 32 at random, 1/√32 or so.
     #[test]
@@ -123,7 +137,7 @@ mod tests {
         let directions = Directions::fibonacci(1024, -1.0, 0).expect("directions");
         for seed in 0..8 {
             let scatter = Scatter { paths: 32, seed, ..Scatter::default() };
-            let order = order(directions.vectors(), &scatter, 1);
+            let order = order(directions.vectors(), &scatter, 32, 1);
             let sum: DVec3 = order.iter().map(|i| directions.vectors()[*i as usize]).sum();
             assert!(sum.length() / 32.0 < 0.1, "{sum}");
         }

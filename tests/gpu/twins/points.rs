@@ -1,9 +1,9 @@
 //! What samples see.
 
 use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::visible_points::possible_points;
+use ridgelight::cpu::visible_points::possible_within;
 use ridgelight::gpu::shaders::offsets::visible_points_push::{END_DIRECTION, FIRST_DIRECTION};
-use ridgelight::measure::tolerance::{Land, MET_SHARE, seen_elevation};
+use ridgelight::measure::tolerance::{MET_SHARE, crossing_elevation};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Directions, VisiblePoint, VisiblePoints};
 
@@ -30,13 +30,14 @@ pub(super) fn visible_points(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let words = run.words(pass, "visible_points").expect("written");
     let points = VisiblePoints::new(field, border, part.expect("some"), words).expect("all whole");
     let oracle = Oracle::new(field, border);
-    let elevation = seen_elevation(&Land::of(field, border));
     let [cols, rows] = run.size();
     let mut pairs = Vec::new();
     for (i, e) in points.directions().vectors().iter().enumerate() {
         for at in 0..rows * cols {
             let here = [at / cols, at % cols];
-            let possible = possible_points(&oracle, here, *e, elevation, MET_SHARE);
+            let own = f64::from(field.heights_m()[at]);
+            let off = |stretch: &_| crossing_elevation(&oracle, stretch, own);
+            let possible = possible_within(&oracle, here, *e, off, MET_SHARE);
             let got = points.seen(i, at);
             let want = if possible.contains(&got) { got } else { possible[0] };
             let [got, want] = [got, want].map(number);

@@ -47,7 +47,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let vector = |t: [f64; 4]| DVec3::new(t[0], t[1], t[2]);
     let links: Vec<_> = (0..paths)
         .map(|path| {
-            let at = first_link + 2 * ((first_path + path) * steps + step);
+            let at = first_link + 2 * (path * steps + step);
             let back = if sums { Scatter::default().view } else { -vector(texel(at - 2)) };
             let [ahead, sky] = [at, at + 1].map(texel);
             (vector(ahead), ahead[3] as usize, [sky[0], sky[1], sky[2]], back)
@@ -71,6 +71,15 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     });
     let written = if sums { "scattered" } else { "carried" };
     let got = run.floats(pass, written).expect("written");
+    if paths == 0 {
+        let pair = |(i, got): (usize, f32)| Pair {
+            got: got.into(),
+            want: 0.0,
+            tolerance: 0.0,
+            at: [0, 0, i],
+        };
+        return got.into_iter().enumerate().map(pair).collect();
+    }
     let curvature = Curvature {
         per_m: [push::CURVATURE_X, push::CURVATURE_Y]
             .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
@@ -99,7 +108,7 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
-            let mut off = gathered((of.light, of.facing, of.mirrored), n, turned);
+            let mut off = gathered(of, n, turned);
             // A lobe ends at the sample's own plane.
             if samples.normal(at).dot(e).abs() <= turned + 6.0 * EPSILON {
                 off = [0, 1, 2].map(|c| off[c] + of.mirrored[c]);

@@ -3,6 +3,7 @@
 mod balls;
 mod bounces;
 mod harmonics;
+mod lobes;
 mod sweeps;
 
 use ridgelight::cpu::oracle::Oracle;
@@ -29,6 +30,7 @@ const TRUE_STRIPS: usize = 32;
 const TRUE_SLICES: usize = 64;
 
 /// What the light of a scene should be, at some of its samples.
+#[derive(Clone)]
 pub struct Truth {
     places: Vec<usize>,
     /// Of sky, environment, suns and key lights, and balls of light, each alone.
@@ -149,6 +151,14 @@ impl Verifier {
     /// # Errors
     /// An error beyond its bound, in a sentence.
     pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
+        if self.scene.surface.phong.is_some() {
+            let quality = lobes::quality(&self.scene, quality);
+            let lobes = lobes::check(&self.scene, &self.truth.places, gpu, &quality, limits)?;
+            let surface = Surface { phong: None, ..self.scene.surface.clone() };
+            let diffuse = Scene { surface, ..self.scene.clone() };
+            let found = Self { scene: diffuse, truth: self.truth.clone() };
+            return Ok(format!("{}; {lobes}", found.check(gpu, &quality, limits)?));
+        }
         let direct = Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality };
         let found = self.check_direct(gpu, &direct, limits)?;
         match quality.bounces.count {

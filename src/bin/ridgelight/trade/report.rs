@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side, Skip};
 use serde_json::{Value, json};
 
+use super::baked::Baked;
 use super::hull;
 use super::picture::Tones;
 use super::point::Point;
@@ -21,6 +22,7 @@ pub struct Report<'a> {
     pub truth_png: Vec<u8>,
     pub tones: &'a Tones,
     pub hulls: &'a [hull::Place],
+    pub baked: &'a [Baked],
     pub knobs: &'a [Knob],
     pub places: &'a [Place],
     pub walk: &'a Walk,
@@ -336,7 +338,7 @@ impl Report<'_> {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "hulls": hulls, "drift": self.drift_text(), "ladders_broken": breaks,
+            "hulls": hulls, "baked": self.baked_json(), "drift": self.drift_text(), "ladders_broken": breaks,
             "ruled_out": skipped, "not_tried": open,
         })
     }

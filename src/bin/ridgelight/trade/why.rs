@@ -80,6 +80,7 @@ impl Report<'_> {
             )
         });
         all.push(self.left_out());
+        all.extend(self.baked_text(point));
         all.extend(hull::text(self.hulls));
         all
     }

@@ -1,5 +1,6 @@
 //! The methods that every case is put to, and what each may err by.
 
+use glam::DVec3;
 use ridgelight::measure::tolerance::{
     ARC_TANGENT, EPSILON, march_slope, pyramid_angle, pyramid_plane_slope, surface_slope,
     sweep_slope, twin_fused_slope, twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed,
@@ -8,8 +9,8 @@ use ridgelight::measure::tolerance::{
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::{
-    self, Basis, BounceEngine, BounceGloss, Bounces, Fuse, Hull, Levels, LightBasis, Lines,
-    Precision, Quality, Receiver, Wedges,
+    self, Basis, BounceEngine, BounceGloss, Bounces, Directions, Fuse, Hull, Levels, LightBasis,
+    Lines, Precision, Quality, Receiver, Scatter, Wedges,
 };
 
 use super::About;
@@ -19,6 +20,14 @@ pub struct Method {
     pub name: &'static str,
     pub about: About,
     pub quality: Quality,
+    /// Of those that look along directions.
+    looks: Option<Looks>,
+}
+
+/// What visible points are looked for along, and how light is scattered over them.
+pub struct Looks {
+    pub directions: Directions,
+    pub scatter: Scatter,
 }
 
 /// Every method. A new one is enrolled by an entry here.
@@ -56,13 +65,55 @@ pub fn all() -> Vec<Method> {
         ("harmonics, 4, nlp", Quality { wedges: Wedges::Nlp, ..soft(4, 1) }),
         ("harmonics, 4, table", Quality { wedges: Wedges::Table, ..soft(4, 1) }),
     ]
-    .map(|(name, quality)| Method { name, about: About::Horizons, quality })
+    .map(|(name, quality)| Method::of(name, About::Horizons, quality))
     .into_iter()
     .chain(bounces(&base))
     .chain(soft_balls(&base))
     .chain(lobes(&base))
     .chain(glosses(&base))
+    .chain(looks(&base))
     .collect()
+}
+
+/// What is looked for along directions all over the sphere, along the grid, and a hair beside it.
+fn looks(base: &Quality) -> impl Iterator<Item = Method> + use<> {
+    let base = *base;
+    let sphere = |count| Directions::fibonacci(count, -1.0, 3).expect("directions");
+    let above = |count| Directions::fibonacci(count, 0.0, 3).expect("directions");
+    let scattered = |bounces, paths| Scatter { bounces, paths, cutoff: 0.0, ..Scatter::default() };
+    let mut level = sphere(14).vectors().to_vec();
+    level.extend([DVec3::X, -DVec3::X]);
+    let level = Directions::from_vectors(level, -1.0).expect("unit vectors");
+    let none = Scatter::default;
+    [
+        ("16 directions", About::Points, sphere(16), none()),
+        ("along the grid", About::Points, around_the_grid(0.0), none()),
+        ("a hair beside the grid", About::Points, around_the_grid(1e-6), none()),
+        ("of 16 directions", About::Ellipses, above(16), none()),
+        ("of 64 directions, half below", About::Ellipses, sphere(64), none()),
+        ("one bounce by 16 directions", About::Scattering, sphere(16), scattered(1, 24)),
+        ("two bounces by 16, two of them level", About::Scattering, level, scattered(2, 16)),
+        ("three bounces by 12 directions", About::Scattering, sphere(12), scattered(3, 16)),
+    ]
+    .into_iter()
+    .map(move |(name, about, directions, scatter)| Method {
+        looks: Some(Looks { directions, scatter }),
+        ..Method::of(name, about, base)
+    })
+}
+
+/// Straight up and down, and along rows, columns and diagonals, turned by so many radians: level, nearly, and not.
+fn around_the_grid(turned_rad: f64) -> Directions {
+    let mut all = vec![DVec3::Z, -DVec3::Z];
+    for eighth in 0..8 {
+        // By whole numbers, so that no rounding turns them.
+        let towards = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
+        let [x, y] = towards[eighth].map(f64::from);
+        for z in [1.0, 0.3, 1e-3, 0.0, -0.3] {
+            all.push(DVec3::new(x - turned_rad * y, y + turned_rad * x, z).normalize());
+        }
+    }
+    Directions::from_vectors(all, -1.0).expect("unit vectors")
 }
 
 /// Balls of light by harmonics of every kind.
@@ -84,7 +135,7 @@ fn soft_balls(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("balls by harmonics, 4, pyramid", Quality { method: scene::Method::Pyramid, ..of(4) }),
     ]
     .into_iter()
-    .map(|(name, quality)| Method { name, about: About::SoftBalls, quality })
+    .map(|(name, quality)| Method::of(name, About::SoftBalls, quality))
 }
 
 /// Lobes by harmonics of every order, and through horizons of every kind.
@@ -97,7 +148,7 @@ fn lobes(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("a lobe by harmonics, 6, every 4th", Quality { subsample: 4, ..of(6) }),
     ]
     .into_iter()
-    .map(|(name, quality)| Method { name, about: About::Lobes, quality })
+    .map(|(name, quality)| Method::of(name, About::Lobes, quality))
 }
 
 /// Light of lobes thrown once: by direction, of either storage of levels, and as seen from above.
@@ -121,7 +172,7 @@ fn glosses(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("as seen from above, 4", of(BounceGloss::Scalar, 4, Levels::Stack)),
     ]
     .into_iter()
-    .map(|(name, quality)| Method { name, about: About::Glosses, quality })
+    .map(|(name, quality)| Method::of(name, About::Glosses, quality))
 }
 
 /// Every engine of bounces: walks along the grid, where they meet all there is; rays along cells' diagonals, and
@@ -150,10 +201,19 @@ fn bounces(base: &Quality) -> impl Iterator<Item = Method> + use<> {
         ("thrown by a pyramid, levels, 3, 0, lobe", levels),
     ]
     .into_iter()
-    .map(|(name, quality)| Method { name, about: About::Bounces, quality })
+    .map(|(name, quality)| Method::of(name, About::Bounces, quality))
 }
 
 impl Method {
+    fn of(name: &'static str, about: About, quality: Quality) -> Self {
+        Self { name, about, quality, looks: None }
+    }
+
+    /// What it looks along.
+    pub fn looks(&self) -> &Looks {
+        self.looks.as_ref().expect("a method of visible points")
+    }
+
     pub fn is_brute(&self) -> bool {
         self.quality.method == scene::Method::Brute
     }

@@ -10,15 +10,17 @@ mod lights;
 mod lobes;
 pub mod methods;
 pub mod page;
+mod points;
+mod scatters;
 mod soft_balls;
 mod suns;
 mod twin;
 
 use ridgelight::gpu::{Headless, Pixels};
-use ridgelight::plan::{self, Azimuth, Picture};
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Quality, Scene, Surface};
+use ridgelight::plan::{self, Azimuth, Picture, Plan};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface, VisiblePoints};
 
-use methods::Method;
+use methods::{Looks, Method};
 use twin::Twin;
 
 /// What is drawn for a case.
@@ -27,6 +29,12 @@ pub enum Asks {
     Horizons { of: u32, first: u32, count: u32 },
     /// A picture and a layer for each light.
     Light,
+    /// What samples see along the method's directions.
+    Points,
+    /// Ellipses of the sky that they see there.
+    Ellipses,
+    /// Light scattered over it, of direct light that [`scatters::direct`] makes up.
+    Scatter,
 }
 
 /// What a case is about: it is put to the methods of that.
@@ -42,6 +50,12 @@ pub enum About {
     Lobes,
     /// What ground mirrors of what it throws.
     Glosses,
+    /// What samples see, direction by direction.
+    Points,
+    /// The sky that they see, as ellipses.
+    Ellipses,
+    /// What is scattered over what they see.
+    Scattering,
 }
 
 /// A scene at an extreme, and what its answer has to be.
@@ -102,15 +116,14 @@ pub struct Found<'a> {
     pub azimuths_rad: Vec<f64>,
     /// What a pyramid has to find where heights are no plane's.
     twin: Option<Twin<'a>>,
-    /// Which azimuth each layer of the first output is.
-    layers: Vec<u32>,
+    plan: Plan,
     outputs: Vec<Pixels>,
 }
 
 impl Found<'_> {
     /// Elevation of the horizon, radians; `None` where that azimuth was not asked for.
     pub fn horizon(&self, k: usize, row: usize, col: usize) -> Option<f64> {
-        let layer = self.layers.iter().position(|l| *l as usize == k)?;
+        let layer = self.plan.layer_azimuths.iter().position(|l| *l as usize == k)?;
         let (rows, cols) = (self.scene.field.rows(), self.scene.field.cols());
         Some(f64::from(self.outputs[0].values[(layer * rows + row) * cols + col]))
     }
@@ -165,6 +178,21 @@ impl Found<'_> {
         (0..count).map(|i| self.light(layer, i / cols, i % cols)).collect()
     }
 
+    /// An output of four channels, row-major.
+    fn texels(&self, output: usize) -> Vec<[f32; 4]> {
+        self.outputs[output].values.as_chunks().0.to_vec()
+    }
+
+    /// What samples see: the outputs of [`Asks::Points`].
+    fn points(&self) -> VisiblePoints {
+        points_of(self.scene, self.looks(), &self.outputs)
+    }
+
+    /// What the method looks along.
+    fn looks(&self) -> &Looks {
+        self.method.looks()
+    }
+
     /// Whether there is such a layer.
     pub fn has(&self, layer: &str) -> bool {
         self.outputs.iter().any(|o| o.name == layer)
@@ -206,7 +234,9 @@ pub struct Row {
 pub fn cases() -> Vec<Case> {
     let of_horizons = horizons::cases().into_iter().chain(lights::cases()).chain(balls::cases());
     let of_their_own = bounces::cases().into_iter().chain(soft_balls::cases());
-    of_horizons.chain(of_their_own).chain(lobes::cases()).chain(glosses::cases()).collect()
+    let of_visible_points = points::cases().into_iter().chain(scatters::cases());
+    let of_lobes = lobes::cases().into_iter().chain(glosses::cases());
+    of_horizons.chain(of_their_own).chain(of_lobes).chain(of_visible_points).collect()
 }
 
 /// Which cases are put to which methods, by their places in the lists.
@@ -215,46 +245,70 @@ pub fn put(cases: &[Case], methods: &[Method]) -> Vec<[usize; 2]> {
     all.filter(|[c, m]| cases[*c].about == methods[*m].about).collect()
 }
 
+/// The outputs of a plan.
+fn drawn(gpu: &mut Headless, plan: Plan, contents: &[Vec<f32>]) -> Result<Vec<Pixels>, String> {
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let outputs = plan.outputs().count();
+    let pixels = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        (0..outputs).map(|output| gpu.pixels(frame, output)).collect()
+    });
+    pixels.map_err(|e: ridgelight::Error| e.to_string())
+}
+
+fn points_of(scene: &Scene, looks: &Looks, outputs: &[Pixels]) -> VisiblePoints {
+    let words = outputs.iter().flat_map(|image| image.values.iter().map(|v| v.to_bits())).collect();
+    let points =
+        VisiblePoints::new(&scene.field, scene.surface.border, looks.directions.clone(), words);
+    points.expect("points of the field")
+}
+
 /// The probes of a case under a method on a device, or the sentence of the refusal.
 pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Probe>, String> {
-    let field = &case.scene.field;
+    let (scene, field, border) = (&case.scene, &case.scene.field, case.scene.surface.border);
     let limits = gpu.report().limits;
-    let (quality, planned) = match case.asks {
+    let heights = vec![field.heights_m().to_vec()];
+    let mut quality = method.quality;
+    let seen = || plan::visible_points(field, border, &method.looks().directions, &limits);
+    let planned = match case.asks {
         Asks::Horizons { of, first, count } => {
-            let quality = Quality { azimuths: of, ..method.quality };
-            let border = case.scene.surface.border;
-            let part = (first, count);
-            (quality, plan::horizons(field, border, &quality, &limits, part, false))
+            quality.azimuths = of;
+            plan::horizons(field, border, &quality, &limits, (first, count), false)
         }
         Asks::Light => {
             let wanted = Picture { light_layers: true, ..Picture::default() };
-            let planned = plan::picture(&case.scene, &method.quality, &limits, wanted);
-            (method.quality, planned)
+            plan::picture(scene, &quality, &limits, wanted)
+        }
+        Asks::Points => seen(),
+        Asks::Ellipses => plan::ellipses(field, border, &method.looks().directions, &limits),
+        Asks::Scatter => {
+            let Looks { directions, scatter } = method.looks();
+            plan::scatter(scene, directions, scatter, &limits)
         }
     };
     let plan = planned.map_err(|e| e.to_string())?;
     let contents = match case.asks {
-        Asks::Horizons { .. } => vec![field.heights_m().to_vec()],
-        Asks::Light => plan::picture_inputs(&case.scene),
+        Asks::Horizons { .. } | Asks::Points | Asks::Ellipses => heights,
+        Asks::Light => plan::picture_inputs(scene),
+        Asks::Scatter => {
+            let words = drawn(gpu, seen().map_err(|e| e.to_string())?, &heights)?;
+            let points = points_of(scene, method.looks(), &words);
+            let inputs = plan::scatter_inputs(&plan, scene, &points, &scatters::direct(scene));
+            inputs.map_err(|e| e.to_string())?
+        }
     };
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    let (layers, outputs) = (plan.layer_azimuths.clone(), plan.outputs().count());
-    let mut frame = gpu.frame(plan, &contents).map_err(|e| e.to_string())?;
-    gpu.draw(&mut frame).map_err(|e| e.to_string())?;
-    let outputs = (0..outputs).map(|o| gpu.pixels(&frame, o).map_err(|e| e.to_string()));
-    let outputs = outputs.collect::<Result<Vec<Pixels>, String>>();
-    gpu.end(frame);
+    let outputs = drawn(gpu, plan.clone(), &contents)?;
     let finds_horizons = case.about == About::Horizons;
-    let is_smoothed = finds_horizons && method.is_pyramid() && !is_plane(&case.scene);
-    let twin = is_smoothed.then(|| Twin::new(&case.scene, &quality));
+    let is_smoothed = finds_horizons && method.is_pyramid() && !is_plane(scene);
+    let twin = is_smoothed.then(|| Twin::new(scene, &quality));
     let found = Found {
-        scene: &case.scene,
+        scene,
         method,
         azimuths: method.azimuths(quality.azimuths, field.cell_m()),
         azimuths_rad: plan::circle_rad(&quality, field.cell_m()).expect("azimuths"),
         twin,
-        layers,
-        outputs: outputs?,
+        plan,
+        outputs,
     };
     Ok((case.probes)(&found))
 }

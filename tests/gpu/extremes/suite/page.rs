@@ -32,9 +32,14 @@ cells alone turns an angle there by anything. In each other row a bound is below
 What ground throws at itself (`--bounces`) is found by engines of its own: every stretch of it, walks over what
 sweeps along lines have met, and pyramids; with the azimuths of `--bounce-azimuths`.
 
+Visible points are numbers of samples: right, or wrong. Ellipses of the sky and light that is scattered are found from them.
+
 Bounds on a slope are each turned into an angle by 1 / (1 + slope²), and the arc tangent's 4.4e-7 of slopes below 1.
 Derived in `src/measure/tolerance.rs` and `tests/gpu/extremes/suite/methods.rs`.
 ";
+
+/// What stands before the inputs that are refused.
+pub const INPUTS: &str = "\n## Inputs that are refused\n\n| input | what is said |\n|---|---|\n";
 
 /// In place of a bound, and of the share of it.
 pub const UNJUDGED: &str = "not judged";
@@ -77,6 +82,9 @@ pub fn missing(page: &str, cases: &[Case], methods: &[Method]) -> Vec<String> {
                 missing.push(format!("{}, {}", case.name, method.name));
             }
         }
+    }
+    if !page.contains(INPUTS) {
+        missing.push("the inputs that are refused".to_owned());
     }
     let inputs = inputs::ALL.iter().map(|(name, _, sentence)| refused(name, sentence));
     missing.extend(inputs.filter(|row| !page.lines().any(|l| l == row)));

@@ -135,6 +135,7 @@ pub fn scatters() -> Vec<Case> {
     let map = Albedo::Map((0..72).map(|_| [next() as f32, 0.5, 0.9]).collect());
     let grey = |border| Surface { border, albedo: Albedo::Constant([0.6, 0.3, 0.9]), phong: None };
     let lobes = (0..72).map(|i| Phong { exponent: 1.0 + i as f32, scale: next() as f32 * 0.1 });
+    let black = Surface { albedo: Albedo::Constant([0.0; 3]), ..Surface::default() };
     let mapped = Surface { border: Border::Open, albedo: map, phong: None };
     let glossy = Surface {
         border: Border::Plane,
@@ -167,7 +168,8 @@ pub fn scatters() -> Vec<Case> {
     // One groove, whose sides see each other whole.
     let vault = || field(7, 9, [1.0, 1.0], |r, c| (c as f64 - 4.0).abs() + 0.01 * r as f64);
     vec![
-        of("one bounce", rough(9, 8, 74), mapped, none(), (11, scatter(1, 70), false)),
+        of("one bounce", rough(9, 8, 74), mapped, none(), (71, scatter(1, 70), false)),
+        of("nothing", rough(9, 8, 74), black, none(), (11, scatter(2, 70), false)),
         of(
             "three bounces",
             rough(7, 9, 75),

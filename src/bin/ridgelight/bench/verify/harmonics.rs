@@ -16,14 +16,14 @@ use ridgelight::measure::tolerance::{
     ARC_TANGENT, ShadeError, twin_fused_slope, twin_resolved, two_devices,
 };
 use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
-use ridgelight::scene::{Albedo, Border, Quality, Receiver, Scene};
+use ridgelight::scene::{Border, Quality, Receiver, Scene};
 
-use super::{Verifier, bounds, percent, rms, within};
+use super::{Verifier, albedo_of, bounds, percent, rms, within};
 
 /// What is known of a sample before it is lit.
-struct Place {
-    index: usize,
-    normal: DVec3,
+pub(super) struct Place {
+    pub index: usize,
+    pub normal: DVec3,
     /// Slopes towards east and north.
     gradient: DVec2,
     /// Slopes of the horizons along azimuths.
@@ -31,7 +31,7 @@ struct Place {
 }
 
 impl Place {
-    fn of(scene: &Scene, index: usize) -> Self {
+    pub fn of(scene: &Scene, index: usize) -> Self {
         let cols = scene.field.cols();
         let heights = Heights::of(&scene.field, scene.surface.border);
         let gradient = field_slope(&heights, (index % cols) as i32, (index / cols) as i32);
@@ -64,10 +64,8 @@ pub(super) fn check(
     limits: &Limits,
 ) -> Result<String> {
     let Verifier { scene, truth } = verifier;
-    let heights = Heights::of(&scene.field, scene.surface.border);
     let border = scene.surface.border;
-    let all = truth.places.iter().copied().chain(nodes_of(&heights, quality, &truth.places));
-    let all = places(scene, all.collect(), gpu, quality, limits)?;
+    let all = with_nodes(scene, &truth.places, gpu, quality, limits)?;
     let (places, nodes) = all.split_at(truth.places.len());
     let sky = rms(places.iter().zip(&truth.open).map(|(place, open)| place.sky(border) - open));
     let open = rms(truth.open.iter().copied());
@@ -77,7 +75,8 @@ pub(super) fn check(
 
     let [whole, own] = draw(scene, gpu, quality, limits)?;
     let wanted = Wanted::of(scene, quality, places, nodes);
-    let (series, series_bound) = wanted.judge(&texels(&own, &truth.places), quality)?;
+    let what = format!("light of order {} at one place is", quality.sh_order);
+    let (series, series_bound) = wanted.judge(&what, &texels(&own, &truth.places), quality)?;
 
     let [whole_means, own_means] = [&whole, &own].map(|p| truth.means(p));
     let rest = whole_means.iter().zip(&own_means).zip(&truth.expected);
@@ -117,6 +116,19 @@ fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize
     }
     let all = places.iter().flat_map(|p| around(heights, quality, *p).map(|(node, _)| node));
     all.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Places, and behind them their nodes, with the device's horizons.
+pub(super) fn with_nodes(
+    scene: &Scene,
+    of: &[usize],
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Vec<Place>> {
+    let heights = Heights::of(&scene.field, scene.surface.border);
+    let all = of.iter().copied().chain(nodes_of(&heights, quality, of));
+    places(scene, all.collect(), gpu, quality, limits)
 }
 
 /// Samples with the device's horizons.
@@ -169,16 +181,32 @@ fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
     places.iter().map(texel).collect()
 }
 
-/// The environment's light at each place by the same series in f64, and how far a device may be from it.
-struct Wanted(Vec<[DVec3; 2]>);
+/// Light at each place by the same series in f64, and how far a device may be from it.
+pub(super) struct Wanted(pub Vec<[DVec3; 2]>);
 
 impl Wanted {
-    /// Of places, by what their nodes see, whose horizons a device has found: it finds them again, from the
-    /// same lattice.
+    /// The environment's, of places, by what their nodes see.
     fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
-        let (field, border) = (&scene.field, scene.surface.border);
         let environment = scene.lights.environment.as_ref().expect("an environment");
-        let harmonics = Harmonics::new(environment, border, quality);
+        let harmonics = Harmonics::new(environment, scene.surface.border, quality);
+        Self::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
+            let albedo = DVec3::from_array(albedo_of(scene, place.index));
+            let [light, off] = harmonics.light(place.normal, seen, error);
+            let light = albedo * light;
+            [light, albedo * off + light.map(|v| twin_resolved(v, 1))]
+        })
+    }
+
+    /// What `light` makes of what places see, by nodes whose horizons a device has found: it finds them again, from the same
+    /// lattice.
+    pub fn lit(
+        scene: &Scene,
+        quality: &Quality,
+        [places, nodes]: [&[Place]; 2],
+        harmonics: &Harmonics,
+        light: impl Fn(&Place, &Seen, &ShadeError) -> [DVec3; 2],
+    ) -> Self {
+        let (field, border) = (&scene.field, scene.surface.border);
         let heights = || field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
         let cell = field.cell_m()[0].min(field.cell_m()[1]);
@@ -192,37 +220,29 @@ impl Wanted {
             .collect();
         let shader_heights = Heights::of(field, border);
         let of = |place: &Place| {
-            let albedo = match &scene.surface.albedo {
-                Albedo::Constant(c) => *c,
-                Albedo::Map(map) => map[place.index],
-            };
-            let albedo = DVec3::from_array(albedo.map(f64::from));
             let seen = if quality.subsample == 1 {
                 seen[&place.index].clone()
             } else {
                 let around = around(&shader_heights, quality, place.index);
                 Seen::between(around.iter().map(|(node, weight)| (&seen[node], *weight)), &error)
             };
-            let [light, off] = harmonics.light(place.normal, &seen, &error);
-            let light = albedo * light;
-            [light, albedo * off + light.map(|v| twin_resolved(v, 1))]
+            light(place, &seen, &error)
         };
         Self(places.iter().map(of).collect())
     }
 
     /// A device's light at the places: RMSE over the root mean square, and that of what it may be off, where
     /// it is within that at every place.
-    fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
+    pub fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
         let of = |i: usize| self.0.iter().map(move |w| w[i]);
         let all = |values: Vec<DVec3>| {
             rms(values.iter().flat_map(|v| v.to_array()).collect::<Vec<_>>().into_iter())
         };
         let scale = all(of(0).collect()).max(f64::MIN_POSITIVE);
-        let what = format!("light of order {} at one place is", quality.sh_order);
         for (found, [want, off]) in found.iter().zip(&self.0) {
             for c in 0..3 {
                 let error = (found[c] - want[c]).abs() / scale;
-                within(&what, "the same series in f64", error, off[c] / scale, quality)?;
+                within(what, "the same series in f64", error, off[c] / scale, quality)?;
             }
         }
         let off = found.iter().zip(of(0)).map(|(found, want)| *found - want).collect();
@@ -231,13 +251,13 @@ impl Wanted {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use ridgelight::measure::fractal::fractal;
     use ridgelight::scene::{Basis, Environment, Lights, Surface, Wedges, Window};
 
     /// A sunlit sky: 60 times brighter in the sun's texels.
-    fn scene() -> Scene {
+    pub fn scene() -> Scene {
         let texel = |i: usize| {
             let sun =
                 if (5..7).contains(&(i / 32)) && (9..11).contains(&(i % 32)) { 60.0 } else { 0.0 };
@@ -252,7 +272,7 @@ mod tests {
     }
 
     /// Some places with the oracle's horizons.
-    fn places(scene: &Scene, quality: &Quality) -> Vec<Place> {
+    pub fn places(scene: &Scene, quality: &Quality) -> Vec<Place> {
         let (field, border) = (&scene.field, scene.surface.border);
         let oracle = ridgelight::cpu::oracle::Oracle::new(field, border);
         let limits = Limits::lavapipe();
@@ -291,7 +311,7 @@ mod tests {
                     Wanted::of(&scene, quality, places, places).0.iter().map(|w| w[0]).collect()
                 };
                 let right = light(&quality, &known);
-                let (error, bound) = wanted.judge(&right, &quality).unwrap();
+                let (error, bound) = wanted.judge("light is", &right, &quality).unwrap();
                 println!("order {sh_order} {wedges:?} {receiver:?} {window:?}: bound {bound:e}");
                 // What f32 loses to the fits' weights, 60 and 100 times their light.
                 let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.98] };
@@ -324,7 +344,7 @@ mod tests {
                     ("NaN", holed),
                 ];
                 for (name, light) in wrong {
-                    let refused = wanted.judge(&light, &quality);
+                    let refused = wanted.judge("light is", &light, &quality);
                     assert!(refused.is_err(), "{name} passes: {quality:?}");
                 }
             }
