@@ -126,6 +126,45 @@ fn camera() -> Result<String> {
     Ok(out)
 }
 
+/// Programs that an integrator would write, whole.
+const HOSTS: [(&str, &str, &str); 3] = [
+    ("Rust, `ash`", "examples/ash_host.rs", "the code above and an engine around it"),
+    (
+        "C, plain Vulkan",
+        "capi/tests/c/host.c",
+        "the shared and the static library, under the address sanitizer too",
+    ),
+    (
+        "Rust, `wgpu`",
+        "examples/wgpu/src/main.rs",
+        "wgpu's device and textures, the light sampled in a wgpu pass",
+    ),
+];
+
+/// Where a program's own engine begins, if it says so.
+const ENGINE: &str = "// What follows an engine has already.";
+
+/// Lines of code: neither empty nor a comment alone.
+fn code_lines(text: &str) -> usize {
+    let is_comment = |line: &str| line.starts_with("//") || line.starts_with("/*");
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !is_comment(line)).count()
+}
+
+fn hosts() -> Result<String> {
+    let mut out = String::from("| host | lines of code | what it is |\n|---|---|---|\n");
+    for (name, path, what) in HOSTS {
+        let program = text(Path::new(path))?;
+        let of_engine = program.split_once(ENGINE);
+        let own = of_engine.map(|(own, _)| format!(", {} without the engine", code_lines(own)));
+        let own = own.unwrap_or_default();
+        writeln!(out, "| [{name}]({path}) | {}{own} | {what} |", code_lines(&program)).unwrap();
+    }
+    let tests = "Tests run each and hold it to the command line's bytes, with no word of validation \
+                 (`tests/gpu/ash_host.rs`, `capi/tests/c`, `tools/wgpu`).";
+    writeln!(out, "\n{tests}").unwrap();
+    Ok(out)
+}
+
 fn sizes() -> Result<String> {
     let figures = Figures::read("sizes")?;
     let key = |row: &Value, key| figures.number(row, key).map(|v| v as u64);
@@ -359,10 +398,11 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 10] = [
+    let sections: [Section; 11] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
+        ("hosts", hosts),
         ("accuracy", accuracy),
         ("auto", auto),
         ("forms", forms),

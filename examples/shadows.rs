@@ -4,7 +4,9 @@
 //!
 //! Two hundred lights evenly over the upper hemisphere on a pit, grooves, the middle N² (48) samples of the bundled mountain
 //! and of the moss of FOLDER's `height/` where there is one. The truth is a ray a sample and light; beside it, visibility
-//! interpolated between N directions of the sphere and cut at a half, and ellipses fitted to those above horizontal.
+//! interpolated between N directions of the sphere and cut at a half, ellipses fitted to those above horizontal, and the exact
+//! sweep of a sun. The same of 200 views: what a camera far off would see of samples that it does not see, and the other way
+//! round, by the area that each sample shows it.
 //! The picture: where four samples see the sky in the plan of the hemisphere, and what their ellipses make of it.
 
 #[path = "shadows/picture.rs"]
@@ -15,13 +17,18 @@ mod seen;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use glam::DVec3;
+use ridgelight::bake;
 use ridgelight::cpu::ellipse_fit::{Ellipse, seen as sky_of, start};
 use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::plan;
-use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{
+    Albedo, Border, Directions, HeightField, Lights, Method, Quality, Scene, Sun, Surface,
+    VisiblePoint,
+};
 use ridgelight::{Error, Result};
-use seen::points;
+use seen::{points, timed};
 
 const LIGHTS: usize = 200;
 const COUNTS: [usize; 3] = [64, 256, 1024];
@@ -83,33 +90,55 @@ fn middle(whole: &HeightField, side: usize) -> Result<HeightField> {
     HeightField::new(side, side, &heights, whole.cell_m(), None)
 }
 
+/// Of every light and sample.
+struct Truth {
+    lit: Vec<Vec<bool>>,
+    /// As a view: the area that the sample shows it, over its area in the plan.
+    shown: Vec<Vec<f64>>,
+}
+
 /// Wrong samples by light.
-struct Wrong(Vec<usize>);
+struct Wrong {
+    counts: Vec<usize>,
+    /// As of views: area that is taken for seen or for hidden, over that which is seen.
+    masked: f64,
+}
 
 impl Wrong {
     /// Of `is_lit(light, sample)`, and the milliseconds of a light over the field.
-    fn of(truth: &[Vec<bool>], is_lit: impl Fn(usize, usize) -> bool) -> (Self, f64) {
+    fn of(truth: &Truth, is_lit: impl Fn(usize, usize) -> bool) -> (Self, f64) {
+        let Truth { lit: truth, shown } = truth;
         let begun = Instant::now();
         let wrong = |(k, truth): (usize, &Vec<bool>)| {
             truth.iter().enumerate().filter(|(at, lit)| is_lit(k, *at) != **lit).count()
         };
-        let wrong: Vec<usize> = truth.iter().enumerate().map(wrong).collect();
-        (Self(wrong), begun.elapsed().as_secs_f64() * 1e3 / truth.len() as f64)
+        let counts: Vec<usize> = truth.iter().enumerate().map(wrong).collect();
+        let ms = begun.elapsed().as_secs_f64() * 1e3 / truth.len() as f64;
+        let (mut wrong, mut seen) = (0.0, 0.0);
+        for (k, lit) in truth.iter().enumerate() {
+            for (at, lit) in lit.iter().enumerate() {
+                seen += if *lit { shown[k][at] } else { 0.0 };
+                wrong += if is_lit(k, at) == *lit { 0.0 } else { shown[k][at] };
+            }
+        }
+        (Self { counts, masked: wrong / seen }, ms)
     }
 
-    /// Percent of samples: over all lights, then by bands.
+    /// Percent of samples: over all lights, then by bands; of the area that views see.
     fn row(&self, lights: &Directions, samples: usize) -> String {
         let share = |low: f64, high: f64| {
             let within = |k: &usize| {
                 let elevation = lights.vectors()[*k].z.asin().to_degrees();
                 low <= elevation && elevation < high
             };
-            let own: Vec<usize> = (0..self.0.len()).filter(within).collect();
-            let wrong: usize = own.iter().map(|k| self.0[*k]).sum();
+            let own: Vec<usize> = (0..self.counts.len()).filter(within).collect();
+            let wrong: usize = own.iter().map(|k| self.counts[*k]).sum();
             format!("{:.2}", 100.0 * wrong as f64 / (own.len() * samples) as f64)
         };
         let bands = BANDS.windows(2).map(|b| share(b[0], b[1]));
-        std::iter::once(share(0.0, 90.1)).chain(bands).collect::<Vec<_>>().join(" | ")
+        let masked = format!("{:.2}", 100.0 * self.masked);
+        let all = std::iter::once(share(0.0, 90.1)).chain(bands).chain([masked]);
+        all.collect::<Vec<_>>().join(" | ")
     }
 }
 
@@ -137,15 +166,59 @@ fn ellipses(
     })
 }
 
+/// Milliseconds of a sun's shadows by the exact sweep, whole frames, and the percent of samples that face a sun and that it has
+/// wrong; of every tenth light.
+fn swept(
+    gpu: &mut Headless,
+    land: &Land,
+    lights: &Directions,
+    truth: &Truth,
+) -> Result<(f64, f64)> {
+    let (mut ms, mut count, mut wrong, mut facing) = (0.0, 0.0, 0, 0);
+    for k in (0..LIGHTS).step_by(10) {
+        let e = lights.vectors()[k];
+        let sun = Sun {
+            azimuth_rad: e.y.atan2(e.x),
+            elevation_rad: e.z.asin(),
+            diameter_rad: 0.0,
+            irradiance: [1.0; 3],
+        };
+        let surface =
+            Surface { border: land.border, albedo: Albedo::Constant([1.0; 3]), phong: None };
+        let lights = Lights { suns: vec![sun], ..Lights::default() };
+        let scene = Scene { field: land.field.clone(), surface, lights };
+        let quality = Quality { method: Method::Sweep, ..Quality::default() };
+        let limits = gpu.report().limits;
+        let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+        let inputs = plan::picture_inputs(&scene);
+        let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let (took, radiance) = gpu.with_frame(plan, &inputs, |gpu, frame| {
+            Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?.values))
+        })?;
+        (ms, count) = (ms + took, count + 1.0);
+        for (at, texel) in radiance.chunks_exact(4).enumerate() {
+            // Of those that hardly face it a rounding tells.
+            if truth.shown[k][at] > 1e-3 {
+                facing += 1;
+                wrong += usize::from((texel[0] > 0.0) != truth.lit[k][at]);
+            }
+        }
+    }
+    Ok((ms / count, 100.0 * wrong as f64 / facing as f64))
+}
+
 /// The table of a field; its ellipses of most directions.
 fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellipse>> {
     let Land { name, field, border } = land;
     let samples = field.rows() * field.cols();
     let (exact, exact_ms) = points(gpu, field, *border, lights)?;
     let sees_sky = |k: usize, at: usize| exact.seen(k, at) == VisiblePoint::Sky;
-    let truth: Vec<Vec<bool>> =
+    let lit: Vec<Vec<bool>> =
         (0..LIGHTS).map(|k| (0..samples).map(|at| sees_sky(k, at)).collect()).collect();
-    let lit = truth.iter().flatten().filter(|lit| **lit).count();
+    let normals = bake::normals(field, *border);
+    let shown = |view: &DVec3| normals.iter().map(|n| n.dot(*view).max(0.0) / n.z).collect();
+    let truth = Truth { lit, shown: lights.vectors().iter().map(shown).collect() };
+    let lit = truth.lit.iter().flatten().filter(|lit| **lit).count();
     println!(
         "{name}, {} × {}; {:.1} % lit\n",
         field.cols(),
@@ -153,10 +226,12 @@ fn one(gpu: &mut Headless, land: &Land, lights: &Directions) -> Result<Vec<Ellip
         100.0 * lit as f64 / (LIGHTS * samples) as f64
     );
     println!(
-        "| shadows by | found, ms | fitted, ms | a light, ms | bytes a sample | wrong, % | 0-15° | 15-30° | 30-60° | 60-90° |"
+        "| shadows by | found, ms | fitted, ms | a light, ms | bytes a sample | wrong, % | 0-15° | 15-30° | 30-60° | 60-90° | of what views see |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
-    println!("| rays | | | {:.2} | | | | | | |", exact_ms / LIGHTS as f64);
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("| rays | | | {:.2} | | | | | | | |", exact_ms / LIGHTS as f64);
+    let (ms, wrong) = swept(gpu, land, lights, &truth)?;
+    println!("| exact sweep | | | {ms:.2} | | {wrong:.2} | | | | | |");
     let mut last = Vec::new();
     for count in COUNTS {
         let directions = Directions::fibonacci(count, -1.0, 0)?;
@@ -219,7 +294,8 @@ fn run() -> Result<()> {
     println!(
         "{LIGHTS} lights evenly over the upper hemisphere; directions evenly over the sphere, half of them above horizontal. \
          Found and fitted: the device's own ms, as a light by rays; a light of the others: one core of the processor, look-ups \
-         alone. Bytes: of ellipses six numbers of 16 bits. Covariances: ellipses before their centres and radii are searched for.\n"
+         alone. Bytes: of ellipses six numbers of 16 bits. Covariances: ellipses before their centres and radii are searched for. Exact sweep: a \
+         whole frame under one sun. Of what views see: area that a test takes for seen or hidden wrongly, over that which is seen.\n"
     );
     let lights = Directions::fibonacci(LIGHTS, 0.0, 7)?;
     let mut drawn = Vec::new();

@@ -46,6 +46,11 @@
 // Horizons are kept, so that light alone may change, and rectangles of heights be edited.
 #define RIDGELIGHT_PICTURE_KEEPS_HORIZONS 4
 
+// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: one more input, the
+// last, "light_colours", a row of texels, the sky's where the scene's is not 0, then each sun's, then each key light's.
+// Those of the scene then count for nothing. Not with balls of light or a lobe.
+#define RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE 8
+
 // How a call ended.
 typedef enum RidgelightResult {
     // It did what it should.
@@ -150,7 +155,8 @@ typedef struct RidgelightSphereLight {
 } RidgelightSphereLight;
 
 // A field, what it is made of, and the light that falls on it. Heights are the image's that is handed in with
-// each frame, in the unit of `cell_m`: the host need not know them. All that pointers point at is copied.
+// each frame, in the unit of `cell_m`, none of them NaN: the host need not know them. All that pointers point at is
+// copied.
 typedef struct RidgelightScene {
     // sizeof(RidgelightScene).
     uint32_t struct_size;
@@ -196,6 +202,9 @@ typedef struct RidgelightScene {
     uint32_t key_count;
     // How many balls of light.
     uint32_t sphere_count;
+    // VK_TRUE where some samples hold no ground: pictures before a camera then take an image of marks and leave holes.
+    // Heights there are filled all the same: ridgelight_fill_voids.
+    uint32_t has_voids;
 } RidgelightScene;
 
 // What speed is traded against accuracy with. In every field 0 is the default.
@@ -285,7 +294,7 @@ typedef struct RidgelightImageInfo {
     uint32_t extent[3];
     // What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     VkImageUsageFlags usage;
-    // "heights", "environment", "albedo"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
+    // "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
     char name[32];
 } RidgelightImageInfo;
 
@@ -347,7 +356,8 @@ typedef struct RidgelightImage {
     // sizeof(RidgelightImage).
     uint32_t struct_size;
     // Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are told in
-    // units of the range); environment and albedo RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are the plan's.
+    // units of the range); environment, albedo and colours of lights RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are
+    // the plan's.
     VkFormat format;
     // The image: of usage SAMPLED for an input, STORAGE for an output.
     VkImage image;
@@ -436,6 +446,9 @@ typedef struct RidgelightViewImages {
     const struct RidgelightImage *picture;
     // D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
     const struct RidgelightImage *depth;
+    // Where the scene has voids: a texel a sample, of R32F, R16F or R16_UNORM, 0 where there is ground, 1 where there is
+    // none.
+    const struct RidgelightImage *voids;
 } RidgelightViewImages;
 
 #ifdef __cplusplus
@@ -514,9 +527,9 @@ enum RidgelightResult ridgelight_plan_input(const struct RidgelightPlan *plan,
                                             struct RidgelightImageInfo *info);
 
 // Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
-// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment and albedo RGBA32F, RGBA16F,
-// RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own. Before a renderer
-// is made; nobody else uses the plan meanwhile.
+// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and colours of lights
+// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own.
+// Before a renderer is made; nobody else uses the plan meanwhile.
 //
 // Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
 //
@@ -691,6 +704,22 @@ enum RidgelightResult ridgelight_view_timings(const struct RidgelightView *view,
 enum RidgelightResult ridgelight_taken(const struct RidgelightRenderer *renderer,
                                        uint32_t index,
                                        struct RidgelightImage *image);
+
+// Fills heights that hold no data, before they go to the device: those that are NaN, and where `voids` is not null those
+// whose byte is not 0. Each takes the mean of its neighbours that are known, from the rim inwards, as the command line has
+// it; the others keep their bits. Of `voids` every byte becomes 1 or 0: whether there is no ground. Light is found for
+// filled samples, too, and is the caller's to mask; for pictures before a camera the marks go to the device, see
+// RidgelightScene's has_voids.
+//
+// Returns OK; ARGUMENT; SETTING for an infinite height, which is named, and for nothing but voids: then nothing is changed.
+//
+// # Safety
+// `heights` is null or points at rows times cols numbers, `voids` at as many bytes, row after row from the north-west;
+// nobody else uses them meanwhile.
+enum RidgelightResult ridgelight_fill_voids(uint32_t rows,
+                                            uint32_t cols,
+                                            float *heights,
+                                            uint8_t *voids);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,6 +1,6 @@
 // Computes: the ellipse in the plan of the hemisphere that holds the directions in which a sample sees the sky (Heidrich et
-// al. 2000, §4). Reads: visible_points (see shared/points.glsl), directions (east, north, up), of which those above
-// horizontal count. Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
+// al. 2000, §4). Reads: visible_points (see shared/points.glsl), directions (east, north, up), or on a curved base bent (see
+// points_bend), of which those above horizontal count. Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
 // One invocation is one sample.
 #version 460
 
@@ -11,11 +11,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 // Two directions in a word.
 layout(constant_id = 0) const bool SMALL = false;
+layout(constant_id = 1) const bool BENT = false;
 
 layout(binding = 0) uniform utexture2DArray visible_points;
 layout(binding = 1) uniform textureBuffer directions;
 layout(binding = 2, rgba32f) uniform writeonly image2D ellipse_axes;
 layout(binding = 3, rgba32f) uniform writeonly image2D ellipse_radii;
+layout(binding = 4) uniform texture2DArray bent;
 
 layout(push_constant) uniform EllipseFitPush {
     int cols;
@@ -39,6 +41,11 @@ const vec4 GROW_B = vec4(0.0, 1.0, 1.0, 1.0);
 
 // Plan of a direction, and what it counts for: 1 where it sees the sky, -1 where not, 0 below horizontal.
 vec3 seen(int i, ivec2 at, out float z) {
+    if (BENT) {
+        vec4 own = texelFetch(bent, ivec3(at, i), 0);
+        z = own.z;
+        return vec3(own.xy, own.z > 0.0 ? (own.w == 0.0 ? 1.0 : -1.0) : 0.0);
+    }
     vec3 e = texelFetch(directions, first_direction + i).xyz;
     uint point = point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
     z = e.z;

@@ -1,5 +1,5 @@
 // Computes: one light's share of the picture: its sum times its colour and the surface's albedo.
-// Reads: scalar_sum or colour_sum, albedo_map, dirty_samples, edit_list. Reads and writes: radiance (or radiance_grey). Writes:
+// Reads: scalar_sum or colour_sum, light_colours, albedo_map, dirty_samples, edit_list. Reads and writes: radiance (or radiance_grey). Writes:
 // layer (or layer_grey).
 // One invocation is one sample.
 #version 460
@@ -17,6 +17,8 @@ layout(constant_id = 3) const bool WRITES_LAYER = false;
 layout(constant_id = 4) const bool GREY = false;
 // Only the samples marked in dirty_samples, by the list of their words.
 layout(constant_id = 5) const bool RELIGHTS = false;
+// The light's colour is a texel of the caller's.
+layout(constant_id = 6) const bool COLOUR_IS_TEXEL = false;
 
 layout(binding = 0) uniform texture2D scalar_sum;
 layout(binding = 1) uniform texture2D colour_sum;
@@ -27,13 +29,15 @@ layout(binding = 5, r32f) uniform image2D radiance_grey;
 layout(binding = 6, r32f) uniform writeonly image2D layer_grey;
 layout(binding = 7) readonly buffer DirtySamples { uint dirty_samples[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
+// One row, a texel a light.
+layout(binding = 9) uniform texture2D light_colours;
 
 layout(push_constant) uniform LightResolvePush {
     int cols;
     int rows;
     uint clears;  // 1 for the first light
-    float pad;
-    vec4 colour;  // of the light, where the sum has none; times the albedo, where that is constant
+    int texel;    // of light_colours
+    vec4 colour;  // of the light, where neither the sum nor a texel has it; times the albedo, where that is constant
 };
 
 void main() {
@@ -53,7 +57,8 @@ void main() {
     vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
     // Light that is all but hidden may come out below 0 by a rounding; what is no number stays none.
     light = mix(light, vec4(0.0), lessThan(light, vec4(0.0)));
-    light *= colour;
+    // First the colour that the host would have multiplied: the same bits.
+    light *= COLOUR_IS_TEXEL ? colour * texelFetch(light_colours, ivec2(texel, 0), 0) : colour;
     if (ALBEDO_IS_MAP) {
         light *= texelFetch(albedo_map, at, 0);
     }

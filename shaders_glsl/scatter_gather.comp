@@ -1,14 +1,14 @@
 // Computes: one step of some light paths at every sample: the light that leaves it back along its path, or, of the last
 // step, towards the view. All samples look along the same directions (method of dependent tests, Heidrich et al. 2000,
 // section 3.2), so that what a step leaves is a picture that the next one looks things up in.
-// Reads: ground, direct, visible_points, links, carried_in, sun_points, albedo_map, phong_map. Writes: carried, or reads and
-// writes scattered (mean of the paths so far; w: how many).
+// Reads: ground, direct, visible_points, links, carried_in, sun_points, albedo_map, phong_map; on a curved base bent and
+// fan_weights. Writes: carried, or reads and writes scattered (mean of the paths so far; w: how many).
 // One invocation is one sample of one path; of the last step, of all paths.
 //
 // The light that a sample scatters is the integral of f_r(e) max(N.e, 0) L(e) de over the sphere, L that of the sample
 // seen along e. With e one of the directions, each as likely, of all the solid angle W that they stand for, its estimate is
 // W f_r max(N.e, 0) L: unbiased for the sum over all directions, and so is a path's product of them, as each of its
-// directions is drawn apart.
+// directions is drawn apart. On a curved base e is each sample's own, and counts for as much as its triangles have grown.
 #version 460
 
 #include "shared/conventions.glsl"
@@ -28,6 +28,7 @@ layout(constant_id = 2) const bool SMALL = false;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_LOBE = false;
 layout(constant_id = 5) const bool LOBE_IS_MAP = false;
+layout(constant_id = 6) const bool BENT = false;
 
 layout(binding = 0) uniform texture2D ground;
 // Exit radiance of what is diffuse.
@@ -43,6 +44,8 @@ layout(binding = 6) uniform texture2D albedo_map;
 layout(binding = 7) uniform texture2D phong_map;
 layout(binding = 8, rgba32f) uniform writeonly image2DArray carried;
 layout(binding = 9, rgba32f) uniform image2D scattered;
+layout(binding = 10) uniform texture2DArray bent;
+layout(binding = 11) uniform texture2DArray fan_weights;
 
 layout(push_constant) uniform ScatterGatherPush {
     int cols;
@@ -62,6 +65,8 @@ layout(push_constant) uniform ScatterGatherPush {
     float view_y;
     float view_z;
     vec4 albedo;          // where it is constant
+    float curvature_x;    // of the base, 1/m
+    float curvature_y;
 };
 
 vec3 sun_lobe(ivec2 here, vec3 normal, vec3 mirror, vec2 lobe) {
@@ -86,7 +91,12 @@ void main() {
         return;
     }
     vec4 own = texelFetch(ground, at, 0);
-    vec3 normal = normalize(vec3(-own.y, -own.z, 1.0));
+    vec3 normal = vec3(-own.y, -own.z, 1.0);
+    if (BENT) {
+        // At a height over the base the field is drawn apart.
+        normal.xy /= 1.0 + own.x * vec2(curvature_x, curvature_y);
+    }
+    normal = normalize(normal);
     vec3 colour = albedo.rgb;
     vec2 lobe = vec2(exponent, lobe_share);
     if (ALBEDO_IS_MAP) {
@@ -113,7 +123,10 @@ void main() {
             arriving = texelFetch(carried_in, ivec3(there, path), 0).rgb;
         }
         arriving = met ? arriving : vec3(0.0);
-        float facing = max(dot(normal, ahead.xyz), 0.0);
+        float facing = max(dot(normal, BENT ? texelFetch(bent, ivec3(at, i), 0).xyz : ahead.xyz), 0.0);
+        if (BENT) {
+            facing *= texelFetch(fan_weights, ivec3(at, i), 0).x;
+        }
         vec3 light = colour * (facing / PI) * arriving;
         vec3 mirror = vec3(0.0);
         if (HAS_LOBE) {

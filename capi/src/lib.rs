@@ -12,6 +12,7 @@ mod renderer;
 mod scene;
 mod types;
 mod view;
+mod voids;
 
 /// Under the name that C has for it; null is none.
 #[expect(non_camel_case_types, reason = "C's name")]
@@ -24,3 +25,4 @@ pub use renderer::*;
 pub use scene::*;
 pub use types::*;
 pub use view::*;
+pub use voids::*;

@@ -26,6 +26,10 @@ pub const RIDGELIGHT_PICTURE_LIGHT_LAYERS: u32 = 1;
 pub const RIDGELIGHT_PICTURE_SKY_VIEW: u32 = 2;
 /// Horizons are kept, so that light alone may change, and rectangles of heights be edited.
 pub const RIDGELIGHT_PICTURE_KEEPS_HORIZONS: u32 = 4;
+/// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: one more input, the
+/// last, "light_colours", a row of texels, the sky's where the scene's is not 0, then each sun's, then each key light's.
+/// Those of the scene then count for nothing. Not with balls of light or a lobe.
+pub const RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE: u32 = 8;
 
 /// Plans a picture of a scene for a host's device. `quality` may be null; `picture` is flags
 /// RIDGELIGHT_PICTURE_; `memory_budget` is bytes of all images and buffers, 0: half of the largest heap.
@@ -61,7 +65,8 @@ pub unsafe extern "C" fn ridgelight_plan_create(
 fn wanted(flags: u32) -> Done<Picture> {
     let all = RIDGELIGHT_PICTURE_LIGHT_LAYERS
         | RIDGELIGHT_PICTURE_SKY_VIEW
-        | RIDGELIGHT_PICTURE_KEEPS_HORIZONS;
+        | RIDGELIGHT_PICTURE_KEEPS_HORIZONS
+        | RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE;
     if flags & !all != 0 {
         return Err(Failure::argument("picture", flags, "flags RIDGELIGHT_PICTURE_"));
     }
@@ -69,6 +74,7 @@ fn wanted(flags: u32) -> Done<Picture> {
         light_layers: flags & RIDGELIGHT_PICTURE_LIGHT_LAYERS != 0,
         sky_view: flags & RIDGELIGHT_PICTURE_SKY_VIEW != 0,
         keeps_horizons: flags & RIDGELIGHT_PICTURE_KEEPS_HORIZONS != 0,
+        colours_on_device: flags & RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE != 0,
         ..Picture::default()
     })
 }
@@ -141,7 +147,7 @@ pub struct RidgelightImageInfo {
     pub extent: [u32; 3],
     /// What it must be made for: SAMPLED or STORAGE; 0 where a buffer is taken instead.
     pub usage: vk::ImageUsageFlags,
-    /// "heights", "environment", "albedo"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
+    /// "heights", "environment", "albedo", "light_colours"; "radiance", "direct.sky", ...: UTF-8, ended by a nul.
     pub name: [c_char; 32],
 }
 
@@ -168,9 +174,9 @@ pub unsafe extern "C" fn ridgelight_plan_input(
 }
 
 /// Has input number `index` come in a buffer of the caller's instead of an image, as rows of texels of `format`,
-/// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment and albedo RGBA32F, RGBA16F,
-/// RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own. Before a renderer
-/// is made; nobody else uses the plan meanwhile.
+/// 0: that of ridgelight_plan_input. Heights may be R32F, R16F or R16_UNORM; environment, albedo and colours of lights
+/// RGBA32F, RGBA16F, RGBA8 UNORM or SRGB. Each recording then begins with one copy to an image of the renderer's own.
+/// Before a renderer is made; nobody else uses the plan meanwhile.
 ///
 /// Returns OK; ARGUMENT, beyond the last too; SETTING for texels that it cannot have.
 ///

@@ -70,7 +70,8 @@ pub const RIDGELIGHT_BORDER_OPEN: u32 = 2;
 pub const RIDGELIGHT_BORDER_PERIODIC: u32 = 3;
 
 /// A field, what it is made of, and the light that falls on it. Heights are the image's that is handed in with
-/// each frame, in the unit of `cell_m`: the host need not know them. All that pointers point at is copied.
+/// each frame, in the unit of `cell_m`, none of them NaN: the host need not know them. All that pointers point at is
+/// copied.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct RidgelightScene {
@@ -118,6 +119,9 @@ pub struct RidgelightScene {
     pub key_count: u32,
     /// How many balls of light.
     pub sphere_count: u32,
+    /// VK_TRUE where some samples hold no ground: pictures before a camera then take an image of marks and leave holes.
+    /// Heights there are filled all the same: ridgelight_fill_voids.
+    pub has_voids: u32,
 }
 
 // SAFETY: numbers and pointers that may be null; the size is first.

@@ -173,7 +173,8 @@ pub struct RidgelightImage {
     /// sizeof(RidgelightImage).
     pub struct_size: u32,
     /// Its format, 0: the plan's. Heights may be R32F, R16F or R16_UNORM (0 to 1: cells and lights are told in
-    /// units of the range); environment and albedo RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are the plan's.
+    /// units of the range); environment, albedo and colours of lights RGBA32F, RGBA16F, RGBA8 UNORM or SRGB; outputs are
+    /// the plan's.
     pub format: vk::Format,
     /// The image: of usage SAMPLED for an input, STORAGE for an output.
     pub image: vk::Image,

@@ -62,7 +62,7 @@ pub struct RidgelightView {
 /// As [`read`].
 unsafe fn seen(
     from: *const RidgelightCamera,
-    scene: &Scene,
+    (scene, has_voids): (&Scene, bool),
     lit: &Plan,
     limits: &Limits,
 ) -> Done<(View, f32)> {
@@ -89,7 +89,9 @@ unsafe fn seen(
         _ => Camera { target_m, azimuth_rad, elevation_rad, distance_m, lens },
     };
     let exposure = if given.exposure == 0.0 { 1.0 } else { given.exposure };
-    Ok((View::new(scene, lit, &camera, &options, limits)?, exposure))
+    let mut view = View::new(scene, lit, &camera, &options, limits)?;
+    view.has_voids = has_voids;
+    Ok((view, exposure))
 }
 
 /// Makes what pictures of a scene's light need, for `slots` frames in flight (0: 1): `plan` lights it. `format` is
@@ -119,9 +121,10 @@ pub unsafe extern "C" fn ridgelight_view_create(
     done(|| unsafe {
         hand_out(view, || {
             let host = self::host(host)?;
+            let has_voids = read(scene, "scene")?.has_voids != 0;
             let (scene, lit) = (self::scene(scene)?, handle(plan, "plan")?.0.clone());
             let limits = gpu::limits(&host.instance, host.physical_device);
-            let (view, exposure) = seen(camera, &scene, &lit, &limits)?;
+            let (view, exposure) = seen(camera, (&scene, has_voids), &lit, &limits)?;
             let slots = slots.max(1) as usize;
             let renderer = match callbacks(allocator)? {
                 Some(memory) => {
@@ -162,6 +165,9 @@ pub struct RidgelightViewImages {
     pub picture: *const RidgelightImage,
     /// D32_SFLOAT, of usage DEPTH_STENCIL_ATTACHMENT; null: no depths. ridgelight_view_distance tells what they are.
     pub depth: *const RidgelightImage,
+    /// Where the scene has voids: a texel a sample, of R32F, R16F or R16_UNORM, 0 where there is ground, 1 where there is
+    /// none.
+    pub voids: *const RidgelightImage,
 }
 
 // SAFETY: pointers that may be null; the size is first.
@@ -192,17 +198,18 @@ pub unsafe extern "C" fn ridgelight_view_record(
         let given = read(images, "images")?;
         let (view, exposure) = match camera.is_null() {
             true => (of.view.clone(), of.exposure),
-            false => seen(camera, &of.scene, &of.lit, &of.limits)?,
+            false => seen(camera, (&of.scene, of.view.has_voids), &of.lit, &of.limits)?,
         };
         let resource = |name: &str| of.lit.find(name).map(|id| &of.lit.resources[id.0]);
+        let wanted = |from: *const RidgelightImage, name, like| match from.is_null() {
+            true => Ok(None),
+            false => image(from, name, resource(like)).map(Some),
+        };
         let inputs = ViewInputs {
             heights: image(given.heights, "heights", resource("heights"))?,
             radiance: image(given.radiance, "radiance", resource("radiance"))?,
-            environment: match given.environment.is_null() {
-                true => None,
-                false => Some(image(given.environment, "environment", resource("environment"))?),
-            },
-            voids: None,
+            environment: wanted(given.environment, "environment", "environment")?,
+            voids: wanted(given.voids, "voids", "heights")?,
         };
         let drawn = |from, name, format| -> Done<ImageArg> {
             let mut arg = image(from, name, None)?;

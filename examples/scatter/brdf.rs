@@ -9,7 +9,8 @@ use ridgelight::gpu::Headless;
 use ridgelight::measure::facets::{FacetHarmonics, Facets, Shown};
 use ridgelight::plan;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface, VisiblePoints,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface,
+    VisiblePoints,
 };
 
 use crate::seen::points;
@@ -28,6 +29,7 @@ const SCATTER: Scatter = Scatter {
     cutoff: 1.0 / 65536.0,
     seed: 0,
     view: glam::DVec3::Z,
+    curvature: Curvature::FLAT,
 };
 /// Of 64 light paths.
 const BATCHES: u32 = 16;

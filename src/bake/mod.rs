@@ -11,9 +11,11 @@
 //! ground as it lies, and how much of the sky is seen), [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
 //! [`Ellipse`]s of visible sky and visible points come off the device as they are ([`plan::ellipses`](crate::plan::ellipses),
 //! [`plan::visible_points`](crate::plan::visible_points)).
+//! [`CurvedEllipses`] go between those of [`plan::curved_ellipses`](crate::plan::curved_ellipses) on a curved base.
 //! [`Encoding`]s take values to texels and back, within errors that they state.
 
 mod bent;
+mod curved;
 mod encoding;
 mod harmonics;
 mod sky;
@@ -28,6 +30,7 @@ use crate::{Error, Result};
 
 pub use crate::cpu::ellipse_fit::Ellipse;
 pub use bent::BentNormal;
+pub use curved::CurvedEllipses;
 pub use encoding::{
     BENT_NORMAL, Bound, COEFFICIENTS, Component, ELLIPSE, Encoding, HORIZON, POINTS, SHARE,
     encoding_named,

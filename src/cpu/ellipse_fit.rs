@@ -90,6 +90,12 @@ pub fn seen(points: &VisiblePoints, sample: usize) -> Vec<Seen> {
     all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
 }
 
+/// The same on a curved base, where a sample's directions are `bent`.
+pub fn seen_bent(points: &VisiblePoints, bent: &[DVec3], sample: usize) -> Vec<Seen> {
+    let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
+    all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
+}
+
 /// The least radius of an ellipse among so many directions: that of the disc around the zenith that one of them stands for,
 /// π r² = 2π / count.
 pub fn least_radius(count: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Light scattered by what samples see of each other, in f64: one step of a path, and what all paths give in the mean.
 
 use super::light::normal;
-use crate::scene::{Albedo, Phong, Scene, VisiblePoint, VisiblePoints};
+use crate::scene::{Albedo, Curvature, Phong, Scene, VisiblePoint, VisiblePoints};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -30,6 +30,18 @@ impl<'a> Samples<'a> {
         let (field, border) = (&scene.field, scene.surface.border);
         let of = |at: usize| normal(field, border, at / field.cols(), at % field.cols());
         Self { scene, normals: (0..field.rows() * field.cols()).map(of).collect() }
+    }
+
+    /// On a curved base, in each sample's own frame: at a height h over it the field is drawn apart by 1 + curvature h, its
+    /// slopes are as many times less.
+    #[must_use]
+    pub fn on(mut self, curvature: Curvature) -> Self {
+        let heights = self.scene.field.heights_m();
+        for (n, height) in self.normals.iter_mut().zip(heights) {
+            let [east, north] = curvature.per_m.map(|k| 1.0 + k * f64::from(*height));
+            *n = DVec3::new(n.x / east, n.y / north, n.z).normalize();
+        }
+        self
     }
 
     /// A sample's.

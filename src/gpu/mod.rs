@@ -29,12 +29,30 @@
 //!
 //! # Formats, and buffers
 //!
-//! Heights come as R32F, R16F or R16 UNORM, an environment or an albedo as RGBA32F, RGBA16F, RGBA8 UNORM or SRGB
-//! ([`Format::vk_read`]): an [`ImageArg`] is read where it is. Each may also come as rows of texels in a buffer
-//! ([`BufferArg`]), where the plan was told so
+//! What of a scene may be the device's alone, in which formats ([`Format::vk_read`]), and with how many copies:
+//!
+//! | what | in an image | copies | in a buffer | copies |
+//! |---|---|---|---|---|
+//! | heights ([`HeightField::unknown`]) | R32F, R16F, R16 UNORM | 0 | the same | 1 |
+//! | albedo ([`Albedo::unknown`]) | RGBA32F, RGBA16F, RGBA8 UNORM, SRGB | 0 | the same | 1 |
+//! | environment ([`Environment::unknown`]) | as albedo | 0 | the same | 1 |
+//! | colours of sky, suns, keys ([`colours_on_device`](crate::plan::Picture::colours_on_device)) | as albedo | 0 | the same | 1 |
+//! | lobes ([`Lobe::unknown`]) | RGBA32F | 0 | the same | 1 |
+//! | colours of balls, directions, positions and sizes of lights | no | | no | |
+//!
+//! An [`ImageArg`] is read where it is. Rows of texels in a buffer ([`BufferArg`]) are taken where the plan was told so
 //! ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)): shaders fetch from images, so that each recording begins
 //! with one vkCmdCopyBufferToImage per buffer, into an image of the renderer's
 //! ([`Renderer::taken`]); an [edit](Renderer::record_edit) copies the edited rectangle alone.
+//!
+//! Heights are never NaN: those without data are filled beforehand ([`fill_voids`]), and their light is the caller's to
+//! mask. A [`ViewRenderer`] leaves holes where an image of marks says so ([`ViewInputs::voids`]).
+//!
+//! [`HeightField::unknown`]: crate::scene::HeightField::unknown
+//! [`Albedo::unknown`]: crate::scene::Albedo::unknown
+//! [`Environment::unknown`]: crate::scene::Environment::unknown
+//! [`Lobe::unknown`]: crate::scene::Lobe::unknown
+//! [`fill_voids`]: crate::scene::fill_voids
 //!
 //! # Lights that change
 //!
@@ -42,13 +60,14 @@
 //!
 //! | what | how it changes |
 //! |---|---|
-//! | texels of an environment, an albedo, a lobe's map | on the device: they are inputs of each recording |
+//! | texels of an environment, an albedo, a lobe's map; colours of sky, suns and keys, where the plan has them so | on the device: they are inputs of each recording |
 //! | colours of sky, suns, keys and balls; directions, positions, sizes | [`Renderer::replace_plan`], a plan of the new scene: no pipeline, no memory, no wait, also while frames are in flight |
 //! | number and kind of lights, a sun into another octant, grey to coloured | a renderer of its own, beside the old one |
 //!
-//! Directions decide which lines a sweep follows and how many, so that they are the host's to know. Where only the
-//! device knows a colour, plan it white with [`light_layers`](crate::plan::Picture::light_layers): each light's own
-//! image times its colour is its share of the picture.
+//! Directions decide which lines a sweep follows and how many, and where a ball is, which samples it may reach: workgroups,
+//! memory and constants of a plan, so that they are the host's to know. Colours of balls are summed up with their light;
+//! with [`light_layers`](crate::plan::Picture::light_layers), a ball of radiance 1 has an image of its own, which times a
+//! colour that the device alone knows is its share of the picture.
 //!
 //! # Frames in flight
 //!
@@ -88,7 +107,7 @@ pub use lend::{Lent, LentBuffer};
 pub use look::Seen;
 pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
-pub use screen::{Panel, Part, PartTimes, Screen, Shot, Shown, Sight, Work};
+pub use screen::{Pane, PaneTimes, Panel, Screen, Shot, Shown, Sight, Work};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;

@@ -2,6 +2,7 @@
 
 mod chain;
 mod drawer;
+mod queue;
 mod recording;
 mod slot;
 
@@ -32,7 +33,7 @@ pub struct Screen {
     chain: Option<Chain>,
     slots: Vec<Slot>,
     next: usize,
-    /// One a part of the last shot.
+    /// One a pane of the last shot.
     drawers: Vec<Drawer>,
     /// Outlives its surface, which goes with the device.
     _window: Arc<dyn Any>,
@@ -75,7 +76,7 @@ impl Work<'_> {
 }
 
 /// One frame of a picture: what is done to it, and where it is shown.
-pub struct Part<'a> {
+pub struct Pane<'a> {
     /// Made by [`Screen::frame`].
     pub frame: &'a mut Frame,
     /// The heights above the field's base, one a sample, and the rectangle where they are new; else as they are.
@@ -88,7 +89,7 @@ pub struct Part<'a> {
     pub left: u32,
 }
 
-/// What a picture is beside its parts.
+/// What a picture is beside its panes.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot<'a> {
     /// How radiance looks.
@@ -101,9 +102,9 @@ pub struct Shot<'a> {
     pub keeps: bool,
 }
 
-/// GPU times of one part of a picture.
+/// GPU times of one pane of a picture.
 #[derive(Clone, Debug, Default)]
-pub struct PartTimes {
+pub struct PaneTimes {
     /// What lit its frame; nothing where nothing did.
     pub light: Vec<Timing>,
     /// What drew it.
@@ -113,10 +114,12 @@ pub struct PartTimes {
 /// What became of a frame that has been handed to the window.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
-    /// GPU times of the picture before the last, of each part, where they are in.
-    pub timings: Vec<PartTimes>,
+    /// GPU times of the picture before the last, of each pane, where they are in.
+    pub timings: Vec<PaneTimes>,
     /// Red, green, blue, 255 of each pixel, row after row, where they were to be kept.
     pub pixels: Option<Vec<[u8; 4]>>,
+    /// Whether the window took it: not where it has become another meanwhile, or lost its surface. Then another is due.
+    pub is_taken: bool,
 }
 
 impl Screen {
@@ -198,7 +201,7 @@ impl Screen {
     /// window's, for systems where a surface has no size of its own.
     ///
     /// # Errors
-    /// A device that is out of memory or lost, or that takes no pictures in 8 bits a colour.
+    /// A device that is out of memory or lost, or that takes no pictures in 8 bits a colour; a window that is gone.
     pub fn size(&mut self, wanted: [u32; 2]) -> Result<Option<[u32; 2]>> {
         let known = match chain::capabilities(&mut self.gpu) {
             Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
@@ -207,7 +210,13 @@ impl Screen {
             }
             known => known,
         };
-        let known = known.map_err(failed("asking a window for its size"))?;
+        let known = known.map_err(|result| match result {
+            vk::Result::ERROR_SURFACE_LOST_KHR => Error::Device {
+                doing: "showing pictures in a window".into(),
+                reason: "its surface was lost, and so was the next: the window is gone".into(),
+            },
+            other => failed("asking a window for its size")(other),
+        })?;
         let size = chain::size(&known, wanted);
         if size.contains(&0) {
             return Ok(None);
@@ -244,121 +253,41 @@ impl Screen {
         }
     }
 
-    /// Lights the frames of a picture's parts as they say, draws it and hands it to the window. None where there was no
-    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the parts was done.
+    /// Lights the frames of a picture's panes as they say, draws it and hands it to the window. None where there was no
+    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the panes was done.
     ///
     /// # Errors
-    /// Parts that do not fit, or a device out of memory or lost.
-    pub fn draw(&mut self, parts: &mut [Part<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
+    /// Panes that do not fit, or a device out of memory or lost. Nothing of the panes counts as done then, and what this
+    /// had in hand of the window is given up: the next [`size`](Self::size) makes it anew.
+    pub fn draw(&mut self, panes: &mut [Pane<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
         let slot = self.next;
-        if self.chain.is_none() {
-            return Ok(None);
-        }
-        let waited = [self.slots[slot].done];
-        // SAFETY: the fence is this slot's.
-        unsafe { self.gpu.host().device.wait_for_fences(&waited, true, u64::MAX) }
-            .map_err(failed("waiting for a frame"))?;
+        let Some(chain) = &self.chain else { return Ok(None) };
+        let (size, swaps) = (chain.size, chain.swaps());
+        self.slots[slot].settle(&self.gpu)?;
         let mut timings = Vec::new();
-        for (n, part) in parts.iter_mut().enumerate() {
+        for (n, pane) in panes.iter_mut().enumerate() {
             let was_lit = self.slots[slot].was_lit.get(n).is_some_and(|was| *was);
-            let light = part.frame.renderer().timings(slot).filter(|_| was_lit);
+            let light = pane.frame.renderer().timings(slot).filter(|_| was_lit);
             let drawing = self.drawers.get(n).map(|d| d.timings(slot)).unwrap_or_default();
-            timings.push(PartTimes { light: light.unwrap_or_default(), drawing });
+            timings.push(PaneTimes { light: light.unwrap_or_default(), drawing });
         }
-        // All that may be refused comes before a picture is taken, which must be handed back.
-        self.prepare(slot, parts, shot)?;
+        // All that may be refused comes before a picture is taken.
+        self.prepare(slot, panes, shot)?;
         let Some(image) = self.acquire(slot)? else { return Ok(None) };
-        if let Err(error) = self.record(slot, image, parts, shot) {
-            for part in parts.iter_mut().filter(|part| !part.work.is_none()) {
-                part.frame.renderer().forget();
+        let is_taken = match self.hand_over(slot, image, panes, shot) {
+            Ok(is_taken) => is_taken,
+            Err(error) => {
+                for pane in panes.iter_mut().filter(|pane| !pane.work.is_none()) {
+                    pane.frame.renderer().forget();
+                }
+                self.give_up(slot);
+                return Err(error);
             }
-            self.slots[slot].was_lit.clear();
-            // Where this fails too, so does what comes next.
-            let _ = self.hand_back(slot, image);
-            return Err(error);
-        }
-        self.slots[slot].was_lit = parts.iter().map(|part| !part.work.is_none()).collect();
-        self.submit(slot, image)?;
-        self.present(slot, image)?;
-        self.next = (slot + 1) % SLOTS;
-        let pixels = if shot.keeps { Some(self.read_back(slot)?) } else { None };
-        Ok(Some(Shown { timings, pixels }))
-    }
-
-    /// Shows a picture that was taken without anything in it: its semaphore is waited for, and the window has it again.
-    fn hand_back(&mut self, slot: usize, image: usize) -> Result<()> {
-        self.record_nothing(slot, image)?;
-        self.submit(slot, image)?;
-        self.present(slot, image)?;
-        self.next = (slot + 1) % SLOTS;
-        Ok(())
-    }
-
-    /// The number of the picture to draw into; the slot is free.
-    fn acquire(&mut self, slot: usize) -> Result<Option<usize>> {
-        let acquired = self.slots[slot].acquired;
-        let Some(chain) = &mut self.chain else { return Ok(None) };
-        /// Compositors may hold pictures of windows that nobody sees.
-        const PATIENCE_NS: u64 = 500_000_000;
-        let none = vk::Fence::null();
-        // SAFETY: the semaphore is this slot's, whose commands, which waited for it, have run.
-        let got = unsafe {
-            self.swapchains.acquire_next_image(chain.swapchain, PATIENCE_NS, acquired, none)
         };
-        match got {
-            Ok((image, is_suboptimal)) => {
-                chain.is_stale |= is_suboptimal;
-                Ok(Some(image as usize))
-            }
-            Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => Ok(None),
-            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
-                chain.is_stale = true;
-                Ok(None)
-            }
-            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew().map(|()| None),
-            Err(other) => Err(failed("taking a picture of the window's")(other)),
-        }
-    }
-
-    fn submit(&self, slot: usize, image: usize) -> Result<()> {
-        let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
-        let chain = self.chain.as_ref().expect("acquired from");
-        let stage = vk::PipelineStageFlags2::ALL_TRANSFER;
-        let wait = [vk::SemaphoreSubmitInfo::default().semaphore(slot.acquired).stage_mask(stage)];
-        let signal = [vk::SemaphoreSubmitInfo::default()
-            .semaphore(chain.finished[image])
-            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
-        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.commands)];
-        let submit = [vk::SubmitInfo2::default()
-            .wait_semaphore_infos(&wait)
-            .command_buffer_infos(&commands)
-            .signal_semaphore_infos(&signal)];
-        // SAFETY: everything is this device's; the fence was waited for.
-        unsafe {
-            device
-                .reset_fences(&[slot.done])
-                .and_then(|()| device.queue_submit2(self.gpu.queue(), &submit, slot.done))
-        }
-        .map_err(failed("running a frame"))
-    }
-
-    fn present(&mut self, slot: usize, image: usize) -> Result<()> {
-        let chain = self.chain.as_mut().expect("acquired from");
-        let (finished, swapchains) = ([chain.finished[image]], [chain.swapchain]);
-        let images = [image as u32];
-        let info = vk::PresentInfoKHR::default()
-            .wait_semaphores(&finished)
-            .swapchains(&swapchains)
-            .image_indices(&images);
-        // SAFETY: the picture was acquired, and is left for presenting by the commands of this slot.
-        let shown = unsafe { self.swapchains.queue_present(self.gpu.queue(), &info) };
-        match shown {
-            Ok(is_suboptimal) => chain.is_stale |= is_suboptimal,
-            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => chain.is_stale = true,
-            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew()?,
-            Err(other) => return Err(failed(format!("showing frame {slot}"))(other)),
-        }
-        Ok(())
+        self.slots[slot].was_lit = panes.iter().map(|pane| !pane.work.is_none()).collect();
+        self.next = (slot + 1) % SLOTS;
+        let pixels = if shot.keeps { Some(self.read_back(slot, (size, swaps))?) } else { None };
+        Ok(Some(Shown { timings, pixels, is_taken }))
     }
 }
 

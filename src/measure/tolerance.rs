@@ -6,6 +6,7 @@
 //! diagonal at 1/(1 + shear) of the first. Slopes err the most there, by the error of the rise over
 //! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
 
+mod bend;
 mod bounce;
 mod gloss;
 mod light;
@@ -14,6 +15,7 @@ mod points;
 use std::f64::consts::PI;
 
 use crate::cpu::bounce_shade::LEAST_SHARE;
+pub use bend::{bent, fan_weight, way};
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
@@ -278,7 +280,8 @@ pub fn twin_sun_gloss(exponent: f64, normal_error: f64, facing: f64) -> f64 {
     peak * (turned + part + 44.0 * EPSILON)
 }
 
-/// `light_resolve` from given sums: two products a light, and a sum for each of `lights`.
+/// `light_resolve` from given sums: two products a light, whose colours' own are the twin's, and a sum for each of
+/// `lights`.
 pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
     (2.0 + lights as f64) * EPSILON * radiance.abs()
 }

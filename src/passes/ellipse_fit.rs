@@ -27,24 +27,26 @@ same_layout!(
     least_radius = LEAST_RADIUS,
 );
 
-/// The ellipses of some rows. `bound` are visible points, directions, and what is written.
+/// The ellipses of some rows. `bound` are visible points and directions, or those of a curved
+/// base, and what is written; `base` says in the label which base.
 pub(crate) fn plan(
     builder: &mut Builder,
     field: &HeightField,
     (directions, first): (&Directions, usize),
-    rows: Range<u32>,
+    (rows, base): (Range<u32>, &str),
     bound: &[(&str, ResourceId)],
 ) {
     let [cols, height] = [field.cols() as u32, rows.end - rows.start];
     let samples = u64::from(cols) * u64::from(height);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    let is_bent = bound.iter().any(|(name, _)| *name == "bent");
     let above = directions.vectors().iter().filter(|e| e.z > 0.0).count();
     builder.pass(
         &shaders::ELLIPSE_FIT,
-        &format!("rows {}..{}", rows.start, rows.end),
+        &format!("{base}rows {}..{}", rows.start, rows.end),
         "the ellipse of directions in which each sample sees the sky",
         [cols.div_ceil(8), height.div_ceil(8), 1],
-        &[(0, u32::from(is_small))],
+        &[(0, u32::from(is_small)), (1, u32::from(is_bent))],
         &EllipseFitPush {
             cols: cols as i32,
             rows: rows.end as i32,

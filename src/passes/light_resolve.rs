@@ -8,7 +8,7 @@ struct LightResolvePush {
     cols: i32,
     rows: i32,
     clears: u32,
-    pad: f32,
+    texel: i32,
     colour: [f32; 4],
 }
 
@@ -18,6 +18,7 @@ same_layout!(
     cols = COLS,
     rows = ROWS,
     clears = CLEARS,
+    texel = TEXEL,
     colour = COLOUR,
 );
 
@@ -26,8 +27,10 @@ pub(crate) struct Light {
     pub sum: ResourceId,
     /// Whether the sum has colour; else it is one channel.
     pub has_colour: bool,
-    /// Of the light, times a constant albedo.
+    /// Of the light, where neither the sum nor a texel has it, times a constant albedo.
     pub colour: [f32; 3],
+    /// The caller's colours, and which of them is the light's.
+    pub texel: Option<(ResourceId, u32)>,
     pub albedo_map: Option<ResourceId>,
     /// The picture, and whether this light is its first.
     pub radiance: Option<(ResourceId, bool)>,
@@ -40,6 +43,7 @@ pub(crate) struct Light {
 /// Adds one light to the picture, and writes its own layer where asked.
 pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, light: &Light) {
     let mut bound = vec![(if light.has_colour { "colour_sum" } else { "scalar_sum" }, light.sum)];
+    bound.extend(light.texel.map(|(colours, _)| ("light_colours", colours)));
     bound.extend(light.albedo_map.map(|a| ("albedo_map", a)));
     bound.extend(
         light.radiance.map(|r| (if light.grey { "radiance_grey" } else { "radiance" }, r.0)),
@@ -63,12 +67,13 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
             (3, u32::from(light.layer.is_some())),
             (4, u32::from(light.grey)),
             (5, u32::from(light.edited.is_some())),
+            (6, u32::from(light.texel.is_some())),
         ],
         &LightResolvePush {
             cols: cols as i32,
             rows: rows as i32,
             clears: u32::from(light.radiance.is_some_and(|r| r.1)),
-            pad: 0.0,
+            texel: light.texel.map_or(0, |(_, texel)| texel as i32),
             colour: [light.colour[0], light.colour[1], light.colour[2], 1.0],
         },
         &bound,

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
-use crate::scene::{Albedo, HeightField, Lobe, Phong, VisiblePoints};
+use crate::scene::{Albedo, Curvature, HeightField, Lobe, Phong, VisiblePoints};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -24,6 +24,7 @@ struct ScatterGatherPush {
     view_y: f32,
     view_z: f32,
     albedo: [f32; 4],
+    curvature: [f32; 2],
 }
 
 same_layout!(
@@ -46,6 +47,7 @@ same_layout!(
     view_y = VIEW_Y,
     view_z = VIEW_Z,
     albedo = ALBEDO,
+    curvature = CURVATURE_X,
 );
 
 /// What the samples that are seen give, as in the shader.
@@ -74,6 +76,7 @@ pub(crate) struct Steps<'a> {
     pub weight_sr: f64,
     /// Towards the view.
     pub view: glam::DVec3,
+    pub curvature: Curvature,
 }
 
 /// Step `step` of some paths, which look at one image of visible points, whose first direction is `first_direction`.
@@ -118,6 +121,7 @@ pub(crate) fn plan(
             (3, u32::from(is_map)),
             (4, u32::from(steps.lobe.is_some())),
             (5, u32::from(matches!(steps.lobe, Some(Lobe::Map(_))))),
+            (6, u32::from(steps.curvature != Curvature::FLAT)),
         ],
         &ScatterGatherPush {
             cols: cols as i32,
@@ -137,6 +141,7 @@ pub(crate) fn plan(
             view_y: steps.view.y as f32,
             view_z: steps.view.z as f32,
             albedo,
+            curvature: steps.curvature.per_m.map(|k| k as f32),
         },
         bound,
         looks * (4 + 16 + 16 + 16),

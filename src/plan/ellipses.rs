@@ -1,9 +1,9 @@
-use super::batch::bytes_text;
+use super::bend::Bends;
 use super::blocks::Blocks;
-use super::visible_points::{check_field, images, record, texels};
-use super::{Builder, Format, Limits, Owner, Plan};
+use super::visible_points::{check_field, images, one_image, record, texels};
+use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::ellipse_fit as pass;
-use crate::scene::{Border, Directions, HeightField, VisiblePoints};
+use crate::scene::{Border, Curvature, Directions, HeightField};
 use crate::{Error, Result};
 
 /// Directions that one dispatch looks at, about, in some dozens of steps with sixteen ellipses each: tenths of a second on
@@ -28,57 +28,125 @@ pub fn ellipses(
     directions: &Directions,
     limits: &Limits,
 ) -> Result<Plan> {
-    let size = limits.check_size(field.rows(), field.cols())?;
-    check_field(field)?;
-    if directions.vectors().iter().all(|e| e.z <= 0.0) {
-        return Err(Error::setting("directions", "none above horizontal", "one or more"));
+    let mut begun = Begun::new(field, border, directions, limits)?;
+    let outputs = ["ellipse_axes", "ellipse_radii"].map(|name| begun.output(name));
+    begun.fit((None, ""), outputs);
+    begun.finish(("ellipses of visible sky", None), limits)
+}
+
+/// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent towards east and then towards north by the
+/// two curvatures, both above 0, outwards and inwards (Heidrich et al. 2000, §5): hollows can be bent less before what is seen
+/// changes. Between them ellipses change linearly:
+/// [`CurvedEllipses`](crate::bake::CurvedEllipses).
+///
+/// Input: "heights". Outputs: "ellipse_axes.k" and "ellipse_radii.k" of k = 0 to 4: flat, east +, east -, north +, north -.
+///
+/// # Errors
+/// As [`ellipses`]; curvatures that are not above 0, or that [`Curvature::check`] refuses; directions that span no net.
+pub fn curved_ellipses(
+    field: &HeightField,
+    border: Border,
+    directions: &Directions,
+    [outwards, inwards]: [f64; 2],
+    limits: &Limits,
+) -> Result<Plan> {
+    if ![outwards, inwards].iter().all(|k| *k > 0.0 && k.is_finite()) {
+        let found = format!("{outwards} and {inwards}");
+        return Err(Error::setting("curvatures of ellipses", found, "two numbers above 0, 1/m"));
     }
-    let mut builder = Builder::new();
-    let mut image = |name: &str, owner: Owner, format: Format| {
-        builder.image(name, owner, format, [size[0], size[1], 1], false)
-    };
-    let heights = image("heights", Owner::Input, Format::R32Float);
-    let [axes, radii] =
-        ["ellipse_axes", "ellipse_radii"].map(|n| image(n, Owner::Output, Format::Rgba32Float));
-    let count = directions.count();
-    let all = images(&mut builder, size, count, Owner::Internal, limits)?;
-    let [(points, layers)] = all.as_slice() else {
-        let is_small = VisiblePoints::is_small(field.rows(), field.cols());
-        let samples = u64::from(size[0]) * u64::from(size[1]);
-        let layers = VisiblePoints::layers(count, is_small) as u64;
-        return Err(Error::Limit {
-            what: format!("what samples see in {count} directions, for ellipses"),
-            needs: format!("one image of {layers} layers, {}", bytes_text(4 * samples * layers)),
-            limit: format!(
-                "{} layers and {} in one allocation; fewer directions or a smaller field fit",
-                limits.image_layers,
-                bytes_text(limits.allocation_bytes)
-            ),
-        });
-    };
-    let blocks = Blocks::make(&mut builder, size, border);
-    blocks.record(&mut builder, field, heights, None);
-    let (buffer, first) = builder.constants(&texels(directions));
-    let seen = (*points, layers.clone());
-    record(&mut builder, (field, border), &blocks, (buffer, first), directions, seen);
-    let bound = [
-        ("visible_points", *points),
-        ("directions", buffer),
-        ("ellipse_axes", axes),
-        ("ellipse_radii", radii),
-    ];
-    let band = BAND_LOOKS / (u64::from(size[0]) * count as u64);
-    let band = (band as u32 / 8 * 8).clamp(8, size[1].next_multiple_of(8));
-    for row in (0..size[1]).step_by(band as usize) {
-        let rows = row..size[1].min(row + band);
-        pass::plan(&mut builder, field, (directions, first), rows, &bound);
+    let four = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
+    let four = four.map(|per_m| Curvature { per_m });
+    four.iter().try_for_each(|curvature| curvature.check(field, border))?;
+    let mut begun = Begun::new(field, border, directions, limits)?;
+    let bends = Bends::make(&mut begun.builder, begun.size, directions, limits)?;
+    let outputs: Vec<[ResourceId; 2]> = (0..5)
+        .map(|i| ["ellipse_axes", "ellipse_radii"].map(|name| begun.output(&format!("{name}.{i}"))))
+        .collect();
+    begun.fit((None, "flat, "), outputs[0]);
+    let names = ["east +, ", "east -, ", "north +, ", "north -, "];
+    for ((curvature, name), outputs) in four.into_iter().zip(names).zip(&outputs[1..]) {
+        let seen = [begun.points, begun.ground];
+        bends.record(&mut begun.builder, (field, border), curvature, seen);
+        begun.fit((Some(bends.bent), name), *outputs);
     }
-    let settings = [
-        ("method", "ellipses of visible sky".to_owned()),
-        ("border", format!("{border:?}").to_lowercase()),
-        ("directions", count.to_string()),
-        ("lowest_direction_z", directions.lowest_z().to_string()),
-    ];
-    let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), settings, limits)
+    begun.finish(("ellipses of visible sky on curved bases", Some([outwards, inwards])), limits)
+}
+
+/// A plan whose visible points are found.
+struct Begun<'a> {
+    field: &'a HeightField,
+    border: Border,
+    directions: &'a Directions,
+    size: [u32; 2],
+    builder: Builder,
+    points: ResourceId,
+    ground: ResourceId,
+    buffer: ResourceId,
+    first: usize,
+}
+
+impl<'a> Begun<'a> {
+    fn new(
+        field: &'a HeightField,
+        border: Border,
+        directions: &'a Directions,
+        limits: &Limits,
+    ) -> Result<Self> {
+        let size = limits.check_size(field.rows(), field.cols())?;
+        check_field(field)?;
+        if directions.vectors().iter().all(|e| e.z <= 0.0) {
+            return Err(Error::setting("directions", "none above horizontal", "one or more"));
+        }
+        let mut builder = Builder::new();
+        let extent = [size[0], size[1], 1];
+        let heights = builder.image("heights", Owner::Input, Format::R32Float, extent, false);
+        let all = images(&mut builder, size, directions.count(), Owner::Internal, limits)?;
+        let points = one_image(field, directions, &all, limits)?;
+        let blocks = Blocks::make(&mut builder, size, border);
+        blocks.record(&mut builder, field, heights, None);
+        let (buffer, first) = builder.constants(&texels(directions));
+        let seen = all.into_iter().next().expect("one image");
+        record(&mut builder, (field, border), &blocks, (buffer, first), directions, seen);
+        let ground = blocks.images.ground;
+        Ok(Self { field, border, directions, size, builder, points, ground, buffer, first })
+    }
+
+    fn output(&mut self, name: &str) -> ResourceId {
+        let extent = [self.size[0], self.size[1], 1];
+        self.builder.image(name, Owner::Output, Format::Rgba32Float, extent, false)
+    }
+
+    /// One ellipse a sample, of directions as they are or on a curved base.
+    fn fit(&mut self, (bent, base): (Option<ResourceId>, &str), [axes, radii]: [ResourceId; 2]) {
+        let mut bound = vec![("ellipse_axes", axes), ("ellipse_radii", radii)];
+        match bent {
+            Some(bent) => bound.push(("bent", bent)),
+            None => bound.extend([("visible_points", self.points), ("directions", self.buffer)]),
+        }
+        let band = BAND_LOOKS / (u64::from(self.size[0]) * self.directions.count() as u64);
+        let band = (band as u32 / 8 * 8).clamp(8, self.size[1].next_multiple_of(8));
+        for row in (0..self.size[1]).step_by(band as usize) {
+            let rows = row..self.size[1].min(row + band);
+            let directions = (self.directions, self.first);
+            pass::plan(&mut self.builder, self.field, directions, (rows, base), &bound);
+        }
+    }
+
+    fn finish(
+        self,
+        (method, curvature): (&str, Option<[f64; 2]>),
+        limits: &Limits,
+    ) -> Result<Plan> {
+        let settings = [
+            ("method", method.to_owned()),
+            ("border", format!("{:?}", self.border).to_lowercase()),
+            ("directions", self.directions.count().to_string()),
+            ("lowest_direction_z", self.directions.lowest_z().to_string()),
+        ];
+        let curvature = curvature.map(|k| ("curvatures_per_m", format!("{k:?}")));
+        let settings = settings.into_iter().chain(curvature);
+        let settings = settings.map(|(name, value)| (name.to_owned(), value)).collect();
+        let none = (Vec::new(), Vec::new(), Vec::new());
+        Plan::finish(self.builder, self.size, none.0, none.1, none.2, settings, limits)
+    }
 }

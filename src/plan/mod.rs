@@ -35,6 +35,7 @@
 
 pub mod azimuths;
 mod batch;
+mod bend;
 mod blocks;
 mod bounce_nodes;
 mod bounces;
@@ -71,7 +72,7 @@ pub(crate) use bounce_nodes::NodeSum;
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
 pub use edit::{Reach, Rectangle};
-pub use ellipses::ellipses;
+pub use ellipses::{curved_ellipses, ellipses};
 pub use horizons::horizons;
 pub use limits::Limits;
 pub use map::{Map, map};
@@ -171,6 +172,7 @@ impl Plan {
         let Some(resource) = found else {
             return Err(Error::setting("input", input, names.join(" or ")));
         };
+        let may_differ = !is_traced && resource.may_be_narrow();
         let Kind::Image { format, layers, .. } = &mut resource.kind else {
             return Err(Error::setting(input, "a buffer of words", "an image"));
         };
@@ -185,7 +187,6 @@ impl Plan {
         let four =
             [Format::Rgba32Float, Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8Srgb];
         let alike = [&one[..], &four[..]].into_iter().find(|all| all.contains(format));
-        let may_differ = !is_traced && matches!(input, "heights" | "environment" | "albedo");
         let alike = alike.filter(|_| may_differ).map_or(vec![*format], <[Format]>::to_vec);
         if !alike.contains(&texels) {
             let all: Vec<_> = alike.iter().map(|f| format!("{f:?}")).collect();

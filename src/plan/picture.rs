@@ -42,11 +42,17 @@ pub struct Picture {
     /// Nothing stands in the way of light but the ground that a sample lies on, and none is thrown on: what all the
     /// other passes are for. Balls of light are hidden all the same.
     pub unshadowed: bool,
+    /// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: an input
+    /// "light_colours", one row of texels, the sky's where the scene has one, then each sun's, then each key light's;
+    /// linear RGB, 0 or more. Those of the scene then count for nothing but, the sky's beside an environment, for where
+    /// azimuths lie. Not with balls of light or a lobe, whose sums hold the colours.
+    pub colours_on_device: bool,
 }
 
 /// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
 ///
-/// Inputs, in order: "heights", "environment", "albedo" and "phong" where the scene has them. Outputs:
+/// Inputs, in order: "heights", "environment", "albedo" and "phong" where the scene has them, "light_colours" where
+/// wanted. Outputs:
 /// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
 /// all, and they without it), "sky_view", one "indirect.*" image a bounce, and "glossy" (what a lobe reflects of all
 /// bounces, and they without it). All are images of one channel where every colour is grey, else of four.
@@ -210,7 +216,7 @@ fn without_bounces(quality: &Quality) -> Quality {
     Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality }
 }
 
-/// Texels of the inputs of a [`picture`](picture()), in its plan's order: "heights"; "environment" and
+/// Texels of the inputs of a [`picture`](picture()) that a scene holds, in its plan's order: "heights"; "environment" and
 /// "albedo", opaque, where the scene has them; "phong", exponent and scale, where that is a map.
 pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque =

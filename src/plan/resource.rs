@@ -118,6 +118,13 @@ impl Resource {
         }
     }
 
+    /// Whether a caller's input may hold its texels in fewer bits than the plan says: [`Format::vk_read`].
+    pub(crate) fn may_be_narrow(&self) -> bool {
+        let is_input = matches!(self.owner, Owner::Input | Owner::InputBuffer);
+        let name = self.name.as_str();
+        is_input && matches!(name, "heights" | "environment" | "albedo" | "light_colours")
+    }
+
     /// Bytes it takes on the device.
     pub fn bytes(&self) -> u64 {
         match self.kind {

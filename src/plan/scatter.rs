@@ -1,4 +1,5 @@
 mod order;
+mod wanted;
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -6,15 +7,17 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::batch::bytes_text;
+use super::bend::Bends;
 use super::blocks::Blocks;
-use super::visible_points::{images, record, texels};
+use super::visible_points::{images, one_image, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
-    Albedo, Border, Bounces, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Border, Curvature, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
 };
 use crate::{Error, Result};
 use order::order;
+use wanted::Wanted;
 
 /// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
 /// busy where the field is small.
@@ -32,6 +35,9 @@ const MOST_AT_ONCE: u64 = 64;
 /// What is diffuse starts from the direct light of all lights, that of sky and environment among it; paths that leave the
 /// field then bring nothing. Lobes reflect towards where their path comes from: what they mirror of suns, as points in
 /// their middles, and of the sky where a path leaves the field is added at each vertex.
+///
+/// On a curved base ([`Scatter::curvature`]) samples see along directions of their own: 20 bytes a sample and direction more,
+/// in one image. The direct light that is handed in is then that on the curved base.
 ///
 /// Of `directions` count those that paths choose: as often as each other until none is left, in an order that the seed
 /// decides, apart for every step.
@@ -78,7 +84,8 @@ pub fn scatter(
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
         let blocks = Blocks::make(&mut builder, size, surface.border);
-        bound.push(("ground", blocks.images.ground));
+        let ground = blocks.images.ground;
+        bound.push(("ground", ground));
         let suns = wanted.towards_suns()?;
         match &suns {
             Some(_) => blocks.record(&mut builder, field, heights, None),
@@ -102,6 +109,14 @@ pub fn scatter(
                 all.clone(),
             );
             bound.push(("sun_points", all.0));
+        }
+        if scatter.curvature != Curvature::FLAT {
+            let seen = one_image(field, directions, &points, limits)?;
+            let bends = Bends::make(&mut builder, size, directions, limits)?;
+            let curved = (field, surface.border);
+            bends.record(&mut builder, curved, scatter.curvature, [seen, ground]);
+            bound.push(("bent", bends.bent));
+            bound.push(("fan_weights", bends.weigh(&mut builder, field)));
         }
         let samples = u64::from(size[0]) * u64::from(size[1]);
         let is_chained = steps > 1;
@@ -129,6 +144,7 @@ pub fn scatter(
             first_path: scatter.first_path,
             weight_sr: directions.share_sr() * directions.count() as f64,
             view: scatter.view,
+            curvature: scatter.curvature,
         };
         let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
         for first in (0..wanted.paths).step_by(at_once as usize) {
@@ -171,6 +187,7 @@ pub fn scatter(
         ("paths_before", scatter.first_path.to_string()),
         ("paths_at_once", at_once.to_string()),
         ("seed", scatter.seed.to_string()),
+        ("curvature_per_m", format!("{:?}", scatter.curvature.per_m)),
         ("carried", bytes_text(carried_bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
@@ -181,78 +198,6 @@ pub fn scatter(
         ));
     }
     Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
-}
-
-/// What the scene and the settings leave to be done.
-struct Wanted<'a> {
-    /// The surface's, where it reflects anything.
-    lobe: Option<&'a Lobe>,
-    /// Whether it mirrors sky or environment.
-    mirrors_sky: bool,
-    /// Those that it mirrors.
-    suns: Vec<Sun>,
-    /// 0 where nothing is scattered.
-    bounces: u32,
-    paths: u32,
-}
-
-impl<'a> Wanted<'a> {
-    fn of(scene: &'a Scene, directions: usize, scatter: &Scatter, notes: &mut Vec<String>) -> Self {
-        let Scene { field, surface, lights } = scene;
-        let lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
-        let lobe = surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
-        if surface.phong.is_some() && lobe.is_none() {
-            notes.push("lobe dropped: its scale is 0".into());
-        }
-        let mirrors_sky =
-            lobe.is_some() && (lights.sky.is_some_and(|c| lit(&c)) || lights.environment.is_some());
-        let suns = match lobe {
-            Some(_) => lights.suns.iter().filter(|sun| lit(&sun.irradiance)).copied().collect(),
-            None => Vec::new(),
-        };
-        let asked = Bounces { count: scatter.bounces, cutoff: scatter.cutoff, ..Bounces::NONE };
-        let most = surface.most_reflected();
-        let mut bounces = asked.worth_drawing(most);
-        if bounces < asked.count {
-            notes.push(super::bounces::dropped(&asked, bounces, most));
-        }
-        if bounces > 0 && field.is_concave(surface.border) {
-            bounces = 0;
-            notes.push("no paths: nothing rises above anything else, no place sees another".into());
-        }
-        let mut wanted = Self { lobe, mirrors_sky, suns, bounces, paths: 0 };
-        if bounces > 0 {
-            wanted.paths = scatter.paths;
-            // Each direction once is the mean of all already.
-            let all = directions as u32;
-            if wanted.steps() == 1 && scatter.first_path == 0 && scatter.paths > all {
-                wanted.paths = all;
-                notes.push(format!(
-                    "{} paths dropped: of one step, {all} have looked along all directions",
-                    scatter.paths - all
-                ));
-            }
-        }
-        wanted
-    }
-
-    /// Whether what is seen mirrors lights that no sample shows.
-    fn mirrors_lights(&self) -> bool {
-        self.mirrors_sky || !self.suns.is_empty()
-    }
-
-    /// One more than bounces where what is met last mirrors lights.
-    fn steps(&self) -> u32 {
-        self.bounces + u32::from(self.mirrors_lights())
-    }
-
-    /// Where lobes look for suns: their middles.
-    fn towards_suns(&self) -> Result<Option<Directions>> {
-        if self.suns.is_empty() {
-            return Ok(None);
-        }
-        Ok(Some(Directions::from_vectors(self.suns.iter().map(towards).collect(), -1.0)?))
-    }
 }
 
 fn hash_text(directions: &Directions) -> String {

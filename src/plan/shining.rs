@@ -3,7 +3,9 @@ use super::azimuths::{self, Azimuth, Shape};
 use super::spheres::Spheres;
 use super::sweep::Sweep;
 use super::sweeping::circle;
-use crate::scene::{Albedo, Basis, Border, Environment, KeyLight, Lobe, Quality, Scene, Sun};
+use crate::scene::{
+    Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Quality, Scene, Sun,
+};
 use crate::{Error, Result};
 
 /// The lights that give any light.
@@ -21,6 +23,18 @@ pub(super) struct Shining<'a> {
     has_sky_view: bool,
     /// Whether every colour is grey: one channel does.
     pub is_grey: bool,
+    /// Where colours are the caller's, on the device, so that those of the scene count for nothing: the texels of the
+    /// first sun and of the first key light. The sky's is the first of all.
+    texels: Option<[usize; 2]>,
+}
+
+/// A light's colour.
+#[derive(Clone, Copy)]
+pub(super) enum Colour {
+    /// The scene's.
+    Known([f32; 3]),
+    /// A texel of the caller's, by its column.
+    Texel(u32),
 }
 
 impl<'a> Shining<'a> {
@@ -31,7 +45,11 @@ impl<'a> Shining<'a> {
         notes: &mut Vec<String>,
     ) -> Result<Self> {
         let Scene { field, surface, lights } = scene;
-        let lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
+        let has_texels = wanted.colours_on_device;
+        if has_texels {
+            Self::check_texels(scene)?;
+        }
+        let lit = |c: &[f32; 3]| has_texels || c.iter().any(|v| *v > 0.0);
         let sky = lights.sky.filter(lit);
         let environment = lights.environment.as_ref();
         let (suns, dark): (Vec<_>, Vec<_>) =
@@ -52,7 +70,7 @@ impl<'a> Shining<'a> {
         for (i, _) in dark {
             notes.push(format!("sun {} dropped: its irradiance is 0", i + 1));
         }
-        let keys = Self::keys(scene, notes);
+        let keys = Self::keys(scene, has_texels, notes);
         for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
             notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
         }
@@ -68,13 +86,45 @@ impl<'a> Shining<'a> {
         }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
+            && !has_texels
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
             && spheres.shining.iter().all(|(_, s)| grey(&s.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
         let has_sky_view = wanted.sky_view;
-        Ok(Self { sky, environment, suns, keys, spheres, gloss, has_sky_view, is_grey })
+        if has_texels {
+            notes.push("colours of sky, suns and key lights: the caller's, on the device".into());
+        }
+        let first_sun = usize::from(lights.sky.is_some());
+        let texels = has_texels.then_some([first_sun, first_sun + lights.suns.len()]);
+        Ok(Self { sky, environment, suns, keys, spheres, gloss, has_sky_view, is_grey, texels })
+    }
+
+    /// Whether colours may be the caller's: each is the factor of a sum of one light's. Those of balls are summed up with
+    /// their sums, those of lobes with series.
+    fn check_texels(Scene { surface, lights, .. }: &Scene) -> Result<()> {
+        let found = if !lights.spheres.is_empty() {
+            "a ball of light"
+        } else if surface.phong.is_some() {
+            "a lobe"
+        } else if Self::texels_of(lights) == 0 {
+            "nothing that has one"
+        } else {
+            return Ok(());
+        };
+        let expected = "a sky, suns and key lights, on ground without a lobe";
+        Err(Error::setting("picture: colours_on_device", found, expected))
+    }
+
+    /// Colours of the caller's: the sky's, where there is one, then those of all suns, then those of all key lights.
+    pub fn texels_of(lights: &Lights) -> usize {
+        usize::from(lights.sky.is_some()) + lights.suns.len() + lights.keys.len()
+    }
+
+    /// The sky's.
+    pub fn sky_colour(&self) -> Option<Colour> {
+        self.sky.map(|sky| self.texels.map_or(Colour::Known(sky), |_| Colour::Texel(0)))
     }
 
     /// Whether nothing shines: the picture is black.
@@ -84,10 +134,14 @@ impl<'a> Shining<'a> {
     }
 
     /// The key lights that any sample may see.
-    fn keys(scene: &'a Scene, notes: &mut Vec<String>) -> Vec<(usize, &'a KeyLight)> {
+    fn keys(
+        scene: &'a Scene,
+        has_texels: bool,
+        notes: &mut Vec<String>,
+    ) -> Vec<(usize, &'a KeyLight)> {
         let has_ground = scene.surface.border != Border::Open;
         let why_dark = |key: &KeyLight| match key {
-            k if k.radiance == [0.0; 3] => Some("its radiance is 0"),
+            k if k.radiance == [0.0; 3] && !has_texels => Some("its radiance is 0"),
             k if has_ground && k.elevations_rad[1] <= 0.0 => Some("all of it is below horizontal"),
             _ => None,
         };
@@ -108,15 +162,19 @@ impl<'a> Shining<'a> {
 
     /// Suns, then key lights: each is lit through azimuths of its own.
     pub fn aimed(&self) -> impl Iterator<Item = Aimed> {
-        let suns = self.suns.iter().map(|(i, sun)| Aimed {
+        let colour = |known, i: usize, of: usize| match self.texels {
+            Some(firsts) => Colour::Texel((firsts[of] + i) as u32),
+            None => Colour::Known(known),
+        };
+        let suns = self.suns.iter().map(move |(i, sun)| Aimed {
             name: format!("sun{}", i + 1),
             shape: if sun.is_point() { Shape::Point } else { Shape::Disc },
-            colour: sun.irradiance,
+            colour: colour(sun.irradiance, *i, 0),
         });
-        let keys = self.keys.iter().map(|(i, key)| Aimed {
+        let keys = self.keys.iter().map(move |(i, key)| Aimed {
             name: format!("key{}", i + 1),
             shape: Shape::Patch,
-            colour: key.radiance,
+            colour: colour(key.radiance, *i, 1),
         });
         suns.chain(keys)
     }
@@ -179,5 +237,5 @@ pub(super) struct Aimed {
     /// What part.
     pub shape: Shape,
     /// Irradiance of a sun, radiance of a key light.
-    pub colour: [f32; 3],
+    pub colour: Colour,
 }

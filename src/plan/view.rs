@@ -58,7 +58,7 @@ pub struct View {
     pub radiance: Format,
     /// Columns and rows of the environment, where one is seen.
     pub environment: Option<[u32; 2]>,
-    /// Whether the field has voids.
+    /// Whether the field has voids: may be set where its heights are [unknown](crate::scene::HeightField::unknown).
     pub has_voids: bool,
     /// The settings really used, as (name, value).
     pub settings: Vec<(String, String)>,

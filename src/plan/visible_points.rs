@@ -126,6 +126,33 @@ pub(super) fn images(
     Ok(all.collect())
 }
 
+/// The image of all directions, for passes that look at all.
+///
+/// # Errors
+/// Several.
+pub(super) fn one_image(
+    field: &HeightField,
+    directions: &Directions,
+    all: &[(ResourceId, Range<u32>)],
+    limits: &Limits,
+) -> Result<ResourceId> {
+    if let [(points, _)] = all {
+        return Ok(*points);
+    }
+    let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    let (count, samples) = (directions.count(), (field.rows() * field.cols()) as u64);
+    let layers = VisiblePoints::layers(count, is_small) as u64;
+    Err(Error::Limit {
+        what: format!("what samples see in {count} directions, looked at together"),
+        needs: format!("one image of {layers} layers, {}", bytes_text(4 * samples * layers)),
+        limit: format!(
+            "{} layers and {} in one allocation; fewer directions or a smaller field fit",
+            limits.image_layers,
+            bytes_text(limits.allocation_bytes)
+        ),
+    })
+}
+
 /// One a direction: east, north, up.
 pub(super) fn texels(directions: &Directions) -> Vec<f32> {
     let vectors = directions.vectors().iter();

@@ -95,7 +95,7 @@ impl HeightField {
             ));
         }
         if let Some(voids) = &voids {
-            fill_voids(rows, cols, &mut offsets, voids);
+            fill(rows, cols, &mut offsets, voids);
         }
         Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids, is_unknown: false })
     }
@@ -230,9 +230,38 @@ impl HeightField {
     }
 }
 
+/// Fills samples that hold no data, as [`HeightField::new`] does its own: for heights that an engine hands to the device
+/// by itself, of a field that is [unknown](HeightField::unknown). `heights_m` are row after row from the north-west,
+/// `voids` one mark a sample, whose heights may be anything; the others keep their bits.
+///
+/// # Errors
+/// Sizes that do not match, a height outside voids that is not finite or beyond ±1e15, only voids.
+pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool]) -> Result<()> {
+    let count = rows.checked_mul(cols).filter(|count| *count == heights_m.len());
+    if count != Some(voids.len()) {
+        let found =
+            format!("{} and {} voids for {rows} × {cols} samples", heights_m.len(), voids.len());
+        return Err(Error::setting("heights", found, "rows × columns of both"));
+    }
+    let is_wrong =
+        |(h, void): (&f32, &bool)| !void && (h.is_nan() || f64::from(h.abs()) > HEIGHT_LIMIT);
+    if let Some(i) = heights_m.iter().zip(voids).position(is_wrong) {
+        return Err(Error::setting(
+            format!("height at row {}, column {}", i / cols, i % cols),
+            format!("{:?}", heights_m[i]),
+            "a finite number within ±1e15, or a void",
+        ));
+    }
+    if !voids.contains(&false) {
+        return Err(Error::setting("heights", "nothing but voids", "at least one height"));
+    }
+    fill(rows, cols, heights_m, voids);
+    Ok(())
+}
+
 /// Fills voids layer by layer from their rim: a sample takes the mean of the neighbours (of eight)
 /// that are known, nearest layers first. Continuous at the rim and independent of scan order.
-fn fill_voids(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
+fn fill(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
     let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
     let neighbours = |i: usize| {
         let (r, c) = (i / cols, i % cols);
@@ -299,6 +328,28 @@ mod tests {
             assert!(field.replace(at, cols, &vec![0.0; count]).is_err(), "{at:?} {cols} {count}");
         }
         assert_eq!(field.heights_m()[8], 4.0);
+    }
+
+    /// In place of a field's own: the same heights, as its base is 0; what cannot be is named.
+    #[test]
+    fn an_engines_heights_are_filled_as_a_fields_are() {
+        let heights: Vec<f32> = (0..30).map(|i| ((i * 7) % 5) as f32 - 2.0).collect();
+        let voids: Vec<bool> = (0..30).map(|i| i % 4 == 1 || (10..15).contains(&i)).collect();
+        let of_field: Vec<f64> = heights.iter().map(|h| f64::from(*h)).collect();
+        let field = HeightField::new(5, 6, &of_field, [1.0, 1.0], Some(voids.clone())).unwrap();
+        assert_eq!(field.base_m(), 0.0);
+        let mut filled = heights.clone();
+        voids.iter().zip(&mut filled).filter(|v| *v.0).for_each(|(_, h)| *h = f32::NAN);
+        fill_voids([5, 6], &mut filled, &voids).unwrap();
+        assert_eq!(filled, field.heights_m());
+        let refuse = |heights: &mut [f32], voids: &[bool], says: &str| {
+            let said = fill_voids([5, 6], heights, voids).unwrap_err().to_string();
+            assert!(said.contains(says), "{said}");
+        };
+        refuse(&mut filled[1..], &voids, "29 and 30 voids for 5 × 6 samples");
+        refuse(&mut filled, &[true; 30], "nothing but voids");
+        filled[8] = f32::INFINITY;
+        refuse(&mut filled, &[false; 30], "height at row 1, column 2: found inf");
     }
 
     #[test]

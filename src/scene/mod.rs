@@ -32,6 +32,7 @@
 
 mod bounces;
 mod camera;
+mod curvature;
 mod directions;
 mod environment;
 mod field;
@@ -46,9 +47,10 @@ mod visible;
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
+pub use curvature::Curvature;
 pub use directions::Directions;
 pub use environment::Environment;
-pub use field::HeightField;
+pub use field::{HeightField, fill_voids};
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
 pub use quality::{

@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::quality::within;
-use super::{Bounces, Scene};
+use super::{Bounces, Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -25,6 +25,9 @@ pub struct Scatter {
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,
+    /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
+    /// each direction counts for, follow the base. Of what is diffuse alone.
+    pub curvature: Curvature,
 }
 
 impl Default for Scatter {
@@ -36,6 +39,7 @@ impl Default for Scatter {
             cutoff: Bounces::NONE.cutoff,
             seed: 0,
             view: DVec3::Z,
+            curvature: Curvature::FLAT,
         }
     }
 }
@@ -51,7 +55,8 @@ impl Scatter {
     /// Checks every range, and that the scene is one that can be scattered.
     ///
     /// # Errors
-    /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds.
+    /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
+    /// a base bent more than [`Curvature::check`] allows.
     pub fn check(&self, scene: &Scene) -> Result<()> {
         within("--bounces", self.bounces, Self::BOUNCES)?;
         within("--paths", self.paths, Self::PATHS)?;
@@ -71,6 +76,14 @@ impl Scatter {
                 "lobes under sky, environment and suns alone",
             ));
         }
-        Ok(())
+        if scene.surface.phong.is_some() && self.curvature != Curvature::FLAT {
+            // Samples along one direction see a place from directions of their own there, and it has one light for all.
+            return Err(Error::setting(
+                "scattered light on a curved base",
+                "a lobe",
+                "diffuse surfaces alone",
+            ));
+        }
+        self.curvature.check(&scene.field, scene.surface.border)
     }
 }

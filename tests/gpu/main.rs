@@ -10,6 +10,7 @@ mod bounce_nodes;
 mod bounces;
 mod buffers;
 mod change;
+mod colours;
 mod contract;
 mod debugger;
 mod decoders;

@@ -14,7 +14,7 @@ use ridgelight_c::*;
 
 use crate::target::{FORMAT, SIZE, Target};
 
-const SIDE: usize = 24;
+pub(super) const SIDE: usize = 24;
 
 fn size<T>() -> u32 {
     size_of::<T>() as u32
@@ -26,18 +26,18 @@ fn last_error() -> String {
 }
 
 #[track_caller]
-fn good(result: RidgelightResult) {
+pub(super) fn good(result: RidgelightResult) {
     assert_eq!(result, RidgelightResult::Ok, "{}", last_error());
 }
 
 #[track_caller]
-fn refused(result: RidgelightResult, code: RidgelightResult, named: &str) {
+pub(super) fn refused(result: RidgelightResult, code: RidgelightResult, named: &str) {
     assert_eq!(result, code, "{named}");
     assert!(last_error().contains(named), "{named}: {}", last_error());
 }
 
 /// All zeros, but for the size that it begins with.
-fn zeroed<T>() -> T {
+pub(super) fn zeroed<T>() -> T {
     let mut value = std::mem::MaybeUninit::<T>::zeroed();
     // SAFETY: the library's structs take zeros for their defaults, and begin with their size.
     unsafe {
@@ -46,12 +46,12 @@ fn zeroed<T>() -> T {
     }
 }
 
-fn heights() -> Vec<f64> {
+pub(super) fn heights() -> Vec<f64> {
     (0..SIDE * SIDE).map(|i| f64::from((i / SIDE * 31 + i % SIDE * 17) as u32 % 7) - 3.0).collect()
 }
 
 /// A device that says what validation hears, and what C is told of it.
-fn device() -> (Headless, RidgelightHost) {
+pub(super) fn device() -> (Headless, RidgelightHost) {
     let validation = crate::is_validated();
     let gpu = Headless::new(&HeadlessOptions { device: None, validation }).expect("a device");
     // SAFETY: the system's loader, as above.
@@ -69,12 +69,12 @@ fn device() -> (Headless, RidgelightHost) {
     (gpu, host)
 }
 
-fn scene() -> RidgelightScene {
+pub(super) fn scene() -> RidgelightScene {
     let side = SIDE as u32;
     RidgelightScene { rows: side, cols: side, sky: [1.0, 0.5, 0.25], ..zeroed() }
 }
 
-fn image(arg: &ImageArg) -> RidgelightImage {
+pub(super) fn image(arg: &ImageArg) -> RidgelightImage {
     let state = |s: ridgelight::gpu::ImageState| RidgelightImageState {
         stage: s.stage,
         access: s.access,
@@ -467,7 +467,11 @@ fn what_a_plan_cannot_be_is_named() {
     for (quality, code, named) in of_quality {
         refuse(scene(), quality, 0, code, named);
     }
-    refuse(scene(), zeroed(), 8, argument, "picture: found 8");
+    refuse(scene(), zeroed(), 16, argument, "picture: found 16");
+    let ball: RidgelightSphereLight = RidgelightSphereLight { radius_m: 1.0, ..zeroed() };
+    let with_ball = RidgelightScene { spheres: &ball, sphere_count: 1, ..scene() };
+    let flag = RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE;
+    refuse(with_ball, zeroed(), flag, setting, "picture: colours_on_device: found a ball of light");
     // SAFETY: as above.
     let made = unsafe { ridgelight_plan_create(&host, &scene(), ptr::null(), 0, 1, &mut plan) };
     refused(made, RidgelightResult::Limit, "the limit is");

@@ -13,7 +13,7 @@ use crate::args::AutoArgs;
 use crate::idle;
 use crate::reference;
 use crate::setup;
-use crate::trade::{digits, percent};
+use crate::terminal::{digits, percent};
 
 /// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
 const DRAWS: usize = 3;

@@ -333,7 +333,7 @@ fn bake(
         all.push((making.source, files));
     }
     let normals = normals(field, border);
-    let bar = crate::render::progress(args.global.quiet, "baking");
+    let bar = crate::terminal::progress(args.global.quiet, "baking");
     let azimuths = plan::circle_rad(quality, field.cell_m())?;
     let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
     let started = std::time::Instant::now();

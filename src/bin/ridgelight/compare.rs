@@ -19,7 +19,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
         pairs::check_horizons(&args.reference, &b)?;
     }
     let pairs = Pairs::of(args, &a, &b)?;
-    let bar = crate::render::progress(args.quiet, "comparing");
+    let bar = crate::terminal::progress(args.quiet, "comparing");
     let mut maps = Vec::new();
     let (channels, pictures) = if args.horizons {
         (vec![rows::horizons(args, &pairs)?], Vec::new())

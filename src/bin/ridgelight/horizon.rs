@@ -136,7 +136,7 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     let mut distances_file =
         args.distances.as_ref().map(|p| NpyWriter::create(p, &shape)).transpose()?;
     let mut planes: Vec<Vec<f32>> = Vec::new();
-    let bar = crate::render::progress(args.global.quiet, "horizons");
+    let bar = crate::terminal::progress(args.global.quiet, "horizons");
     let (times, plan) = for_each(
         &mut gpu,
         &field,

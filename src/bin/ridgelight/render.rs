@@ -57,7 +57,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         Ok(plan)
     })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
-    let progress = progress(args.global.quiet, "lighting");
+    let progress = crate::terminal::progress(args.global.quiet, "lighting");
     let mut chosen = None;
     if let Some(goal) = goal {
         let found = auto::choose(
@@ -148,18 +148,6 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
-}
-
-/// A spinner, on a terminal.
-pub fn progress(quiet: bool, what: &str) -> indicatif::ProgressBar {
-    let bar = if quiet {
-        indicatif::ProgressBar::hidden()
-    } else {
-        indicatif::ProgressBar::new_spinner()
-    };
-    bar.set_message(what.to_owned());
-    bar.enable_steady_tick(std::time::Duration::from_millis(200));
-    bar
 }
 
 /// Lights that are numbers each may be none together.

@@ -29,7 +29,6 @@ use picture::Tones;
 use report::Report;
 use rig::Rig;
 use truth::Truth;
-pub use truth::{digits, percent};
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
@@ -84,7 +83,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let given = args.reference.as_deref().map(read).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
 
-    let bar = crate::render::progress(args.global.quiet, "drawing the truth");
+    let bar = crate::terminal::progress(args.global.quiet, "drawing the truth");
     let budget = Duration::from_secs_f64(args.budget);
     let mut rig = Rig::new(gpu, limits, &scene, budget);
     let truth = match given {

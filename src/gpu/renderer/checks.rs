@@ -64,9 +64,7 @@ impl Renderer {
     /// out besides light, such as how densely it looks at an environment, is f32's to hold.
     fn formats(&self, resource: &Resource) -> Vec<vk::Format> {
         let Kind::Image { format, .. } = resource.kind else { return Vec::new() };
-        let is_light = matches!(resource.name.as_str(), "heights" | "environment" | "albedo")
-            && self.plan.find("environment_cdf").is_none();
-        let may_differ = is_light && resource.owner == Owner::Input;
+        let may_differ = resource.may_be_narrow() && self.plan.find("environment_cdf").is_none();
         let all = format.vk_read().iter().copied();
         all.filter(|f| *f == format.vk() || may_differ && self.readable.contains(f)).collect()
     }

@@ -42,7 +42,7 @@ pub struct ImageArg {
     pub image: vk::Image,
     /// A view of its colour: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,
-    /// Its format: the plan's; of inputs that only hold heights, an environment or an albedo also another
+    /// Its format: the plan's; of inputs that only hold heights, an environment, an albedo or colours of lights also another
     /// of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
     pub format: vk::Format,
     /// Columns, rows and layers; must be the plan's.

@@ -32,7 +32,9 @@ pub(super) fn capabilities(
     gpu: &mut Headless,
 ) -> std::result::Result<vk::SurfaceCapabilitiesKHR, vk::Result> {
     let device = gpu.host().physical_device;
-    let (_, _, surface) = gpu.surface().ok_or(vk::Result::ERROR_SURFACE_LOST_KHR)?;
+    // Null where the last could not be made.
+    let surface = gpu.surface().filter(|(_, _, made)| made.surface != vk::SurfaceKHR::null());
+    let (_, _, surface) = surface.ok_or(vk::Result::ERROR_SURFACE_LOST_KHR)?;
     let (loader, surface) = (&surface.loader, surface.surface);
     // SAFETY: device and surface are alive and of one instance.
     unsafe { loader.get_physical_device_surface_capabilities(device, surface) }

@@ -7,7 +7,7 @@ use super::super::memory::{Backed, whole};
 use super::super::{Frame, failed};
 use super::drawer::{COPIED, Drawer};
 use super::slot::{Slot, fitting};
-use super::{Panel, Part, Screen, Shot, Sight, Work};
+use super::{Pane, Panel, Screen, Shot, Sight, Work};
 use crate::plan::Rectangle;
 use crate::{Error, Result};
 
@@ -22,31 +22,31 @@ const SHOWN: (vk::ImageLayout, vk::AccessFlags2) =
     (vk::ImageLayout::PRESENT_SRC_KHR, vk::AccessFlags2::NONE);
 
 impl Screen {
-    /// What the parts hand to the device; the slot is free.
+    /// What the panes hand to the device; the slot is free.
     pub(super) fn prepare(
         &mut self,
         slot: usize,
-        parts: &mut [Part<'_>],
+        panes: &mut [Pane<'_>],
         shot: &Shot<'_>,
     ) -> Result<()> {
         let chain = self.chain.as_ref().expect("draw asks");
         let (size, swaps, is_readable) = (chain.size, chain.swaps(), chain.is_readable);
-        for part in parts.iter_mut() {
-            check(part, size, swaps)?;
-            let (inputs, outputs) = (part.frame.inputs(), part.frame.outputs());
-            part.frame.renderer().check_recording(slot, &inputs, &outputs, part.work)?;
+        for pane in panes.iter_mut() {
+            check(pane, size, swaps)?;
+            let (inputs, outputs) = (pane.frame.inputs(), pane.frame.outputs());
+            pane.frame.renderer().check_recording(slot, &inputs, &outputs, pane.work)?;
         }
-        let columns: Vec<[u32; 2]> = parts.iter().map(|part| [part.left, part.size()[0]]).collect();
+        let columns: Vec<[u32; 2]> = panes.iter().map(|pane| [pane.left, pane.size()[0]]).collect();
         check_apart(&columns)?;
         for (n, panel) in shot.panels.iter().enumerate() {
             check_panel(n, panel)?;
         }
         let gpu = &mut self.gpu;
         let of_slot = &mut self.slots[slot];
-        of_slot.heights.resize_with(of_slot.heights.len().max(parts.len()), || None);
-        for (part, place) in parts.iter().zip(&mut of_slot.heights) {
-            let Some((heights, at)) = part.heights else { continue };
-            let cols = part.frame.plan().size[0] as usize;
+        of_slot.heights.resize_with(of_slot.heights.len().max(panes.len()), || None);
+        for (pane, place) in panes.iter().zip(&mut of_slot.heights) {
+            let Some((heights, at)) = pane.heights else { continue };
+            let cols = pane.frame.plan().size[0] as usize;
             let bytes = 4 * u64::from(at.cols) * u64::from(at.rows);
             let named = ("heights of a frame", bytes);
             let mut to = mapped(fitting(gpu, place, named, MemoryUse::Upload)?)?;
@@ -75,18 +75,18 @@ impl Screen {
             let named = ("picture of a frame", 4 * u64::from(size[0]) * u64::from(size[1]));
             fitting(gpu, &mut of_slot.readback, named, MemoryUse::Readback)?;
         }
-        self.prepare_drawers(parts, shot, swaps)
+        self.prepare_drawers(panes, shot, swaps)
     }
 
-    fn prepare_drawers(&mut self, parts: &[Part<'_>], shot: &Shot<'_>, swaps: bool) -> Result<()> {
-        let fit = self.drawers.len() == parts.len()
-            && self.drawers.iter().zip(parts).all(|(drawer, part)| drawer.fits(part.sight));
+    fn prepare_drawers(&mut self, panes: &[Pane<'_>], shot: &Shot<'_>, swaps: bool) -> Result<()> {
+        let fit = self.drawers.len() == panes.len()
+            && self.drawers.iter().zip(panes).all(|(drawer, pane)| drawer.fits(pane.sight));
         if !fit {
             self.wait()?;
             self.drawers.drain(..).for_each(|old| old.end(&mut self.gpu));
-            for part in parts {
+            for pane in panes {
                 let of_all = (shot.tone, shot.voids, swaps);
-                self.drawers.push(Drawer::new(&mut self.gpu, part.sight, of_all)?);
+                self.drawers.push(Drawer::new(&mut self.gpu, pane.sight, of_all)?);
             }
         }
         self.drawers.iter_mut().try_for_each(|drawer| drawer.set_tone(&mut self.gpu, shot.tone))
@@ -96,37 +96,27 @@ impl Screen {
         &mut self,
         slot: usize,
         image: usize,
-        parts: &mut [Part<'_>],
+        panes: &mut [Pane<'_>],
         shot: &Shot<'_>,
     ) -> Result<()> {
         let commands = self.begin(slot)?;
-        for (n, part) in parts.iter_mut().enumerate() {
-            if let (Some((_, at)), Some(from)) = (part.heights, &self.slots[slot].heights[n]) {
-                self.copy_heights(commands, (from.buffer, at), part.frame);
+        for (n, pane) in panes.iter_mut().enumerate() {
+            if let (Some((_, at)), Some(from)) = (pane.heights, &self.slots[slot].heights[n]) {
+                self.copy_heights(commands, (from.buffer, at), pane.frame);
             }
-            let (inputs, outputs) = (part.frame.inputs(), part.frame.outputs());
-            let renderer = part.frame.renderer();
-            match part.work {
+            let (inputs, outputs) = (pane.frame.inputs(), pane.frame.outputs());
+            let renderer = pane.frame.renderer();
+            match pane.work {
                 Work::Passes([]) => {}
                 Work::Passes(passes) => {
                     renderer.record_passes(commands, slot, &inputs, &outputs, passes)?;
                 }
                 Work::Edit(at) => renderer.record_edit(commands, slot, &inputs, &outputs, at)?,
             }
-            let seen = (&*part.frame, part.sight, shot.tone.exposure);
+            let seen = (&*pane.frame, pane.sight, shot.tone.exposure);
             self.drawers[n].record(&self.gpu, commands, slot, seen)?;
         }
-        self.fill(slot, image, parts, shot);
-        // SAFETY: recording was begun above.
-        unsafe { self.gpu.host().device.end_command_buffer(commands) }
-            .map_err(failed("recording a frame"))
-    }
-
-    /// What leaves a picture as windows take it, without contents.
-    pub(super) fn record_nothing(&self, slot: usize, image: usize) -> Result<()> {
-        let commands = self.begin(slot)?;
-        let chain = self.chain.as_ref().expect("acquired from");
-        self.change(commands, chain.images[image], NEW, SHOWN);
+        self.fill(slot, image, panes, shot);
         // SAFETY: recording was begun above.
         unsafe { self.gpu.host().device.end_command_buffer(commands) }
             .map_err(failed("recording a frame"))
@@ -178,7 +168,7 @@ impl Screen {
     }
 
     /// Copies pictures and text into the window's image, and back to the host where they are kept.
-    fn fill(&self, slot: usize, image: usize, parts: &[Part<'_>], shot: &Shot<'_>) {
+    fn fill(&self, slot: usize, image: usize, panes: &[Pane<'_>], shot: &Shot<'_>) {
         let (device, slot) = (&self.gpu.host().device, &self.slots[slot]);
         let chain = self.chain.as_ref().expect("acquired from");
         let (to, commands) = (chain.images[image], slot.commands);
@@ -186,22 +176,22 @@ impl Screen {
             self.change(commands, to, from, to_state);
         };
         change(NEW, FILLED);
-        if !matches!(parts, [one] if one.size() == chain.size) {
+        if !matches!(panes, [one] if one.size() == chain.size) {
             let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
             // SAFETY: `commands` is being recorded; the image is in this layout.
             unsafe { device.cmd_clear_color_image(commands, to, FILLED.0, &black, &[whole(1)]) };
             change(FILLED, FILLED);
         }
-        for (part, drawer) in parts.iter().zip(&self.drawers) {
-            let region = copied(part.size());
+        for (pane, drawer) in panes.iter().zip(&self.drawers) {
+            let region = copied(pane.size());
             let (size, layers) = (region.image_extent, region.image_subresource);
             let copy = [vk::ImageCopy::default()
                 .src_subresource(layers)
                 .dst_subresource(layers)
-                .dst_offset(vk::Offset3D { x: part.left as i32, y: 0, z: 0 })
+                .dst_offset(vk::Offset3D { x: pane.left as i32, y: 0, z: 0 })
                 .extent(size)];
             let (from, layout) = (drawer.picture(), COPIED.layout);
-            // SAFETY: `commands` is being recorded; texels of both images are four bytes; the part was checked to be
+            // SAFETY: `commands` is being recorded; texels of both images are four bytes; the pane was checked to be
             // within the image, and is as large as its picture.
             unsafe { device.cmd_copy_image(commands, from, layout, to, FILLED.0, &copy) };
         }
@@ -262,14 +252,14 @@ impl Screen {
         unsafe { self.gpu.host().device.cmd_pipeline_barrier2(commands, &info) };
     }
 
-    /// What the slot read back, once it has run.
-    pub(super) fn read_back(&mut self, slot: usize) -> Result<Vec<[u8; 4]>> {
-        let chain = self.chain.as_ref();
-        let (swaps, size) = chain.map_or((false, [0; 2]), |c| (c.swaps(), c.size));
+    /// What the slot read back, once it has run, of a picture of a size.
+    pub(super) fn read_back(
+        &mut self,
+        slot: usize,
+        (size, swaps): ([u32; 2], bool),
+    ) -> Result<Vec<[u8; 4]>> {
         let slot = &mut self.slots[slot];
-        // SAFETY: the fence is the slot's, its commands have been submitted.
-        unsafe { self.gpu.host().device.wait_for_fences(&[slot.done], true, u64::MAX) }
-            .map_err(failed("waiting for a frame"))?;
+        slot.settle(&self.gpu)?;
         let mapped = slot.readback.as_mut().and_then(|b| b.mapped());
         let mapped =
             mapped.ok_or_else(|| failed("reading back")(vk::Result::ERROR_MEMORY_MAP_FAILED))?;
@@ -287,7 +277,7 @@ fn mapped(backed: &mut Backed) -> Result<&mut [u8]> {
     mapped.ok_or_else(|| failed("uploading")(vk::Result::ERROR_MEMORY_MAP_FAILED))
 }
 
-impl Part<'_> {
+impl Pane<'_> {
     /// Columns and rows that it takes of the picture.
     fn size(&self) -> [u32; 2] {
         match self.sight {
@@ -297,11 +287,11 @@ impl Part<'_> {
     }
 }
 
-/// Whether a part is within a picture and its heights within its field.
-fn check(part: &Part<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
-    let plan = part.frame.plan();
+/// Whether a pane is within a picture and its heights within its field.
+fn check(pane: &Pane<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
+    let plan = pane.frame.plan();
     let field @ [cols, rows] = plan.size;
-    if let Some((heights, at)) = part.heights {
+    if let Some((heights, at)) = pane.heights {
         let within = |first: u32, count: u32, all: u32| {
             first.checked_add(count).is_some_and(|end| end <= all) && count > 0
         };
@@ -314,13 +304,13 @@ fn check(part: &Part<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
             return Err(Error::setting("heights", found, expected));
         }
     }
-    let [width, height] = part.size();
-    let is_ordered = match part.sight {
+    let [width, height] = pane.size();
+    let is_ordered = match pane.sight {
         Sight::Map(map) => map.swaps == swaps,
         Sight::Camera(_) => true,
     };
-    if part.left.checked_add(width).is_none_or(|end| end > size[0]) || height > size[1] {
-        let found = format!("{width} × {height} from column {}", part.left);
+    if pane.left.checked_add(width).is_none_or(|end| end > size[0]) || height > size[1] {
+        let found = format!("{width} × {height} from column {}", pane.left);
         return Err(Error::setting("sight: size", found, format!("within {size:?}")));
     }
     if !is_ordered {
@@ -329,16 +319,16 @@ fn check(part: &Part<'_>, size: [u32; 2], swaps: bool) -> Result<()> {
     Ok(())
 }
 
-/// Whether parts, each the column where it begins and its columns, stand beside one another: all begin in the first row,
+/// Whether panes, each the column where it begins and its columns, stand beside one another: all begin in the first row,
 /// and copies into the same pixels would come in any order.
 fn check_apart(columns: &[[u32; 2]]) -> Result<()> {
     let end = |[left, width]: [u32; 2]| left.saturating_add(width);
-    for (later, part) in columns.iter().enumerate() {
-        let over = |other: &&[u32; 2]| part[0] < end(**other) && other[0] < end(*part);
+    for (later, pane) in columns.iter().enumerate() {
+        let over = |other: &&[u32; 2]| pane[0] < end(**other) && other[0] < end(*pane);
         if let Some(other) = columns[..later].iter().find(over) {
             let found =
-                format!("{} to {}, over {} to {}", part[0], end(*part), other[0], end(*other));
-            return Err(Error::setting(format!("part {later}: columns"), found, "its own"));
+                format!("{} to {}, over {} to {}", pane[0], end(*pane), other[0], end(*other));
+            return Err(Error::setting(format!("pane {later}: columns"), found, "its own"));
         }
     }
     Ok(())
@@ -382,12 +372,12 @@ fn text(panel: &Panel<'_>, size: [u32; 2], offset: u64) -> Option<vk::BufferImag
 mod tests {
     use super::*;
 
-    /// Parts may touch, in any order; one column in common is too many.
+    /// Panes may touch, in any order; one column in common is too many.
     #[test]
-    fn parts_share_no_column() {
+    fn panes_share_no_column() {
         check_apart(&[[8, 8], [0, 8], [16, 4]]).expect("apart");
         let refused = check_apart(&[[0, 8], [20, 2], [7, 8]]).unwrap_err().to_string();
-        assert!(refused.contains("part 2: columns: found 7 to 15, over 0 to 8"), "{refused}");
+        assert!(refused.contains("pane 2: columns: found 7 to 15, over 0 to 8"), "{refused}");
         assert!(check_apart(&[[3, 2], [0, 20]]).is_err());
     }
 

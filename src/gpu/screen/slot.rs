@@ -13,13 +13,15 @@ pub(super) struct Slot {
     pub commands: vk::CommandBuffer,
     /// Signalled when its commands have run.
     pub done: vk::Fence,
-    /// Signalled when its picture may be drawn into.
+    /// Whether commands were handed to the device that will signal `done`, and may not have yet.
+    pub is_in_flight: bool,
+    /// Signalled when its picture may be drawn into; null until [`acquired`](Self::acquired) makes it.
     pub acquired: vk::Semaphore,
-    /// Heights of each part, text, and what is read back: made when first needed.
+    /// Heights of each pane, text, and what is read back: made when first needed.
     pub heights: Vec<Option<Backed>>,
     pub text: Option<Backed>,
     pub readback: Option<Backed>,
-    /// Whether the last shot lit each of its parts.
+    /// Whether the last shot lit each of its panes.
     pub was_lit: Vec<bool>,
 }
 
@@ -29,12 +31,12 @@ impl Slot {
         let pool = vk::CommandPoolCreateInfo::default()
             .queue_family_index(host.queue_family)
             .flags(vk::CommandPoolCreateFlags::TRANSIENT);
-        let done = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-        let acquired = vk::SemaphoreCreateInfo::default();
+        let done = vk::FenceCreateInfo::default();
         let mut slot = Self {
             pool: vk::CommandPool::null(),
             commands: vk::CommandBuffer::null(),
             done: vk::Fence::null(),
+            is_in_flight: false,
             acquired: vk::Semaphore::null(),
             heights: Vec::new(),
             text: None,
@@ -46,7 +48,6 @@ impl Slot {
             (|| {
                 slot.pool = host.device.create_command_pool(&pool, None)?;
                 slot.done = host.device.create_fence(&done, None)?;
-                slot.acquired = host.device.create_semaphore(&acquired, None)?;
                 let commands = vk::CommandBufferAllocateInfo::default()
                     .command_pool(slot.pool)
                     .command_buffer_count(1);
@@ -61,6 +62,35 @@ impl Slot {
                 Err(failed("making a frame in flight")(result))
             }
         }
+    }
+
+    /// Waits for its commands: then it is free.
+    pub fn settle(&mut self, gpu: &Headless) -> Result<()> {
+        if self.is_in_flight {
+            // SAFETY: the fence is this slot's, and what signals it was handed to the device.
+            unsafe { gpu.host().device.wait_for_fences(&[self.done], true, u64::MAX) }
+                .map_err(failed("waiting for a frame"))?;
+            self.is_in_flight = false;
+        }
+        Ok(())
+    }
+
+    /// What the next picture's taking signals: made where there is none.
+    pub fn acquired(&mut self, gpu: &Headless) -> Result<vk::Semaphore> {
+        if self.acquired == vk::Semaphore::null() {
+            let info = vk::SemaphoreCreateInfo::default();
+            // SAFETY: the device is alive.
+            self.acquired = unsafe { gpu.host().device.create_semaphore(&info, None) }
+                .map_err(failed("making a frame in flight"))?;
+        }
+        Ok(self.acquired)
+    }
+
+    /// Lets go of a semaphore that nothing will wait for, once the device is done and its swapchain gone.
+    pub fn give_up(&mut self, gpu: &Headless) {
+        self.was_lit.clear();
+        // SAFETY: made by this device, or null; nothing uses it any more, as the caller says.
+        unsafe { gpu.host().device.destroy_semaphore(std::mem::take(&mut self.acquired), None) };
     }
 
     /// Its objects; its buffers go with [`free`](Self::free).

@@ -3,7 +3,7 @@
 use super::super::blocks::Blocks;
 use super::super::bounces::{Bouncing, bounce_name};
 use super::super::edit::Edits;
-use super::super::shining::{Aimed, Shining};
+use super::super::shining::{Aimed, Colour, Shining};
 use super::super::sphere_sh::SphereSh;
 use super::super::spheres::light_name;
 use super::super::sweeping::{Lists, Sweeping, part};
@@ -158,7 +158,7 @@ impl Drawing<'_> {
             self.gloss_is_begun = h.gloss.is_some();
             self.seen_around();
         }
-        if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky) {
+        if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky_colour()) {
             self.resolve("sky", sum, Some(colour), sky_layer);
         }
         if let Some(sum) = env_sum {
@@ -257,24 +257,29 @@ impl Drawing<'_> {
         self.glossy(&bouncing);
     }
 
-    /// Adds the light of a sum to the picture: of one channel times `colour`, or of its own colour.
+    /// Adds the light of a sum to the picture: of one channel times its colour, or of colours of its own.
     fn resolve(
         &mut self,
         name: &str,
         sum: ResourceId,
-        colour: Option<[f32; 3]>,
+        colour: Option<Colour>,
         layer: Option<ResourceId>,
     ) {
         let albedo = match self.scene.surface.albedo {
             Albedo::Constant(c) => c,
             Albedo::Map(_) => [1.0; 3],
         };
-        let of_light = colour.unwrap_or([1.0; 3]);
+        let (of_light, texel) = match colour {
+            Some(Colour::Known(known)) => (known, None),
+            Some(Colour::Texel(texel)) => ([1.0; 3], self.images.light_colours.zip(Some(texel))),
+            None => ([1.0; 3], None),
+        };
         let is_first = !std::mem::replace(&mut self.is_begun, true);
         let light = light_resolve::Light {
             sum,
             has_colour: colour.is_none(),
             colour: [0, 1, 2].map(|c| of_light[c] * albedo[c]),
+            texel,
             albedo_map: self.images.albedo_map,
             radiance: Some((self.images.radiance, is_first)),
             layer,
@@ -295,6 +300,7 @@ impl Drawing<'_> {
                 sum,
                 has_colour: false,
                 colour: [1.0; 3],
+                texel: None,
                 albedo_map: None,
                 radiance: None,
                 layer: Some(layer),
@@ -311,7 +317,7 @@ impl Drawing<'_> {
             return Ok(());
         }
         match self.images.sky_sum {
-            Some(sum) => self.resolve("dark", sum, Some([0.0; 3]), None),
+            Some(sum) => self.resolve("dark", sum, Some(Colour::Known([0.0; 3])), None),
             None => {
                 let expected = "at least one that shines";
                 return Err(Error::setting("lights", "all of radiance 0", expected));

@@ -172,6 +172,7 @@ impl Drawing<'_> {
             sum,
             has_colour: true,
             colour: [1.0; 3],
+            texel: None,
             albedo_map: None,
             radiance: Some((self.images.radiance, is_first)),
             layer,

@@ -15,6 +15,8 @@ pub(super) struct Images {
     pub albedo_map: Option<ResourceId>,
     /// Exponent and scale of each sample's lobe.
     pub phong_map: Option<ResourceId>,
+    /// A texel a light, where colours are the caller's.
+    pub light_colours: Option<ResourceId>,
     pub radiance: ResourceId,
     pub sky_layer: Option<ResourceId>,
     pub env_layer: Option<ResourceId>,
@@ -53,6 +55,10 @@ impl Images {
         let albedo_map = has_map.then(|| image("albedo", Owner::Input, Format::Rgba32Float, flat));
         let has_lobes = matches!(shining.gloss, Some(Lobe::Map(_)));
         let phong_map = has_lobes.then(|| image("phong", Owner::Input, Format::Rgba32Float, flat));
+        let light_colours = wanted.colours_on_device.then(|| {
+            let extent = [Shining::texels_of(&scene.lights) as u32, 1, 1];
+            image("light_colours", Owner::Input, Format::Rgba32Float, extent)
+        });
         let radiance = image("radiance", Owner::Output, colour, flat);
         let mut layer = |shines: bool, light: &str| {
             let name = format!("direct.{light}");
@@ -80,6 +86,7 @@ impl Images {
             environment,
             albedo_map,
             phong_map,
+            light_colours,
             radiance,
             sky_layer,
             env_layer,

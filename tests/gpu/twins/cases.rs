@@ -25,6 +25,8 @@ pub(super) enum Wanted {
     Reference(u32),
     Points(Directions),
     Ellipses(Directions),
+    /// Of five bases.
+    CurvedEllipses(Directions, [f64; 2]),
     /// Whether images hold no more than two layers.
     Scatter(Directions, Scatter, bool),
 }
@@ -60,6 +62,10 @@ impl Case {
             Wanted::Ellipses(directions) => {
                 plan::ellipses(&self.scene.field, self.scene.surface.border, directions, limits)
             }
+            Wanted::CurvedEllipses(directions, per_m) => {
+                let (field, border) = (&self.scene.field, self.scene.surface.border);
+                plan::curved_ellipses(field, border, directions, *per_m, limits)
+            }
             Wanted::Scatter(directions, scatter, is_cut) => {
                 let image_layers = if *is_cut { 2 } else { limits.image_layers };
                 let limits = Limits { image_layers, ..*limits };
@@ -71,7 +77,9 @@ impl Case {
 
     pub fn directions(&self) -> Option<Directions> {
         match &self.wanted {
-            Wanted::Points(directions) | Wanted::Ellipses(directions) => Some(directions.clone()),
+            Wanted::Points(directions)
+            | Wanted::Ellipses(directions)
+            | Wanted::CurvedEllipses(directions, _) => Some(directions.clone()),
             Wanted::Scatter(..) => {
                 let e = self.scene.lights.suns.iter().map(towards).collect();
                 Directions::from_vectors(e, -1.0).ok()
@@ -113,6 +121,12 @@ impl Case {
             if let Some(Lobe::Map(map)) = &self.scene.surface.phong {
                 all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
             }
+        }
+        if let Wanted::Picture(Picture { colours_on_device: true, .. }) = self.wanted {
+            let Lights { sky, suns, keys, .. } = &self.scene.lights;
+            let (mut next, count) =
+                (random(73), usize::from(sky.is_some()) + suns.len() + keys.len());
+            all.push((0..4 * count).map(|_| 3.0 * next() as f32).collect());
         }
         all
     }
@@ -349,6 +363,10 @@ pub(super) fn pictures() -> Vec<Case> {
         }),
         loses_lines: false,
     };
+    let of_device = Case {
+        wanted: Wanted::Picture(Picture { colours_on_device: true, ..Picture::default() }),
+        ..picture("colours on the device", grey.clone(), quality, false, false)
+    };
     let sh = |sh_order| Quality { basis: Basis::Sh, sh_order, ..quality };
     let nlp = Quality { wedges: Wedges::Nlp, receiver: Receiver::Lobe, ..sh(5) };
     let soft = |sh_order, sun_azimuths| Quality {
@@ -418,6 +436,7 @@ pub(super) fn pictures() -> Vec<Case> {
     vec![
         picture("colours", colourful.clone(), quality, true, false),
         picture("environment on a plane", on_a_plane.clone(), quality, false, false),
+        of_device,
         picture("grey", grey, Quality { fuse: Fuse::Aimed, ..quality }, false, true),
         picture("balls of light", balls.clone(), quality, true, false),
         picture(

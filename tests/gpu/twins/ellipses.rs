@@ -1,15 +1,15 @@
 //! Ellipses of visible sky: what a search by scores promises, whichever of equal ways it took.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use ridgelight::cpu::ellipse_fit::{
     Ellipse, LAST_STEP, Seen, least_radius, moments, neighbours, score, seen,
 };
-use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, ROWS};
+use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, LEAST_RADIUS, ROWS};
 use ridgelight::measure::tolerance::{ellipse_moment, ellipse_reach, ellipse_start};
 use ridgelight::plan::Pass;
 use ridgelight::scene::VisiblePoints;
 
-use super::{Pair, Run, pushed};
+use super::{Pair, Run, constant, pushed};
 
 /// Directions that may lie on either side of an ellipse's edge.
 fn on_edge(ellipse: &Ellipse, of: &[Seen], reach: f64) -> f64 {
@@ -27,8 +27,19 @@ fn short(got: f64, than: f64, off: f64) -> Pair {
 pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();
-    let words = run.words(pass, "visible_points").expect("bound");
-    let points = VisiblePoints::new(field, border, directions, words).expect("all whole");
+    let is_bent = constant(pass, 1) == 1;
+    let all: Vec<Vec<Seen>> = if is_bent {
+        let looks = super::bend::of_samples(run, pass, directions.count());
+        let above = |of: &Vec<(DVec3, f64)>| {
+            of.iter().filter(|(e, _)| e.z > 0.0).map(|(e, what)| (*e, *what == 0.0)).collect()
+        };
+        looks.iter().map(above).collect()
+    } else {
+        let words = run.words(pass, "visible_points").expect("bound");
+        let points = VisiblePoints::new(field, border, directions, words).expect("all whole");
+        (0..field.heights_m().len()).map(|at| seen(&points, at)).collect()
+    };
+    let least = f64::from(f32::from_bits(pushed(pass, LEAST_RADIUS)));
     let [axes, radii] =
         ["ellipse_axes", "ellipse_radii"].map(|n| run.floats(pass, n).expect("written"));
     let [first, end] = [FIRST_ROW, ROWS].map(|o| pushed(pass, o) as usize);
@@ -39,7 +50,7 @@ pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             [&axes, &radii].map(|all| <[f32; 4]>::try_from(&all[4 * at..4 * at + 4]).expect("4"));
         let found = Ellipse::of_texels(axes, [radii[0], radii[1]]);
         let [got, step] = [radii[2], radii[3]].map(f64::from);
-        let mut own = of_sample(&seen(&points, at), found, got, step);
+        let mut own = of_sample(&all[at], least, found, (got, step));
         own.iter_mut().for_each(|pair| pair.at = [0, at / cols, at % cols]);
         pairs.extend(own);
     }
@@ -47,7 +58,7 @@ pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// The pairs of a sample that sees these, has this ellipse, and says this score and last step.
-fn of_sample(seen: &[Seen], found: Ellipse, got: f64, step: f64) -> Vec<Pair> {
+fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64)) -> Vec<Pair> {
     let lit = seen.iter().filter(|s| s.1).count();
     let same = |got: f64, want: f64, tolerance: f64| Pair { got, want, tolerance, at: [0; 3] };
     let edge = |e: &Ellipse| on_edge(e, seen, ellipse_reach(e));
@@ -73,7 +84,6 @@ fn of_sample(seen: &[Seen], found: Ellipse, got: f64, step: f64) -> Vec<Pair> {
         pairs.push(same(mixed, 0.0, 4.0 * moment + 1e-6));
         pairs.push(same(a.length(), 1.0, moment));
         pairs.push(short(along(a), along(b), 4.0 * moment + 1e-6));
-        let least = least_radius(seen.len());
         let radii = [a, b].map(|a| (2.0 * along(a).max(0.0).sqrt()).max(least));
         let begun = Ellipse { centre: mean, axis: a, inverse_radii: radii.map(|r| 1.0 / r) };
         let off = on_edge(&begun, seen, ellipse_start(&begun, seen.len()));
@@ -81,7 +91,7 @@ fn of_sample(seen: &[Seen], found: Ellipse, got: f64, step: f64) -> Vec<Pair> {
     }
     pairs.push(short(got, (2 * lit) as f64 - seen.len() as f64, 0.0));
     if step > 0.0 && step < LAST_STEP {
-        for other in neighbours(&found, LAST_STEP, least_radius(seen.len())) {
+        for other in neighbours(&found, LAST_STEP, least) {
             pairs.push(short(got, score(&other, seen) as f64, edge(&other)));
         }
     }
@@ -98,7 +108,7 @@ fn another_ellipse_is_seen() {
     let seen: Vec<Seen> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
     let (own, score) = fit(&seen);
     let worst = |found: Ellipse, score: f64| {
-        let pairs = of_sample(&seen, found, score, 0.5 * LAST_STEP);
+        let pairs = of_sample(&seen, least_radius(seen.len()), found, (score, 0.5 * LAST_STEP));
         pairs.iter().map(Pair::ratio).fold(0.0, f64::max)
     };
     assert!(worst(own, score as f64) <= 1.0);

@@ -298,8 +298,13 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::light_resolve_push::{CLEARS, COLOUR};
-    let colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
+    use offsets::light_resolve_push::{CLEARS, COLOUR, TEXEL};
+    let mut colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
+    if constant(pass, 6) == 1 {
+        let texels = run.floats(pass, "light_colours").expect("read");
+        let texel = &texels[4 * pushed(pass, TEXEL) as usize..];
+        colour = [0, 1, 2].map(|c| colour[c] * texel[c]);
+    }
     let map = match &run.scene.surface.albedo {
         Albedo::Map(map) if constant(pass, 1) == 1 => Some(map.as_slice()),
         _ => None,

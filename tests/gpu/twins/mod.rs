@@ -1,6 +1,7 @@
 //! Every pass on the device against its CPU twin, given what the device itself handed to the pass, so
 //! that each is judged alone. Tolerances are the formulas of `measure::tolerance`.
 
+mod bend;
 mod bounce;
 mod cases;
 mod edit;
@@ -74,6 +75,8 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
     ("visible_points", points::visible_points),
+    ("points_bend", bend::points_bend),
+    ("fan_weigh", bend::fan_weigh),
     ("ellipse_fit", ellipses::ellipse_fit),
     ("scatter_gather", scatter::scatter_gather),
     ("horizon_sweep", sweep::horizon_sweep),
@@ -227,6 +230,14 @@ impl<'a> Run<'a> {
 
     fn directions(&self) -> Directions {
         self.directions.clone().expect("a case with directions")
+    }
+
+    /// Of what lies on a curved base.
+    fn bent_directions(&self) -> Directions {
+        match &self.points {
+            Some(points) => points.directions().clone(),
+            None => self.directions(),
+        }
     }
 
     fn border(&self) -> Border {

@@ -5,7 +5,7 @@ use ridgelight::cpu::scatter_gather::{Gathered, Samples};
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
 use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
 use ridgelight::plan::Pass;
-use ridgelight::scene::{Directions, Scatter, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{Curvature, Directions, Scatter, VisiblePoint, VisiblePoints};
 
 use super::cases::towards;
 use super::{Pair, Run, constant, pushed};
@@ -80,7 +80,16 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         };
         return got.into_iter().enumerate().map(pair).collect();
     }
-    let samples = Samples::of(run.scene);
+    let curvature = Curvature {
+        per_m: [push::CURVATURE_X, push::CURVATURE_Y]
+            .map(|o| f64::from(f32::from_bits(pushed(pass, o)))),
+    };
+    let samples = Samples::of(run.scene).on(curvature);
+    // On a curved base, the device's own directions and weights.
+    let bent = (curvature != Curvature::FLAT).then(|| {
+        let looks = super::bend::of_samples(run, pass, points.directions().count());
+        (looks, run.floats(pass, "fan_weights").expect("bound"))
+    });
     let [cols, rows] = run.size();
     let count = rows * cols;
     let mut before = std::mem::take(&mut run.scattered);
@@ -88,7 +97,15 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for at in 0..count {
         let here = [at / cols, at % cols];
-        let turned = Land::normal_at(&run.scene.field, run.border(), here);
+        // Slopes of a field that is drawn apart or pushed together by s are turned as much as they were, s or 1/s times; a quotient
+        // and a sum more.
+        let height = f64::from(run.scene.field.heights_m()[at]);
+        let stretch = curvature.per_m.map(|k| (1.0 + k * height).max(1.0 / (1.0 + k * height)));
+        let flat = Land::normal_at(&run.scene.field, run.border(), here);
+        let turned = match &bent {
+            None => flat,
+            Some(_) => stretch[0].max(stretch[1]) * (flat + 8.0 * EPSILON),
+        };
         let n = samples.lobe(at).map_or(1.0, |phong| f64::from(phong.exponent));
         let off = |of: &Gathered, e: DVec3| {
             let mut off = gathered(of, n, turned);
@@ -108,9 +125,15 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             };
             let sees_sky = !sums && seen == VisiblePoint::Sky;
             let mirrored = if sees_sky { *sky } else { arrives };
-            let of = samples.scattered(at, (*e, weight), *back, [arrives, mirrored]);
+            let (e, weight) = match &bent {
+                None => (*e, weight),
+                Some((looks, weights)) => {
+                    (looks[at][*direction].0, weight * f64::from(weights[direction * count + at]))
+                }
+            };
+            let of = samples.scattered(at, (e, weight), *back, [arrives, mirrored]);
             let mut of_path = Sum::default();
-            of_path.add(of.light, off(&of, *e));
+            of_path.add(of.light, off(&of, e));
             if !sums {
                 of_path.add(direct[at], [0.0; 3]);
                 for (i, (e, irradiance)) in shining.iter().enumerate() {

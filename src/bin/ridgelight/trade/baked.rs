@@ -13,8 +13,9 @@ use serde_json::{Value, json};
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
-use super::truth::{Distance, Truth, digits, percent};
+use super::truth::{Distance, Truth};
 use crate::setup;
+use crate::terminal::{digits, percent};
 
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];
 const PATHS: [u32; 3] = [40, 100, 400];

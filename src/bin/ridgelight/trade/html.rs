@@ -2,7 +2,7 @@
 
 use super::point::Point;
 use super::report::{Report, ms};
-use super::truth::{digits, percent};
+use crate::terminal::{digits, percent};
 
 const TEMPLATE: &str = include_str!("page.html");
 /// Groups of ruled-out settings, and settings not tried, that are spelt out; all are in the JSON.

@@ -7,8 +7,8 @@ use ridgelight::scene::{Hull, Quality};
 use ridgelight::{Error, Result};
 
 use super::rig::Rig;
-use super::truth::digits;
 use super::walk::KEPT;
+use crate::terminal::digits;
 
 /// Draws in each place, each beside one in the planner's, after one that warms up.
 const DRAWS: usize = 5;

@@ -39,7 +39,8 @@ impl Tones {
 
     /// Where black and white stand, for people.
     pub fn text(&self) -> String {
-        let share = |v: f32| super::truth::digits(f64::from(v) / self.mean.max(f64::MIN_POSITIVE));
+        let share =
+            |v: f32| crate::terminal::digits(f64::from(v) / self.mean.max(f64::MIN_POSITIVE));
         format!(
             "Light: from black at {} to white at {} of the truth's mean radiance, the truth's 0.5th and \
              99th percentiles.",

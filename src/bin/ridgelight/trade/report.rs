@@ -9,9 +9,10 @@ use super::baked::Baked;
 use super::hull;
 use super::picture::Tones;
 use super::point::Point;
-use super::truth::{Truth, digits, percent};
+use super::truth::Truth;
 use super::walk::Walk;
 use crate::setup;
+use crate::terminal::{digits, percent};
 
 pub struct Report<'a> {
     /// Device, driver, field and lights, as (name, value).

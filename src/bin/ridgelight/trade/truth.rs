@@ -9,6 +9,8 @@ use ridgelight::measure::error::ImageError;
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 
+use crate::terminal::percent;
+
 /// The layer of a reference that holds one standard deviation of its noise.
 const NOISE_LAYER: &str = "standard_error";
 
@@ -151,29 +153,9 @@ fn unmet(path: &Path) -> Result<f64> {
     Ok((channels.iter().map(|v| v * v).sum::<f64>() / channels.len() as f64).sqrt())
 }
 
-/// Three significant digits.
-pub fn percent(share: f64) -> String {
-    format!("{} %", digits(100.0 * share))
-}
-
-/// Three significant digits, as few zeros as that takes.
-pub fn digits(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return x.to_string();
-    }
-    let places = (2 - x.abs().log10().floor() as i32).max(0) as usize;
-    if places > 9 { format!("{x:.2e}") } else { format!("{x:.places$}") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn three_digits_are_shown() {
-        let shown = [0.0, 0.001_234_5, 0.5, 12.345, 999.4, 123_456.0, 1e-12].map(digits);
-        assert_eq!(shown, ["0", "0.00123", "0.500", "12.3", "999", "123456", "1.00e-12"]);
-    }
 
     fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
         let (about, quality_of) = (String::new(), String::new());

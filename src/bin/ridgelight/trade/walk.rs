@@ -10,7 +10,7 @@ use ridgelight::{Error, Result};
 use super::picture::{self, Tones};
 use super::point::{self, Point};
 use super::rig::Rig;
-use super::truth::{self, Truth};
+use super::truth::Truth;
 use crate::setup;
 
 /// Share of the budget that one setting may take.
@@ -185,8 +185,8 @@ fn visit(
         if needs > most {
             let why = format!(
                 "would take about {} s, more than {} s, a tenth of the budget",
-                truth::digits(needs),
-                truth::digits(most)
+                crate::terminal::digits(needs),
+                crate::terminal::digits(most)
             );
             give_up(walk, why, true);
             return Ok(());

@@ -5,7 +5,7 @@ use ridgelight::measure::trade::Rule;
 use super::hull;
 use super::point::Point;
 use super::report::{Report, ms};
-use super::truth::{digits, percent};
+use crate::terminal::{digits, percent};
 
 /// What is dearer or cheaper, and changes error or time by less than this share, is not worth a sentence.
 const WORTH: f64 = 0.9;

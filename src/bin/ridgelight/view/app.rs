@@ -7,7 +7,7 @@ mod steps;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use ridgelight::gpu::{Frame, HeadlessOptions, Screen};
 use ridgelight::plan::{Limits, Rectangle};
@@ -23,6 +23,9 @@ use super::script::{Button, Step};
 use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
 use compare::Compare;
+
+/// How soon a window that shows nothing is looked at again.
+const PAUSE: Duration = Duration::from_millis(50);
 
 pub struct App<'a> {
     args: &'a ViewArgs,
@@ -43,6 +46,8 @@ pub struct App<'a> {
     /// Milliseconds of the frames since the last report.
     spent: Vec<f64>,
     last: Option<Instant>,
+    /// Since when the window shows nothing, and why, where it should.
+    blank: Option<(Instant, &'static str)>,
 }
 
 /// A window and what is drawn in it.
@@ -59,6 +64,8 @@ struct Shown {
     limits: Limits,
     screen: Screen,
     window: Arc<Window>,
+    /// What its system last said it is, for those where surfaces have no size of their own.
+    inner: [u32; 2],
     /// Of its pictures.
     size: [u32; 2],
 }
@@ -79,6 +86,7 @@ impl<'a> App<'a> {
             frames: 0,
             spent: Vec::new(),
             last: None,
+            blank: None,
         }
     }
 
@@ -103,6 +111,7 @@ impl<'a> App<'a> {
             device: self.args.global.device.clone(),
             validation: self.args.validate,
         };
+        let inner = window.inner_size();
         let mut screen = Screen::new(Arc::clone(&window), &options)?;
         let mut limits = screen.gpu().report().limits;
         if let Some(budget) = self.args.global.memory_budget {
@@ -118,6 +127,7 @@ impl<'a> App<'a> {
             limits,
             screen,
             window,
+            inner: [inner.width, inner.height],
             size: self.args.size,
         });
         self.due = 3;
@@ -130,6 +140,9 @@ impl<'a> App<'a> {
         let beside = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
         let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit)).and(beside);
         let said = shown.screen.gpu().take_messages();
+        if self.args.validate {
+            crate::say!("{} validation messages", said.len());
+        }
         if let (Err(error), None) = (freed, &self.error) {
             self.error = Some(error);
         }
@@ -213,7 +226,11 @@ impl ApplicationHandler for App<'_> {
             Err(error) => return self.failed(events, error),
         }
         let is_busy = self.is_due() || self.steps.is_some();
-        events.set_control_flow(if is_busy { ControlFlow::Poll } else { ControlFlow::Wait });
+        events.set_control_flow(match (is_busy, self.blank) {
+            (true, Some(_)) => ControlFlow::wait_duration(PAUSE),
+            (true, None) => ControlFlow::Poll,
+            (false, _) => ControlFlow::Wait,
+        });
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
@@ -226,15 +243,28 @@ impl App<'_> {
     fn heard(&mut self, event: WindowEvent) -> Result<bool> {
         match event {
             WindowEvent::CloseRequested => return Ok(false),
-            WindowEvent::Resized(_)
-            | WindowEvent::RedrawRequested
-            | WindowEvent::ScaleFactorChanged { .. } => self.due = self.due.max(1),
+            WindowEvent::Destroyed => {
+                let reason = "another program has destroyed it".into();
+                return Err(Error::Device { doing: "showing pictures in a window".into(), reason });
+            }
+            WindowEvent::Resized(PhysicalSize { width, height }) => {
+                if let Some(shown) = &mut self.shown {
+                    shown.inner = [width, height];
+                }
+                self.due = self.due.max(1);
+            }
+            WindowEvent::RedrawRequested | WindowEvent::ScaleFactorChanged { .. } => {
+                self.due = self.due.max(1);
+            }
             WindowEvent::Occluded(is_hidden) => {
                 self.is_hidden = is_hidden;
                 self.due = self.due.max(1);
             }
             WindowEvent::ModifiersChanged(keys) => self.keys = keys.state(),
-            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
+            // Keys that are down as the window gets the keyboard were pressed for another, or are told again.
+            WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
+                if event.state == ElementState::Pressed =>
+            {
                 if let Some(name) = name(&event.logical_key, self.keys) {
                     return self.key(&name);
                 }

@@ -6,7 +6,7 @@ use ridgelight::scene::HeightField;
 
 /// What a brush does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Work {
+pub enum Action {
     Raise,
     Lower,
     /// What is steeper than [`TALUS_DEG`] slides.
@@ -37,7 +37,7 @@ impl Brush {
     pub fn dab(
         &self,
         field: &mut HeightField,
-        work: Work,
+        action: Action,
         [x, y]: [f64; 2],
     ) -> Result<Option<Rectangle>> {
         let [cell_x, cell_y] = field.cell_m();
@@ -67,10 +67,10 @@ impl Brush {
         let mut heights: Vec<f64> =
             (0..cols * rows).map(|i| f64::from(field.heights_m()[index(i)])).collect();
         let lift_m = self.strength * self.radius_m;
-        match work {
-            Work::Raise => heights.iter_mut().zip(&weights).for_each(|(h, w)| *h += lift_m * w),
-            Work::Lower => heights.iter_mut().zip(&weights).for_each(|(h, w)| *h -= lift_m * w),
-            Work::Erode => {
+        match action {
+            Action::Raise => heights.iter_mut().zip(&weights).for_each(|(h, w)| *h += lift_m * w),
+            Action::Lower => heights.iter_mut().zip(&weights).for_each(|(h, w)| *h -= lift_m * w),
+            Action::Erode => {
                 let rate = RATE * (10.0 * self.strength).min(1.0);
                 (0..ROUNDS)
                     .for_each(|_| erode(&mut heights, &weights, cols, [cell_x, cell_y], rate));
@@ -149,7 +149,7 @@ mod tests {
         let largest = field.heights_m().iter().fold(0.0_f32, |l, h| l.max(h.abs()));
         let dabs = 60;
         for _ in 0..dabs {
-            BRUSH.dab(&mut field, Work::Erode, [16.0, 15.0]).unwrap().unwrap();
+            BRUSH.dab(&mut field, Action::Erode, [16.0, 15.0]).unwrap().unwrap();
         }
         let within = f64::from(dabs) * 31.0 * 33.0 * f64::from(largest) * 2_f64.powi(-24);
         assert!((sum(&field) - before).abs() <= within, "{} of {before}", sum(&field));
@@ -161,7 +161,7 @@ mod tests {
     fn erosion_leaves_gentle_ground_as_it_is() {
         let mut field = field(|x, y| 0.3 * x + 0.4 * y);
         let before = field.clone();
-        BRUSH.dab(&mut field, Work::Erode, [16.0, 15.0]).unwrap().unwrap();
+        BRUSH.dab(&mut field, Action::Erode, [16.0, 15.0]).unwrap().unwrap();
         assert!(field == before);
     }
 
@@ -170,15 +170,15 @@ mod tests {
     fn what_is_raised_is_lowered_again() {
         let mut field = field(|_, _| 7.0);
         let before = field.clone();
-        let at = BRUSH.dab(&mut field, Work::Raise, [16.0, 15.0]).unwrap().unwrap();
+        let at = BRUSH.dab(&mut field, Action::Raise, [16.0, 15.0]).unwrap().unwrap();
         assert_eq!(at, Rectangle { col: 4, row: 3, cols: 25, rows: 25 });
         assert!((field.heights_m()[15 * 33 + 16] - 1.2).abs() < 1e-6);
         assert_eq!(field.heights_m()[3 * 33 + 4], 0.0);
-        BRUSH.dab(&mut field, Work::Lower, [16.0, 15.0]).unwrap();
+        BRUSH.dab(&mut field, Action::Lower, [16.0, 15.0]).unwrap();
         let off = |(a, b): (&f32, &f32)| (a - b).abs();
         let pairs = field.heights_m().iter().zip(before.heights_m());
         assert!(pairs.map(off).fold(0.0, f32::max) <= 1.2 * 2_f32.powi(-23));
-        assert_eq!(BRUSH.dab(&mut field, Work::Raise, [-20.0, 15.0]).unwrap(), None);
+        assert_eq!(BRUSH.dab(&mut field, Action::Raise, [-20.0, 15.0]).unwrap(), None);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
 use ridgelight::scene::{Camera, Lights, Quality, Scene};
 use ridgelight::{Error, Result};
 
-use super::brush::{Brush, Work};
+use super::brush::{Action, Brush};
 use super::moving::{Kind, Moving};
 use super::script::Button;
 use super::strokes::Strokes;
@@ -56,7 +56,7 @@ enum Text {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Tool {
     Look,
-    Brush(Work),
+    Brush(Action),
     Lights,
 }
 
@@ -280,9 +280,9 @@ impl State {
                 Wish::Show
             }
             "1" => self.take(Tool::Look),
-            "2" => self.take(Tool::Brush(Work::Raise)),
-            "3" => self.take(Tool::Brush(Work::Lower)),
-            "4" => self.take(Tool::Brush(Work::Erode)),
+            "2" => self.take(Tool::Brush(Action::Raise)),
+            "3" => self.take(Tool::Brush(Action::Lower)),
+            "4" => self.take(Tool::Brush(Action::Erode)),
             "5" => self.take(Tool::Lights),
             "[" | "]" | ";" | "'" if self.tool != Tool::Lights => self.change_brush(name),
             "[" | "]" | ";" | "'" | "t" | "x" | "delete" | "pageup" | "pagedown" => {
@@ -348,7 +348,7 @@ impl State {
     /// A button that goes down at a pixel.
     pub fn press(&mut self, button: Button, at: [f64; 2], size: [u32; 2]) -> Wish {
         match (button, self.tool) {
-            (Button::Left, Tool::Brush(work)) => self.begin_stroke(work, at, size),
+            (Button::Left, Tool::Brush(action)) => self.begin_stroke(action, at, size),
             (Button::Left, Tool::Lights) => {
                 self.message = None;
                 self.take_ball(size, at)
@@ -363,7 +363,7 @@ impl State {
         self.cursor = to;
         let field = &self.scene.field;
         match (button, self.tool) {
-            (Button::Left, Tool::Brush(work)) => return self.draw_stroke(work, to, size),
+            (Button::Left, Tool::Brush(action)) => return self.draw_stroke(action, to, size),
             (Button::Left, Tool::Lights) => return self.drag_ball(size, from, to),
             (Button::Left, Tool::Look) => self.sight.turn(field, size, way),
             (Button::Middle, _) => self.sight.pan(field, size, way),

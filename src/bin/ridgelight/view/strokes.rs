@@ -94,7 +94,7 @@ fn put(field: &mut HeightField, at: Rectangle, heights: &[f32]) -> Result<Rectan
 
 #[cfg(test)]
 mod tests {
-    use super::super::brush::{Brush, Work};
+    use super::super::brush::{Action, Brush};
     use super::*;
 
     #[test]
@@ -106,15 +106,15 @@ mod tests {
         let mut all = vec![field.clone()];
         strokes.begin(&field);
         assert!(!strokes.have_changed());
-        for (work, place) in [(Work::Raise, 5.0), (Work::Erode, 9.0), (Work::Lower, 16.0)] {
+        for (action, place) in [(Action::Raise, 5.0), (Action::Erode, 9.0), (Action::Lower, 16.0)] {
             strokes.begin(&field);
             for step in [0.0, 1.5] {
-                let at = brush.dab(&mut field, work, [place + step, 8.0]).unwrap();
+                let at = brush.dab(&mut field, action, [place + step, 8.0]).unwrap();
                 strokes.reach(at.unwrap());
-                assert!(strokes.have_changed(), "{work:?}");
+                assert!(strokes.have_changed(), "{action:?}");
             }
             strokes.end(&field);
-            assert!(*all.last().unwrap() != field, "{work:?}");
+            assert!(*all.last().unwrap() != field, "{action:?}");
             all.push(field.clone());
         }
         for before in all[..3].iter().rev() {

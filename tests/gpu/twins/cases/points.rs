@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use ridgelight::scene::{
-    Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter, Scene, Sun,
-    Surface,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter,
+    Scene, Sun, Surface,
 };
 
 use super::{Case, Wanted, noisy_environment, rough};
@@ -66,6 +66,14 @@ pub fn ellipses() -> Vec<Case> {
         ..on(name, field, border, sphere(4))
     };
     let above = |count| Directions::fibonacci(count, 0.0, 3).expect("directions");
+    let bent = |name, field, border, directions, per_m| Case {
+        wanted: Wanted::CurvedEllipses(directions, per_m),
+        ..on(name, field, border, sphere(4))
+    };
+    // Shallow, of rounded hills: little is hidden that a bend would show.
+    let hills = |rows, cols| {
+        field(rows, cols, [1.0, 1.5], |r, c| (0.7 * r as f64).sin() + (0.4 * c as f64).cos())
+    };
     let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
     vec![
@@ -75,6 +83,14 @@ pub fn ellipses() -> Vec<Case> {
         of("ellipses of a shaft", deep, Border::Plane, above(16)),
         of("ellipses of whole words", long, Border::Plane, above(17)),
         of("an ellipse of one sample", rough(1, 1, 94), Border::Open, sphere(5)),
+        bent("ellipses on curved bases", hills(11, 9), Border::Plane, sphere(40), [0.01, 1e-3]),
+        bent(
+            "ellipses of a field that repeats on curved bases",
+            hills(9, 16),
+            Border::Periodic,
+            above(32),
+            [1e-3, 2e-3],
+        ),
     ]
 }
 
@@ -125,6 +141,12 @@ pub fn scatters() -> Vec<Case> {
         phong: Some(Lobe::Constant(Phong { exponent: 20.0, scale: 0.4 })),
     };
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
+    let bent = |bounces, paths, per_m| Scatter {
+        curvature: Curvature { per_m },
+        ..scatter(bounces, paths)
+    };
+    // One groove, whose sides see each other whole.
+    let vault = || field(7, 9, [1.0, 1.0], |r, c| (c as f64 - 4.0).abs() + 0.01 * r as f64);
     vec![
         of("one bounce", rough(9, 8, 74), mapped, none(), (71, scatter(1, 70), false)),
         of("nothing", rough(9, 8, 74), black, none(), (11, scatter(2, 70), false)),
@@ -137,6 +159,20 @@ pub fn scatters() -> Vec<Case> {
         ),
         of("cut images", rough(8, 9, 76), grey(Border::Plane), none(), (9, scatter(2, 12), true)),
         of("whole words", long, grey(Border::Plane), none(), (6, scatter(2, 4), false)),
+        of(
+            "a bend outwards",
+            vault(),
+            grey(Border::Open),
+            none(),
+            (65, bent(2, 9, [0.08, 0.02]), false),
+        ),
+        of(
+            "a bend inwards",
+            vault(),
+            grey(Border::Periodic),
+            none(),
+            (24, bent(1, 24, [-0.002, 0.001]), false),
+        ),
         of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
         of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
     ]

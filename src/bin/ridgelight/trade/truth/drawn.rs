@@ -7,7 +7,8 @@ use ridgelight::scene::{Fuse, Lights, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 
 use super::super::rig::Rig;
-use super::{Truth, percent};
+use super::Truth;
+use crate::terminal::percent;
 
 /// Share of the budget that drawing the truth may take, and probing it.
 const DRAWING: f64 = 0.4;

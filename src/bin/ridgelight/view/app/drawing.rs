@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ridgelight::gpu::{Frame, Panel, Part, PartTimes, Screen, Shot, Sight, Work};
+use ridgelight::gpu::{Frame, Pane, PaneTimes, Panel, Screen, Shot, Sight, Work};
 use ridgelight::plan::{self, Format, Kind, Map, Plan, Rectangle, View};
 use ridgelight::scene::Scene;
 use ridgelight::{Error, Result};
@@ -57,9 +57,9 @@ impl App<'_> {
     /// Draws a frame; its pixels where they are kept, none where the window has no area or is not ready.
     pub(super) fn draw(&mut self, keeps: bool) -> Result<Option<Vec<[u8; 4]>>> {
         let Some(shown) = &mut self.shown else { return Ok(None) };
-        let inner = shown.window.inner_size();
-        let wanted = [inner.width, inner.height];
-        let Some(size) = shown.screen.size(wanted)? else { return Ok(None) };
+        let Some(size) = shown.screen.size(shown.inner)? else {
+            return Ok(self.stay_blank("it has no area"));
+        };
         shown.size = size;
         let moves = self.state.is_moving();
         if moves {
@@ -68,11 +68,7 @@ impl App<'_> {
         let edited = self.state.take_edited();
         if shown.is_stale || moves || edited.is_some() {
             if let Err(why) = shown.light(&self.state) {
-                // Devices refuse what plans did not foresee: back to what could be drawn, once.
-                let Some(good) = shown.good.take() else { return Err(why) };
-                self.state.go_back(good, why);
-                shown.is_stale = true;
-                return Ok(None);
+                return self.fall_back(why).map(|()| None);
             }
             shown.is_stale |= moves;
             shown.compare.iter_mut().for_each(Compare::scene_changed);
@@ -81,13 +77,39 @@ impl App<'_> {
             self.state.is_split = false;
             self.state.go_back(self.state.light(), why);
         }
-        let drawn = shown.draw(&self.state, edited, mean(&self.spent), keeps)?;
-        match (&drawn, edited) {
-            (None, Some(at)) => self.state.give_back_edited(at),
-            (None, None) => {}
-            (Some(_), _) => self.count(),
+        let drawn = match shown.draw(&self.state, edited, mean(&self.spent), keeps) {
+            Ok(drawn) => drawn,
+            Err(why) => return self.fall_back(why).map(|()| None),
+        };
+        let Some((pixels, is_taken)) = drawn else {
+            edited.into_iter().for_each(|at| self.state.give_back_edited(at));
+            return Ok(self.stay_blank("it takes no pictures"));
+        };
+        self.blank = None;
+        self.count();
+        if !is_taken {
+            self.due = self.due.max(1);
         }
-        Ok(drawn)
+        Ok(Some(pixels))
+    }
+
+    /// Devices refuse what plans did not foresee: back to what could be drawn, all of it anew, once.
+    fn fall_back(&mut self, why: Error) -> Result<()> {
+        let Some(shown) = &mut self.shown else { return Err(why) };
+        // Of what stands beside nothing counts as drawn either.
+        let freed = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
+        let (Some(good), Ok(())) = (shown.good.take(), freed) else { return Err(why) };
+        self.state.go_back(good, why);
+        shown.is_stale = true;
+        self.due = self.due.max(1);
+        Ok(())
+    }
+
+    /// No picture, for a reason.
+    fn stay_blank<T>(&mut self, why: &'static str) -> Option<T> {
+        let since = self.blank.map_or_else(Instant::now, |(since, _)| since);
+        self.blank = Some((since, why));
+        None
     }
 
     fn count(&mut self) {
@@ -125,8 +147,8 @@ fn has_colour(plan: &Plan) -> bool {
 /// Columns where the pictures of a window begin, and the size of each: three side by side, or one.
 pub(super) fn places([width, height]: [u32; 2], is_split: bool) -> (Vec<u32>, [u32; 2]) {
     match width.saturating_sub(2 * GAP) / 3 {
-        part if is_split && part > 0 => {
-            ((0..3).map(|n| n * (part + GAP)).collect(), [part, height])
+        pane if is_split && pane > 0 => {
+            ((0..3).map(|n| n * (pane + GAP)).collect(), [pane, height])
         }
         _ => (vec![0], [width, height]),
     }
@@ -177,16 +199,17 @@ impl Shown {
         compare.prepare(&mut self.screen, state, &self.limits)
     }
 
+    /// Pixels, where they are kept, and whether the window took them; none where it was not ready.
     fn draw(
         &mut self,
         state: &State,
         edited: Option<Rectangle>,
         frame_ms: Option<f64>,
         keeps: bool,
-    ) -> Result<Option<Vec<[u8; 4]>>> {
+    ) -> Result<Option<(Vec<[u8; 4]>, bool)>> {
         let field = &state.scene.field;
         let (size, swaps) = (self.size, self.screen.swaps());
-        let (lefts, part_size) = places(size, self.compare.is_some());
+        let (lefts, pane_size) = places(size, self.compare.is_some());
         self.figures.frame_ms = frame_ms;
         self.figures.compared = self.compare.as_ref().map_or_else(Vec::new, Compare::lines);
         let Some(lit) = &mut self.lit else { return Ok(None) };
@@ -196,7 +219,7 @@ impl Shown {
         // Where there is place for one picture alone it is ours.
         let mut compare = self.compare.as_mut().filter(|_| lefts.len() > 1);
         let labels = compare.as_ref().map(|c| c.labels()).filter(|_| text.size[0] > 0);
-        let drawn = panels(state, text, (&lefts, part_size), labels.as_ref(), scale);
+        let drawn = panels(state, text, (&lefts, pane_size), labels.as_ref(), scale);
         let panels: Vec<Panel<'_>> = drawn
             .iter()
             .map(|(at, d)| Panel { at: *at, size: d.size, pixels: &d.pixels })
@@ -227,13 +250,13 @@ impl Shown {
         frames.extend(truth.map(|(frame, passes)| (frame, None, passes)));
         let mut sights: Vec<(Map, Option<View>)> = Vec::new();
         for (frame, ..) in &frames {
-            let map = state.map(part_size, swaps, has_colour(frame.plan()));
-            sights.push((map, state.view(frame.plan(), part_size, &self.limits)?));
+            let map = state.map(pane_size, swaps, has_colour(frame.plan()));
+            sights.push((map, state.view(frame.plan(), pane_size, &self.limits)?));
         }
-        let mut parts: Vec<Part<'_>> = Vec::new();
-        let of_parts = frames.iter_mut().zip(&sights).zip(&lefts).enumerate();
-        for (n, (((frame, heights, passes), (map, view)), left)) in of_parts {
-            parts.push(Part {
+        let mut panes: Vec<Pane<'_>> = Vec::new();
+        let of_panes = frames.iter_mut().zip(&sights).zip(&lefts).enumerate();
+        for (n, (((frame, heights, passes), (map, view)), left)) in of_panes {
+            panes.push(Pane {
                 frame,
                 heights: *heights,
                 work: if n == at_ours { work } else { Work::Passes(passes) },
@@ -242,7 +265,7 @@ impl Shown {
             });
         }
         let shot = Shot { tone: state.tone(), voids: field.voids(), panels: &panels, keeps };
-        let Some(mut done) = self.screen.draw(&mut parts, &shot)? else { return Ok(None) };
+        let Some(mut done) = self.screen.draw(&mut panes, &shot)? else { return Ok(None) };
         if let Some(compare) = compare {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
@@ -251,12 +274,12 @@ impl Shown {
         if std::mem::take(&mut self.is_stale) && !state.is_moving() {
             self.good = Some(state.light());
         }
-        Ok(Some(done.pixels.unwrap_or_default()))
+        Ok(Some((done.pixels.unwrap_or_default(), done.is_taken)))
     }
 
     /// Times of an earlier frame, whose passes say whether they were those of an edit.
-    fn told(&mut self, times: PartTimes) {
-        let PartTimes { light, drawing } = times;
+    fn told(&mut self, times: PaneTimes) {
+        let PaneTimes { light, drawing } = times;
         if light.iter().any(|t| t.label.starts_with("dirty_mark")) {
             let ms = light.iter().map(|t| t.ns).sum::<f64>() / 1e6;
             self.figures.edit = self.last_edit.map(|at| (at, ms));

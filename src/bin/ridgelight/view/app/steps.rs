@@ -10,7 +10,7 @@ use super::compare::MOST_PATHS;
 use super::drawing::places;
 use super::{App, Shown};
 
-/// How long a window may take to become as large as a script wants it.
+/// How long a window may take to become as large as a script wants it, and to show what it draws.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl App<'_> {
@@ -41,6 +41,7 @@ impl App<'_> {
             Step::Frames(0) => None,
             Step::Frames(left) => {
                 let is_drawn = self.draw(false)?.is_some();
+                self.check_shown("frames")?;
                 Some(Step::Frames(left - u32::from(is_drawn)))
             }
             Step::Size(wanted) => self.resize(wanted, PATIENCE)?,
@@ -58,7 +59,10 @@ impl App<'_> {
             Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
             Step::Screenshot(path) => match self.draw(true)? {
                 Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
-                None => Some(Step::Screenshot(path)),
+                None => {
+                    self.check_shown("screenshot")?;
+                    Some(Step::Screenshot(path))
+                }
             },
             Step::Text(path) => {
                 let text = self.text();
@@ -70,6 +74,7 @@ impl App<'_> {
                 let has_all = compare.is_some_and(|c| c.paths() >= count);
                 if !has_all {
                     self.draw(false)?;
+                    self.check_shown("paths")?;
                 }
                 (!has_all).then_some(Step::Paths(count))
             }
@@ -94,6 +99,15 @@ impl App<'_> {
             steps.push_front(again);
         }
         Ok(true)
+    }
+
+    /// Whether the window shows something, or has not failed to for long.
+    fn check_shown(&self, step: &str) -> Result<()> {
+        let Some((_, why)) = self.blank.filter(|(since, _)| since.elapsed() > PATIENCE) else {
+            return Ok(());
+        };
+        let reason = format!("the window has shown nothing for {} s: {why}", PATIENCE.as_secs());
+        Err(Error::Device { doing: format!("--script: {step}"), reason })
     }
 
     /// Whether so many paths a sample will ever have been traced.

@@ -6,7 +6,7 @@ use ridgelight::plan::{Plan, Rectangle};
 use super::lights::compass;
 use super::{State, Text, Tool};
 use crate::idle;
-use crate::view::brush::Work;
+use crate::view::brush::Action;
 
 /// The keys, as they are listed on the screen and in README.
 const KEYS: [&str; 21] = [
@@ -115,9 +115,9 @@ impl State {
                 let chosen = self.chosen_ball().map_or("none".into(), |n| (n + 1).to_string());
                 return Some(format!("lights: {count}, chosen {chosen}"));
             }
-            Tool::Brush(Work::Raise) => "raise",
-            Tool::Brush(Work::Lower) => "lower",
-            Tool::Brush(Work::Erode) => "erode",
+            Tool::Brush(Action::Raise) => "raise",
+            Tool::Brush(Action::Lower) => "lower",
+            Tool::Brush(Action::Erode) => "erode",
         };
         let [done, undone] = self.strokes.count();
         let (radius, strength) = (self.brush.radius_m, self.brush.strength);

@@ -3,7 +3,7 @@
 use ridgelight::plan::Rectangle;
 
 use super::{State, Tool, Wish};
-use crate::view::brush::{Work, together};
+use crate::view::brush::{Action, together};
 
 /// Dots around a brush.
 const RING: u32 = 24;
@@ -18,7 +18,7 @@ pub struct Mark {
 }
 
 impl State {
-    pub(super) fn begin_stroke(&mut self, work: Work, at: [f64; 2], size: [u32; 2]) -> Wish {
+    pub(super) fn begin_stroke(&mut self, action: Action, at: [f64; 2], size: [u32; 2]) -> Wish {
         self.message = None;
         self.cursor = at;
         if self.is_moving() {
@@ -29,11 +29,11 @@ impl State {
         };
         self.strokes.begin(&self.scene.field);
         self.stroke_m = [x, y];
-        self.dab(work, [x, y])
+        self.dab(action, [x, y])
     }
 
     /// Dabs a quarter of the radius apart, on to a pixel.
-    pub(super) fn draw_stroke(&mut self, work: Work, to: [f64; 2], size: [u32; 2]) -> Wish {
+    pub(super) fn draw_stroke(&mut self, action: Action, to: [f64; 2], size: [u32; 2]) -> Wish {
         let ground = self.sight.ground(&self.scene.field, size, to);
         let (Some([x, y, _]), true) = (ground, self.strokes.is_begun()) else { return Wish::Show };
         let from = self.stroke_m;
@@ -43,13 +43,13 @@ impl State {
         for n in 1..=(length / spacing) as u32 {
             let share = f64::from(n) * spacing / length;
             self.stroke_m = [from[0] + share * (x - from[0]), from[1] + share * (y - from[1])];
-            wish = self.dab(work, self.stroke_m);
+            wish = self.dab(action, self.stroke_m);
         }
         wish
     }
 
-    fn dab(&mut self, work: Work, at: [f64; 2]) -> Wish {
-        match self.brush.dab(&mut self.scene.field, work, at) {
+    fn dab(&mut self, action: Action, at: [f64; 2]) -> Wish {
+        match self.brush.dab(&mut self.scene.field, action, at) {
             Ok(Some(at)) => {
                 self.strokes.reach(at);
                 self.edit(at)

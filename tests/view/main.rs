@@ -2,6 +2,8 @@
 //! windows, holds no more memory after many frames, and validation has nothing to say.
 #![cfg(all(feature = "window", target_os = "linux"))]
 
+mod lost;
+
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -58,33 +60,55 @@ impl Folder {
     }
 
     fn command(&self, args: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ridgelight"));
-        command.current_dir(self.0.path()).args(args.split(' '));
+        // Longer than any takes: what hangs ends with 124.
+        let mut command = Command::new("timeout");
+        command.current_dir(self.0.path()).args(["200", env!("CARGO_BIN_EXE_ridgelight")]);
+        command.args(args.split(' '));
         command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
         command
     }
 
     /// Runs what must succeed; its standard output.
-    fn done(&self, display: Option<&Display>, args: &str) -> String {
-        let mut command = self.command(args);
-        command.envs(display.map(|d| ("DISPLAY", &d.name)));
-        let Output { status, stdout, stderr } = command.output().unwrap();
-        let said = String::from_utf8_lossy(&stderr);
-        assert!(status.success() && said.is_empty(), "{args}: {status}: {said}");
-        String::from_utf8(stdout).unwrap()
+    fn done(&self, args: &str) -> String {
+        succeed(self.command(args))
     }
 
     /// A window driven by a script, under validation where the tests have it.
     fn view(&self, display: &Display, args: &str, script: &str) -> String {
+        silent(self.window(display, args, script))
+    }
+
+    /// The same, to be run.
+    fn window(&self, display: &Display, args: &str, script: &str) -> Command {
         self.write("script", script.as_bytes());
-        let validates = std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1");
-        let flag = if validates { " --validate" } else { "" };
-        self.done(Some(display), &format!("view {args} --script script{flag}"))
+        let flag = if is_validated() { " --validate" } else { "" };
+        let mut command = self.command(&format!("view {args} --script script{flag}"));
+        command.env("DISPLAY", &display.name);
+        command
     }
 
     fn picture(&self, name: &str) -> Planes {
         read_planes(&self.0.path().join(name)).unwrap()
     }
+}
+
+/// Its standard output; it says nothing else.
+fn succeed(mut command: Command) -> String {
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let said = String::from_utf8_lossy(&stderr);
+    assert!(status.success() && said.is_empty(), "{command:?}: {status}: {said}");
+    String::from_utf8(stdout).unwrap()
+}
+
+/// The same of a window, of which validation says nothing where it listens.
+fn silent(command: Command) -> String {
+    let out = succeed(command);
+    assert_eq!(is_validated(), out.lines().last() == Some("0 validation messages"), "{out}");
+    out
+}
+
+fn is_validated() -> bool {
+    std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
 }
 
 /// Codes of a picture's colours, 8 bits each.
@@ -109,17 +133,17 @@ fn gpu_a_window_shows_what_render_writes() {
         drag right 10,10 30,-20\nkey ,\nkey ,\nkey m\nkey m\nframes 1\nscreenshot third.png\n\
         scene third.json\nlose\nframes 1\nscreenshot fourth.png\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
-    folder.done(None, &format!("render hills.asc {LIT} -o first_r.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} -o first_r.png --quiet"));
     assert_same(&folder, "first.png", "first_r.png");
     assert_same(&folder, "saved.png", "first_r.png");
-    folder.done(None, "render --scene second.json -o second_r.png --quiet");
+    folder.done("render --scene second.json -o second_r.png --quiet");
     let flags = "--sun 320,30 --sky 0.3 --azimuths 16 --bounces 1";
-    folder.done(None, &format!("render hills.asc {flags} -o second_f.png --quiet"));
+    folder.done(&format!("render hills.asc {flags} -o second_f.png --quiet"));
     assert_same(&folder, "second.png", "second_r.png");
     assert_same(&folder, "second.png", "second_f.png");
-    folder.done(None, "render --scene third.json -o third_r.png --quiet");
+    folder.done("render --scene third.json -o third_r.png --quiet");
     let flags = "--sun 335,35 --sky 0.3 --azimuths 4 --bounces 1 --method pyramid";
-    folder.done(None, &format!("render hills.asc {flags} -o third_f.png --quiet"));
+    folder.done(&format!("render hills.asc {flags} -o third_f.png --quiet"));
     assert_same(&folder, "third.png", "third_r.png");
     assert_same(&folder, "third.png", "third_f.png");
     // Another surface of the same window.
@@ -138,10 +162,10 @@ fn gpu_a_camera_sees_what_render_does() {
         frames 1\nscreenshot again.png\nkey v\nframes 1\nscreenshot map.png\n";
     folder.view(&display, &format!("hills.asc {LIT} --size 96x60"), script);
     let camera = "--camera 180,45 --fov 40 --samples 1 --size 96x60";
-    folder.done(None, &format!("render hills.asc {LIT} {camera} -o camera.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} {camera} -o camera.png --quiet"));
     assert_same(&folder, "saved.png", "camera.png");
     assert_same(&folder, "again.png", "shot.png");
-    folder.done(None, "render --scene other.json -o other_r.png --quiet");
+    folder.done("render --scene other.json -o other_r.png --quiet");
     assert_same(&folder, "other_p.png", "other_r.png");
     let [shot, saved, other] = ["shot.png", "saved.png", "other.png"].map(|n| folder.picture(n));
     assert!(apart(&shot, &saved) <= 1.0, "{} codes", apart(&shot, &saved));
@@ -213,11 +237,11 @@ fn gpu_brushes_are_undone_and_saved() {
     assert!(said.contains("undo 1, again 0") && said.contains("edit of "), "{said}");
     let said = text("undone.txt");
     assert!(said.contains("undo 0, again 2") && said.contains("nothing to undo"), "{said}");
-    folder.done(None, &format!("render hills.asc {LIT} -o render.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     assert_same(&folder, "undone.png", "render.png");
     assert_same(&folder, "again.png", "eroded.png");
     for name in ["raised", "eroded"] {
-        folder.done(None, &format!("render --scene {name}.json -o {name}_r.png --quiet"));
+        folder.done(&format!("render --scene {name}.json -o {name}_r.png --quiet"));
         let [window, render] =
             [".png", "_r.png"].map(|end| folder.picture(&format!("{name}{end}")));
         assert!(apart(&window, &render) <= 1.0, "{name}: {}", apart(&window, &render));
@@ -244,9 +268,9 @@ fn gpu_a_split_window_shows_what_shadows_do() {
         text split.txt\nkey h\nkey h\nkey 2\nframes 2\nkey 1\nkey c\nsize 64,24\nframes 1\nscreenshot one.png\n";
     folder.view(&display, &format!("wall.asc {lit} --size 196x24"), script);
     for end in ["png", "exr"] {
-        folder.done(None, &format!("render wall.asc {lit} -o ours.{end} --quiet"));
+        folder.done(&format!("render wall.asc {lit} -o ours.{end} --quiet"));
     }
-    folder.done(None, "reference wall.asc --sun 90,30,0 --sky 0.3 -o truth.exr --spp 4096 --quiet");
+    folder.done("reference wall.asc --sun 90,30,0 --sky 0.3 -o truth.exr --spp 4096 --quiet");
     let split = folder.picture("split.png");
     let [off, ours, truth] = [0, 66, 132].map(|first| crop(&split, first, 64));
     assert!(colours(&ours) == colours(&folder.picture("ours.png")), "ours");
@@ -302,9 +326,9 @@ fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
     assert!((place[0] - 31.5).abs() < 1e-9 && (place[1] - (47.0 - 21.5)).abs() < 1e-9, "{place:?}");
     let [r, g, b] = [0, 1, 2].map(|i| lights[0]["radiance"][i].as_f64().unwrap());
     assert!(r == 8.0 && g < r && b < g, "{lights}");
-    folder.done(None, "render --scene lit.json -o lit_r.png --quiet");
+    folder.done("render --scene lit.json -o lit_r.png --quiet");
     assert_same(&folder, "lit.png", "lit_r.png");
-    folder.done(None, &format!("render hills.asc {LIT} -o first_r.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} -o first_r.png --quiet"));
     assert_same(&folder, "dark.png", "first_r.png");
     assert!(scene("dark.json")["lights"].get("balls").is_none(), "{}", scene("dark.json"));
     let said = std::fs::read_to_string(folder.0.path().join("none.txt")).unwrap();
@@ -340,7 +364,7 @@ fn gpu_settings_turn_or_are_refused_as_by_flags() {
     let scene: serde_json::Value = serde_json::from_str(&text("fine.json")).unwrap();
     let quality = serde_json::json!({ "azimuths": 4, "lines": "1/4", "fuse": "aimed" });
     assert_eq!(scene["quality"], quality);
-    folder.done(None, "render --scene fine.json -o fine_r.png --quiet");
+    folder.done("render --scene fine.json -o fine_r.png --quiet");
     assert_same(&folder, "fine.png", "fine_r.png");
     let note = "changes nothing without --method pyramid";
     assert!(text("idle.txt").contains(note), "{}", text("idle.txt"));
@@ -352,7 +376,7 @@ fn gpu_a_window_outlives_its_sizes() {
     let script = "frames 2\nsize 301,203\nframes 2\nkey +\nkey left\nwheel -3 20,20\nsize 64,48\nkey home\n\
         key h\nkey h\nframes 1\nsize 1,1\nframes 2\nsize 64,48\nframes 1\nscreenshot last.png\n";
     folder.view(&display, &format!("hills.asc {LIT}"), script);
-    folder.done(None, &format!("render hills.asc {LIT} -o render.png --quiet"));
+    folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     assert_same(&folder, "last.png", "render.png");
 }
 

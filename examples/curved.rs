@@ -1,0 +1,395 @@
+//! A flat field's data on curved bases (Heidrich et al. 2000, §5), beside real geometry.
+//!
+//! `cargo run --release --example curved -- [-o PICTURE.svg]`
+//!
+//! Three grooves of 16 by 8 cells, walls of 45°, are bent across their length into a cylinder, outwards and inwards, as a mesh
+//! whose triangles rays are shot at. Beside it what samples see on the flat field, as it is and adapted to the curvature.
+//! Shadows: 200 lights of each sample's own hemisphere. Scattered light: walls that face east shine, all scatter it once.
+
+#[path = "curved/mesh.rs"]
+mod mesh;
+#[path = "soft/plot.rs"]
+mod plot;
+#[path = "shared/seen.rs"]
+mod seen;
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use mesh::Mesh;
+use plot::{Curve, Panel};
+use ridgelight::bake::CurvedEllipses;
+use ridgelight::basis::triangles::Triangles;
+use ridgelight::cpu::ellipse_fit::{Ellipse, fit, seen_bent};
+use ridgelight::cpu::fan_weigh::weight;
+use ridgelight::cpu::points_bend::{Draped, Fans};
+use ridgelight::cpu::scatter_gather::Samples;
+use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight::plan;
+use ridgelight::scene::{
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Surface,
+    VisiblePoint, VisiblePoints,
+};
+use ridgelight::{Error, Result};
+
+const LIGHTS: usize = 200;
+const DIRECTIONS: usize = 1024;
+/// Rays of a sample to which scattered light is judged, evenly over the hemisphere about its normal by cosine.
+const RAYS: usize = 2048;
+const PERIOD: usize = 16;
+const GROOVES: usize = 3;
+const ROWS: usize = 33;
+/// Rows whose samples are compared: what lies across the grooves is the same in all, but for the ends.
+const COMPARED: [usize; 3] = [8, 16, 24];
+const RADII: [f64; 9] = [100.0, 70.0, 50.0, 35.0, 25.0, 18.0, 12.0, 8.0, 5.0];
+/// What four of five ellipses are fitted at, outwards and inwards, 1/m.
+const STEPS: [f64; 2] = [1.0 / 25.0, 1.0 / 100.0];
+const ALBEDO: f64 = 0.8;
+/// Nothing within a groove lies beyond its end; what does is the field's edge.
+const BORDER: Border = Border::Open;
+
+/// Shares of something wrong, percent, on a base.
+struct Row {
+    curvature: f64,
+    /// Share of lights that arrive.
+    lit: f64,
+    /// By directions as they are and adapted; by flat ellipses, between five, and fitted here.
+    shadows: [f64; 5],
+    /// Scattered light on the base over that on the flat one.
+    scattered: f64,
+    /// RMSE by directions as they are, turned, and turned and weighed.
+    light: [f64; 3],
+    /// What [`Curvature::check`] finds.
+    changed: f64,
+    refused: Option<String>,
+}
+
+fn grooves() -> Result<HeightField> {
+    let cols = GROOVES * PERIOD + 1;
+    let half = PERIOD as f64 / 2.0;
+    let height = |i: usize| (((i % cols) % PERIOD) as f64 - half).abs();
+    let heights: Vec<f64> = (0..ROWS * cols).map(height).collect();
+    HeightField::new(ROWS, cols, &heights, [1.0; 2], None)
+}
+
+/// What shines: walls that face east, half of it between two walls.
+fn shines(col: usize) -> f64 {
+    match col % PERIOD {
+        0 | 8 => 0.5,
+        at if at < PERIOD / 2 => 1.0,
+        _ => 0.0,
+    }
+}
+
+/// Samples that are compared, in the order of everything below.
+fn compared(field: &HeightField) -> impl Iterator<Item = usize> + use<> {
+    let cols = field.cols();
+    COMPARED.into_iter().flat_map(move |row| row * cols..(row + 1) * cols)
+}
+
+fn percent(wrong: usize, of: usize) -> f64 {
+    100.0 * wrong as f64 / of as f64
+}
+
+/// Of rays at the mesh: which lights arrive, and the light that samples scatter.
+fn truth(mesh: &Mesh, field: &HeightField, lights: &Directions) -> (Vec<Vec<bool>>, Vec<f64>) {
+    let rays = Directions::fibonacci(RAYS, 0.0, 3).expect("directions");
+    let normals = mesh.normals(field.cols());
+    let of = |sample: usize| {
+        let frame = mesh.frames[sample];
+        let lit =
+            lights.vectors().iter().map(|l| mesh.seen(sample, frame.out(*l)).is_none()).collect();
+        let n = normals[sample];
+        let x = n.cross(frame.north).normalize();
+        let y = n.cross(x);
+        // z = √u of even u is as likely as its cosine.
+        let of_ray = |e: &DVec3| {
+            let (z, r) = (e.z.sqrt(), (1.0 - e.z).sqrt());
+            let plan = e.truncate().normalize_or_zero() * r;
+            let hit = mesh.seen(sample, plan.x * x + plan.y * y + z * n);
+            // Both triangles of a cell go from its north-west to a corner in the east: towards which it falls where it faces east.
+            let shines = |triangle: usize| {
+                let [west, _, east] = mesh.triangles[triangle].map(|i| field.heights_m()[i]);
+                f64::from(u8::from(west > east))
+            };
+            hit.map_or(0.0, |hit| shines(hit.triangle))
+        };
+        let sum: f64 = rays.vectors().iter().map(of_ray).sum();
+        (lit, ALBEDO * sum / RAYS as f64)
+    };
+    compared(field).map(of).unzip()
+}
+
+/// Five ellipses of each sample.
+fn five(
+    gpu: &mut Headless,
+    field: &HeightField,
+    directions: &Directions,
+    steps: [f64; 2],
+) -> Result<Vec<[Ellipse; 5]>> {
+    let plan = plan::curved_ellipses(field, BORDER, directions, steps, &gpu.report().limits)?;
+    gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+        gpu.draw(frame)?;
+        let images = (0..10).map(|i| Ok(gpu.pixels(frame, i)?.values));
+        let images = images.collect::<Result<Vec<_>>>()?;
+        let texel = |image: usize, at: usize| {
+            <[f32; 4]>::try_from(&images[image][4 * at..4 * at + 4]).expect("4")
+        };
+        let ellipse = |k: usize, at: usize| {
+            let [along, across, ..] = texel(2 * k + 1, at);
+            Ellipse::of_texels(texel(2 * k, at), [along, across])
+        };
+        let five = |at| [0, 1, 2, 3, 4].map(|k| ellipse(k, at));
+        Ok((0..field.heights_m().len()).map(five).collect())
+    })
+}
+
+/// Light scattered once, off the device.
+fn scattered(
+    gpu: &mut Headless,
+    scene: &Scene,
+    points: &VisiblePoints,
+    curvature: Curvature,
+) -> Result<Vec<f64>> {
+    let (field, directions) = (&scene.field, points.directions());
+    // Each direction once: no chance.
+    let scatter = Scatter { bounces: 1, paths: DIRECTIONS as u32, curvature, ..Scatter::default() };
+    let plan = plan::scatter(scene, directions, &scatter, &gpu.report().limits)?;
+    let direct: Vec<[f32; 3]> =
+        (0..field.heights_m().len()).map(|at| [shines(at % field.cols()) as f32; 3]).collect();
+    let inputs = plan::scatter_inputs(&plan, scene, points, &direct)?;
+    let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &inputs, |gpu, frame| {
+        gpu.draw(frame)?;
+        Ok(gpu.pixels(frame, 0)?.values.chunks_exact(4).map(|t| f64::from(t[0])).collect())
+    })
+}
+
+/// Percent of the mean.
+fn rmse(found: &[f64], truth: &[f64]) -> f64 {
+    let squares: f64 = found.iter().zip(truth).map(|(f, t)| (f - t).powi(2)).sum();
+    let count = truth.len() as f64;
+    100.0 * (squares / count).sqrt() / (truth.iter().sum::<f64>() / count)
+}
+
+/// What the flat field tells, whatever the base.
+struct Flat {
+    field: HeightField,
+    points: VisiblePoints,
+    fans: Fans,
+    net: Triangles,
+    lights: Directions,
+    five: Vec<[Ellipse; 5]>,
+    /// Scattered light by rays.
+    scattered: f64,
+}
+
+impl Flat {
+    /// Share of lights wrong of a test, percent; it is asked of the number of a compared sample.
+    fn wrong(&self, lit: &[Vec<bool>], holds: impl Fn(usize, DVec3) -> bool) -> f64 {
+        let lights = self.lights.vectors();
+        let of = |(n, lit): (usize, &Vec<bool>)| {
+            lights.iter().zip(lit).filter(|(light, lit)| holds(n, **light) != **lit).count()
+        };
+        let wrong: usize = lit.iter().enumerate().map(of).sum();
+        percent(wrong, lit.len() * lights.len())
+    }
+
+    /// By the triangles of directions that stand so, cut at a half; the nearest direction where none holds a light.
+    fn by_directions(&self, draped: &Draped, bent: &[DVec3], at: usize, light: DVec3) -> bool {
+        let share = draped.lit_share(&self.net, bent, at, light).unwrap_or_else(|| {
+            let near = |i: &usize| bent[*i].dot(light);
+            let nearest = (0..DIRECTIONS)
+                .filter(|i| bent[*i].z > 0.0)
+                .max_by(|a, b| near(a).total_cmp(&near(b)));
+            let sees_sky = nearest.is_some_and(|i| self.points.seen(i, at) == VisiblePoint::Sky);
+            f64::from(u8::from(sees_sky))
+        });
+        share >= 0.5
+    }
+}
+
+fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row> {
+    let field = &flat.field;
+    let curvature = Curvature { per_m: [per_m, 0.0] };
+    let refused = curvature.check(field, BORDER).err().map(|error| error.to_string());
+    let mesh = Mesh::bent(field, per_m);
+    let (lit, light) = truth(&mesh, field, &flat.lights);
+    let all: Vec<usize> = compared(field).collect();
+    let draped = |curvature| Draped {
+        field,
+        border: BORDER,
+        points: &flat.points,
+        fans: &flat.fans,
+        curvature,
+    };
+    let (as_is, adapted) = (draped(Curvature::FLAT), draped(curvature));
+    let vectors = flat.points.directions().vectors();
+    let level: Vec<Vec<DVec3>> = vec![vectors.to_vec(); all.len()];
+    let bent: Vec<Vec<DVec3>> = all.iter().map(|at| adapted.bent(*at)).collect();
+    let here = |(n, at): (usize, &usize)| fit(&seen_bent(&flat.points, &bent[n], *at)).0;
+    let fitted: Vec<Ellipse> = all.iter().enumerate().map(here).collect();
+    let between: Vec<CurvedEllipses> =
+        all.iter().map(|at| CurvedEllipses::of(&flat.five[*at], STEPS)).collect();
+    let shadows = [
+        flat.wrong(&lit, |n, l| flat.by_directions(&as_is, &level[n], all[n], l)),
+        flat.wrong(&lit, |n, l| flat.by_directions(&adapted, &bent[n], all[n], l)),
+        flat.wrong(&lit, |n, l| flat.five[all[n]][0].holds(l)),
+        flat.wrong(&lit, |n, l| between[n].holds(curvature, l)),
+        flat.wrong(&lit, |n, l| fitted[n].holds(l)),
+    ];
+    // The twin, which refuses nothing; the device beside it where it may.
+    let twin = |curvature: Curvature, bent: &[Vec<DVec3>], is_weighed: bool| -> Vec<f64> {
+        let materials = Samples::of(scene).on(curvature);
+        let share = flat.points.directions().share_sr();
+        let of = |(at, bent): (&usize, &Vec<DVec3>)| -> f64 {
+            let of_look = |i: usize| {
+                let VisiblePoint::Sample(there) = flat.points.seen(i, *at) else { return 0.0 };
+                let weight = if is_weighed { weight(&flat.fans, bent, i) } else { 1.0 };
+                let arrives = [[shines(there % field.cols()); 3], [0.0; 3]];
+                materials.scattered(*at, (bent[i], share * weight), DVec3::Z, arrives).light[0]
+            };
+            (0..DIRECTIONS).map(of_look).sum()
+        };
+        all.iter().zip(bent).map(of).collect()
+    };
+    let weighed = twin(curvature, &bent, true);
+    if refused.is_none() {
+        let device = scattered(gpu, scene, &flat.points, curvature)?;
+        let device: Vec<f64> = all.iter().map(|at| device[*at]).collect();
+        let off = rmse(&device, &weighed);
+        assert!(off < 0.1, "the device scatters {off} % off its twin");
+    }
+    let kinds = [twin(Curvature::FLAT, &level, false), twin(curvature, &bent, false), weighed];
+    let count = lit.iter().flatten().filter(|lit| **lit).count();
+    Ok(Row {
+        curvature: per_m,
+        lit: percent(count, all.len() * LIGHTS),
+        shadows,
+        scattered: light.iter().sum::<f64>() / flat.scattered,
+        light: kinds.map(|found| rmse(&found, &light)),
+        changed: 100.0 * curvature.changed(field, BORDER),
+        refused,
+    })
+}
+
+fn table(rows: &[Row]) {
+    println!(
+        "| radius, cells | changed, % | lit, % | wrong by flat directions, % | adapted | by flat ellipses | between five | fitted here | \
+         scattered over flat | off by flat directions, % | turned | turned and weighed | |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    for row in rows {
+        let radius = match row.curvature {
+            0.0 => "flat".to_owned(),
+            k => format!("{:+.0}", 1.0 / k),
+        };
+        let [a, b, c, d, e] = row.shadows.map(|v| format!("{v:.2}"));
+        let [f, g, h] = row.light.map(|v| format!("{v:.2}"));
+        let told = if row.refused.is_some() { "refused" } else { "" };
+        println!(
+            "| {radius} | {:.2} | {:.1} | {a} | {b} | {c} | {d} | {e} | {:.3} | {f} | {g} | {h} | {told} |",
+            row.changed, row.lit, row.scattered
+        );
+    }
+}
+
+/// What is wrong over curvature, outwards and inwards.
+fn picture(rows: &[Row]) -> String {
+    let panel = |title: &str, is_out: bool, is_light: bool| {
+        let own: Vec<&Row> =
+            rows.iter().filter(|r| r.curvature != 0.0 && (r.curvature > 0.0) == is_out).collect();
+        let curve = |name: &str, colour: usize, is_floor: bool, of: &dyn Fn(&Row) -> f64| Curve {
+            name: name.into(),
+            points: own.iter().map(|r| [1.0 / r.curvature.abs(), of(r)]).collect(),
+            colour,
+            is_floor,
+        };
+        let curves = if is_light {
+            vec![
+                curve("directions of the flat field", 0, true, &|r| r.light[0]),
+                curve("turned", 1, false, &|r| r.light[1]),
+                curve("turned and weighed", 2, false, &|r| r.light[2]),
+            ]
+        } else {
+            vec![
+                curve("directions of the flat field", 0, true, &|r| r.shadows[0]),
+                curve("adapted directions", 0, false, &|r| r.shadows[1]),
+                curve("the flat field's ellipse", 3, true, &|r| r.shadows[2]),
+                curve("between five ellipses", 3, false, &|r| r.shadows[3]),
+            ]
+        };
+        let y = if is_light { "scattered light, RMSE, %" } else { "lights wrong, %" };
+        Panel { title: title.into(), x: "radius of the base, cells", y, curves }
+    };
+    plot::svg(&[
+        panel("Shadows, bent outwards", true, false),
+        panel("Shadows, bent inwards", false, false),
+        panel("Scattered, outwards", true, true),
+        panel("Scattered, inwards", false, true),
+    ])
+}
+
+fn run() -> Result<()> {
+    let mut args = std::env::args().skip(1);
+    let mut output = None::<PathBuf>;
+    while let Some(arg) = args.next() {
+        match (arg.as_str(), args.next()) {
+            ("-o", Some(path)) => output = Some(path.into()),
+            _ => return Err(Error::setting("argument", arg, "-o PICTURE.svg")),
+        }
+    }
+    let mut gpu = Headless::new(&HeadlessOptions::default())?;
+    println!("{}, {}\n", gpu.report().name, gpu.report().driver);
+    let field = grooves()?;
+    let directions = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
+    let (points, _) = seen::points(&mut gpu, &field, BORDER, &directions)?;
+    let net = directions.triangles()?;
+    let fans = Fans::of(&net, directions.vectors());
+    let lights = Directions::fibonacci(LIGHTS, 0.0, 7)?;
+    let five = five(&mut gpu, &field, &directions, STEPS)?;
+    let (_, level) = truth(&Mesh::bent(&field, 0.0), &field, &lights);
+    let surface =
+        Surface { border: BORDER, albedo: Albedo::Constant([ALBEDO as f32; 3]), phong: None };
+    let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
+    let flat = Flat { field, points, fans, net, lights, five, scattered: level.iter().sum() };
+    println!(
+        "{GROOVES} grooves of {PERIOD} by {} cells, {ROWS} long; {DIRECTIONS} directions over the sphere, {LIGHTS} lights over each sample's \
+         hemisphere, {RAYS} rays. A radius above 0: valleys widen. Changed: share of the hemisphere in which something else is \
+         seen, at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
+         Off: RMSE over the mean.\n",
+        PERIOD / 2,
+        100.0 * Curvature::MOST_CHANGED,
+        1.0 / STEPS[0],
+        1.0 / STEPS[1]
+    );
+    let mut rows = Vec::new();
+    let outwards = RADII.iter().rev().map(|r| 1.0 / r);
+    let inwards = RADII.iter().map(|r| -1.0 / r);
+    for curvature in outwards.chain([0.0]).chain(inwards) {
+        rows.push(row(&mut gpu, &flat, &scene, curvature)?);
+    }
+    table(&rows);
+    println!();
+    for row in rows.iter().filter(|r| r.refused.is_some()) {
+        println!(
+            "radius {:+.0}: {}",
+            1.0 / row.curvature,
+            row.refused.as_deref().unwrap_or_default()
+        );
+    }
+    match output {
+        Some(path) => ridgelight::files::write_text(&path, &picture(&rows)),
+        None => Ok(()),
+    }
+}
+
+fn main() -> std::process::ExitCode {
+    match run() {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Where samples see what they see once the flat field lies on a curved base (Heidrich et al. 2000, §5), in f64.
+//!
+//! Points that see each other on the flat base are taken to see each other on the curved one; what changes is where. The
+//! base rolls along the straight way o between the two samples, so that its frame turns evenly by w = (k_x o_x, k_y o_y) about
+//! the horizontal axis across w: after a share s of the way a vector v of the plan stands where the rotation R(s w) takes
+//! it. The base is then at ∫ R(s w) o ds: of o the part along w gives |o_w| sin|w| / |w| along w and -|o_w| (1 - cos|w|) / |w|
+//! upwards, the part across stays. A height h stands on the end's normal, R(w) (0, 0, h). Along the axis of a cylinder's
+//! curvature and everywhere on a sphere that is exact, as ways are geodesics and turn evenly; of others to second order.
+//!
+//! A convex base (above 0) lets all sink by k d²/2 at a distance d, which lowers its direction by k d / 2; heights above the
+//! base are drawn apart by 1 + k h.
+
+use glam::{DVec2, DVec3};
+
+use crate::basis::triangles::Triangles;
+use crate::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
+
+/// No way turns the frame by more than a right angle, radians.
+pub const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
+/// How far what a repeating field shows is looked for, columns or rows along which the direction runs faster.
+pub const REACH_CELLS: i64 = 128;
+
+/// Towards what stands `away` m off along `e` on the flat field, from a sample at height `own_m`: of length 1, in the
+/// sample's own frame. A way that would turn further is taken as far as [`MOST_TURN`].
+pub fn bent_direction(e: DVec3, away_m: f64, own_m: f64, curvature: Curvature) -> DVec3 {
+    let o = e.truncate();
+    let per_m = DVec2::from_array(curvature.per_m) * o;
+    let rate = per_m.length();
+    if rate == 0.0 {
+        return e;
+    }
+    let way_m = away_m.min(MOST_TURN / rate);
+    let height_m = own_m + way_m * e.z;
+    let turn = rate * way_m;
+    let along = per_m / rate;
+    // Per metre of the way, so that what is near keeps a direction: sin(v)/v and (1 - cos v)/v of v = turn.
+    let [arc, fall] = match turn {
+        0.0 => [1.0, 0.0],
+        _ => [turn.sin() / turn, 2.0 * (0.5 * turn).sin().powi(2) / turn],
+    };
+    let of_o = o.dot(along);
+    let plan = o + along * (of_o * (arc - 1.0) + height_m * rate * arc);
+    let up = e.z - of_o * fall - height_m * rate * fall;
+    DVec3::new(plan.x, plan.y, up).normalize()
+}
+
+/// A sample that may be what a ray has met.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// How far along the ray it stands in the plan, m. What is met lies within half a cell of the sample in the plan, but on a
+    /// steep wall far above or below: what moves with the base is off by half a cell's turn, whatever the slope.
+    pub away_m: f64,
+    /// How far beside the ray it is, m.
+    pub miss_m: f64,
+    /// How far it is, m.
+    pub to_m: f64,
+}
+
+/// Where the sample `there` is seen along `e` from `here`: of a field that repeats, each of its like, nearest first.
+pub fn ways(field: &HeightField, border: Border, [here, there]: [usize; 2], e: DVec3) -> Vec<Way> {
+    let (cols, rows) = (field.cols() as i64, field.rows() as i64);
+    let [cell_x, cell_y] = field.cell_m();
+    let height = |at: usize| f64::from(field.heights_m()[at]);
+    let rise = height(there) - height(here);
+    let place = |at: usize| [at as i64 % cols, at as i64 / cols];
+    let [[x, y], [to_x, to_y]] = [here, there].map(place);
+    let flat = e.truncate().length_squared();
+    let way = |right: f64, down: f64| {
+        let to = DVec3::new(right * cell_x, -down * cell_y, rise);
+        let away_m =
+            if flat < 1e-12 { 0.0 } else { to.truncate().dot(e.truncate()).max(0.0) / flat };
+        Way { away_m, miss_m: (to - to.dot(e) * e).length(), to_m: to.length() }
+    };
+    let [right, down] = [to_x - x, to_y - y];
+    let pace = [e.x / cell_x, -e.y / cell_y];
+    if border != Border::Periodic || flat < 1e-12 {
+        return vec![way(right as f64, down as f64)];
+    }
+    let by_rows = pace[1].abs() > pace[0].abs();
+    let swap = |[a, b]: [i64; 2]| if by_rows { [b, a] } else { [a, b] };
+    let ([size, other_size], [gap, other_gap]) = (swap([cols, rows]), swap([right, down]));
+    let (ahead, side) =
+        if by_rows { (pace[1], pace[0] / pace[1]) } else { (pace[0], pace[1] / pace[0]) };
+    let first = if ahead > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) };
+    let each = (0..=REACH_CELLS / size).flat_map(|k| {
+        let main = first + if ahead > 0.0 { k * size } else { -k * size };
+        let turns = (main as f64 * side - other_gap as f64) / other_size as f64;
+        // The nearer of two rows or columns of repetitions; the other where roundings may tell.
+        let near = (turns + 0.5).floor();
+        let next = if turns > near { near + 1.0 } else { near - 1.0 };
+        let count = if (turns - near).abs() > 0.499 { 2 } else { 1 };
+        [near, next].into_iter().take(count).map(move |turns| {
+            let other = other_gap as f64 + turns * other_size as f64;
+            if by_rows { way(other, main as f64) } else { way(main as f64, other) }
+        })
+    });
+    each.collect()
+}
+
+/// The [`ways`]' own that the ray passes nearest by, the first of those equally near, m.
+pub fn away_m(field: &HeightField, border: Border, pair: [usize; 2], e: DVec3) -> f64 {
+    let all = ways(field, border, pair, e);
+    let nearest =
+        all.iter().copied().reduce(|best, way| if way.miss_m < best.miss_m { way } else { best });
+    nearest.map_or(0.0, |way| way.away_m)
+}
+
+/// Directions on the flat field beside each other, and what they cover.
+pub struct Fans {
+    /// Of each direction the two other corners of its triangles, counter-clockwise.
+    pub pairs: Vec<Vec<[u32; 2]>>,
+    /// Solid angle of those triangles, sr.
+    pub flat_sr: Vec<f64>,
+}
+
+impl Fans {
+    /// Of a net over directions.
+    pub fn of(triangles: &Triangles, vectors: &[DVec3]) -> Self {
+        let mut pairs = vec![Vec::new(); vectors.len()];
+        for [a, b, c] in triangles.corners() {
+            for (of, pair) in [(a, [*b, *c]), (b, [*c, *a]), (c, [*a, *b])] {
+                pairs[*of as usize].push(pair);
+            }
+        }
+        let flat_sr = triangles.fans_sr(vectors).iter().map(|third| 3.0 * third).collect();
+        Self { pairs, flat_sr }
+    }
+}
+
+/// What bends with what: the flat field and what its samples see.
+pub struct Draped<'a> {
+    /// The flat field.
+    pub field: &'a HeightField,
+    /// What lies beyond it.
+    pub border: Border,
+    /// What its samples see.
+    pub points: &'a VisiblePoints,
+    /// Their directions beside each other.
+    pub fans: &'a Fans,
+    /// Of the base.
+    pub curvature: Curvature,
+}
+
+impl Draped<'_> {
+    /// The directions that direction `i` may move with at a sample, itself where the surface is seen, else of its neighbours
+    /// that do those within `slack` of the nearest's cosine; none where it stays.
+    pub fn movers(&self, i: usize, sample: usize, slack: f64) -> Vec<(usize, usize)> {
+        let vectors = self.points.directions().vectors();
+        let met = |j: usize| match self.points.seen(j, sample) {
+            VisiblePoint::Sample(there) => Some((j, there)),
+            VisiblePoint::Sky | VisiblePoint::Ground => None,
+        };
+        match self.points.seen(i, sample) {
+            VisiblePoint::Sample(there) => return vec![(i, there)],
+            VisiblePoint::Ground => return Vec::new(),
+            VisiblePoint::Sky => {}
+        }
+        let near = |j: usize| vectors[j].dot(vectors[i]);
+        let around = || self.fans.pairs[i].iter().flatten().filter_map(|j| met(*j as usize));
+        let nearest = around().map(|(j, _)| near(j)).fold(-2.0, f64::max);
+        let mut all = Vec::new();
+        for mover in around().filter(|(j, _)| near(*j) >= nearest - slack) {
+            if !all.contains(&mover) {
+                all.push(mover);
+            }
+        }
+        all
+    }
+
+    /// Where a sample sees what it sees, direction after direction.
+    pub fn bent(&self, sample: usize) -> Vec<DVec3> {
+        let vectors = self.points.directions().vectors();
+        let own = f64::from(self.field.heights_m()[sample]);
+        let of = |i: usize| match self.movers(i, sample, 0.0).first() {
+            Some((with, there)) => {
+                let away = away_m(self.field, self.border, [sample, *there], vectors[*with]);
+                bent_direction(vectors[i], away, own, self.curvature)
+            }
+            None => vectors[i],
+        };
+        (0..vectors.len()).map(of).collect()
+    }
+
+    /// How much of a light arrives at a sample whose directions are [`bent`](Self::bent), 0 to 1: the share of the corners
+    /// of the triangle that holds it in which the sky is seen, corners at or below horizontal left out; of several triangles,
+    /// where the net has folded over, the least. `None` where none holds it.
+    pub fn lit_share(
+        &self,
+        triangles: &Triangles,
+        bent: &[DVec3],
+        sample: usize,
+        light: DVec3,
+    ) -> Option<f64> {
+        let shares = triangles.corners().iter().filter_map(|face| {
+            let [a, b, c] = face.map(|i| bent[i as usize]);
+            if light.dot(a + b + c) <= 0.0 {
+                return None;
+            }
+            let of = [light.dot(b.cross(c)), light.dot(c.cross(a)), light.dot(a.cross(b))];
+            if of.iter().any(|part| *part < -1e-13) {
+                return None;
+            }
+            let (mut lit, mut all) = (0.0, 0.0);
+            for ((i, e), part) in face.iter().zip([a, b, c]).zip(of) {
+                let part = if e.z > 0.0 { part.max(0.0) } else { 0.0 };
+                all += part;
+                if self.points.seen(*i as usize, sample) == VisiblePoint::Sky {
+                    lit += part;
+                }
+            }
+            (all > 0.0).then_some(lit / all)
+        });
+        shares.reduce(f64::min)
+    }
+}

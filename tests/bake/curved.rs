@@ -1,0 +1,273 @@
+//! What is adapted to curved bases, held to cylinders and balls whose geometry is known.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use ridgelight::bake::CurvedEllipses;
+use ridgelight::cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
+use ridgelight::cpu::fan_weigh::weight;
+use ridgelight::cpu::points_bend::{Draped, Fans, away_m, bent_direction};
+use ridgelight::cpu::visible_points::visible_points;
+use ridgelight::scene::{Border, Curvature, Directions, HeightField, VisiblePoint, VisiblePoints};
+
+const HALF: usize = 8;
+
+/// Grooves of 45° walls, eight cells deep, that repeat; their median height is 4.
+fn grooves(rows: usize) -> HeightField {
+    let height = |i: usize| (i % (2 * HALF)).abs_diff(HALF) as f64;
+    let heights: Vec<f64> = (0..rows * 2 * HALF).map(height).collect();
+    HeightField::new(rows, 2 * HALF, &heights, [1.0; 2], None).expect("a field")
+}
+
+/// Walls a sample wide and eight cells high on level ground, 16 cells apart.
+fn walls(rows: usize) -> HeightField {
+    let height = |i: usize| if i.is_multiple_of(2 * HALF) { HALF as f64 } else { 0.0 };
+    let heights: Vec<f64> = (0..rows * 2 * HALF).map(height).collect();
+    HeightField::new(rows, 2 * HALF, &heights, [1.0; 2], None).expect("a field")
+}
+
+/// Half the angle that the middle between two [`walls`] sees of the sky on a cylinder: they stand 8 cells of arc away.
+fn opening(per_m: f64) -> f64 {
+    if per_m == 0.0 {
+        return 0.25 * PI;
+    }
+    let (radius, half) = (1.0 / per_m, HALF as f64);
+    let (sin, cos) = (half / radius).sin_cos();
+    ((radius + half) * sin).atan2((radius + half) * cos - radius)
+}
+
+/// Of a cylinder along north, and of a ball: places written down as such. A height h over the place x along the base of radius
+/// R is at ((R + h) sin(x/R), (R + h) cos(x/R) - R). Roundings of sums of R, over the distance, 16 of them.
+#[test]
+fn directions_are_those_of_cylinders_and_balls() {
+    let directions = Directions::fibonacci(100, -1.0, 0).expect("directions");
+    for radius in [3.0_f64, -8.0, 50.0, -1e4, 1e7] {
+        for (own, away) in [(0.0, 1e-3), (0.5, 1.0), (-1.0, 2.0), (1.0, 4.0)] {
+            for e in directions.vectors() {
+                let (o, height) = (e.truncate() * away, own + e.z * away);
+                let allowed = 16.0 * f64::EPSILON * (radius.abs() + 8.0) / away;
+                let along = |arc: f64, r: f64| {
+                    let (sin, cos) = (arc / r).sin_cos();
+                    [(r + height) * sin, (r + height) * cos - r - own]
+                };
+                let [x, z] = along(o.x, radius);
+                let cylinder = DVec3::new(x, o.y, z).normalize();
+                let [across, z] = along(o.length(), radius);
+                let ball = (o.normalize() * across).extend(z).normalize();
+                for (per_m, want) in [([1.0 / radius, 0.0], cylinder), ([1.0 / radius; 2], ball)] {
+                    let got = bent_direction(*e, away, own, Curvature { per_m });
+                    assert!(
+                        (got - want).length() <= allowed,
+                        "{radius} {own} {away} {e}: {got} {want}"
+                    );
+                }
+                let still = bent_direction(*e, away, own, Curvature::FLAT);
+                assert_eq!(still, *e);
+            }
+        }
+    }
+}
+
+/// What a field that repeats shows is found again, however often it has passed by: along rows, columns and across. The ray leads
+/// to the place itself, past others of its like that stand as high; only one of them stands on it.
+#[test]
+fn repetitions_are_found_again() {
+    let field = grooves(5);
+    for (x, y) in [(21_i64, 0_i64), (-37, 2), (3, 40), (-5, -60), (70, -9), (6, 127)] {
+        let here = 2 * 2 * HALF + 4;
+        let there = ((2 - y).rem_euclid(5) * 16 + (4 + x).rem_euclid(16)) as usize;
+        let rise = f64::from(field.heights_m()[there]) - f64::from(field.heights_m()[here]);
+        let to = DVec3::new(x as f64, y as f64, rise);
+        assert_ne!(rise, 0.0, "level rays pass by places that are all alike");
+        let found = away_m(&field, Border::Periodic, [here, there], to.normalize());
+        assert!((found - to.length()).abs() < 1e-9, "{to}: {found}");
+    }
+}
+
+/// Level ground sees nothing of itself, and nothing of a ball. In a hollow ball of radius R what stands d away rises to an
+/// elevation of d/2R: of the light on the ground, up to the edge of the field, its sine's square. The first step is seen on
+/// the flat ground, too.
+#[test]
+fn a_hollow_shows_its_own_ground() {
+    let side = 21;
+    let level =
+        HeightField::new(side, side, &vec![7.0; side * side], [1.0; 2], None).expect("a field");
+    for border in [Border::Plane, Border::Open] {
+        assert_eq!(Curvature { per_m: [0.05; 2] }.changed(&level, border), 0.0);
+        for radius in [30.0, 200.0] {
+            let hollow = Curvature { per_m: [-1.0 / radius; 2] };
+            let mut sum = 0.0;
+            for at in 0..side * side {
+                for k in 0..16 {
+                    let o = DVec2::from_angle(2.0 * PI * (k as f64 + 0.5) / 16.0);
+                    let (x, y) = ((at % side) as f64, (at / side) as f64);
+                    let last = (side - 1) as f64;
+                    let upto = |place: f64, pace: f64| {
+                        if pace > 0.0 { (last - place) / pace } else { -place / pace }
+                    };
+                    let steps = upto(x, o.x).min(upto(y, -o.y)).floor();
+                    let sine = |steps: f64| (0.5 * steps / radius).sin().powi(2);
+                    sum += if steps > 1.0 { sine(steps) - sine(1.0) } else { 0.0 };
+                }
+            }
+            let want = sum / (16 * side * side) as f64;
+            let found = hollow.changed(&level, border);
+            assert!((found - want).abs() <= 1e-9 * want, "{border:?} {radius}: {found} {want}");
+        }
+    }
+}
+
+/// Beyond the limit the sentence names it, and there it is kept.
+#[test]
+fn strong_bends_are_refused_by_name() {
+    let field = grooves(16);
+    let said = |x: f64, y: f64| {
+        Curvature { per_m: [x, y] }.check(&field, Border::Periodic).err().map(|e| e.to_string())
+    };
+    assert_eq!(said(0.001, 0.0), None);
+    assert_eq!(said(0.0, 0.0), None);
+    let near = said(-0.2, 0.0).expect("the ridges are 4 over a base of radius 5");
+    assert!(near.contains("curvature of the base") && near.contains("0.20 of its width"), "{near}");
+    let strong = said(-0.1, -0.1).expect("a hollow");
+    let limit = strong.split("at most ").nth(1).and_then(|t| t.split(' ').next()).expect("a limit");
+    let limit: f64 = limit.parse().expect("a number");
+    assert!((-0.1..0.0).contains(&limit), "{strong}");
+    let changed = |k: f64| Curvature { per_m: [k; 2] }.changed(&field, Border::Periodic);
+    // Named to four places, and found to a part in 256.
+    assert!(changed(0.99 * limit - 1e-4) <= 1.02 * Curvature::MOST_CHANGED, "{strong}");
+    assert!(changed(1.01 * limit - 5e-4) > Curvature::MOST_CHANGED, "{strong}");
+    assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));
+}
+
+/// The light that the middle between two walls has of them, if they shine alike, by weights: that of its hemisphere but for a
+/// lune of twice the opening, π (1 - sin a). The silhouette is two half circles of length π, over which the height is 2/π cos a in
+/// the mean, to each side of which directions stand for what lies within a quarter of their spacing √(4π/N) or so. Without weights the light is that of other walls. On the flat base each
+/// weighs 1.
+#[test]
+fn weights_are_solid_angles_between_bent_walls() {
+    let (field, count) = (walls(2), 2048);
+    let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
+    let net = directions.triangles().expect("a net");
+    let fans = Fans::of(&net, directions.vectors());
+    let border = Border::Periodic;
+    let seen = visible_points(&field, border, &directions);
+    let share = directions.share_sr();
+    let points = VisiblePoints::from_points(&field, border, directions, &seen).expect("points");
+    for per_m in [0.0, 0.05, 0.02, -0.02, -0.05] {
+        let curvature = Curvature { per_m: [per_m, 0.0] };
+        let draped = Draped { field: &field, border, points: &points, fans: &fans, curvature };
+        let bent = draped.bent(HALF);
+        let sees = |i: &usize| points.seen(*i, HALF) != VisiblePoint::Sky;
+        let of = |weigh: bool| -> f64 {
+            let light = |i: usize| {
+                let weight = if weigh { weight(&fans, &bent, i) } else { 1.0 };
+                share * weight * bent[i].z.max(0.0)
+            };
+            (0..count).filter(sees).map(light).sum()
+        };
+        let want = PI * (1.0 - opening(per_m).sin());
+        let allowed = 4.0 * opening(per_m).cos() * (4.0 * PI / count as f64).sqrt() / 4.0;
+        let (got, unweighed) = (of(true), of(false));
+        println!("{per_m}: {got} of {want}, within {allowed}; without weights {unweighed}");
+        assert!((got - want).abs() <= allowed, "{per_m}: {got} {want}");
+        if per_m == 0.05 || per_m == -0.05 {
+            assert!((unweighed - want).abs() > allowed, "{per_m}: without weights would do");
+        }
+        if per_m == 0.0 {
+            assert!((0..count).all(|i| (weight(&fans, &bent, i) - 1.0).abs() < 1e-9));
+        }
+    }
+}
+
+/// On the flat base lights are lit as before, whichever of two triangles has an edge.
+#[test]
+fn flat_bases_are_as_they_were() {
+    let field = grooves(2);
+    let directions = Directions::fibonacci(200, -1.0, 0).expect("directions");
+    let net = directions.triangles().expect("a net");
+    let fans = Fans::of(&net, directions.vectors());
+    let seen = visible_points(&field, Border::Periodic, &directions);
+    let points =
+        VisiblePoints::from_points(&field, Border::Periodic, directions, &seen).expect("points");
+    let draped = Draped {
+        field: &field,
+        border: Border::Periodic,
+        points: &points,
+        fans: &fans,
+        curvature: Curvature::FLAT,
+    };
+    for at in 0..2 * HALF {
+        let bent = draped.bent(at);
+        assert_eq!(bent, points.directions().vectors());
+        for light in Directions::fibonacci(60, 0.0, 1).expect("lights").vectors() {
+            let before = points.around(&net, *light).map(|around| points.lit_share(&around, at));
+            let now = draped.lit_share(&net, &bent, at, *light);
+            match (before, now) {
+                (Some(before), Some(now)) => {
+                    assert!((before - now).abs() < 1e-9, "{light}: {before} {now}")
+                }
+                (None, None) => {}
+                other => panic!("{light}: {other:?}"),
+            }
+        }
+    }
+}
+
+fn seen(lit: impl Fn(DVec3) -> bool) -> Vec<Seen> {
+    let directions = Directions::fibonacci(1000, 0.0, 0).expect("directions");
+    directions.vectors().iter().map(|e| (*e, lit(*e))).collect()
+}
+
+/// The middle between walls sees |x| < z tan a: an ellipse of half axes sin a and 1, on every base. Between five that were fitted the
+/// half axis is that within what a fit is off by, and what sin a bends by between.
+#[test]
+fn ellipses_open_and_close_with_the_base() {
+    let step = 0.02;
+    let fitted = |k: f64| fit(&seen(|e| e.x.abs() < e.z * opening(k).tan())).0;
+    let five = [fitted(0.0), fitted(step), fitted(-step), fitted(0.0), fitted(0.0)];
+    let between = CurvedEllipses::of(&five, [step; 2]);
+    for k in [-0.02, -0.013, -0.005, 0.0, 0.004, 0.01, 0.02] {
+        let [x, y, across, along, mixed] = between.at(Curvature { per_m: [k, 0.03] });
+        let want = opening(k).sin();
+        let end = opening(step.copysign(k)).sin();
+        let straight =
+            (want - (opening(0.0).sin() + k.abs() / step * (end - opening(0.0).sin()))).abs();
+        let off = least_radius(1000) + straight;
+        assert!((across - want).abs() <= off, "{k}: {across} {want} {off}");
+        assert!(along > 0.9 && mixed.abs() <= off && DVec2::new(x, y).length() <= off, "{k}");
+    }
+    let wide = between.at(Curvature { per_m: [step, 0.0] })[2]
+        - between.at(Curvature { per_m: [-step, 0.0] })[2];
+    assert!(wide > 2.0 * least_radius(1000), "nothing opens: {wide}");
+}
+
+/// On the flat base the test is that of its own ellipse; all and nothing are what they were, and between nothing and a patch
+/// lies a smaller patch about the same middle.
+#[test]
+fn flat_ellipses_are_as_they_were() {
+    let patch = Ellipse {
+        centre: DVec2::new(0.3, -0.1),
+        axis: DVec2::from_angle(0.7),
+        inverse_radii: [2.0, 5.0],
+    };
+    let lights = seen(|_| true);
+    for own in [patch, Ellipse::WHOLE, Ellipse::EMPTY] {
+        let between =
+            CurvedEllipses::of(&[own, patch, Ellipse::EMPTY, Ellipse::WHOLE, patch], [0.1, 0.2]);
+        for (light, _) in lights.iter().filter(|l| (own.reach(l.0) - 1.0).abs() > 1e-9) {
+            assert_eq!(
+                between.holds(Curvature::FLAT, *light),
+                own.holds(*light),
+                "{own:?} {light}"
+            );
+        }
+    }
+    let between = CurvedEllipses::of(&[Ellipse::EMPTY, patch, patch, patch, patch], [0.1, 0.2]);
+    let half = Ellipse { inverse_radii: [4.0, 10.0], ..patch };
+    for (light, _) in lights.iter().filter(|l| (half.reach(l.0) - 1.0).abs() > 1e-9) {
+        for per_m in [[0.05, 0.0], [0.0, -0.1]] {
+            let now = between.holds(Curvature { per_m }, *light);
+            assert_eq!(now, half.holds(*light), "{per_m:?} {light}");
+        }
+    }
+}
