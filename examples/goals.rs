@@ -48,15 +48,17 @@ const LIGHTS: [(&str, &[&str]); 2] = [
 const TOLD: [&str; 7] =
     ["lines", "fuse", "azimuths", "bounces", "bounce_engine", "bounce_azimuths", "subsample"];
 
-/// Whether the command does what it was asked on a field under its lights; an exit status of 1 is that it cannot.
-fn run(program: &Path, command: &str, of: (&Path, &[&str], &[&str])) -> Result<bool> {
+/// Why the command does not do what it was asked on a field under its lights, if it does not: an exit status of 1.
+fn run(program: &Path, command: &str, of: (&Path, &[&str], &[&str])) -> Result<Option<String>> {
     let (field, lights, more) = of;
     let mut call = Command::new(program);
     call.arg(command).arg(field).args(LIT).args(lights).args(more).arg("--quiet");
     let output = call.output()?;
+    let told = String::from_utf8_lossy(&output.stderr).trim().replace('\n', " ");
     match output.status.code() {
-        Some(code @ (0 | 1)) => Ok(code == 0),
-        _ => Err(format!("{call:?}: {}", String::from_utf8_lossy(&output.stderr)).into()),
+        Some(0) => Ok(None),
+        Some(1) => Ok(Some(told)),
+        _ => Err(format!("{call:?}: {told}").into()),
     }
 }
 
@@ -118,8 +120,8 @@ fn rows(program: &Path, work: &Path, folder: Option<&Path>) -> Result<()> {
                 asked += 1;
                 let out = work.join("drawn.exr");
                 let head = format!("| {name} | {light_name} | {} |", 100.0 * most);
-                if !of("render", &["--max-error", &most.to_string()], &out)? {
-                    println!("{head} refused | | | | |");
+                if let Some(why) = of("render", &["--max-error", &most.to_string()], &out)? {
+                    println!("{head} refused: {why} | | | | |");
                     continue;
                 }
                 chosen += 1;

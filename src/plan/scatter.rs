@@ -84,8 +84,7 @@ pub fn scatter(
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
         let blocks = Blocks::make(&mut builder, size, surface.border);
-        let ground = blocks.images.ground;
-        bound.push(("ground", ground));
+        bound.push(("ground", blocks.images.ground));
         let suns = wanted.towards_suns()?;
         match &suns {
             Some(_) => blocks.record(&mut builder, field, heights, None),
@@ -113,8 +112,8 @@ pub fn scatter(
         if scatter.curvature != Curvature::FLAT {
             let seen = one_image(field, directions, &points, limits)?;
             let bends = Bends::make(&mut builder, size, directions, limits)?;
-            let curved = (field, surface.border);
-            bends.record(&mut builder, curved, scatter.curvature, [seen, ground]);
+            let ids = [seen, blocks.images.ground];
+            bends.record(&mut builder, (field, surface.border), scatter.curvature, ids);
             bound.push(("bent", bends.bent));
             bound.push(("fan_weights", bends.weigh(&mut builder, field)));
         }

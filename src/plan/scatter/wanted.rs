@@ -1,8 +1,8 @@
-//! What of scattered light a scene needs.
+//! What a scene needs of scattered light.
 
-use super::super::bounces::dropped;
 use super::towards;
 use crate::Result;
+use crate::plan::bounces::dropped;
 use crate::scene::{Bounces, Directions, Lobe, Scatter, Scene, Sun};
 
 /// What the scene and the settings leave to be done.
