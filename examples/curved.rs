@@ -320,7 +320,9 @@ fn picture(rows: &[Row]) -> String {
             ]
         };
         let y = if is_light { "scattered light, RMSE, %" } else { "lights wrong, %" };
-        Panel { title: title.into(), x: "radius of the base, cells", y, curves }
+        let told = own.iter().filter(|r| r.refused.is_none()).map(|r| 1.0 / r.curvature.abs());
+        let title = format!("{title}; refused below {:.0}", told.fold(f64::MAX, f64::min));
+        Panel { title, x: "radius of the base, cells", y, curves }
     };
     plot::svg(&[
         panel("Shadows, bent outwards", true, false),

@@ -363,6 +363,30 @@ fn bake() -> Result<String> {
     Ok(out)
 }
 
+/// What examples/curved found: the bases that are not refused.
+fn curved() -> Result<String> {
+    let path = Path::new(RESULTS).join("curved.txt");
+    let text = text(&path)?;
+    let missing = || wrong(&path, "no table", "the text of examples/curved");
+    let device = text.lines().nth(1).ok_or_else(missing)?;
+    let (refused, told): (Vec<&str>, Vec<&str>) = text
+        .lines()
+        .filter(|line| line.starts_with('|'))
+        .partition(|row| row.ends_with(" refused |"));
+    if told.len() < 3 {
+        return Err(missing());
+    }
+    let radius = |row: &&str| row.split('|').nth(1).unwrap_or_default().trim().to_owned();
+    let refused: Vec<String> = refused.iter().map(radius).collect();
+    Ok(format!(
+        "{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
+         ([all of it](benches/results/curved.txt)). A radius above 0 widens them. Refused: {}.\n*{device}{}*\n",
+        told.join("\n"),
+        refused.join(", "),
+        made(&path)?
+    ))
+}
+
 /// `readme` with what stands between the marks of `name` replaced.
 fn with(readme: &str, name: &str, new: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
@@ -398,7 +422,7 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 11] = [
+    let sections: [Section; 12] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
@@ -410,6 +434,7 @@ fn run(check: bool) -> Result<bool> {
         ("bounces", bounces),
         ("goals", goals),
         ("bake", bake),
+        ("curved", curved),
     ];
     for (name, section) in sections {
         let new = with(&readme, name, &section()?)?;

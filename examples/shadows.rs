@@ -14,6 +14,7 @@ mod picture;
 #[path = "shared/seen.rs"]
 mod seen;
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -174,6 +175,7 @@ fn swept(
     lights: &Directions,
     truth: &Truth,
 ) -> Result<(f64, f64)> {
+    let normals = bake::normals(&land.field, land.border);
     let (mut ms, mut count, mut wrong, mut facing) = (0.0, 0.0, 0, 0);
     for k in (0..LIGHTS).step_by(10) {
         let e = lights.vectors()[k];
@@ -193,14 +195,16 @@ fn swept(
         let inputs = plan::picture_inputs(&scene);
         let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
         let (took, radiance) = gpu.with_frame(plan, &inputs, |gpu, frame| {
-            Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?.values))
+            Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
         })?;
         (ms, count) = (ms + took, count + 1.0);
-        for (at, texel) in radiance.chunks_exact(4).enumerate() {
+        for (at, texel) in radiance.values.chunks_exact(radiance.channels).enumerate() {
             // Of those that hardly face it a rounding tells.
             if truth.shown[k][at] > 1e-3 {
                 facing += 1;
-                wrong += usize::from((texel[0] > 0.0) != truth.lit[k][at]);
+                // Half or more of the sun's light.
+                let whole = truth.shown[k][at] * normals[at].z / PI;
+                wrong += usize::from((f64::from(texel[0]) >= 0.5 * whole) != truth.lit[k][at]);
             }
         }
     }

@@ -12,6 +12,7 @@ mod buffers;
 mod change;
 mod colours;
 mod contract;
+mod curved;
 mod debugger;
 mod decoders;
 mod edits;
