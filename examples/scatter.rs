@@ -11,6 +11,12 @@
 mod brdf;
 #[path = "scatter/converge.rs"]
 mod converge;
+#[path = "scatter/geometry.rs"]
+mod geometry;
+#[path = "scatter/harmonics.rs"]
+mod harmonics;
+#[path = "scatter/moss.rs"]
+mod moss;
 #[path = "shared/seen.rs"]
 mod seen;
 #[path = "scatter/table.rs"]
@@ -123,7 +129,7 @@ fn run() -> Result<()> {
         table::run(&mut gpu)?;
     }
     if wanted("brdf") {
-        brdf::run(&mut gpu)?;
+        brdf::run(&mut gpu, &asked)?;
     }
     Ok(())
 }

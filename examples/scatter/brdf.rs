@@ -1,38 +1,124 @@
-//! What a field is seen from afar: its BRDF by visible points, with and without scattered light.
+//! What a field is seen from afar: its BRDF, with and without scattered light, beside its own geometry.
 //!
-//! Two periodic fields. A table of 100 × 100 lights and views, its reciprocity and energy, what harmonics of each order
-//! leave; then 50 lights and views of their own, drawn at random: the mean radiance of what is seen by light paths, by the
-//! same visible points for that pair, and by the harmonics.
+//! Periodic fields. A table over a grid of angles: how far it is from being the same with light and view exchanged, how much
+//! leaves, and what of 64 pairs between its angles is left over by the table itself, by sums of products of functions of one
+//! direction, and by harmonics. Then 50 other pairs: the geometry, lit by light paths over repetitions of the field and drawn
+//! by an orthographic camera, its mean over one repetition; the field's triangles asked for that pair; the table; factors.
 
-use ridgelight::Result;
+use glam::DVec3;
+use ridgelight::bake::{Angles, Brdf, Facets, Factors, pairs};
 use ridgelight::gpu::Headless;
-use ridgelight::measure::facets::{FacetHarmonics, Facets, Shown};
-use ridgelight::plan;
+use ridgelight::plan::Limits;
 use ridgelight::scene::{
-    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Sun, Surface,
+    Albedo, Border, Curvature, Directions, HeightField, Lights, Scatter, Scene, Surface,
     VisiblePoints,
 };
+use ridgelight::{Error, Result};
 
-use crate::seen::points;
-use crate::traced::traced;
-use crate::{colours, grooves};
+use crate::geometry::{Geometry, sun};
+use crate::harmonics::Harmonics;
+use crate::{Asked, moss};
 
-/// Directions of the table, for lights and for views.
-const TABLE: usize = 100;
+pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
+/// Pairs between the angles, and pairs whose geometry is drawn.
+const BETWEEN: usize = 64;
 const PAIRS: usize = 50;
 /// Of scattered light.
 const DIRECTIONS: usize = 256;
-const SCATTER: Scatter = Scatter {
+pub const SCATTER: Scatter = Scatter {
     bounces: 4,
     paths: 256,
     first_path: 0,
     cutoff: 1.0 / 65536.0,
     seed: 0,
-    view: glam::DVec3::Z,
+    view: DVec3::Z,
     curvature: Curvature::FLAT,
 };
-/// Of 64 light paths.
-const BATCHES: u32 = 16;
+const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
+/// Kept as `bake --what brdf-factors` keeps them.
+pub const KEPT: usize = 8;
+const ORDERS: [usize; 3] = [2, 4, 6];
+/// Lights and views of pairs, lower than which a camera sees many repetitions at once.
+const LOWEST_DEG: f64 = 15.0;
+
+/// A scene as it is asked for.
+pub struct Seen<'a> {
+    pub scene: &'a Scene,
+    /// What samples see all around.
+    pub around: VisiblePoints,
+    /// Triangles that each cell is cut into, along an edge.
+    pub times: usize,
+    pub limits: Limits,
+}
+
+impl Seen<'_> {
+    pub fn of<'a>(gpu: &mut Headless, scene: &'a Scene) -> Result<Seen<'a>> {
+        let limits = gpu.report().limits;
+        let border = scene.surface.border;
+        let directions = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
+        let around = gpu.visible_points((&scene.field, border), &directions, &limits)?;
+        let times = if scene.field.heights_m().len() > 2048 { 2 } else { 6 };
+        Ok(Seen { scene, around, times, limits })
+    }
+
+    /// Mean radiance that is seen of light `l` from `v`, R, G, B, for each pair of numbers that `views` gives of a light.
+    pub fn each(
+        &self,
+        gpu: &mut Headless,
+        facets: &Facets,
+        lights: usize,
+        is_scattered: bool,
+        mut take: impl FnMut(usize, &[[f64; 3]]),
+    ) -> Result<()> {
+        let scatter = is_scattered.then_some((&self.around, &SCATTER));
+        gpu.lit_from(self.scene, (facets, 0..lights), scatter, &self.limits, &mut |light, l| {
+            take(light, &l);
+            Ok(())
+        })
+    }
+
+    pub fn table(&self, gpu: &mut Headless, is_scattered: bool) -> Result<(Brdf, Facets)> {
+        let directions = ANGLES.directions()?;
+        let facets = gpu.facets(self.scene, self.times, &directions, &self.limits)?;
+        facets.check()?;
+        let mut values = Vec::new();
+        self.each(gpu, &facets, directions.count(), is_scattered, |light, radiance| {
+            let z = directions.vectors()[light].z;
+            values.extend(facets.seen_from_all(radiance).into_iter().map(|m| m.map(|v| v / z)));
+        })?;
+        Ok((Brdf::from_values(directions.vectors().to_vec(), values)?, facets))
+    }
+
+    /// Of pairs, lights first, each its own: f, 1/sr.
+    pub fn pairs(
+        &self,
+        gpu: &mut Headless,
+        pairs: &Directions,
+        is_scattered: bool,
+    ) -> Result<Vec<[f64; 3]>> {
+        let count = pairs.count() / 2;
+        let facets = gpu.facets(self.scene, self.times, pairs, &self.limits)?;
+        let mut all = Vec::new();
+        self.each(gpu, &facets, count, is_scattered, |light, radiance| {
+            let z = pairs.vectors()[light].z;
+            all.push(facets.seen_from(count + light, radiance).map(|m| m / z));
+        })?;
+        Ok(all)
+    }
+}
+
+/// One groove of the paper's figure 2: walls at right angles, those that look west red, the others white.
+pub fn groove() -> Result<Scene> {
+    const SIDE: usize = 32;
+    let heights: Vec<f64> =
+        (0..SIDE * SIDE).map(|i| (i % SIDE).abs_diff(SIDE / 2) as f64).collect();
+    // A triangle has the mean colour of its corners: valley and ridge are pink for a cell.
+    let colour = |i: usize| if i % SIDE > SIDE / 2 { [0.8, 0.1, 0.1] } else { [0.8; 3] };
+    let albedo = Albedo::Map((0..SIDE * SIDE).map(colour).collect());
+    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None)?;
+    let surface = Surface { albedo, border: Border::Periodic, phong: None };
+    Ok(Scene { field, surface, lights: Lights::default() })
+}
 
 fn waves() -> Result<Scene> {
     let wave = |n: usize| (std::f64::consts::TAU * n as f64 / 16.0).sin();
@@ -43,154 +129,121 @@ fn waves() -> Result<Scene> {
     Ok(Scene { field, surface, lights: Lights::default() })
 }
 
-/// Radiance of all samples under each light in turn: direct, and scattered besides.
-fn lit_by_all(
-    gpu: &mut Headless,
-    scene: &Scene,
-    shown: &Shown,
-    lights: usize,
-    points: &VisiblePoints,
-) -> Result<Vec<[Vec<[f64; 3]>; 2]>> {
-    let plan = plan::scatter(scene, points.directions(), &SCATTER, &gpu.report().limits)?;
-    let f32s =
-        |all: &[[f64; 3]]| -> Vec<[f32; 3]> { all.iter().map(|v| v.map(|v| v as f32)).collect() };
-    let direct = shown.lit_from(0);
-    let contents = plan::scatter_inputs(&plan, scene, points, &f32s(&direct))?;
-    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-    gpu.with_frame(plan, &contents, |gpu, frame| {
-        let mut all = Vec::new();
-        for light in 0..lights {
-            let direct = shown.lit_from(light);
-            let texels: Vec<f32> =
-                f32s(&direct).iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
-            gpu.refill(frame, 1, &texels)?;
-            gpu.draw(frame)?;
-            let more = colours(&gpu.pixels(frame, 0)?.values);
-            let whole = direct.iter().zip(&more);
-            let whole = whole.map(|(a, b)| [0, 1, 2].map(|c| a[c] + f64::from(b[c]))).collect();
-            all.push([direct, whole]);
-        }
-        Ok(all)
-    })
+/// Pairs that are not too low, the lights first.
+fn drawn_pairs() -> Result<Directions> {
+    let many = pairs(2 * PAIRS, 1)?;
+    let (lights, views) = many.vectors().split_at(2 * PAIRS);
+    let low = LOWEST_DEG.to_radians().sin();
+    let kept: Vec<_> =
+        lights.iter().zip(views).filter(|(l, v)| l.z.min(v.z) > low).take(PAIRS).collect();
+    if kept.len() < PAIRS {
+        let found = format!("{} high enough", kept.len());
+        return Err(Error::setting("pairs", found, PAIRS.to_string()));
+    }
+    let all = kept.iter().map(|p| *p.0).chain(kept.iter().map(|p| *p.1));
+    Directions::from_vectors(all.collect(), 0.0)
 }
 
-/// Lights and views above 10°, evenly over the hemisphere above.
-fn at_random(count: usize) -> Result<Directions> {
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut next = move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    let low = 10_f64.to_radians().sin();
-    let vectors = (0..count).map(|_| {
-        let (z, turn) = (low + (1.0 - low) * next(), std::f64::consts::TAU * next());
-        let across = (1.0 - z * z).sqrt();
-        glam::DVec3::new(across * turn.cos(), across * turn.sin(), z)
-    });
-    Directions::from_vectors(vectors.collect(), 0.0)
+/// Rms of differences over rms, %.
+fn left(found: &[[f64; 3]], known: &[[f64; 3]]) -> f64 {
+    let (mut apart, mut all) = (0.0, 0.0);
+    for (a, b) in found.as_flattened().iter().zip(known.as_flattened()) {
+        apart += (a - b).powi(2);
+        all += b * b;
+    }
+    100.0 * f64::sqrt(apart / f64::max(all, f64::MIN_POSITIVE))
 }
 
-fn percent(of: [f64; 3]) -> f64 {
-    100.0 * of.iter().sum::<f64>() / 3.0
-}
-
-pub fn run(gpu: &mut Headless) -> Result<()> {
-    println!("Seen from afar: {TABLE} × {TABLE} lights and views, {} bounces\n", SCATTER.bounces);
-    for (name, scene) in [("grooves", grooves(4, 64, 64)?), ("waves", waves()?)] {
+pub fn run(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+    println!(
+        "Seen from afar: a table of {} × {} angles for lights and for views, {} bounces by {} directions and {} paths\n",
+        ANGLES.zeniths, ANGLES.azimuths, SCATTER.bounces, DIRECTIONS, SCATTER.paths
+    );
+    let mut scenes = vec![("groove", groove()?), ("waves", waves()?)];
+    if let Some(folder) = &asked.folder {
+        scenes.push(("moss", moss::tile(folder)?));
+    }
+    for (name, scene) in scenes {
         one(gpu, name, &scene)?;
     }
     Ok(())
 }
 
 fn one(gpu: &mut Headless, name: &str, scene: &Scene) -> Result<()> {
-    let (field, border) = (&scene.field, scene.surface.border);
-    let (around, _) = points(gpu, field, border, &Directions::fibonacci(DIRECTIONS, -1.0, 0)?)?;
-    let (above, _) = points(gpu, field, border, &Directions::fibonacci(TABLE, 0.0, 0)?)?;
-    let shown = Shown::of(scene, &above)?;
-    let radiance = lit_by_all(gpu, scene, &shown, TABLE, &around)?;
+    let seen = Seen::of(gpu, scene)?;
+    let between = pairs(BETWEEN, 0)?;
+    let weights = ANGLES.projected_sr();
     println!(
-        "| {name} | not reciprocal, % | reflected, %: least | most | left by harmonics of order 2 | 3 | 4 | 5 | 6 |"
+        "| {name}, {} × {} | not reciprocal, % | reflected, %: least | most | closure, worst % | left of {BETWEEN} pairs between, %: table | {} | {} |",
+        scene.field.cols(),
+        scene.field.rows(),
+        FACTORS.map(|n| format!("{n} factors")).join(" | "),
+        ORDERS.map(|n| format!("order {n}")).join(" | ")
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|{}", "---|".repeat(FACTORS.len() + ORDERS.len()));
     let mut series = Vec::new();
-    for (what, label) in [(0, "direct"), (1, "all")] {
-        let table = Facets::of(&shown, |light| Ok(radiance[light][what].clone()))?;
-        let reflected = (0..TABLE).map(|light| percent(table.reflected(light)));
-        let (least, most) = reflected.fold((f64::MAX, 0.0), |(l, m), v| (v.min(l), v.max(m)));
-        let mut left = Vec::new();
-        for order in 2..=6 {
-            let of = FacetHarmonics::of(&table, order)?;
-            left.push(format!("{:.2}", 100.0 * of.residual));
-            if order == 6 {
-                series.push(of);
-            }
+    for (is_scattered, label) in [(false, "direct"), (true, "all")] {
+        let (table, facets) = seen.table(gpu, is_scattered)?;
+        let reflected = (0..ANGLES.count()).flat_map(|light| table.reflected(light, &weights));
+        let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+        let closure = (0..ANGLES.count()).map(|i| (facets.closure(i) - 1.0).abs());
+        let known = seen.pairs(gpu, &between, is_scattered)?;
+        let of = |value: &dyn Fn(DVec3, DVec3) -> [f64; 3]| {
+            let (lights, views) = between.vectors().split_at(BETWEEN);
+            let found: Vec<_> = lights.iter().zip(views).map(|(l, v)| value(*l, *v)).collect();
+            format!("{:.1}", left(&found, &known))
+        };
+        let mut row = vec![of(&|l, v| table.between(&ANGLES, l, v))];
+        for count in FACTORS {
+            let factors = Factors::of(&table, ANGLES, count)?;
+            row.push(of(&|l, v| factors.at(l, v)));
+        }
+        for order in ORDERS {
+            let harmonics = Harmonics::of(&table, order, &weights)?;
+            row.push(of(&|l, v| harmonics.at(l, v)));
         }
         println!(
-            "| {label} | {:.3} | {least:.1} | {most:.1} | {} |",
+            "| {label} | {:.3} | {:.1} | {:.1} | {:.1} | {} |",
             100.0 * table.unreciprocal(),
-            left.join(" | ")
+            100.0 * least,
+            100.0 * most,
+            100.0 * closure.fold(0.0, f64::max),
+            row.join(" | ")
         );
+        series.push((Factors::of(&table, ANGLES, KEPT)?, table));
     }
     println!();
-    far(gpu, scene, &around, &series)
+    far(gpu, &seen, &series)
 }
 
 /// Means over what is seen, of pairs that no table knows.
-fn far(
-    gpu: &mut Headless,
-    scene: &Scene,
-    around: &VisiblePoints,
-    series: &[FacetHarmonics],
-) -> Result<()> {
-    let (field, border) = (&scene.field, scene.surface.border);
-    let pairs = at_random(2 * PAIRS)?;
-    let (above, _) = points(gpu, field, border, &pairs)?;
-    let shown = Shown::of(scene, &above)?;
-    let radiance = lit_by_all(gpu, scene, &shown, PAIRS, around)?;
-    // By what is direct and by all: traced, the pair's own points, harmonics.
-    let mut means = vec![[[0.0; 3]; PAIRS]; 2];
-    for light in 0..PAIRS {
-        let (e, view) = (pairs.vectors()[light], PAIRS + light);
-        let sun = Sun {
-            azimuth_rad: e.y.atan2(e.x),
-            elevation_rad: e.z.asin(),
-            diameter_rad: 0.0,
-            irradiance: [1.0; 3],
-        };
-        let lights = Lights { suns: vec![sun], ..Lights::default() };
-        let lit = Scene { lights, ..scene.clone() };
-        for (what, bounces) in [(0, 0), (1, SCATTER.bounces)] {
-            let batches = if bounces == 0 { 1 } else { BATCHES };
-            let [light_paths, _] = traced(gpu, &lit, bounces, batches)?;
-            let traced: Vec<[f64; 3]> =
-                colours(&light_paths).iter().map(|v| v.map(f64::from)).collect();
-            let own = shown.mean_from(view, &radiance[light][what]);
-            let of = series[what].at(e, pairs.vectors()[view]).map(|f| f * e.z);
-            means[what][light] = [shown.mean_from(view, &traced), own, of]
-                .map(|mean| mean.iter().sum::<f64>() / 3.0);
-        }
-    }
+fn far(gpu: &mut Headless, seen: &Seen, series: &[(Factors, Brdf)]) -> Result<()> {
+    let pairs = drawn_pairs()?;
+    let (lights, views) = pairs.vectors().split_at(PAIRS);
     println!(
-        "| {PAIRS} pairs | mean radiance by light paths | visible points, % off | rms | harmonics of order 6, % off | rms |"
+        "| {PAIRS} pairs | mean radiance of the geometry | of triangles, % off | rms | by the table, % off | rms | by {KEPT} factors, % off | rms |"
     );
-    println!("|---|---|---|---|---|---|");
-    for (what, label) in [(0, "direct"), (1, "all")] {
-        let sum = |k: usize| means[what].iter().map(|m| m[k]).sum::<f64>() / PAIRS as f64;
-        let traced = sum(0);
-        let off = |k: usize| 100.0 * (sum(k) / traced - 1.0);
-        let rms = |k: usize| {
-            let squares = means[what].iter().map(|m| (m[k] - m[0]).powi(2)).sum::<f64>();
-            100.0 * (squares / PAIRS as f64).sqrt() / traced
+    println!("|---|---|---|---|---|---|---|---|");
+    for (is_scattered, label) in [(false, "direct"), (true, "all")] {
+        let own = seen.pairs(gpu, &pairs, is_scattered)?;
+        let (factors, table) = &series[usize::from(is_scattered)];
+        let mut means = [[0.0; 4]; PAIRS];
+        for (i, (l, v)) in lights.iter().zip(views).enumerate() {
+            let bounces = if is_scattered { SCATTER.bounces } else { 0 };
+            let geometry = Geometry::of(gpu, seen.scene, &[*v], sun(*l), bounces)?;
+            let drawn = geometry.mean(gpu, *v)?;
+            geometry.end(gpu);
+            let by = [own[i], table.between(&ANGLES, *l, *v), factors.at(*l, *v)];
+            let [a, b, c] = by.map(|f| f.map(|f| f * l.z));
+            means[i] = [drawn, a, b, c].map(|rgb| rgb.iter().sum::<f64>() / 3.0);
+        }
+        let sum = |k: usize| means.iter().map(|m| m[k]).sum::<f64>() / PAIRS as f64;
+        let cell = |k: usize| {
+            let squares = means.iter().map(|m| (m[k] - m[0]).powi(2)).sum::<f64>();
+            let rms = (squares / PAIRS as f64).sqrt() / sum(0);
+            format!("{:+.2} | {:.2}", 100.0 * (sum(k) / sum(0) - 1.0), 100.0 * rms)
         };
-        println!(
-            "| {label} | {traced:.4} | {:+.2} | {:.2} | {:+.2} | {:.2} |",
-            off(1),
-            rms(1),
-            off(2),
-            rms(2)
-        );
+        println!("| {label} | {:.4} | {} | {} | {} |", sum(0), cell(1), cell(2), cell(3));
     }
     println!();
     Ok(())

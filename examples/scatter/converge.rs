@@ -4,7 +4,7 @@ use ridgelight::Result;
 use ridgelight::cpu::bounce_march::bounce_march;
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::cpu::scatter_gather::{Samples, expected};
-use ridgelight::files::{self, HeightOptions, Tone};
+use ridgelight::files::{self, Tone};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
@@ -12,7 +12,7 @@ use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene,
 use crate::seen::points;
 use crate::table::bumps;
 use crate::traced::traced;
-use crate::{Asked, Colours, colours, grooves, lights, mean, rms, scattered};
+use crate::{Asked, Colours, colours, grooves, lights, mean, moss, rms, scattered};
 
 const BOUNCES: u32 = 3;
 /// Of what samples see by their own normals.
@@ -42,14 +42,7 @@ fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
         vec![("grooves", grooves(asked.side, asked.side, 16)?), ("bumps", on(bumps(asked.side)?))];
     all[1].1.surface.border = Border::Periodic;
     if let Some(folder) = &asked.folder {
-        // 80 cells from black to white.
-        let options = HeightOptions {
-            z_scale: 80.0 / 65535.0,
-            cell_m: Some([1.0; 2]),
-            ..HeightOptions::default()
-        };
-        let path = folder.join("height/Moss001_1K_Displacement.png");
-        let moss = files::read_heights(&path, &options)?;
+        let moss = moss::read(folder)?;
         let mut scene = on(middle(&moss, 2 * asked.side)?);
         scene.surface.albedo = Albedo::Constant([0.55, 0.7, 0.25]);
         all.push(("moss", scene));

@@ -20,6 +20,7 @@ pub mod ellipse_fit;
 pub mod env_tables;
 pub mod env_turns;
 pub mod env_wedges;
+pub mod facet_mask;
 pub mod fan_weigh;
 pub mod gloss_exit;
 pub mod gloss_gather;

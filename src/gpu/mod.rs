@@ -80,6 +80,7 @@
 //! By [`Blocks`] of 4 MiB, or an engine's own [`Allocator`]; all of it taken when a renderer is made, given back by
 //! `destroy`. A renderer that is dropped leaks and says so: what was recorded may still run.
 
+mod afar;
 mod allocator;
 mod copy;
 mod frame;

@@ -10,7 +10,6 @@
 
 pub mod auto;
 pub mod error;
-pub mod facets;
 pub mod flip;
 pub mod fractal;
 pub mod harmonics;

@@ -20,8 +20,8 @@ pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, wa
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};
 pub use points::{
-    MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, gathered,
-    seen_elevation,
+    MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,
+    gathered, seen_elevation,
 };
 
 /// The largest relative error of one rounding to f32.

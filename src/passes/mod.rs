@@ -11,6 +11,7 @@ pub(crate) mod ellipse_fit;
 pub(crate) mod env_tables;
 pub(crate) mod env_turns;
 pub(crate) mod env_wedges;
+pub(crate) mod facet_mask;
 pub(crate) mod fan_weigh;
 pub(crate) mod gloss_exit;
 pub(crate) mod gloss_gather;

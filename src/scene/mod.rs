@@ -36,6 +36,7 @@ mod curvature;
 mod directions;
 mod environment;
 mod field;
+mod finer;
 mod hash;
 mod key;
 mod lights;

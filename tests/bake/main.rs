@@ -3,6 +3,7 @@
 
 mod curved;
 mod ellipses;
+mod facets;
 
 use glam::DVec3;
 use ridgelight::bake::{

@@ -1,7 +1,6 @@
 //! The f64 truth for direct and bounced light against scenes whose answer has a closed form.
 
 mod energy;
-mod facets;
 mod grooves;
 #[path = "../naive/mod.rs"]
 mod naive;

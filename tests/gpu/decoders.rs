@@ -1,6 +1,8 @@
 //! The decoders that `bake` writes beside its maps, compiled as they are and run on the device over the files of a real
 //! field, against the values that were packed: each within the error that its sheet states.
 
+mod light;
+
 use std::path::Path;
 use std::process::Command;
 
@@ -61,7 +63,12 @@ macro_rules! decoder {
         Decoder {
             kind: $kind,
             spirv: include_bytes!(concat!(env!("OUT_DIR"), "/", $name, ".spv")),
-            body: include_str!(concat!("../../shaders_glsl/decode/", $name, ".glsl")),
+            body: include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/shaders_glsl/decode/",
+                $name,
+                ".glsl"
+            )),
             encodings: &$encodings,
             is_array: $is_array,
             planes: $planes,
@@ -69,6 +76,8 @@ macro_rules! decoder {
         }
     };
 }
+
+use decoder;
 
 fn count(_: &Encoding) -> Vec<(&'static str, Constant)> {
     vec![("SH_COUNT", Constant::Int((ORDER * ORDER) as i32))]
@@ -192,7 +201,7 @@ fn worst(
                     let (sine, elevation) = each(p);
                     hold(sine, elevation.sin());
                 }),
-                "elevation" | "share" | "coefficient" | "number" | "row and column" => {
+                "elevation" | "share" | "coefficient" | "number" | "row and column" | "colour" => {
                     (0..truth.planes.len()).for_each(|p| hold(each(p).0, each(p).1));
                 }
                 other => panic!("no test of {other}"),

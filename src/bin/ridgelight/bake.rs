@@ -1,23 +1,28 @@
 //! `bake`: maps for engines, of a field that does not move.
 
+mod asked;
+mod folder;
 mod kinds;
 mod map;
+mod sheet;
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use ridgelight::bake::{Encoding, Ray, encoding_named, normals};
+use ridgelight::bake::{Encoding, Ray, normals};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
-use ridgelight::scene::{Border, Directions, HeightField, Lines, Method, Quality};
+use ridgelight::scene::Quality;
 use ridgelight::{Error, Result, files};
 use serde_json::json;
 
-use crate::args::{BakeArgs, MethodName};
+use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
+pub use asked::{help, kind_named, packing};
+use folder::{check_folder, check_memory, parent, remove_old, told};
 pub use kinds::Kind;
-use kinds::{Asked, KINDS, Looked, Making, OfDirections, Source};
+use kinds::{Asked, Lit, Looked, Making, OfDirections, Source};
 pub use map::Format;
 use map::{MapFiles, Wanted};
 
@@ -31,178 +36,16 @@ pub struct Packing {
     encoding: &'static Encoding,
 }
 
-/// What `--what` takes.
-pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
-    KINDS.into_iter().find(|kind| kind.name == name).ok_or_else(|| {
-        let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-        format!("expected one of {}", all.join(", "))
-    })
-}
-
-/// What `--encoding` takes: `KIND=ENCODING`.
-pub fn packing(text: &str) -> std::result::Result<Packing, String> {
-    let (kind, name) = text.split_once('=').ok_or("expected KIND=ENCODING")?;
-    let kind = kind_named(kind)?;
-    let encoding = encoding_named(kind.encodings, name).ok_or_else(|| {
-        let all: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
-        format!("{} is packed as {}", kind.name, all.join(", "))
-    })?;
-    Ok(Packing { kind, encoding })
-}
-
-/// The list below the flags.
-pub fn help() -> String {
-    let mut text = String::from("Kinds, and how each can be packed:\n");
-    for kind in KINDS {
-        let names: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
-        let formats: Vec<&str> = kind.formats.iter().map(|f| f.name()).collect();
-        text += &format!(
-            "  {}: {}\n      {}; as {} by default\n",
-            kind.name,
-            kind.about,
-            names.join(", "),
-            formats.join(" and ")
-        );
-    }
-    text += "\n\
-Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
-in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
-horizons are near. Vulkan does not ask devices to sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample.
-
-Examples:
-  ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
-  ridgelight bake dem.tif --what horizon --encoding horizon=unorm16-sin -o baked
-  ridgelight bake moss.png --what ellipse --directions 512 -o baked
-  ridgelight bake moss.png --border periodic --what sh-transfer --sh-order 3 -o baked
-  ridgelight bake dem.tif --what horizon,sky-view,visible-sky --plan -o baked";
-    text
-}
-
-/// What is asked for, each kind once.
-fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
-    let mut all: Vec<Wanted> = Vec::new();
-    for kind in &args.what {
-        if all.iter().any(|w| w.kind.name == kind.name) {
-            return Err(Error::setting("--what", format!("{} twice", kind.name), "each kind once"));
-        }
-        let mut packings = args.encoding.iter().filter(|p| p.kind.name == kind.name);
-        let encoding = packings.next().map_or(&kind.encodings[0], |p| p.encoding);
-        if packings.next().is_some() {
-            let found = format!("two of {}", kind.name);
-            return Err(Error::setting("--encoding", found, "one of each kind"));
-        }
-        let mut formats = if args.format.is_empty() { kind.formats } else { &args.format }.to_vec();
-        let takes = |format: &Format| format.takes(encoding);
-        if args.format.is_empty() {
-            formats.retain(takes);
-        } else if let Some(format) = formats.iter().find(|f| !takes(f)) {
-            return Err(Error::setting(
-                "--format",
-                format!("{} with {} of {}", format.name(), encoding.name, kind.name),
-                "exr, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
-            ));
-        }
-        if let Some(twice) = (1..formats.len()).find(|i| formats[..*i].contains(&formats[*i])) {
-            let found = format!("{} twice", formats[twice].name());
-            return Err(Error::setting("--format", found, "each once"));
-        }
-        all.push(Wanted { kind, encoding, formats });
-    }
-    if let Some(idle) =
-        args.encoding.iter().find(|p| all.iter().all(|w| w.kind.name != p.kind.name))
-    {
-        let found = format!("one of {}", idle.kind.name);
-        return Err(Error::setting("--encoding", found, "only kinds of --what"));
-    }
-    Ok(all)
-}
-
-fn quality(args: &BakeArgs) -> Result<Quality> {
-    let mut quality = setup::quality(&args.quality)?;
-    if matches!(args.quality.method, MethodName::Auto) {
-        quality.method = Method::Brute;
-    }
-    if quality.lines == Lines::Exact && quality.method != Method::Brute {
-        return Err(Error::setting(
-            "--lines",
-            "exact",
-            "--method brute, which is exact in every azimuth: grid vectors are not even",
-        ));
-    }
-    Ok(quality)
-}
-
-/// Of kinds that look along directions: ellipses spend none below horizontal.
-fn directions(args: &BakeArgs) -> Result<Directions> {
-    let has_points = args.what.iter().any(|kind| kind.name == "visible-points");
-    let lowest_z = if has_points { -1.0 } else { 0.0 };
-    Directions::fibonacci(args.directions.unwrap_or(256), lowest_z, 0)
-}
-
-/// The kinds that a sheet tells of, each with its files; of what is no sheet nothing.
-fn told(sheet: &Path) -> Vec<(String, Vec<String>)> {
-    let text = std::fs::read(sheet).unwrap_or_default();
-    let sheet: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
-    let word = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
-    let maps = sheet["maps"].as_array().into_iter().flatten();
-    maps.map(|map| {
-        let files = map["files"].as_array().into_iter().flatten();
-        (word(&map["kind"]), files.map(|file| word(&file["file"])).collect())
-    })
-    .collect()
-}
-
-/// Where files go: a folder that is there, or can be made. A bake of other kinds there would lose its sheet.
-fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
-    let shown = || path.display().to_string();
-    if path.is_dir() {
-        let is_other = |kind: &String| wanted.iter().all(|w| w.kind.name != kind);
-        let told = told(&path.join(SHEET));
-        if let Some((kind, _)) = told.iter().find(|(kind, _)| is_other(kind)) {
-            let found = format!("{} with {kind} in its {SHEET}", shown());
-            let expected = "a folder without another bake, or all its kinds among --what";
-            return Err(Error::setting("-o", found, expected));
-        }
-        return files::check_writable(&path.join(SHEET));
-    }
-    if path.exists() {
-        return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
-    }
-    let parent = parent(path);
-    if !parent.is_dir() {
-        let expected = format!("a folder {} that exists", parent.display());
-        return Err(Error::setting("-o", shown(), expected));
-    }
-    files::check_writable(path)
-}
-
-/// Refuses what this machine has no memory for, before it is begun.
-fn check_memory(bytes: u64) -> Result<()> {
-    let wanted = usize::try_from(bytes).unwrap_or(usize::MAX);
-    Vec::<u8>::new().try_reserve_exact(wanted).map_err(|_| Error::Limit {
-        what: "a bake of --what".into(),
-        needs: format!("{bytes} bytes of this program's memory, see --plan"),
-        limit: "what this machine gives".into(),
-    })
-}
-
-fn parent(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
 /// What is known before anything runs.
 struct Job<'a> {
-    field: &'a HeightField,
-    border: Border,
-    quality: &'a Quality,
-    directions: &'a Directions,
+    lit: Lit<'a>,
     wanted: Vec<Wanted>,
     making: Vec<Making>,
 }
 
 impl Job<'_> {
     fn samples(&self) -> usize {
-        self.field.rows() * self.field.cols()
+        self.lit.scene.field.heights_m().len()
     }
 
     /// Every file and the most bytes that it may take.
@@ -211,19 +54,19 @@ impl Job<'_> {
         let mut all: Vec<_> = pairs.flat_map(|(w, m)| w.files(&m.map, self.samples())).collect();
         // Of each file what it is and how it is decoded, of each plane a name, of each direction three numbers.
         let planes: usize = self.making.iter().map(|m| m.map.planes.len()).sum();
-        let told = 2048 * all.len() + 80 * planes + 160 * self.directions.count();
+        let directions = self.lit.around.count() + self.making.len() * self.lit.angles.count();
+        let told = 2048 * all.len() + 80 * planes + 160 * directions;
         all.push((SHEET.into(), 65_536 + told as u64));
         all
     }
 
     /// Bytes on this side: sums, planes that wait for their files, normals, and azimuths as they come.
     fn host_bytes(&self, limits: &Limits) -> u64 {
-        let samples = self.samples();
-        let of = |(w, m): (&Wanted, &Making)| {
-            m.source.bytes(self.directions, samples) + w.held_bytes(&m.map, samples)
-        };
+        let (samples, field) = (self.samples(), &self.lit.scene.field);
+        let of =
+            |(w, m): (&Wanted, &Making)| m.source.bytes(&self.lit) + w.held_bytes(&m.map, samples);
         let pairs = self.wanted.iter().zip(&self.making);
-        let azimuths = u64::from(horizon::at_once(self.field, limits).min(self.quality.azimuths));
+        let azimuths = u64::from(horizon::at_once(field, limits).min(self.lit.quality.azimuths));
         pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * samples as u64
     }
 
@@ -231,57 +74,97 @@ impl Job<'_> {
     fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
         self.making.iter().filter_map(|m| match m.source {
             Source::Directions(of) => Some(of),
-            Source::Horizons(_) => None,
+            Source::Horizons(_) | Source::Light(_) => None,
         })
     }
 
     fn has_horizons(&self) -> bool {
-        self.of_directions().count() < self.making.len()
+        self.making.iter().any(|m| matches!(m.source, Source::Horizons(_)))
     }
 
-    /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions.
+    fn looks_along(&self) -> bool {
+        self.making.iter().any(|m| !matches!(m.source, Source::Horizons(_)))
+    }
+
+    /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions and of light.
     fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
-        let (field, border) = (self.field, self.border);
+        let (field, border) = (&self.lit.scene.field, self.lit.scene.surface.border);
         let mut all = Vec::new();
         if self.has_horizons() {
-            let most = horizon::at_once(field, limits);
-            all.push(horizon::plan_from(field, border, self.quality, limits, (0, most), false)?);
+            let (most, quality) = (horizon::at_once(field, limits), self.lit.quality);
+            all.push(horizon::plan_from(field, border, quality, limits, (0, most), false)?);
         }
         for of in self.of_directions() {
-            all.push((of.plan)(field, border, self.directions, limits)?);
+            all.push((of.plan)(field, border, self.lit.around, limits)?);
+        }
+        for making in &self.making {
+            if let Source::Light(of) = making.source {
+                all.extend((of.plans)(&self.lit, limits)?);
+            }
         }
         Ok(all)
     }
+
+    /// Settings that were used, of the first plan and what its kinds add.
+    fn used(&self, limits: &Limits) -> Result<Vec<(String, String)>> {
+        let Lit { scene, quality, .. } = &self.lit;
+        let mut used = match self.has_horizons() {
+            true => horizon::used(&scene.field, scene.surface.border, quality, limits, false)?,
+            false => first(self.plans(limits)?).settings,
+        };
+        let has = |of: fn(&str) -> bool| self.wanted.iter().any(|w| of(w.kind.name));
+        if has(|name| name.starts_with("sh-")) {
+            used.push(("sh_order".into(), quality.sh_order.to_string()));
+        }
+        let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
+        if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
+            used.retain(|(name, _)| name != "bounces");
+            used.push(("bounces".into(), scatter.bounces.to_string()));
+        }
+        if has(|name| name == "scatter" || name == "light-field") {
+            let direct = kinds::direct_plan(&self.lit, limits)?.settings;
+            let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
+            let more: Vec<_> = direct.into_iter().filter(is_new).collect();
+            used.extend(more);
+        }
+        Ok(used)
+    }
+}
+
+fn first(plans: Vec<Plan>) -> Plan {
+    plans.into_iter().next().expect("--what has a kind")
 }
 
 pub fn run(args: &BakeArgs) -> Result<Outcome> {
-    let wanted = wanted(args)?;
+    let wanted = asked::wanted(args)?;
     check_folder(&args.output, &wanted)?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
-    let quality = quality(args)?;
-    let field = setup::field(&args.input.path, &args.surface, &args.global)?;
-    let border = setup::border(&args.surface);
-    let samples = field.rows() * field.cols();
-    let directions = directions(args)?;
+    let quality = asked::quality(args)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
+    let (directions, angles) = (asked::directions(args)?, asked::angles(args)?);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
-        (w.kind.begin)(&Asked { border, quality, directions, encoding, samples })
+        (w.kind.begin)(&Asked { border, quality, directions, angles, encoding, samples })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
-    let job =
-        Job { field: &field, border, quality: &quality, directions: &directions, wanted, making };
-    if let Some(count) = args.directions.filter(|_| job.of_directions().next().is_none()) {
-        let expected = "--what ellipse or visible-points, which alone look along directions";
-        return Err(Error::setting("--directions", count.to_string(), expected));
-    }
+    asked::check_uses(args, making.iter().map(|m| &m.source))?;
+    let scatter = asked::scatter(args, &quality);
+    // Those of a device that has none: its own once it is open.
+    let limits = Limits::boundless(true, u64::MAX);
+    let (quality, around) = (&quality, &directions);
+    let seed = args.seed.unwrap_or(0);
+    let lit = Lit { scene: &scene, quality, limits, scatter, around, angles, seed };
+    let mut job = Job { lit, wanted, making };
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
     let mut outputs: Vec<_> = paths.iter().map(|path| ("-o", Some(path.as_path()))).collect();
     outputs.push(("--json", args.global.json.as_deref()));
-    setup::check_distinct(&outputs, &[&args.input.path])?;
-    let first = |plans: Vec<Plan>| plans.into_iter().next().expect("--what has a kind");
+    let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+    setup::check_distinct(&outputs, &inputs)?;
     setup::check_plan(&args.global, |limits| job.plans(limits).map(first))?;
     if args.plan {
         return say_plan(args, &job);
@@ -291,14 +174,9 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let room: Vec<_> = room.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     files::check_room(&room)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
+    job.lit.limits = limits;
     check_memory(job.host_bytes(&limits))?;
-    let mut used = match job.has_horizons() {
-        true => horizon::used(&field, border, &quality, &limits, false)?,
-        false => job.plans(&limits).map(first)?.settings,
-    };
-    if args.what.iter().any(|kind| kind.name.starts_with("sh-")) {
-        used.push(("sh_order".into(), quality.sh_order.to_string()));
-    }
+    let used = job.used(&limits)?;
     idle::say(args.global.quiet, &args.quality.written, &used);
     let made = std::fs::create_dir(&args.output);
     match &made {
@@ -308,7 +186,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         }
         _ => {}
     }
-    let done = bake(args, job, &mut gpu, &limits, &used);
+    let done = bake(args, job, &mut gpu, &used);
     if done.is_err() && made.is_ok() {
         // Nothing was finished: what was made for it goes, too, unless somebody has put something there.
         let _ = std::fs::remove_dir(&args.output);
@@ -320,11 +198,13 @@ fn bake(
     args: &BakeArgs,
     job: Job<'_>,
     gpu: &mut Headless,
-    limits: &Limits,
     used: &[(String, String)],
 ) -> Result<Outcome> {
-    let (has_horizons, looks_along) = (job.has_horizons(), job.of_directions().next().is_some());
-    let Job { field, border, quality, directions, wanted, making } = job;
+    let (has_horizons, looks_along) = (job.has_horizons(), job.looks_along());
+    let is_light = job.wanted.iter().any(|w| asked::is_light(w.kind));
+    let Job { lit, wanted, making } = job;
+    let Lit { quality, around: directions, limits, .. } = lit;
+    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
     let hash = format!("{:016x}", field.hash(border));
     let count = wanted.len();
     let mut all = Vec::new();
@@ -332,42 +212,56 @@ fn bake(
         let files = MapFiles::create(&args.output, wanted, making.map, field, &hash)?;
         all.push((making.source, files));
     }
-    let normals = normals(field, border);
     let bar = crate::terminal::progress(args.global.quiet, "baking");
-    let azimuths = plan::circle_rad(quality, field.cell_m())?;
-    let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
     let started = std::time::Instant::now();
     let (mut times, mut plan) = (Vec::new(), None);
+    let normals = if has_horizons { normals(field, border) } else { Vec::new() };
     if has_horizons {
+        let azimuths = plan::circle_rad(quality, field.cell_m())?;
+        let width_rad = std::f64::consts::TAU / azimuths.len() as f64;
         let mut each = |k: u32, elevations: &[f32], _: &[f32]| {
             bar.set_message(format!("baking: azimuth {} of {}", k + 1, azimuths.len()));
             let ray = Ray { azimuth_rad: azimuths[k as usize], width_rad };
             all.iter_mut().try_for_each(|(source, files)| match source {
                 Source::Horizons(maker) => maker.add(ray, elevations, &normals, files),
-                Source::Directions(_) => Ok(()),
+                Source::Directions(_) | Source::Light(_) => Ok(()),
             })
         };
-        let found = horizon::for_each(gpu, field, border, quality, limits, false, &mut each)?;
+        let found = horizon::for_each(gpu, field, border, quality, &limits, false, &mut each)?;
         (times, plan) = (found.0, Some(found.1));
     }
     for (source, files) in &mut all {
-        let Source::Directions(of) = source else { continue };
-        bar.set_message("baking: what samples see".to_owned());
-        let own = (of.plan)(field, border, directions, limits)?;
-        let count = own.outputs().count();
-        plan.get_or_insert_with(|| own.clone());
-        let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
-            times.extend(gpu.draw(frame)?);
-            let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
-            outputs.collect::<Result<Vec<_>>>()
-        })?;
-        (of.take)(&Looked { field, border, directions, outputs: &outputs }, files)?;
+        match source {
+            Source::Horizons(_) => {}
+            Source::Directions(of) => {
+                bar.set_message("baking: what samples see".to_owned());
+                let own = (of.plan)(field, border, directions, &limits)?;
+                let count = own.outputs().count();
+                plan.get_or_insert_with(|| own.clone());
+                let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
+                    times.extend(gpu.draw(frame)?);
+                    let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
+                    outputs.collect::<Result<Vec<_>>>()
+                })?;
+                (of.take)(&Looked { field, border, directions, outputs: &outputs }, files)?;
+            }
+            Source::Light(of) => {
+                let kind = files.kind();
+                let say = |what: String| bar.set_message(format!("baking {kind}: {what}"));
+                plan.get_or_insert(first((of.plans)(&lit, &limits)?));
+                (of.make)(gpu, &lit, files, &say)?;
+            }
+        }
     }
     let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
-    metadata
-        .extend(used.iter().filter(|(name, _)| name == "azimuths" || name == "sh_order").cloned());
-    metadata.extend(setup::asked(&args.input.path, &args.surface, None));
+    let is_more = |name: &str| {
+        ["azimuths", "sh_order"].contains(&name) || metadata.iter().all(|(known, _)| known != name)
+    };
+    let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
+    metadata.extend(more);
+    let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
+    metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
     let mut sheets = Vec::new();
     for (i, (source, mut files)) in all.into_iter().enumerate() {
@@ -384,7 +278,7 @@ fn bake(
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let mut sheet = sheet(&metadata, &times, field, quality, &sheets);
+    let mut sheet = sheet::sheet(&metadata, &times, field, quality, &sheets);
     if !has_horizons {
         sheet["horizons"] = serde_json::Value::Null;
     }
@@ -395,70 +289,35 @@ fn bake(
     let path = args.output.join(SHEET);
     let before = told(&path);
     files::write_json(&path, &sheet)?;
-    // Of an earlier bake what is not written again: azimuths beyond the last, other formats.
-    let now: Vec<String> = told(&path).into_iter().flat_map(|(_, files)| files).collect();
-    for (kind, names) in before {
-        let is_own = |name: &&String| name.starts_with(&kind.replace('-', "_"));
-        for name in names.iter().filter(is_own).filter(|name| !now.contains(name)) {
-            if Path::new(name).file_name().is_some_and(|own| *own == **name) {
-                // What cannot be removed stays, untold of.
-                let _ = std::fs::remove_file(args.output.join(name));
-            }
-        }
-    }
+    remove_old(&args.output, before);
     if let Some(json) = &args.global.json {
         files::write_json(json, &sheet)?;
     }
     if !args.global.quiet {
-        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
-        crate::say!(
-            "{}: {count} of {} × {}, {}, {seconds:.1} s, {ms:.1} ms of them on {}",
-            args.output.display(),
-            field.cols(),
-            field.rows(),
-            match has_horizons {
-                true => format!("{} azimuths", quality.azimuths),
-                false => format!("{} directions", directions.count()),
-            },
-            gpu.report().name
-        );
+        say_done(args, (lit.scene, quality, count), (&times, has_horizons, seconds), gpu);
     }
     Ok(Outcome::Done)
 }
 
-/// What the folder holds.
-fn sheet(
-    metadata: &[(String, String)],
-    times: &[Timing],
-    field: &HeightField,
-    quality: &Quality,
-    maps: &[serde_json::Value],
-) -> serde_json::Value {
-    let voids = field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
-    let horizons = match quality.method {
-        Method::Brute => {
-            "every crossing of a sample's own line along each azimuth: exact there but for rounding in f32"
-        }
-        _ => {
-            "found by the method of the settings, whose own error is besides what is stated of files"
-        }
+fn say_done(
+    args: &BakeArgs,
+    (scene, quality, count): (&ridgelight::scene::Scene, &Quality, usize),
+    (times, has_horizons, seconds): (&[Timing], bool, f64),
+    gpu: &Headless,
+) {
+    let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+    let way = match has_horizons {
+        true => format!("{} azimuths", quality.azimuths),
+        false => format!("{} directions", args.directions.unwrap_or(asked::DIRECTIONS)),
     };
-    let mut sheet = setup::as_json(metadata, times);
-    let hash = sheet["settings"]["field_hash"].clone();
-    sheet["field"] = json!({
-        "rows": field.rows(), "cols": field.cols(), "cell_m": field.cell_m(), "base_m": field.base_m(),
-        "voids": voids, "hash": hash,
-        "hash_is": "FNV-1a of 64 bits of the text ridgelight field 1, rows and columns (u64), cells (f64), the border (a \
-                    byte: 0 plane, 1 open, 2 periodic), heights above the base (f32, -0 as 0) and, if any sample is \
-                    void, a byte a sample, 1 where it is; little-endian",
-        "first_row": "north", "first_column": "west",
-    });
-    sheet["horizons"] = horizons.into();
-    sheet["error_is"] = "of decoding a file: what was computed is in it within at_most plus and_of_the_value times the \
-                         value; between the azimuths nothing is looked at, which is besides"
-        .into();
-    sheet["maps"] = maps.into();
-    sheet
+    let of_them = if times.is_empty() { String::new() } else { format!(", {ms:.1} ms of them") };
+    crate::say!(
+        "{}: {count} of {} × {}, {way}, {seconds:.1} s{of_them} on {}",
+        args.output.display(),
+        scene.field.cols(),
+        scene.field.rows(),
+        gpu.report().name
+    );
 }
 
 /// What would be written and what it takes.
@@ -476,16 +335,4 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
     Ok(Outcome::Done)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn more_than_the_machine_has_is_refused() {
-        assert!(check_memory(1 << 16).is_ok());
-        let said = check_memory(1 << 62).expect_err("beyond any machine").to_string();
-        assert!(said.contains("needs 4611686018427387904 bytes"), "{said}");
-    }
 }

@@ -12,7 +12,7 @@ use ridgelight::scene::{
 };
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
-pub(super) use points::{ellipses, points, scatters, towards};
+pub(super) use points::{ellipses, facets, points, scatters, towards};
 
 use crate::{field, random};
 
@@ -25,6 +25,7 @@ pub(super) enum Wanted {
     Reference(u32),
     Points(Directions),
     Ellipses(Directions),
+    Facets(Directions),
     /// Of five bases.
     CurvedEllipses(Directions, [f64; 2]),
     /// Whether images hold no more than two layers.
@@ -62,6 +63,9 @@ impl Case {
             Wanted::Ellipses(directions) => {
                 plan::ellipses(&self.scene.field, self.scene.surface.border, directions, limits)
             }
+            Wanted::Facets(directions) => {
+                plan::facet_mask(&self.scene.field, self.scene.surface.border, directions, limits)
+            }
             Wanted::CurvedEllipses(directions, per_m) => {
                 let (field, border) = (&self.scene.field, self.scene.surface.border);
                 plan::curved_ellipses(field, border, directions, *per_m, limits)
@@ -79,6 +83,7 @@ impl Case {
         match &self.wanted {
             Wanted::Points(directions)
             | Wanted::Ellipses(directions)
+            | Wanted::Facets(directions)
             | Wanted::CurvedEllipses(directions, _) => Some(directions.clone()),
             Wanted::Scatter(..) => {
                 let e = self.scene.lights.suns.iter().map(towards).collect();

@@ -6,6 +6,7 @@ mod bounce;
 mod cases;
 mod edit;
 mod ellipses;
+mod facets;
 mod gloss;
 mod light;
 mod nodes;
@@ -78,6 +79,7 @@ const TWINS: &[(&str, Twin)] = &[
     ("points_bend", bend::points_bend),
     ("fan_weigh", bend::fan_weigh),
     ("ellipse_fit", ellipses::ellipse_fit),
+    ("facet_mask", facets::facet_mask),
     ("scatter_gather", scatter::scatter_gather),
     ("horizon_sweep", sweep::horizon_sweep),
     ("surface_sweep", sweep::surface_sweep),
@@ -357,6 +359,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::points(),
         cases::scatters(),
         cases::ellipses(),
+        cases::facets(),
         cases::walks(),
         cases::throws(),
         cases::glosses(),
@@ -501,6 +504,14 @@ fn scattered_light_is_its_twins() {
 fn ellipses_are_their_twins() {
     let mut device = Device::new();
     for case in cases::ellipses() {
+        check(&mut device, &case);
+    }
+}
+
+#[test]
+fn triangles_are_seen_as_by_their_twins() {
+    let mut device = Device::new();
+    for case in cases::facets() {
         check(&mut device, &case);
     }
 }

@@ -2,7 +2,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{FieldArgs, GlobalArgs, Input, QualityArgs};
+use super::values::{grid, whole};
+use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
 use crate::bake::{self, Format, Kind};
 
 #[derive(Args)]
@@ -24,16 +25,27 @@ pub struct BakeArgs {
     /// How a kind's values are packed in .ktx2 and .png, as horizon=unorm16-sin; default the first that is listed below
     #[arg(long, value_name = "KIND=ENCODING,…", value_delimiter = ',', value_parser = bake::packing)]
     pub encoding: Vec<bake::Packing>,
-    /// Directions of ellipse and visible-points, [4..4096]: a spherical Fibonacci set, the upper hemisphere of ellipses alone,
-    /// the whole sphere where visible-points is baked. More are finer, and each takes a word a sample on the device [default:
-    /// 256]
+    /// Directions of ellipse, visible-points and what is light, [4..4096]: a spherical Fibonacci set, the upper hemisphere of
+    /// ellipses alone, else the whole sphere. More are finer, and each takes a word a sample on the device [default: 256]
     #[arg(long, value_name = "N")]
     pub directions: Option<usize>,
+    /// Zenith angles times azimuths of the lights and views of brdf, btf and light-field, each [2..64]x[4..256]: finer tables,
+    /// whose size grows with the square [default: 8x16, with btf 3x8]
+    #[arg(long, value_name = "TxP", value_parser = grid)]
+    pub angles: Option<[usize; 2]>,
+    /// Paths of scattered light, [1..4096]: fewer are faster, and all samples that are alike are wrong alike [default: 256]
+    #[arg(long, value_name = "N", value_parser = whole)]
+    pub paths: Option<u32>,
+    /// Decides in which order paths take directions, and which pairs a table is asked between its angles for [default: 0]
+    #[arg(long, value_name = "N", value_parser = whole)]
+    pub seed: Option<u32>,
     /// Says what would be written, its bytes, and the memory that it takes; runs nothing
     #[arg(long)]
     pub plan: bool,
     #[command(flatten)]
-    pub surface: FieldArgs,
+    pub lights: LightArgs,
+    #[command(flatten)]
+    pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
     #[command(flatten)]

@@ -5,6 +5,15 @@ pub fn whole(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
+/// Two counts, as 8x16; the range is its taker's to check.
+pub fn grid(text: &str) -> Result<[usize; 2], String> {
+    let parts: Option<Vec<usize>> = text.split('x').map(|part| part.parse().ok()).collect();
+    match parts.unwrap_or_default().as_slice() {
+        [first, second] => Ok([*first, *second]),
+        _ => Err("expected two whole numbers, as 8x16".into()),
+    }
+}
+
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|part| part.trim().parse::<f64>().map_err(|_| format!("{part:?} is no number")))

@@ -1,8 +1,14 @@
 //! What can be baked: one file a kind, and a line of [`KINDS`].
 
+mod afar;
 mod bent_normal;
+mod brdf;
+mod brdf_factors;
+mod btf;
 mod ellipse;
 mod horizon;
+mod light_field;
+mod scatter;
 mod sh_transfer;
 mod sh_visibility;
 mod sky_view;
@@ -11,14 +17,16 @@ mod visible_sky;
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::bake::{Encoding, Ray, Sum, Summing};
+use ridgelight::bake::{Angles, Encoding, Ray, Sum, Summing};
+use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
-use ridgelight::scene::{Border, Directions, HeightField, Quality};
+use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene};
 
 use super::map::{Format, MapFiles};
+pub use afar::direct_plan;
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 8] = [
+pub static KINDS: [&Kind; 13] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
@@ -27,6 +35,11 @@ pub static KINDS: [&Kind; 8] = [
     &sh_transfer::KIND,
     &ellipse::KIND,
     &visible_points::KIND,
+    &scatter::KIND,
+    &brdf::KIND,
+    &brdf_factors::KIND,
+    &btf::KIND,
+    &light_field::KIND,
 ];
 
 /// What can be baked.
@@ -50,12 +63,14 @@ pub struct Asked<'a> {
     pub border: Border,
     pub quality: &'a Quality,
     pub directions: &'a Directions,
+    pub angles: Angles,
     pub encoding: &'static Encoding,
     /// Of the field.
     pub samples: usize,
 }
 
 /// A map as it will stand in files.
+#[derive(Default)]
 pub struct Map {
     /// A plane of values each, as channels of an .exr are called, in the order of an .npy.
     pub planes: Vec<String>,
@@ -65,6 +80,17 @@ pub struct Map {
     pub is_array: bool,
     /// Constants that the decoder needs, as lines of GLSL.
     pub constants: Vec<String>,
+    /// Columns and rows, where it has not a texel a sample.
+    pub size: Option<[usize; 2]>,
+    /// Axes of an .npy, where they are others than planes, rows and columns: names and counts, the last the fastest.
+    pub axes: Vec<(&'static str, usize)>,
+}
+
+impl Map {
+    /// Texels of a plane, of a field of so many samples.
+    pub fn texels(&self, samples: usize) -> usize {
+        self.size.map_or(samples, |[cols, rows]| cols * rows)
+    }
 }
 
 /// A value of a sample.
@@ -87,14 +113,18 @@ pub struct Making {
 pub enum Source {
     Horizons(Box<dyn Maker>),
     Directions(OfDirections),
+    Light(OfLight),
 }
 
 impl Source {
     /// Bytes that it holds until the end.
-    pub fn bytes(&self, directions: &Directions, samples: usize) -> u64 {
+    pub fn bytes(&self, lit: &Lit) -> u64 {
         match self {
             Source::Horizons(maker) => maker.bytes(),
-            Source::Directions(of) => (of.bytes)(directions) * samples as u64,
+            Source::Directions(of) => {
+                (of.bytes)(lit.around) * lit.scene.field.heights_m().len() as u64
+            }
+            Source::Light(of) => (of.bytes)(lit),
         }
     }
 }
@@ -107,6 +137,35 @@ pub struct OfDirections {
     pub bytes: fn(&Directions) -> u64,
     /// To files.
     pub take: fn(&Looked, &mut MapFiles) -> Result<()>,
+}
+
+/// Takes what is being done, for who waits.
+pub type Say<'a> = &'a dyn Fn(String);
+
+/// A kind that is light: the device is asked several things for it.
+#[derive(Clone, Copy)]
+pub struct OfLight {
+    /// What the device is asked, for what it takes.
+    pub plans: fn(&Lit, &Limits) -> Result<Vec<Plan>>,
+    /// Bytes that it holds until the end.
+    pub bytes: fn(&Lit) -> u64,
+    /// To files; the last is told what is being done.
+    pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
+}
+
+/// What light is made of.
+pub struct Lit<'a> {
+    pub scene: &'a Scene,
+    pub quality: &'a Quality,
+    pub limits: Limits,
+    /// Of scattered light, none without bounces.
+    pub scatter: Option<Scatter>,
+    /// In which samples look for each other.
+    pub around: &'a Directions,
+    /// Of lights and views.
+    pub angles: Angles,
+    /// Of the pairs that a table is asked for between its angles.
+    pub seed: u32,
 }
 
 /// What came of its plan.
@@ -183,5 +242,6 @@ fn coefficients(kind: &Kind, order: usize, value: Value) -> Map {
         values: vec![value],
         is_array: true,
         constants: vec![format!("const int SH_COUNT = {};", order * order)],
+        ..Map::default()
     }
 }

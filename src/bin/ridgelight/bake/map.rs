@@ -74,7 +74,7 @@ impl Wanted {
     /// Every file, and the most bytes that it may take.
     pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
         let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
-        let samples = samples as u64;
+        let samples = map.texels(samples) as u64;
         let mut all = Vec::new();
         for format in &self.formats {
             let name = format!("{stem}.{}", format.name());
@@ -98,7 +98,7 @@ impl Wanted {
 
     /// Bytes that its files hold until they are written.
     pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
-        let samples = samples as u64;
+        let samples = map.texels(samples) as u64;
         let of = |format: &Format| match format {
             Format::Exr => 4 * map.planes.len() as u64 * samples,
             Format::Png => (self.texels().bytes() + 2) as u64 * self.layers(map) as u64 * samples,
@@ -134,6 +134,7 @@ pub struct MapFiles<'a> {
     taken: usize,
     /// Values beyond their stated range, and the most that one was.
     beyond: (u64, f64),
+    told: Vec<(&'static str, Json)>,
 }
 
 impl<'a> MapFiles<'a> {
@@ -145,7 +146,7 @@ impl<'a> MapFiles<'a> {
         field: &'a HeightField,
         hash: &str,
     ) -> Result<Self> {
-        let size = [field.cols(), field.rows()];
+        let size = map.size.unwrap_or([field.cols(), field.rows()]);
         let texts: Vec<(String, String)> = [
             ("ridgelight.kind", wanted.kind.name),
             ("ridgelight.encoding", wanted.encoding.name),
@@ -164,6 +165,9 @@ impl<'a> MapFiles<'a> {
                     if map.planes.len() == 1 && !map.is_array {
                         shape.remove(0);
                     }
+                    if !map.axes.is_empty() {
+                        shape = map.axes.iter().map(|axis| axis.1).collect();
+                    }
                     Open::Npy(path(*format), NpyWriter::create(&path(*format), &shape)?)
                 }
                 Format::Ktx2 => {
@@ -177,7 +181,28 @@ impl<'a> MapFiles<'a> {
         });
         let open = open.collect::<Result<_>>()?;
         let folder = folder.to_owned();
-        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, beyond: (0, 0.0) })
+        let told = Vec::new();
+        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, beyond: (0, 0.0), told })
+    }
+
+    /// As `--what` calls it.
+    pub fn kind(&self) -> &'static str {
+        self.wanted.kind.name
+    }
+
+    /// Says something more of the kind in the sheet.
+    pub fn tell(&mut self, name: &'static str, what: Json) {
+        self.told.push((name, what));
+    }
+
+    /// The field's, of a map with a texel a sample.
+    fn voids(&self) -> Option<&'a [bool]> {
+        self.field.voids().filter(|_| self.map.size.is_none())
+    }
+
+    /// Columns and rows.
+    fn size(&self) -> [usize; 2] {
+        self.map.size.unwrap_or([self.field.cols(), self.field.rows()])
     }
 
     /// As many planes as a layer's texels stand for.
@@ -189,10 +214,12 @@ impl<'a> MapFiles<'a> {
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
         let (texels, picture) = self.coded(planes);
-        let voids = self.field.voids();
+        let (voids, field) = (self.voids(), self.field);
         let masked = |plane: &[f32]| {
             let mut plane = plane.to_vec();
-            crate::setup::mask_voids(self.field, &mut plane, 1);
+            if voids.is_some() {
+                crate::setup::mask_voids(field, &mut plane, 1);
+            }
             plane
         };
         let pictures = self.wanted.pictures(&self.map);
@@ -220,7 +247,7 @@ impl<'a> MapFiles<'a> {
 
     /// Counts values that are no part of their range, whatever holds them.
     fn count_beyond(&mut self, planes: &[&[f32]]) {
-        let (values, voids) = (&self.map.values, self.field.voids());
+        let (values, voids) = (&self.map.values, self.voids());
         let first = self.taken * self.wanted.encoding.values;
         for (at, plane) in planes.iter().enumerate() {
             let [low, high] = values[(first + at) % values.len()].range;
@@ -241,14 +268,14 @@ impl<'a> MapFiles<'a> {
 
     /// Channels of a picture: components, and opacity where there are voids.
     fn channels(&self) -> usize {
-        self.wanted.encoding.components + usize::from(self.field.voids().is_some())
+        self.wanted.encoding.components + usize::from(self.voids().is_some())
     }
 
     /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, 16 bits big-endian.
     fn coded(&self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
-        let (encoding, voids) = (self.wanted.encoding, self.field.voids());
+        let (encoding, voids) = (self.wanted.encoding, self.voids());
         let (component, format) = (encoding.component, self.wanted.texels());
-        let samples = self.field.rows() * self.field.cols();
+        let samples = self.size().iter().product::<usize>();
         let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
         let reserve = |is_wanted: bool, each: usize| {
             Vec::with_capacity(if is_wanted { each * samples } else { 0 })
@@ -304,7 +331,7 @@ impl<'a> MapFiles<'a> {
 
     /// Puts all files at their places, and says what they are; `metadata` is for those that keep it.
     pub fn finish(mut self, metadata: &[(String, String)]) -> Result<Json> {
-        let size = [self.field.cols(), self.field.rows()];
+        let size = self.size();
         let mut sheets = Vec::new();
         let bits = 8 * self.wanted.encoding.component.bytes() as u32;
         for open in std::mem::take(&mut self.open) {
@@ -358,6 +385,14 @@ impl<'a> MapFiles<'a> {
             let (count, most) = self.beyond;
             sheet["beyond_range"] = json!({ "values": count, "at_most": most });
         }
+        if !self.map.axes.is_empty() {
+            let axes =
+                self.map.axes.iter().map(|(name, count)| json!({ "axis": name, "count": count }));
+            sheet["axes"] = axes.collect();
+        }
+        for (name, what) in std::mem::take(&mut self.told) {
+            sheet[name] = what;
+        }
         Ok(sheet)
     }
 
@@ -397,7 +432,7 @@ impl<'a> MapFiles<'a> {
             )
             .into();
         }
-        if self.field.voids().is_some() {
+        if self.voids().is_some() {
             sheet["voids"] = match format {
                 Format::Exr | Format::Npy => "NaN",
                 Format::Png => "transparent: opacity is the last channel",

@@ -94,6 +94,26 @@ pub fn ellipses() -> Vec<Case> {
     ]
 }
 
+/// `facet_mask`: all borders, words that are full and not, one cell that repeats, steep ground, directions along the grid and
+/// below horizontal.
+pub fn facets() -> Vec<Case> {
+    let of = |name, field, border, directions| Case {
+        wanted: Wanted::Facets(directions),
+        ..on(name, field, border, sphere(4))
+    };
+    let above = |count| Directions::fibonacci(count, 0.0, 2).expect("directions");
+    let steep = field(6, 5, [1.0, 2.0], |r, c| 40.0 * ((3 * r + 2 * c) % 5) as f64);
+    vec![
+        of("triangles on a plane", rough(9, 14, 101), Border::Plane, sphere(31)),
+        of("triangles of an open field", rough(13, 8, 102), Border::Open, along_the_grid()),
+        of("triangles that repeat", rough(7, 11, 103), Border::Periodic, above(30)),
+        of("steep triangles", steep, Border::Periodic, above(16)),
+        of("triangles past voids", holed(), Border::Plane, above(7)),
+        of("one cell that repeats", rough(1, 1, 104), Border::Periodic, above(4)),
+        of("one cell", rough(2, 2, 105), Border::Open, sphere(14)),
+    ]
+}
+
 /// Towards a sun's middle.
 pub fn towards(sun: &Sun) -> DVec3 {
     let (sin, cos) = sun.elevation_rad.sin_cos();

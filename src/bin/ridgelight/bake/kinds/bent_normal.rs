@@ -37,6 +37,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("const bool BENT_OCTAHEDRAL = {is_octahedral};"),
             format!("const float BENT_CONE_SCALE = {scale:?};"),
         ],
+        ..Map::default()
     };
     Ok(Sums::begin(Box::new(BentNormal), asked, map))
 }

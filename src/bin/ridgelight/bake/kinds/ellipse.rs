@@ -37,6 +37,7 @@ fn begin(_: &Asked) -> Result<Making> {
         values: numbers.into(),
         is_array: true,
         constants: Vec::new(),
+        ..Map::default()
     };
     let of = OfDirections { plan: plan::ellipses, bytes: |_| 2 * 16 + 6 * 4, take };
     Ok(Making { map, source: Source::Directions(of) })

@@ -44,6 +44,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("const int HORIZON_AZIMUTHS = {count};"),
             format!("const float HORIZON_SCALE = {scale:?};"),
         ],
+        ..Map::default()
     };
     Ok(Making { map, source: Source::Horizons(Box::new(Horizon)) })
 }

@@ -25,6 +25,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         }],
         is_array: false,
         constants: Vec::new(),
+        ..Map::default()
     };
     Ok(Sums::begin(Box::new(SkyView), asked, map))
 }

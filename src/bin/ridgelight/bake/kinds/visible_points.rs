@@ -29,6 +29,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         values: vec![value("row"), value("column")],
         is_array: true,
         constants: Vec::new(),
+        ..Map::default()
     };
     // Words, and the points made of them.
     let bytes = |directions: &Directions| 8 * directions.count() as u64;

@@ -1,0 +1,296 @@
+//! A field as its flat triangles, and what each shows of itself in each of a set of directions.
+//!
+//! From far away a field that repeats is a plane. A light of irradiance 1 facing it, from l, brings the plane l_z; seen
+//! from v, each part of the plane's area A fills A v_z of the view. Of the surface x above it, an area dx of the plan is
+//! dx / n_z of slope, which fills (n·v)⁺ dx / n_z of the view where V(x, v) = 1, that is where nothing hides it from v: every
+//! line of sight ends somewhere, so that ∫ V (n·v)⁺ / n_z dx = A v_z. The radiance seen is the mean over what is seen,
+//!
+//! > L(v) = ∫ L(x, v) V(x, v) (n·v)⁺ / n_z dx / (A v_z),   f(l, v) = L(v) / l_z.
+//!
+//! Of diffuse ground without scattered light L(x) = ρ/π V(x, l) (n·l)⁺, so
+//!
+//! > f(l, v) = 1/(A l_z v_z) ∫ ρ/π V(x, l) V(x, v) (n·l)⁺ (n·v)⁺ / n_z dx,
+//!
+//! the same with l and v exchanged, and ∫ f v_z dv ≤ ρ, as ∫ (n·v)⁺ dv = π and ∫ V (n·l)⁺ / n_z dx = A l_z.
+//!
+//! Here x are flat triangles, whose slopes are exact, each seen or hidden as a whole by what its middle sees. Where the
+//! edge of what is hidden crosses a triangle, that errs by up to its share, and their sum S(v) is not quite v_z: shares are
+//! taken times v_z / S(v), so that a light brings the triangles what it brings the plane, l_z, and they fill a view as the
+//! plane does, v_z. The exchange of l and v stays exact; what leaves is at most ρ times what sum of cosines a triangle has
+//! over a set of directions. [`Facets::closure`] is how far S is off, and finer triangles bring it to 1.
+
+use std::f64::consts::PI;
+
+use crate::cpu::facet_mask::cells;
+use crate::scene::{Albedo, Border, Directions, Scene};
+use crate::{Error, Result};
+
+/// Directions whose bits stand in a word of the device, as in `facets.glsl`.
+pub const DIRECTIONS_A_WORD: usize = 15;
+/// A ray of a word took more steps than there can be.
+const LOST: u32 = 1 << 31;
+
+/// Whether a triangle of so many cells is seen from a direction, of the device's words: triangles count two a cell, first the
+/// one north-east of its diagonal.
+pub fn mask_bit(words: &[u32], cells: usize, direction: usize, facet: usize) -> bool {
+    let word = words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
+    word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1
+}
+
+/// A field's triangles, cut so many times finer, and in which directions each is seen.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    directions: Directions,
+    times: usize,
+    /// Columns and rows of the field and of the finer one's cells.
+    size: [usize; 2],
+    cells: [usize; 2],
+    /// Rise a length unit towards east and north.
+    slopes: Vec<[f64; 2]>,
+    albedo: Vec<[f64; 3]>,
+    words: Vec<u32>,
+    /// v_z / S(v) of each direction, infinite of those that show nothing; of a field that ends 1 instead.
+    scales: Vec<f64>,
+    repeats: bool,
+}
+
+impl Facets {
+    /// Of a scene, whose light is none of this, and the words that [`plan::facet_mask`](crate::plan::facet_mask) leaves of
+    /// its field `times` [`finer`](crate::scene::HeightField::finer).
+    ///
+    /// # Errors
+    /// A lobe; a direction at or below horizontal, from where no plane is seen; other than a word a cell and fifteen
+    /// directions; a ray that the device has lost.
+    pub fn of(
+        scene: &Scene,
+        times: usize,
+        directions: Directions,
+        words: Vec<u32>,
+    ) -> Result<Self> {
+        if scene.surface.phong.is_some() {
+            return Err(Error::setting("phong", "a lobe", "none: triangles are diffuse"));
+        }
+        if let Some(i) = directions.vectors().iter().position(|v| v.z <= 0.0) {
+            let found = format!("{}", directions.vectors()[i]);
+            return Err(Error::setting(format!("direction {i}"), found, "one above horizontal"));
+        }
+        let finer = scene.finer(times)?;
+        let (field, border) = (&finer.field, scene.surface.border);
+        let cells = cells(field, border);
+        let count = cells[0] * cells[1];
+        let wanted = directions.count().div_ceil(DIRECTIONS_A_WORD) * count;
+        if words.len() != wanted {
+            let found = format!("{} words", words.len());
+            return Err(Error::setting("triangles seen", found, format!("{wanted} words")));
+        }
+        if let Some(i) = words.iter().position(|word| word & LOST != 0) {
+            let reason = "a ray took more steps than there can be".to_owned();
+            return Err(Error::Device { doing: format!("triangles seen: word {i}"), reason });
+        }
+        let [cell_x, cell_y] = field.cell_m();
+        let (mut slopes, mut albedo) = (Vec::with_capacity(2 * count), Vec::new());
+        for facet in 0..2 * count {
+            let corners = corners_of(facet, cells[0], [field.cols(), field.rows()]);
+            let [first, other, last] = corners.map(|i| f64::from(field.heights_m()[i]));
+            slopes.push(match facet % 2 {
+                0 => [(other - first) / cell_x, (other - last) / cell_y],
+                _ => [(last - other) / cell_x, (first - other) / cell_y],
+            });
+            albedo.push(match &finer.surface.albedo {
+                Albedo::Constant(colour) => colour.map(f64::from),
+                Albedo::Map(map) => [0, 1, 2]
+                    .map(|c| corners.iter().map(|i| f64::from(map[*i][c])).sum::<f64>() / 3.0),
+            });
+        }
+        let size = [scene.field.cols(), scene.field.rows()];
+        let (scales, repeats) = (Vec::new(), border == Border::Periodic);
+        let mut all =
+            Self { directions, times, size, cells, slopes, albedo, words, scales, repeats };
+        let sums = all.of_all(|direction| all.shares(direction).map(|s| s.1).sum::<f64>());
+        let facets = all.slopes.len() as f64;
+        let heights = all.directions.vectors().iter().map(|v| v.z);
+        let scale = |z: f64, sum: f64| if repeats || sum == 0.0 { z * facets / sum } else { 1.0 };
+        all.scales = heights.zip(sums).map(|(z, sum)| scale(z, sum)).collect();
+        Ok(all)
+    }
+
+    /// In which triangles are seen.
+    pub fn directions(&self) -> &Directions {
+        &self.directions
+    }
+
+    /// How many triangles.
+    pub fn count(&self) -> usize {
+        self.slopes.len()
+    }
+
+    /// How many finer than the field.
+    pub fn times(&self) -> usize {
+        self.times
+    }
+
+    /// S(v) / v_z: what the triangles that are seen from a direction fill of the view, of what the plane does; 1 but for those
+    /// that are hidden in part.
+    pub fn closure(&self, direction: usize) -> f64 {
+        1.0 / self.scales[direction]
+    }
+
+    /// Refuses what is no plane from afar.
+    ///
+    /// # Errors
+    /// A field that does not repeat; a direction that shows nothing at all, by its number: finer triangles may.
+    pub fn check(&self) -> Result<()> {
+        if !self.repeats {
+            let expected = "periodic: from afar, ground that goes on without end is a plane";
+            return Err(Error::setting("border", "a field that ends", expected));
+        }
+        let Some(i) = self.scales.iter().position(|s| !s.is_finite()) else { return Ok(()) };
+        let found = self.directions.vectors()[i].to_string();
+        let expected = "one that shows a triangle: a finer field, or less near to horizontal";
+        Err(Error::setting(format!("direction {i}"), found, expected))
+    }
+
+    /// The triangles that are seen from a direction, and how much of the view each fills over its own area of the plan.
+    fn shares(&self, direction: usize) -> impl Iterator<Item = (usize, f64)> {
+        let e = self.directions.vectors()[direction];
+        let cells = self.cells[0] * self.cells[1];
+        let first = direction / DIRECTIONS_A_WORD * cells;
+        let bit = 2 * (direction % DIRECTIONS_A_WORD);
+        let words = &self.words[first..first + cells];
+        let seen = (0..self.slopes.len()).filter(move |f| words[f / 2] >> (bit + f % 2) & 1 == 1);
+        seen.map(move |facet| {
+            let [east, north] = self.slopes[facet];
+            (facet, (e.z - east * e.x - north * e.y).max(0.0))
+        })
+    }
+
+    /// Area of a triangle over that of its plan.
+    fn area(&self, facet: usize) -> f64 {
+        let [east, north] = self.slopes[facet];
+        (1.0 + east * east + north * north).sqrt()
+    }
+
+    /// Exit radiance of all triangles, diffuse and without scattered light, under a light of irradiance 1 facing it from
+    /// direction `light`.
+    pub fn lit_from(&self, light: usize) -> Vec<[f64; 3]> {
+        let mut all = vec![[0.0; 3]; self.slopes.len()];
+        for (facet, share) in self.shares(light) {
+            let irradiance = self.scales[light] * share / self.area(facet);
+            all[facet] = self.albedo[facet].map(|albedo| albedo / PI * irradiance);
+        }
+        all
+    }
+
+    /// Mean radiance of what is seen from each direction.
+    pub fn seen_from_all(&self, radiance: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        self.of_all(|view| self.seen_from(view, radiance))
+    }
+
+    /// Mean radiance of what is seen from direction `view`; 0 where nothing is.
+    pub fn seen_from(&self, view: usize, radiance: &[[f64; 3]]) -> [f64; 3] {
+        let (mut sum, mut whole) = ([0.0; 3], 0.0);
+        for (facet, share) in self.shares(view) {
+            (0..3).for_each(|c| sum[c] += share * radiance[facet][c]);
+            whole += share;
+        }
+        if whole > 0.0 { sum.map(|s| s / whole) } else { sum }
+    }
+
+    /// The samples of the field, not the finer one, that a triangle lies between, and their shares of it.
+    fn between(&self, facet: usize) -> [(usize, f64); 3] {
+        let times = self.times as f64;
+        let cell = facet / 2;
+        let middle = if facet.is_multiple_of(2) { [2.0, 1.0] } else { [1.0, 2.0] };
+        let place = [cell % self.cells[0], cell / self.cells[0]];
+        let [right, down] = [0, 1].map(|i| {
+            let within = (place[i] % self.times) as f64 + middle[i] / 3.0;
+            within / times
+        });
+        let [col, row] = place.map(|n| n / self.times);
+        let cells = self.cells[0] / self.times;
+        let coarse = 2 * (row * cells + col) + usize::from(down > right);
+        let corners = corners_of(coarse, cells, self.size);
+        let both = down.min(right);
+        let one = (down - right).abs();
+        [(corners[0], 1.0 - both - one), (corners[1], one), (corners[2], both)]
+    }
+
+    /// Exit radiance of samples that leaves as much as that of triangles: the mean over the slopes that each stands for.
+    pub fn to_samples(&self, radiance: &[[f64; 3]]) -> Vec<[f32; 3]> {
+        let mut sums = vec![([0.0; 3], 0.0); self.size[0] * self.size[1]];
+        for (facet, light) in radiance.iter().enumerate() {
+            let area = self.area(facet);
+            for (sample, share) in self.between(facet) {
+                let (sum, whole) = &mut sums[sample];
+                (0..3).for_each(|c| sum[c] += share * area * light[c]);
+                *whole += share * area;
+            }
+        }
+        sums.into_iter().map(|(sum, whole)| sum.map(|s| (s / whole) as f32)).collect()
+    }
+
+    /// Adds radiance of samples, linear between them.
+    pub fn add_samples(&self, samples: &[[f32; 3]], radiance: &mut [[f64; 3]]) {
+        for (facet, light) in radiance.iter_mut().enumerate() {
+            for (sample, share) in self.between(facet) {
+                (0..3).for_each(|c| light[c] += share * f64::from(samples[sample][c]));
+            }
+        }
+    }
+
+    /// Of each sample as direction `view` shows it: radiance, and the share of the view that it fills over its own cell, masking
+    /// counted. The mean over all samples of their product over that of the shares is [`seen_from`](Self::seen_from), and the
+    /// shares' mean is v_z.
+    pub fn texels_from(&self, view: usize, radiance: &[[f64; 3]]) -> Vec<[f64; 4]> {
+        let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
+        let each = all.len() as f64 / self.slopes.len() as f64;
+        for (facet, filled) in self.shares(view) {
+            for (sample, share) in self.between(facet) {
+                let part = share * filled;
+                (0..3).for_each(|c| all[sample][c] += part * radiance[facet][c]);
+                all[sample][3] += part;
+            }
+        }
+        for texel in &mut all {
+            let whole = texel[3];
+            if whole > 0.0 {
+                (0..3).for_each(|c| texel[c] /= whole);
+            }
+            texel[3] = whole * each * self.scales[view];
+        }
+        all
+    }
+
+    /// The same of all views.
+    pub fn texels_from_all(&self, radiance: &[[f64; 3]]) -> Vec<Vec<[f64; 4]>> {
+        self.of_all(|view| self.texels_from(view, radiance))
+    }
+
+    /// Runs over all directions, on as many threads as there are processors.
+    fn of_all<T: Send>(&self, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        let count = self.directions.count();
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let part = count.div_ceil(threads);
+        std::thread::scope(|scope| {
+            let parts: Vec<_> = (0..count)
+                .step_by(part)
+                .map(|first| {
+                    let of = &of;
+                    scope.spawn(move || -> Vec<T> {
+                        (first..count.min(first + part)).map(of).collect()
+                    })
+                })
+                .collect();
+            let done = parts.into_iter().flat_map(|part| part.join().expect("no part panics"));
+            done.collect()
+        })
+    }
+}
+
+/// A triangle's samples: of its diagonal's north-western end, of the corner beside it, of the other end.
+fn corners_of(facet: usize, cells_x: usize, [cols, rows]: [usize; 2]) -> [usize; 3] {
+    let [row, col] = [facet / 2 / cells_x, facet / 2 % cells_x];
+    let [below, right] = [(row + 1) % rows, (col + 1) % cols];
+    let beside = if facet.is_multiple_of(2) { row * cols + right } else { below * cols + col };
+    [row * cols + col, beside, below * cols + right]
+}

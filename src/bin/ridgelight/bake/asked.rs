@@ -1,0 +1,186 @@
+//! What of `bake` is asked for.
+
+use ridgelight::bake::{Angles, encoding_named};
+use ridgelight::scene::{Directions, Lines, Method, Quality, Scatter};
+use ridgelight::{Error, Result};
+
+use super::Packing;
+use super::kinds::{KINDS, Kind, Source};
+use super::map::Wanted;
+use crate::args::{BakeArgs, MethodName};
+use crate::bake::Format;
+use crate::setup;
+
+/// Where none are asked for.
+pub const DIRECTIONS: usize = 256;
+
+/// What `--what` takes.
+pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
+    KINDS.into_iter().find(|kind| kind.name == name).ok_or_else(|| {
+        let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+        format!("expected one of {}", all.join(", "))
+    })
+}
+
+/// What `--encoding` takes: `KIND=ENCODING`.
+pub fn packing(text: &str) -> std::result::Result<Packing, String> {
+    let (kind, name) = text.split_once('=').ok_or("expected KIND=ENCODING")?;
+    let kind = kind_named(kind)?;
+    let encoding = encoding_named(kind.encodings, name).ok_or_else(|| {
+        let all: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
+        format!("{} is packed as {}", kind.name, all.join(", "))
+    })?;
+    Ok(Packing { kind, encoding })
+}
+
+/// The list below the flags.
+pub fn help() -> String {
+    let mut text = String::from("Kinds, and how each can be packed:\n");
+    for kind in KINDS {
+        let names: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
+        let formats: Vec<&str> = kind.formats.iter().map(|f| f.name()).collect();
+        text += &format!(
+            "  {}: {}\n      {}; as {} by default\n",
+            kind.name,
+            kind.about,
+            names.join(", "),
+            formats.join(" and ")
+        );
+    }
+    text += "\n\
+Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
+in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
+horizons are near. Vulkan does not ask devices to sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample.
+
+Examples:
+  ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
+  ridgelight bake dem.tif --what horizon --encoding horizon=unorm16-sin -o baked
+  ridgelight bake moss.png --what ellipse --directions 512 -o baked
+  ridgelight bake moss.png --border periodic --what sh-transfer --sh-order 3 -o baked
+  ridgelight bake dem.tif --what horizon,sky-view,visible-sky --plan -o baked";
+    text
+}
+
+/// What is asked for, each kind once.
+pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
+    let mut all: Vec<Wanted> = Vec::new();
+    for kind in &args.what {
+        if all.iter().any(|w| w.kind.name == kind.name) {
+            return Err(Error::setting("--what", format!("{} twice", kind.name), "each kind once"));
+        }
+        let mut packings = args.encoding.iter().filter(|p| p.kind.name == kind.name);
+        let encoding = packings.next().map_or(&kind.encodings[0], |p| p.encoding);
+        if packings.next().is_some() {
+            let found = format!("two of {}", kind.name);
+            return Err(Error::setting("--encoding", found, "one of each kind"));
+        }
+        let mut formats = if args.format.is_empty() { kind.formats } else { &args.format }.to_vec();
+        let takes = |format: &Format| format.takes(encoding);
+        if args.format.is_empty() {
+            formats.retain(takes);
+        } else if let Some(format) = formats.iter().find(|f| !takes(f)) {
+            return Err(Error::setting(
+                "--format",
+                format!("{} with {} of {}", format.name(), encoding.name, kind.name),
+                "exr, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
+            ));
+        }
+        if let Some(twice) = (1..formats.len()).find(|i| formats[..*i].contains(&formats[*i])) {
+            let found = format!("{} twice", formats[twice].name());
+            return Err(Error::setting("--format", found, "each once"));
+        }
+        all.push(Wanted { kind, encoding, formats });
+    }
+    if let Some(idle) =
+        args.encoding.iter().find(|p| all.iter().all(|w| w.kind.name != p.kind.name))
+    {
+        let found = format!("one of {}", idle.kind.name);
+        return Err(Error::setting("--encoding", found, "only kinds of --what"));
+    }
+    Ok(all)
+}
+
+pub fn quality(args: &BakeArgs) -> Result<Quality> {
+    let mut quality = setup::quality(&args.quality)?;
+    if matches!(args.quality.method, MethodName::Auto) {
+        quality.method = Method::Brute;
+    }
+    if quality.lines == Lines::Exact && quality.method != Method::Brute {
+        return Err(Error::setting(
+            "--lines",
+            "exact",
+            "--method brute, which is exact in every azimuth: grid vectors are not even",
+        ));
+    }
+    Ok(quality)
+}
+
+/// Of kinds that look along directions: ellipses spend none below horizontal.
+pub fn directions(args: &BakeArgs) -> Result<Directions> {
+    let looks_around = args.what.iter().any(|kind| kind.name == "visible-points" || is_light(kind));
+    let lowest_z = if looks_around { -1.0 } else { 0.0 };
+    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
+}
+
+/// Those that scatter.
+pub fn is_light(kind: &Kind) -> bool {
+    ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
+}
+
+/// Scattered light, three bounces unless others are asked for, here or in a scene file; none where 0 are written out.
+pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
+    let default = Scatter::default();
+    let is_asked = args.quality.written.iter().any(|(name, _)| name == "bounces");
+    let is_asked = is_asked || quality.bounces.count > 0;
+    let bounces = if is_asked { quality.bounces.count } else { default.bounces };
+    let paths = args.paths.unwrap_or(256);
+    (bounces > 0).then_some(Scatter { bounces, paths, seed: args.seed.unwrap_or(0), ..default })
+}
+
+/// Of lights and views: fewer where there is a picture of each pair.
+pub fn angles(args: &BakeArgs) -> Result<Angles> {
+    let has_pairs = args.what.iter().any(|kind| kind.name == "btf");
+    let [zeniths, azimuths] = args.angles.unwrap_or(if has_pairs { [3, 8] } else { [8, 16] });
+    let angles = Angles { zeniths, azimuths };
+    angles.check().map_err(|error| match error {
+        Error::Setting { found, expected, .. } => Error::setting("--angles", found, expected),
+        other => other,
+    })?;
+    Ok(angles)
+}
+
+/// Refuses flags that no kind of the list has a use for.
+pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>) -> Result<()> {
+    let looks_along = sources.into_iter().any(|s| !matches!(s, Source::Horizons(_)));
+    if let Some(count) = args.directions.filter(|_| !looks_along) {
+        let expected =
+            "--what ellipse, visible-points or what is light, which alone look along directions";
+        return Err(Error::setting("--directions", count.to_string(), expected));
+    }
+    let has_light = args.what.iter().any(|kind| is_light(kind));
+    let has_angles = args.what.iter().any(|kind| is_light(kind) && kind.name != "scatter");
+    let found = |name: &str, value: String, is_used: bool, by: &str| match is_used {
+        true => Ok(()),
+        false => {
+            Err(Error::setting(name, value, format!("--what {by}, which alone have a use for it")))
+        }
+    };
+    if let Some([zeniths, azimuths]) = args.angles {
+        found(
+            "--angles",
+            format!("{zeniths}x{azimuths}"),
+            has_angles,
+            "brdf, brdf-factors, btf or light-field",
+        )?;
+    }
+    let all = "scatter, brdf, brdf-factors, btf or light-field";
+    for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
+        if let Some(value) = value {
+            found(name, value.to_string(), has_light, all)?;
+        }
+    }
+    if has_light && args.surface.phong.is_some() {
+        return Err(Error::setting("--phong", "a lobe", "none: what is baked of light is diffuse"));
+    }
+    Ok(())
+}

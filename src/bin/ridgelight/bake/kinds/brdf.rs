@@ -1,0 +1,130 @@
+use glam::DVec3;
+use ridgelight::bake::{self, Brdf, Facets};
+use ridgelight::gpu::Headless;
+use ridgelight::scene::Border;
+use ridgelight::{Error, Result};
+use serde_json::json;
+
+use super::super::map::{Format, MapFiles};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar};
+
+pub static KIND: Kind = Kind {
+    name: "brdf",
+    about: "what ground that repeats reflects as seen from afar, a table over all pairs of --angles lights and views; \
+            --bounces 0 without scattered light",
+    encodings: &bake::REFLECTED,
+    formats: &[Format::Ktx2, Format::Npy],
+    decoder: include_str!("../../../../../shaders_glsl/decode/brdf.glsl"),
+    begin,
+};
+
+/// Pairs of light and view that the table is asked for beside its own.
+const PAIRS: usize = 64;
+
+/// From afar a field is a plane where it repeats.
+pub fn check(asked: &Asked, name: &str) -> Result<()> {
+    if asked.border == Border::Periodic {
+        return Ok(());
+    }
+    let found = format!("{:?} with --what {name}", asked.border).to_lowercase();
+    Err(Error::setting("--border", found, "periodic: from afar, a plane without end"))
+}
+
+/// On this side.
+pub fn bytes(lit: &Lit) -> u64 {
+    let count = lit.angles.count();
+    afar::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
+}
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let (angles, count) = (asked.angles, asked.angles.count());
+    check(asked, KIND.name)?;
+    let value = |name| Value {
+        name,
+        about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
+                light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        unit: "1/sr",
+        range: afar::RADIANCES,
+    };
+    let map = Map {
+        planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
+        values: ["red", "green", "blue"].map(value).into(),
+        is_array: false,
+        constants: afar::constants("BRDF", angles),
+        size: Some([count, count]),
+        axes: vec![
+            ("channel", 3),
+            ("theta_i", angles.zeniths),
+            ("phi_i", angles.azimuths),
+            ("theta_o", angles.zeniths),
+            ("phi_o", angles.azimuths),
+        ],
+    };
+    let of = OfLight { plans: afar::plans, bytes, make };
+    Ok(Making { map, source: Source::Light(of) })
+}
+
+/// Every light's table row by row.
+pub fn table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<(Brdf, Facets)> {
+    let directions = lit.angles.directions()?;
+    let count = directions.count();
+    let facets = afar::facets(gpu, lit, &directions, say)?;
+    facets.check()?;
+    let mut values = Vec::with_capacity(count * count);
+    afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
+        say(format!("light {} of {count}", light + 1));
+        let z = directions.vectors()[light].z;
+        values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
+        Ok(())
+    })?;
+    Ok((Brdf::from_values(directions.vectors().to_vec(), values)?, facets))
+}
+
+fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
+    let (table, facets) = table(gpu, lit, say)?;
+    let count = lit.angles.count();
+    let planes = [0, 1, 2].map(|c| -> Vec<f32> {
+        (0..count * count).map(|i| table.at(i / count, i % count)[c] as f32).collect()
+    });
+    files.take(&planes.each_ref().map(Vec::as_slice))?;
+    tell(gpu, lit, (&table, &facets), &|l, v| table.between(&lit.angles, l, v), files, say)
+}
+
+/// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.
+pub fn tell(
+    gpu: &mut Headless,
+    lit: &Lit,
+    (table, facets): (&Brdf, &Facets),
+    kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
+    files: &mut MapFiles,
+    say: Say,
+) -> Result<()> {
+    let weights = lit.angles.projected_sr();
+    let reflected = (0..lit.angles.count()).flat_map(|light| table.reflected(light, &weights));
+    let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+    let is = "of a light's irradiance, over all lights and colours";
+    files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
+    files.tell("unreciprocal", table.unreciprocal().into());
+    say(format!("{PAIRS} pairs between"));
+    let pairs = bake::pairs(PAIRS, lit.seed)?;
+    let between = gpu.facets(lit.scene, facets.times(), &pairs, &lit.limits)?;
+    let (mut apart, mut all) = (0.0, 0.0);
+    afar::each_light(gpu, lit, &between, 0..PAIRS, &mut |light, radiance| {
+        let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
+        let own = between.seen_from(PAIRS + light, &radiance).map(|m| m / l.z);
+        for (own, found) in own.into_iter().zip(kept(l, v)) {
+            apart += (own - found).powi(2);
+            all += own * own;
+        }
+        Ok(())
+    })?;
+    files.tell(
+        "between",
+        json!({
+            "residual": (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt(), "pairs": PAIRS, "seed": lit.seed,
+            "is": "rms of what is kept, linear between its angles, less the field's own, over that: seeded pairs of light and \
+                   view, each even in what a level plane receives",
+        }),
+    );
+    afar::tell(files, lit, facets)
+}

@@ -1,0 +1,79 @@
+use ridgelight::bake::{self, Factors};
+use ridgelight::gpu::Headless;
+use ridgelight::{Error, Result};
+
+use super::super::map::{Format, MapFiles};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, brdf};
+
+pub static KIND: Kind = Kind {
+    name: "brdf-factors",
+    about: "the same in short: eight functions g of one direction, as layers over --angles, whose products Σ g(light) g(view) \
+            it is; what they leave of it is told",
+    encodings: &bake::REFLECTED,
+    formats: &[Format::Ktx2, Format::Npy],
+    decoder: include_str!("../../../../../shaders_glsl/decode/brdf_factors.glsl"),
+    begin,
+};
+
+/// Products: what more of them would take off is less than a table's own steps leave (`examples/scatter`).
+const COUNT: usize = 8;
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let angles = asked.angles;
+    brdf::check(asked, KIND.name)?;
+    if angles.count() < COUNT {
+        let found = format!("{}x{}", angles.zeniths, angles.azimuths);
+        return Err(Error::setting(
+            "--angles",
+            found,
+            format!("{COUNT} angles or more, one a factor"),
+        ));
+    }
+    let value = |name| Value {
+        name,
+        about: "of a function of one direction: the table is the sum over layers of its values for the light and for the view; \
+                texel (j, k) is of θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        unit: "1/√sr",
+        range: [-65_504.0, 65_504.0],
+    };
+    let mut constants = afar::constants("BRDF", angles);
+    constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
+    let map = Map {
+        planes: (0..COUNT)
+            .flat_map(|k| ["R", "G", "B"].map(|c| format!("brdf_factors.{k}.{c}")))
+            .collect(),
+        values: ["red", "green", "blue"].map(value).into(),
+        is_array: true,
+        constants,
+        size: Some([angles.azimuths, angles.zeniths]),
+        axes: vec![
+            ("factor", COUNT),
+            ("channel", 3),
+            ("theta", angles.zeniths),
+            ("phi", angles.azimuths),
+        ],
+    };
+    let of = OfLight { plans: afar::plans, bytes: brdf::bytes, make };
+    Ok(Making { map, source: Source::Light(of) })
+}
+
+fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
+    let (table, facets) = brdf::table(gpu, lit, say)?;
+    say("factors".into());
+    let factors = Factors::of(&table, lit.angles, COUNT)?;
+    for of_k in factors.values() {
+        let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
+        files.take(&planes.each_ref().map(Vec::as_slice))?;
+    }
+    let vectors = table.directions();
+    let (mut apart, mut all) = (0.0, 0.0);
+    let weights = lit.angles.projected_sr();
+    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
+        for (own, found) in table.at(l, v).into_iter().zip(factors.at(vectors[l], vectors[v])) {
+            apart += weights[l] * weights[v] * (own - found).powi(2);
+            all += weights[l] * weights[v] * own * own;
+        }
+    }
+    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
+    brdf::tell(gpu, lit, (&table, &facets), &|l, v| factors.at(l, v), files, say)
+}

@@ -1,0 +1,72 @@
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{Limits, Plan};
+use ridgelight::{Result, bake, plan};
+
+use super::super::map::{Format, MapFiles};
+use super::afar::{self, texel};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source};
+
+pub static KIND: Kind = Kind {
+    name: "light-field",
+    about: "a picture in the field's own texels for each of --angles views under the scene's lights: radiance, and what \
+            of the view each texel fills",
+    encodings: &bake::TEXELS,
+    formats: &[Format::Ktx2],
+    decoder: include_str!("../../../../../shaders_glsl/decode/light_field.glsl"),
+    begin,
+};
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let count = asked.angles.count();
+    let map = Map {
+        planes: (0..count)
+            .flat_map(|view| ["R", "G", "B", "share"].map(|c| format!("light_field.{view:04}.{c}")))
+            .collect(),
+        values: texel("of what leaves the texel; 0 where the view sees none of it", "radiance"),
+        is_array: true,
+        constants: afar::constants("LIGHT_FIELD", asked.angles),
+        ..Map::default()
+    };
+    let of = OfLight { plans, bytes: |lit| afar::bytes(lit, lit.angles.count()), make };
+    Ok(Making { map, source: Source::Light(of) })
+}
+
+fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
+    let mut all = vec![afar::direct_plan(lit, limits)?];
+    all.extend(afar::plans(lit, limits)?);
+    if let Some(scatter) = &lit.scatter {
+        all.push(plan::scatter(lit.scene, lit.around, scatter, limits)?);
+    }
+    Ok(all)
+}
+
+fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
+    say("direct light".into());
+    let mut light = afar::direct(gpu, lit)?;
+    if let Some(scatter) = &lit.scatter {
+        say(format!("what samples see in {} directions", lit.around.count()));
+        let border = lit.scene.surface.border;
+        let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
+        say("scattered light".into());
+        let more = gpu.scattered(lit.scene, &points, &light, scatter, &lit.limits)?;
+        for (own, more) in light.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
+            *own += more;
+        }
+    }
+    say("what is seen of triangles".into());
+    let directions = lit.angles.directions()?;
+    let facets = gpu.facets(lit.scene, afar::times(&lit.scene.field), &directions, &lit.limits)?;
+    let none = vec![[0.0; 3]; facets.count()];
+    for view in 0..directions.count() {
+        say(format!("view {} of {}", view + 1, directions.count()));
+        let shares: Vec<f32> =
+            facets.texels_from(view, &none).iter().map(|t| t[3] as f32).collect();
+        let plane = |c: usize| -> Vec<f32> {
+            let texels = light.iter().zip(&shares);
+            texels.map(|(l, share)| if *share > 0.0 { l[c] } else { 0.0 }).collect()
+        };
+        let colours = [0, 1, 2].map(plane);
+        files.take(&[&colours[0], &colours[1], &colours[2], &shares])?;
+    }
+    afar::tell(files, lit, &facets)
+}

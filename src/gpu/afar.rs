@@ -1,0 +1,120 @@
+//! What is baked of a field by looking at it along directions, on a device of our own.
+
+use std::ops::Range;
+
+use super::{Frame, Headless};
+use crate::Result;
+use crate::bake::Facets;
+use crate::plan::{self, Limits};
+use crate::scene::{Border, Directions, HeightField, Scatter, Scene, VisiblePoints};
+
+impl Headless {
+    /// What each sample sees in each of some directions.
+    ///
+    /// # Errors
+    /// As [`plan::visible_points`] and [`VisiblePoints::new`].
+    pub fn visible_points(
+        &mut self,
+        (field, border): (&HeightField, Border),
+        directions: &Directions,
+        limits: &Limits,
+    ) -> Result<VisiblePoints> {
+        let plan = plan::visible_points(field, border, directions, limits)?;
+        let words = self.words_of_all(plan, field)?;
+        VisiblePoints::new(field, border, directions.clone(), words)
+    }
+
+    /// A field's triangles, `times` finer, and which of them are seen from each of some directions above horizontal.
+    ///
+    /// # Errors
+    /// As [`plan::facet_mask`] and [`Facets::of`].
+    pub fn facets(
+        &mut self,
+        scene: &Scene,
+        times: usize,
+        directions: &Directions,
+        limits: &Limits,
+    ) -> Result<Facets> {
+        let border = scene.surface.border;
+        let finer = scene.field.finer(border, times)?;
+        let plan = plan::facet_mask(&finer, border, directions, limits)?;
+        let words = self.words_of_all(plan, &finer)?;
+        Facets::of(scene, times, directions.clone(), words)
+    }
+
+    fn words_of_all(&mut self, plan: plan::Plan, field: &HeightField) -> Result<Vec<u32>> {
+        let outputs = plan.outputs().count();
+        self.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+            gpu.draw(frame)?;
+            let mut words = Vec::new();
+            for output in 0..outputs {
+                let pixels = gpu.pixels(frame, output)?;
+                words.extend(pixels.values.iter().map(|v| v.to_bits()));
+            }
+            Ok(words)
+        })
+    }
+
+    /// Light that a field scatters by the method of dependent tests: [`plan::scatter`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn scattered(
+        &mut self,
+        scene: &Scene,
+        points: &VisiblePoints,
+        direct: &[[f32; 3]],
+        scatter: &Scatter,
+        limits: &Limits,
+    ) -> Result<Vec<[f32; 3]>> {
+        let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
+        let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        self.with_frame(plan, &contents, |gpu, frame| {
+            gpu.draw(frame)?;
+            gpu.colours(frame)
+        })
+    }
+
+    fn colours(&mut self, frame: &Frame) -> Result<Vec<[f32; 3]>> {
+        let pixels = self.pixels(frame, 0)?;
+        Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
+    }
+
+    /// Radiance of all triangles under a light of irradiance 1 facing it from each of some of their directions in turn, with
+    /// what the field scatters of it (`points` are of directions all around) where that is asked for: direct light of
+    /// triangles, its mean at samples, from there by the method of dependent tests, and linear between samples.
+    ///
+    /// # Errors
+    /// As [`plan::scatter`]; the first of `take`, which is given each light's number.
+    pub fn lit_from(
+        &mut self,
+        scene: &Scene,
+        (facets, lights): (&Facets, Range<usize>),
+        scatter: Option<(&VisiblePoints, &Scatter)>,
+        limits: &Limits,
+        take: &mut dyn FnMut(usize, Vec<[f64; 3]>) -> Result<()>,
+    ) -> Result<()> {
+        let Some((points, scatter)) = scatter else {
+            return lights.into_iter().try_for_each(|light| take(light, facets.lit_from(light)));
+        };
+        let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
+        let none = vec![[0.0; 3]; scene.field.heights_m().len()];
+        let contents = plan::scatter_inputs(&plan, scene, points, &none)?;
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let direct = plan.inputs().position(|(_, r)| r.name == "direct").expect("an input");
+        self.with_frame(plan, &contents, |gpu, frame| {
+            for light in lights {
+                let mut radiance = facets.lit_from(light);
+                let samples = facets.to_samples(&radiance);
+                let texels: Vec<f32> =
+                    samples.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+                gpu.refill(frame, direct, &texels)?;
+                gpu.draw(frame)?;
+                facets.add_samples(&gpu.colours(frame)?, &mut radiance);
+                take(light, radiance)?;
+            }
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,340 @@
+//! Fields seen from afar, held to what diffuse ground is: level, grooves of a closed form, energy, light and view exchanged.
+
+use std::f64::consts::{PI, SQRT_2};
+
+use glam::DVec3;
+use ridgelight::bake::{Angles, Brdf, Facets};
+use ridgelight::cpu::facet_mask::facet_mask;
+use ridgelight::cpu::light::normal;
+use ridgelight::cpu::scatter_gather::expected;
+use ridgelight::cpu::visible_points::visible_points;
+use ridgelight::scene::{
+    Albedo, Border, Directions, HeightField, Lights, Scene, Surface, VisiblePoint, VisiblePoints,
+};
+
+const ALBEDO: [f32; 3] = [0.8, 0.5, 0.0];
+
+fn scene(rows: usize, cols: usize, heights: impl Fn(usize, usize) -> f64) -> Scene {
+    let all: Vec<f64> = (0..rows * cols).map(|i| heights(i / cols, i % cols)).collect();
+    let field = HeightField::new(rows, cols, &all, [1.0; 2], None).expect("a field");
+    let albedo = Albedo::Constant(ALBEDO);
+    let surface = Surface { border: Border::Periodic, albedo, phong: None };
+    Scene { field, surface, lights: Lights::default() }
+}
+
+fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
+    let border = scene.surface.border;
+    let finer = scene.field.finer(border, times).expect("a finer field");
+    let words = facet_mask(&finer, border, &directions).expect("words");
+    Facets::of(scene, times, directions, words).expect("above horizontal")
+}
+
+fn direct(facets: &Facets) -> Brdf {
+    Brdf::of(facets, |light| Ok(facets.lit_from(light))).expect("a table")
+}
+
+fn above(count: usize) -> Directions {
+    Directions::fibonacci(count, 0.0, 0).expect("directions")
+}
+
+/// Parts of ∫ cos θ dω of directions that are even on the hemisphere.
+fn projected_sr(directions: &Directions) -> Vec<f64> {
+    let sum: f64 = directions.vectors().iter().map(|v| v.z).sum();
+    directions.vectors().iter().map(|v| PI * v.z / sum).collect()
+}
+
+/// The level is diffuse from afar as near: ρ/π whatever light and view, and ρ of all light leaves, but for a dozen roundings.
+#[test]
+fn the_level_is_as_diffuse_from_afar() {
+    let scene = scene(3, 4, |_, _| 3.0);
+    for times in [1, 2] {
+        let facets = facets(&scene, times, above(60));
+        let table = direct(&facets);
+        for (light, view) in (0..3600).map(|i| (i / 60, i % 60)) {
+            for (got, albedo) in table.at(light, view).into_iter().zip(ALBEDO) {
+                assert!((got - f64::from(albedo) / PI).abs() < 16.0 * f64::EPSILON, "{got}");
+            }
+        }
+        let weights = projected_sr(facets.directions());
+        for (got, albedo) in table.reflected(7, &weights).into_iter().zip(ALBEDO) {
+            assert!((got - f64::from(albedo)).abs() < 64.0 * f64::EPSILON, "{got}");
+        }
+        assert!((0..60).all(|i| (facets.closure(i) - 1.0).abs() < 16.0 * f64::EPSILON));
+    }
+}
+
+/// Columns of a wall of the grooves.
+const WALL: usize = 16;
+
+/// Walls at right angles, along the columns.
+fn grooves() -> Scene {
+    scene(2, 2 * WALL, |_, c| c.abs_diff(WALL) as f64)
+}
+
+/// The share of a wall, from its top, that a direction sees, and how much of the view it fills over its own plan; `side` 1 of
+/// the walls that look east, -1 of those that look west.
+///
+/// Over a length of plan w the wall fills w (z + side · x) of the view where it is not hidden. Once the other wall is turned
+/// away, |x| > z, both fill 2 w z together: this one's visible part is 2 z / (z + |x|), and that is its top.
+fn wall(e: DVec3, side: f64) -> [f64; 2] {
+    let share = (e.z + side * e.x).max(0.0);
+    let seen = if e.x.abs() > e.z { 2.0 * e.z / (e.z + e.x.abs()) } else { 1.0 };
+    [if share > 0.0 { seen } else { 0.0 }, share]
+}
+
+/// ρ = 1: of each wall what both see, min(u_l, u_v), half of the plan: f = 1/(π l_z v_z) Σ ½ min(u_l, u_v) s_l s_v n_z.
+fn groove_brdf(light: DVec3, view: DVec3) -> f64 {
+    let of = |side: f64| {
+        let ([u, s], [v, t]) = (wall(light, side), wall(view, side));
+        0.5 * u.min(v) * s * t / SQRT_2
+    };
+    (of(1.0) + of(-1.0)) / (PI * light.z * view.z)
+}
+
+/// The share u of a wall that is seen is counted in triangles, whose middles stand at (j + 1/3)/n and (j + 2/3)/n of n columns:
+/// off by ε = 1/3n at most. Where one of light and view sees all of a wall, what is off of the other's is scaled away; where
+/// both see a part, u_l u_v / min(u_l, u_v) = max(u_l, u_v) = U is counted: f is off by ε / (U - ε) of itself, and of a
+/// middle on the very edge by twice that.
+fn groove_bound(light: DVec3, view: DVec3) -> f64 {
+    let step = 1.0 / (3.0 * WALL as f64);
+    let of = |side: f64| wall(light, side)[0].max(wall(view, side)[0]);
+    let least = [of(1.0), of(-1.0)].into_iter().filter(|u| *u > 0.0).fold(1.0, f64::min);
+    if least < 1.0 { 2.0 * step / (least - step) } else { 0.0 }
+}
+
+#[test]
+fn grooves_reflect_as_their_closed_form() {
+    let facets = facets(&grooves(), 1, above(100));
+    let table = direct(&facets);
+    let vectors = table.directions();
+    let (mut worst, mut caught, mut tight) = (0.0_f64, 0, 0);
+    for (light, view) in (0..10_000).map(|i| (i / 100, i % 100)) {
+        let known = f64::from(ALBEDO[0]) * groove_brdf(vectors[light], vectors[view]);
+        let allowed = known * (groove_bound(vectors[light], vectors[view]) + 1e-6);
+        let got = table.at(light, view)[0];
+        let off = |got: f64| (got - known).abs() / allowed.max(1e-12);
+        worst = worst.max(off(got));
+        // A plane that receives what is counted of triangles, not cos θ; and one that receives all.
+        caught += usize::from(off(got / facets.closure(light)) > 1.0);
+        tight += usize::from(off(got * vectors[light].z) > 1.0);
+    }
+    println!("{worst:.3} of what is allowed; other irradiances are seen in {caught} and {tight}");
+    assert!(worst <= 1.0, "{worst}");
+    assert!(caught > 100 && tight > 5000, "{caught} {tight}");
+    // The sides of light and view are told apart: from the east the eastern walls are dark.
+    let low = DVec3::new(0.9, 0.3, (1.0_f64 - 0.9).sqrt()).normalize();
+    assert!(groove_brdf(low, low) > 2.0 * groove_brdf(low, DVec3::new(-low.x, low.y, low.z)));
+}
+
+fn waves() -> Scene {
+    scene(8, 8, |r, c| (0.785 * r as f64).sin() + 1.3 * (0.785 * c as f64).cos())
+}
+
+/// The most that any triangle can reflect into a set of views of what it receives: Σ w (n·v)⁺ / (π v_z) over those that it is
+/// seen from, each filled as the plane fills it. Nothing of the light in it.
+fn most_reflected(scene: &Scene, times: usize, weights: &[f64], facets: &Facets) -> f64 {
+    let field = scene.field.finer(Border::Periodic, times).expect("a finer field");
+    let (rows, cols) = (field.rows(), field.cols());
+    let [x, y] = field.cell_m();
+    let h = |r: usize, c: usize| f64::from(field.heights_m()[r % rows * cols + c % cols]);
+    let mut most = 0.0_f64;
+    for (r, c) in (0..rows * cols).map(|i| (i / cols, i % cols)) {
+        let [a, b, d, e] = [h(r, c), h(r, c + 1), h(r + 1, c), h(r + 1, c + 1)];
+        for [east, south] in [[b - a, e - b], [e - d, d - a]] {
+            let normal = DVec3::new(-east / x, south / y, 1.0).normalize();
+            let views = facets.directions().vectors().iter().zip(weights).enumerate();
+            let sum =
+                views.map(|(i, (v, w))| w * normal.dot(*v).max(0.0) / v.z / facets.closure(i));
+            most = most.max(sum.sum::<f64>() / PI);
+        }
+    }
+    most
+}
+
+/// Shares of the largest of what samples, not triangles, would reflect: seen or hidden as they themselves are, by smoothed
+/// normals, with the light that they count for that of the plane.
+fn most_of_samples(scene: &Scene, directions: &Directions, weights: &[f64]) -> f64 {
+    let field = &scene.field;
+    let seen = visible_points(field, Border::Periodic, directions);
+    let count = field.heights_m().len();
+    let normals: Vec<DVec3> = (0..count)
+        .map(|i| normal(field, Border::Periodic, i / field.cols(), i % field.cols()))
+        .collect();
+    let share = |direction: usize, at: usize| {
+        let is_seen = seen[direction * count + at] == VisiblePoint::Sky;
+        let towards = normals[at].dot(directions.vectors()[direction]).max(0.0) / normals[at].z;
+        if is_seen { towards } else { 0.0 }
+    };
+    let means: Vec<f64> = (0..directions.count())
+        .map(|i| (0..count).map(|at| share(i, at)).sum::<f64>() / count as f64)
+        .collect();
+    let reflected = (0..directions.count()).map(|light| {
+        let of = |view: usize| {
+            let both = |at: usize| share(light, at) * share(view, at) * normals[at].z;
+            let sum: f64 = (0..count).map(both).sum();
+            weights[view] * sum / (count as f64 * PI * means[light] * means[view])
+        };
+        (0..directions.count()).map(of).sum::<f64>()
+    });
+    reflected.fold(0.0, f64::max)
+}
+
+/// What leaves is no more than the albedo of what arrives, down to two degrees above horizontal, but for the sum of cosines of the
+/// triangle that has the largest over these views, which says nothing of light. What samples count for triangles is more.
+/// Light and view are exchanged exactly.
+#[test]
+fn no_more_leaves_than_arrives() {
+    for (name, scene, times) in [("grooves", grooves(), 1), ("waves", waves(), 2)] {
+        let angles = Angles { zeniths: 22, azimuths: 4 };
+        let facets = facets(&scene, times, angles.directions().expect("directions"));
+        let table = direct(&facets);
+        let weights = angles.projected_sr();
+        assert!((weights.iter().sum::<f64>() - PI).abs() < 1e-12);
+        let most = most_reflected(&scene, times, &weights, &facets);
+        let albedo = f64::from(ALBEDO[0]);
+        let reflected: Vec<f64> =
+            (0..angles.count()).map(|light| table.reflected(light, &weights)[0]).collect();
+        let largest = reflected.iter().copied().fold(0.0, f64::max);
+        let closure = (0..angles.count()).map(|i| facets.closure(i));
+        let [least, widest] = closure.fold([f64::MAX, 0.0_f64], |[l, m], c| [l.min(c), m.max(c)]);
+        println!(
+            "{name}: {largest:.4} of {albedo}, at most {most:.4} of it; closure {least:.3} to {widest:.3}"
+        );
+        assert!(
+            largest <= albedo * most * (1.0 + 1e-12) && largest > 0.5 * albedo,
+            "{name}: {largest} {most}"
+        );
+        if name == "grooves" {
+            let of_samples = most_of_samples(&scene, facets.directions(), &weights);
+            assert!(of_samples > 1.01 * most, "deaf: {of_samples} {most}");
+        }
+        assert!(table.unreciprocal() < 1e-14, "{name}: {}", table.unreciprocal());
+    }
+}
+
+/// Exchanged over 10,000 pairs. Direct light differs by roundings. A table of lights of other strengths is seen to: half a
+/// difference of up to the whole of a value.
+#[test]
+fn light_and_view_can_be_exchanged() {
+    let facets = facets(&waves(), 1, above(100));
+    let table = direct(&facets);
+    assert!(table.unreciprocal() < 1e-14, "{}", table.unreciprocal());
+    // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
+    let of_wrong = |light: usize| {
+        let z = facets.directions().vectors()[light].z;
+        Ok(facets.lit_from(light).into_iter().map(|l| l.map(|v| v * z)).collect())
+    };
+    let wrong = Brdf::of(&facets, of_wrong).expect("a table");
+    assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
+}
+
+/// Grooves of white walls, twenty bounces: all that arrives leaves. Sums over N directions of a sample are off by δ, as in the
+/// tests of scattered light; what is thrown is thrown on by half at most, as even from the bottom half of a groove at right
+/// angles is sky, so that all bounces are off by δ (1 + ½ + ¼ + …) = 2 δ of what arrives. Views are even over the hemisphere,
+/// whose sum of cosines about any triangle's normal is off by δ, too.
+#[test]
+fn scattered_light_leaves_as_much_as_arrives() {
+    const AROUND: usize = 512;
+    const VIEWS: usize = 60;
+    let mut scene = scene(2, 16, |_, c| c.abs_diff(8) as f64);
+    scene.surface.albedo = Albedo::Constant([1.0; 3]);
+    let around = Directions::fibonacci(AROUND, -1.0, 0).expect("directions");
+    let seen = visible_points(&scene.field, Border::Periodic, &around);
+    let points = VisiblePoints::from_points(&scene.field, Border::Periodic, around, &seen);
+    let points = points.expect("points");
+    let facets = facets(&scene, 3, above(VIEWS));
+    let lit = |light: usize| {
+        let mut radiance = facets.lit_from(light);
+        let samples = facets.to_samples(&radiance);
+        let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
+        let more = expected(&scene, &points, &direct, 20);
+        let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
+        facets.add_samples(&more, &mut radiance);
+        Ok(radiance)
+    };
+    let table = Brdf::of(&facets, lit).expect("a table");
+    let weights = projected_sr(facets.directions());
+    let by = |count: f64| 3.0 * 1.16 * PI.powf(0.25) * count.powf(-0.75);
+    let allowed = 2.0 * by(AROUND as f64) + by(2.0 * VIEWS as f64);
+    let reflected: Vec<f64> = (0..VIEWS).map(|light| table.reflected(light, &weights)[0]).collect();
+    let [least, most] =
+        reflected.iter().fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(*r), m.max(*r)]);
+    println!("{least:.3} to {most:.3} of all, within {allowed:.3}; {:.4}", table.unreciprocal());
+    assert!(least >= 1.0 - allowed && most <= 1.0 + allowed, "{least} {most} {allowed}");
+    assert!(table.unreciprocal() <= allowed, "{}", table.unreciprocal());
+    let dark = direct(&facets);
+    assert!((0..VIEWS).any(|light| dark.reflected(light, &weights)[0] < 1.0 - allowed), "deaf");
+}
+
+/// What a texture keeps of a view is what is seen of it from afar: shares fill v_z, and the light's mean over them is that of
+/// the triangles.
+#[test]
+fn textures_hold_what_is_seen() {
+    let mut scene = waves();
+    let albedo = (0..64).map(|i| [0.1 + 0.01 * i as f32, 0.5, 1.0]).collect();
+    scene.surface.albedo = Albedo::Map(albedo);
+    for times in [1, 2] {
+        let facets = facets(&scene, times, above(20));
+        let radiance = facets.lit_from(3);
+        for view in 0..20 {
+            let texels = facets.texels_from(view, &radiance);
+            let whole: f64 = texels.iter().map(|t| t[3]).sum();
+            let z = facets.directions().vectors()[view].z;
+            assert!((whole / 64.0 - z).abs() < 1e-12, "{view}: {whole} {z}");
+            let own = facets.seen_from(view, &radiance);
+            for c in 0..3 {
+                let mean = texels.iter().map(|t| t[3] * t[c]).sum::<f64>() / whole;
+                assert!((mean - own[c]).abs() < 1e-12, "{view}: {mean} {}", own[c]);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_plane_from_afar_is_refused() {
+    let mut scene = waves();
+    let said = |scene: &Scene, directions: Directions| {
+        let border = scene.surface.border;
+        let words = facet_mask(&scene.field, border, &directions).expect("words");
+        let table = Facets::of(scene, 1, directions, words)
+            .and_then(|f| Brdf::of(&f, |light| Ok(f.lit_from(light))).map(drop));
+        table.unwrap_err().to_string()
+    };
+    let below = Directions::fibonacci(8, -1.0, 0).expect("directions");
+    assert!(said(&scene, below).contains("above horizontal"));
+    // Teeth that rise by 1 a sample for three and fall back: from the west, nearly level, the middles of what faces it are hidden.
+    let low = DVec3::new(-1.0, 0.0, 0.02).normalize();
+    let two = Directions::from_vectors(vec![DVec3::Z, low], 0.0).expect("directions");
+    assert!(said(&self::scene(4, 8, |_, c| (c % 4) as f64), two).contains("direction 1"));
+    scene.surface.border = Border::Plane;
+    assert!(said(&scene, above(8)).contains("border: found a field that ends"));
+    let words = Facets::of(&scene, 1, above(8), vec![0; 3]).unwrap_err().to_string();
+    assert!(words.contains("found 3 words"), "{words}");
+    let lost = Facets::of(&scene, 1, above(8), vec![1 << 31; 49]).unwrap_err().to_string();
+    assert!(lost.contains("took more steps"), "{lost}");
+}
+
+/// Grids of angles: weights are π together, a direction of the grid stands alone, halfway between it is halves, and the turn
+/// closes.
+#[test]
+fn angles_are_even() {
+    let angles = Angles { zeniths: 5, azimuths: 8 };
+    let directions = angles.directions().expect("directions");
+    for (i, e) in directions.vectors().iter().enumerate() {
+        let own: f64 = angles.around(*e).iter().filter(|a| a.0 == i).map(|a| a.1).sum();
+        assert!((own - 1.0).abs() < 1e-9, "{i}: {own}");
+    }
+    let (a, b) = (directions.vectors()[2 * 8], directions.vectors()[2 * 8 + 7]);
+    let between = (a + b).normalize();
+    let shares = angles.around(
+        DVec3::new(between.x, between.y, 0.0).normalize() * a.truncate().length() + DVec3::Z * a.z,
+    );
+    for i in [16, 23] {
+        let own: f64 = shares.iter().filter(|s| s.0 == i).map(|s| s.1).sum();
+        assert!((own - 0.5).abs() < 1e-9, "{i}: {own}");
+    }
+    for (zeniths, azimuths) in [(1, 8), (8, 3), (64, 65)] {
+        let said = Angles { zeniths, azimuths }.check().unwrap_err().to_string();
+        assert!(said.contains("angles: found"), "{said}");
+    }
+}

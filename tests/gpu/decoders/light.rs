@@ -1,0 +1,183 @@
+//! Decoders of what is baked of light: of a small field that repeats, each with both of its encodings.
+
+use std::f64::consts::FRAC_PI_2;
+use std::path::Path;
+use std::process::Command;
+
+use ridgelight::bake::{self, Angles, Encoding};
+use ridgelight::files::{Planes, read_planes};
+
+use super::{Constant, Decoder, decode, decoder, numbered, promised, worst};
+use crate::Device;
+
+const ANGLES: Angles = Angles { zeniths: 2, azimuths: 4 };
+const FACTORS: usize = 8;
+
+fn angles(prefix: &'static [&'static str; 2]) -> Vec<(&'static str, Constant)> {
+    let counts = [ANGLES.zeniths, ANGLES.azimuths];
+    prefix.iter().zip(counts).map(|(name, n)| (*name, Constant::Int(n as i32))).collect()
+}
+
+fn all() -> [Decoder; 5] {
+    let none = |_: &Encoding| Vec::new();
+    let of_btf = |_: &Encoding| angles(&["BTF_THETAS", "BTF_PHIS"]);
+    let of_field = |_: &Encoding| angles(&["LIGHT_FIELD_THETAS", "LIGHT_FIELD_PHIS"]);
+    let of_brdf = |_: &Encoding| angles(&["BRDF_THETAS", "BRDF_PHIS"]);
+    let of_factors = |_: &Encoding| {
+        let mut all = angles(&["BRDF_THETAS", "BRDF_PHIS"]);
+        all.push(("BRDF_FACTORS", Constant::Int(FACTORS as i32)));
+        all
+    };
+    [
+        decoder!("scatter", "scatter", bake::RADIANCE, true, 6, none),
+        decoder!("btf", "btf", bake::TEXELS, true, 4 * ANGLES.count().pow(2), of_btf),
+        decoder!("light_field", "light-field", bake::TEXELS, true, 4 * ANGLES.count(), of_field),
+        decoder!("brdf", "brdf", bake::REFLECTED, false, 3, of_brdf),
+        decoder!(
+            "brdf_factors",
+            "brdf-factors",
+            bake::REFLECTED,
+            true,
+            3 * FACTORS + 3,
+            of_factors
+        ),
+    ]
+}
+
+/// All kinds of one field, values beside.
+fn baked(folder: &Path, number: usize) -> serde_json::Value {
+    let heights: Vec<f32> = (0..7 * 6).map(|i| (i * 5 % 7) as f32 * 0.4).collect();
+    let field = folder.join("field.npy");
+    ridgelight::files::write_npy_f32(&field, &[7, 6], [heights.as_slice()]).expect("a field");
+    let all = all();
+    let kinds: Vec<&str> = all.iter().map(|d| d.kind).collect();
+    let encodings = all.iter().map(|d| format!("{}={}", d.kind, numbered(d, number).name));
+    let words = "--border periodic --format ktx2,exr --quiet --sun 200,50 --sky 0.2 --albedo 0.7,0.5,0.2 \
+                 --directions 16 --bounces 2 --paths 16 --azimuths 8";
+    let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
+        .arg("bake")
+        .arg(&field)
+        .args(words.split_whitespace())
+        .args(["--angles", &format!("{}x{}", ANGLES.zeniths, ANGLES.azimuths)])
+        .args(["--what", &kinds.join(",")])
+        .args(["--encoding", &encodings.collect::<Vec<_>>().join(",")])
+        .arg("-o")
+        .arg(folder.join("out"))
+        .output()
+        .expect("the binary");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let sheet = std::fs::read(folder.join("out/bake.json")).expect("a sheet");
+    serde_json::from_slice(&sheet).expect("JSON")
+}
+
+/// Planes of an .exr, which keeps them by their names, in the order of the sheet.
+fn in_order(sheet: &serde_json::Value, kind: &str, mut read: Planes) -> Planes {
+    let maps = sheet["maps"].as_array().expect("maps");
+    let map = maps.iter().find(|map| map["kind"] == kind).expect("the map");
+    let names = map["planes"].as_array().expect("names");
+    let names: Vec<String> = names.iter().map(|n| n.as_str().expect("a name").into()).collect();
+    let of = |name: &String| {
+        let at = read.names.iter().position(|n| n == name);
+        read.planes[at.unwrap_or_else(|| panic!("{name} in {:?}", read.names))].clone()
+    };
+    read.planes = names.iter().map(of).collect();
+    Planes { names, ..read }
+}
+
+/// By how much a value may be off that is read between two angles instead of at one: places are within 8 roundings of a count
+/// of steps, along four axes, and nothing is larger than the largest.
+fn beside(truth: &Planes) -> f64 {
+    let most = truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs()));
+    4.0 * 8.0 * ANGLES.azimuths as f64 / f64::from(1 << 24) * f64::from(most)
+}
+
+#[test]
+fn decoders_of_light_keep_what_sheets_promise() {
+    let device = Device::new();
+    let gpu = device.gpu.as_ref().expect("alive");
+    for number in 0..2 {
+        let folder = tempfile::tempdir().expect("a folder");
+        let sheet = baked(folder.path(), number);
+        for decoder in all() {
+            let encoding = numbered(&decoder, number);
+            let stem = decoder.kind.replace('-', "_");
+            let path = |extension: &str| folder.path().join(format!("out/{stem}.{extension}"));
+            let constants = (decoder.constants)(encoding);
+            let lines: String = constants.iter().map(|(name, c)| c.line(name)).collect();
+            let written = std::fs::read_to_string(path("glsl")).expect("a decoder");
+            assert_eq!(written, lines + decoder.body, "{stem}.glsl");
+            assert!(decoder.body.lines().filter(|l| !l.starts_with("//")).count() <= 24, "{stem}");
+            let bits: Vec<u32> = constants.iter().map(|(_, c)| c.bits()).collect();
+            let truth = in_order(&sheet, decoder.kind, read_planes(&path("exr")).expect("values"));
+            let texture = std::fs::read(path("ktx2")).expect("a texture");
+            let promised = promised(&sheet, decoder.kind);
+            let is_between = decoder.kind.starts_with("brdf");
+            let slack = if is_between { beside(&truth) } else { 0.0 };
+            let found = decode(gpu, &decoder, &bits, &texture, 0.0);
+            let (share, of) = worst(&promised, &found, &truth, slack);
+            println!("{} {}: {share:.3} of the bound of the {of}", decoder.kind, encoding.name);
+            assert!(share <= 1.0, "{} {}: {share} of {of}", decoder.kind, encoding.name);
+            // The comparison hears, and not everything is 0.
+            let mut off = found.clone();
+            let most = (0..truth.planes.len() * truth.rows * truth.cols)
+                .max_by(|a, b| found[*a].total_cmp(&found[*b]))
+                .expect("values");
+            off[most] *= 1.01;
+            assert!(worst(&promised, &off, &truth, slack).0 > 1.0, "{}: deaf", decoder.kind);
+            match decoder.kind {
+                "brdf" => {
+                    between(&decode(gpu, &decoder, &bits, &texture, 0.5), &truth, promised[0].2)
+                }
+                "brdf-factors" => products(&found, &truth, promised[0].2),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Halfway to the next azimuths of light and view the table is the mean of four pairs.
+fn between(found: &[f32], truth: &Planes, share: f64) {
+    let count = ANGLES.count();
+    let next = |i: usize| i / ANGLES.azimuths * ANGLES.azimuths + (i + 1) % ANGLES.azimuths;
+    for (light, view) in (0..count * count).map(|i| (i / count, i % count)) {
+        for (c, plane) in truth.planes.iter().enumerate() {
+            let corners = [
+                (light, view),
+                (next(light), view),
+                (light, next(view)),
+                (next(light), next(view)),
+            ];
+            let sum: f64 = corners.iter().map(|(l, v)| f64::from(plane[l * count + v])).sum();
+            let got = f64::from(found[c * count * count + light * count + view]);
+            let allowed = 0.25 * sum * (share + 1e-6) + beside(truth);
+            assert!((got - 0.25 * sum).abs() <= allowed, "{light} {view}: {got} {}", 0.25 * sum);
+        }
+    }
+}
+
+/// The sum over factors of a light of the grid and a view between: products of what is read, each off by its share.
+fn products(found: &[f32], truth: &Planes, share: f64) {
+    let (size, view) = (ANGLES.count(), [0.5_f64, 2.0]);
+    let e = glam::DVec3::new(
+        view[0].sin() * view[1].cos(),
+        view[0].sin() * view[1].sin(),
+        view[0].cos(),
+    );
+    let around = ANGLES.around(e);
+    assert!(view[0] < FRAC_PI_2);
+    for (i, c) in (0..3 * size).map(|i| (i / 3, i % 3)) {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for k in 0..FACTORS {
+            let plane = &truth.planes[3 * k + c];
+            let of_view: f64 = around.iter().map(|(i, part)| part * f64::from(plane[*i])).sum();
+            let most = around.iter().map(|(i, _)| plane[*i].abs()).fold(0.0, f32::max);
+            sum += f64::from(plane[i]) * of_view;
+            all += f64::from(plane[i].abs() * most);
+        }
+        let got = f64::from(found[(3 * FACTORS + c) * size + i]);
+        let slack = beside(truth)
+            * truth.planes.iter().flatten().fold(0.0_f32, |m, v| m.max(v.abs())) as f64;
+        let allowed = 3.0 * (share + 1e-6) * all + 2.0 * FACTORS as f64 * slack;
+        assert!((got - sum).abs() <= allowed, "{i}: {got} {sum} {allowed}");
+    }
+}

@@ -1,0 +1,37 @@
+//! Which triangles are seen.
+
+use ridgelight::bake::mask_bit;
+use ridgelight::cpu::facet_mask::{cells, sees_sky};
+use ridgelight::cpu::oracle::Oracle;
+use ridgelight::gpu::shaders::offsets::facet_mask_push as push;
+use ridgelight::measure::tolerance::{Land, facet_elevation};
+use ridgelight::plan::Pass;
+
+use super::{Pair, Run, pushed};
+
+/// The twin's answer, or the other where what a ray's elevation may err by decides.
+pub(super) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let (field, border) = (&run.scene.field, run.border());
+    let directions = run.directions();
+    let first = pushed(pass, push::FIRST_LAYER) as usize;
+    let layers = pass.groups[2] as usize;
+    let words = run.words(pass, "facet_mask").expect("written");
+    let finer = field.finer(border, 3).expect("a finer field");
+    let oracle = Oracle::new(&finer, border);
+    let elevation = facet_elevation(&Land::of(&finer, border));
+    let [cells_x, cells_y] = cells(field, border);
+    let of_layer = ridgelight::bake::DIRECTIONS_A_WORD;
+    let own = first * of_layer..((first + layers) * of_layer).min(directions.count());
+    let mut pairs = Vec::new();
+    for i in own {
+        for facet in 0..2 * cells_x * cells_y {
+            let e = directions.vectors()[i];
+            let [want, is_unsure] = sees_sky(&oracle, (facet, cells_x), e, elevation);
+            let got = mask_bit(&words, cells_x * cells_y, i, facet);
+            let want = if is_unsure { got } else { want };
+            let [got, want] = [got, want].map(|is_seen| f64::from(u8::from(is_seen)));
+            pairs.push(Pair { got, want, tolerance: 0.0, at: [i, facet / 2, facet % 2] });
+        }
+    }
+    pairs
+}
