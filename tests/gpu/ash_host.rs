@@ -38,8 +38,9 @@ fn the_ash_host_gives_the_command_lines_bytes() {
     }
     let readme = include_str!("../../README.md");
     let section = readme.split("## To record it into your engine").nth(1).expect("its section");
-    let snippet =
-        section.split("```").nth(1).and_then(|s| s.split_once('\n')).expect("a snippet").1;
+    let mut blocks = section.split("```");
+    let snippet = blocks.find(|block| block.starts_with("rust")).expect("a snippet");
+    let snippet = snippet.split_once('\n').expect("its lines").1;
     let shown = snippet.trim_end().strip_suffix("fn main() {}").unwrap_or(snippet).trim_end();
     assert!(include_str!("../../examples/ash_host.rs").contains(shown), "README.md shows another");
 

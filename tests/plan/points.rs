@@ -99,6 +99,16 @@ fn points_come_in_images_alone() {
     let (name, format) = (points.name.clone(), points.format().expect("an image"));
     let refused = plan.take_buffer(&name, format).unwrap_err().to_string();
     assert!(refused.contains(&format!("{name}: found an image of words, {format:?}")), "{refused}");
+    // Of numbers no plan has any in layers: one that is made up.
+    let heights = plan.find("heights").expect("an input");
+    if let Kind::Image { layers, .. } = &mut plan.resources[heights.0].kind {
+        *layers = 2;
+    }
+    let refused = plan.take_buffer("heights", plan::Format::R32Float).unwrap_err().to_string();
+    assert!(
+        refused.contains("heights: found an image of 2 layers, expected one layer"),
+        "{refused}"
+    );
 }
 
 /// From the far end of all paths to the samples, paths side by side; one bounce needs nothing between. Every barrier is there

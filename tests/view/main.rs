@@ -2,6 +2,7 @@
 //! windows, holds no more memory after many frames, and validation has nothing to say.
 #![cfg(all(feature = "window", target_os = "linux"))]
 
+mod hands;
 mod lost;
 
 use std::io::{BufRead, BufReader};
@@ -221,38 +222,6 @@ fn apart(a: &Planes, b: &Planes) -> f64 {
     pairs.map(|(a, b)| (code(a) - code(b)).abs()).fold(0.0, f64::max)
 }
 
-/// Strokes are drawn by edits of what was drawn before, undone to the same bits as before, done again to the same as
-/// after. What is saved is drawn by `render`, from heights above another median, each rounded to f32 once more: which may
-/// take a light over the step between two codes.
-#[test]
-fn gpu_brushes_are_undone_and_saved() {
-    let (folder, display) = (Folder::new(), Display::new());
-    let script = "key h\nframes 2\nkey 2\nframes 2\ndrag left 30,20 12,6\nframes 3\ntext raised.txt\n\
-        picture raised.png\nscene raised.json\nkey 4\ndrag left 30,20 12,6\nframes 3\npicture eroded.png\n\
-        scene eroded.json\nkey z\nkey z\nkey z\nframes 2\ntext undone.txt\npicture undone.png\nscene undone.json\n\
-        key y\nkey y\nframes 1\npicture again.png\n";
-    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
-    let text = |name: &str| std::fs::read_to_string(folder.0.path().join(name)).unwrap();
-    let said = text("raised.txt");
-    assert!(said.contains("undo 1, again 0") && said.contains("edit of "), "{said}");
-    let said = text("undone.txt");
-    assert!(said.contains("undo 0, again 2") && said.contains("nothing to undo"), "{said}");
-    folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
-    assert_same(&folder, "undone.png", "render.png");
-    assert_same(&folder, "again.png", "eroded.png");
-    for name in ["raised", "eroded"] {
-        folder.done(&format!("render --scene {name}.json -o {name}_r.png --quiet"));
-        let [window, render] =
-            [".png", "_r.png"].map(|end| folder.picture(&format!("{name}{end}")));
-        assert!(apart(&window, &render) <= 1.0, "{name}: {}", apart(&window, &render));
-        // The comparison can fail.
-        assert!(apart(&window, &folder.picture("undone.png")) > 16.0, "{name}");
-    }
-    // As it was read.
-    let scene: serde_json::Value = serde_json::from_str(&text("undone.json")).unwrap();
-    assert_eq!(scene["field"]["file"], "hills.asc");
-}
-
 /// A wall across level ground, a sun behind it. Without shadows all ground that does not touch the wall has the light of
 /// the sky and the sun's irradiance times the sine of its elevation over π. Ours is `render`'s, the reference
 /// `reference`'s, and how far they are apart is what their files say.
@@ -306,70 +275,6 @@ fn gpu_a_split_window_shows_what_shadows_do() {
     assert!(said.contains(&expected), "{expected} in {said}");
 }
 
-/// A click places a light, a key colours it, a drag moves it, and the mark on it is where it is: `render` draws the saved
-/// scene to the same bytes. Deleted, it leaves nothing.
-#[test]
-fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
-    let (folder, display) = (Folder::new(), Display::new());
-    let script = "key h\nkey h\nframes 2\nkey 5\ndrag left 20,30 0,0\nkey t\nkey ]\ndrag left 20,30 12,-8\n\
-        key pageup\nframes 2\nscreenshot mark.png\npicture lit.png\nscene lit.json\nkey o\nframes 1\nkey x\nkey x\n\
-        frames 2\npicture dark.png\nscene dark.json\nkey h\nkey x\ntext none.txt\n";
-    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
-    let scene = |name: &str| -> serde_json::Value {
-        serde_json::from_slice(&std::fs::read(folder.0.path().join(name)).unwrap()).unwrap()
-    };
-    let lights = scene("lit.json")["lights"]["balls"].clone();
-    assert_eq!(lights.as_array().map(Vec::len), Some(1), "{lights}");
-    // Placed over column 19.5, row 29.5, moved by 12 and 8, of 48 rows.
-    let place: Vec<f64> =
-        lights[0]["position_m"].as_array().unwrap().iter().filter_map(|v| v.as_f64()).collect();
-    assert!((place[0] - 31.5).abs() < 1e-9 && (place[1] - (47.0 - 21.5)).abs() < 1e-9, "{place:?}");
-    let [r, g, b] = [0, 1, 2].map(|i| lights[0]["radiance"][i].as_f64().unwrap());
-    assert!(r == 8.0 && g < r && b < g, "{lights}");
-    folder.done("render --scene lit.json -o lit_r.png --quiet");
-    assert_same(&folder, "lit.png", "lit_r.png");
-    folder.done(&format!("render hills.asc {LIT} -o first_r.png --quiet"));
-    assert_same(&folder, "dark.png", "first_r.png");
-    assert!(scene("dark.json")["lights"].get("balls").is_none(), "{}", scene("dark.json"));
-    let said = std::fs::read_to_string(folder.0.path().join("none.txt")).unwrap();
-    assert!(said.contains("no light is chosen"), "{said}");
-    // The brightest channel of the mark's middle is all of it.
-    let (mark, at) = (folder.picture("mark.png"), 22 * 64 + 32);
-    let shown = colours(&mark).iter().map(|plane| code(plane[at])).collect::<Vec<_>>();
-    assert!(shown[0] == 255.0 && shown[1] < 255.0 && shown[2] < shown[1], "{shown:?}");
-}
-
-/// A setting that would not do is refused in the command line's sentence, and what was drawn stays; one that does is
-/// `render`'s.
-#[test]
-fn gpu_settings_turn_or_are_refused_as_by_flags() {
-    let (folder, display) = (Folder::new(), Display::new());
-    let script = "frames 2\nkey tab\nkey ,\nkey ,\ntext azimuths.txt\nkey tab\nkey tab\nkey tab\nkey tab\nkey ,\n\
-        key ,\nkey ,\ntext lines.txt\nkey tab\nkey .\nkey shift+tab\nframes 2\nkey h\nkey h\nframes 1\nscreenshot fine.png\n\
-        scene fine.json\nkey h\nkey tab\nkey tab\nkey tab\nkey tab\nkey tab\nkey .\ntext idle.txt\n";
-    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
-    let text = |name: &str| std::fs::read_to_string(folder.0.path().join(name)).unwrap();
-    for (name, flags) in [
-        ("azimuths.txt", "--sun 315,30 --sky 0.3 --azimuths 2"),
-        ("lines.txt", "--sun 315,30 --sky 0.3 --azimuths 4 --lines exact"),
-    ] {
-        let mut command = folder.command(&format!("render hills.asc {flags} -o none.png"));
-        let Output { status, stderr, .. } = command.output().unwrap();
-        let said = String::from_utf8(stderr).unwrap();
-        assert_eq!(status.code(), Some(2), "{said}");
-        let sentence = said.trim_end().strip_prefix("ridgelight: ").unwrap();
-        assert!(text(name).lines().any(|line| line == sentence), "{said} in {}", text(name));
-    }
-    assert!(text("lines.txt").contains("> lines                 1/4"), "{}", text("lines.txt"));
-    let scene: serde_json::Value = serde_json::from_str(&text("fine.json")).unwrap();
-    let quality = serde_json::json!({ "azimuths": 4, "lines": "1/4", "fuse": "aimed" });
-    assert_eq!(scene["quality"], quality);
-    folder.done("render --scene fine.json -o fine_r.png --quiet");
-    assert_same(&folder, "fine.png", "fine_r.png");
-    let note = "changes nothing without --method pyramid";
-    assert!(text("idle.txt").contains(note), "{}", text("idle.txt"));
-}
-
 #[test]
 fn gpu_a_window_outlives_its_sizes() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -403,55 +308,6 @@ fn gpu_pictures_side_by_side_need_place() {
         let said = String::from_utf8(stderr).unwrap();
         assert!(!status.success() && said.contains(says), "{script}: {said}");
     }
-}
-
-/// Radii of brushes end where strokes would have dabs without number, and at the field's side: a sixteenth of 48 m times
-/// 0.8 and 1.25 to the fortieth is beyond both.
-#[test]
-fn gpu_brushes_have_a_least_and_a_most() {
-    let (folder, display) = (Folder::new(), Display::new());
-    let keys = |key: &str| format!("key {key}\n").repeat(40);
-    let script = format!(
-        "frames 1\n{}text small.txt\n{}{}text large.txt\n",
-        keys("["),
-        keys("]"),
-        keys("]")
-    );
-    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), &script);
-    for (name, says) in [
-        ("small.txt", "the brush is at its smallest, half a cell"),
-        ("large.txt", "the brush is at its largest, the field's longer side"),
-    ] {
-        let text = std::fs::read_to_string(folder.0.path().join(name)).unwrap();
-        assert!(text.contains(says), "{text}");
-    }
-}
-
-/// Real events, from another client of the display.
-#[test]
-fn gpu_keys_and_the_mouse_are_heard() {
-    let (folder, display) = (Folder::new(), Display::new());
-    folder.write("script", b"frames 2\nwait 6\nscene heard.json\n");
-    let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200 --script script"));
-    let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
-    // Nobody manages windows here, so that nobody gives them the keyboard.
-    let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
-    let mut xdotool = Command::new("xdotool");
-    let acted = xdotool.env("DISPLAY", &display.name).args(act.split(' ')).status();
-    let ended = view.wait().unwrap();
-    assert!(acted.expect("xdotool: run tools/setup --tests").success() && ended.success());
-    let text = std::fs::read_to_string(folder.0.path().join("heard.json")).unwrap();
-    let scene: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(
-        scene["quality"],
-        serde_json::json!({ "azimuths": 16, "method": "sweep", "sun_azimuths": 16 }),
-        "{text}"
-    );
-    let sun = &scene["lights"]["suns"][0]["azimuth_deg"];
-    assert_eq!(sun.as_f64(), Some(335.0), "{text}");
-    // The brush has changed the field.
-    assert_eq!(scene["field"]["file"].as_str(), Some("heard.npy"), "{text}");
-    assert!(folder.0.path().join("heard.npy").exists());
 }
 
 fn refused(mut command: Command, says: &[&str]) {
