@@ -4,6 +4,9 @@
 //! `cargo run --example readme` writes README.md; with `-- --check` it changes nothing and fails where
 //! README.md is not what would be written.
 
+#[path = "readme/brdf.rs"]
+mod brdf;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -422,7 +425,7 @@ fn run(check: bool) -> Result<bool> {
     let mut readme = text(path)?;
     let mut stale = Vec::new();
     type Section = (&'static str, fn() -> Result<String>);
-    let sections: [Section; 12] = [
+    let sections: [Section; 13] = [
         ("camera", camera),
         ("picture", picture),
         ("sizes", sizes),
@@ -434,6 +437,7 @@ fn run(check: bool) -> Result<bool> {
         ("bounces", bounces),
         ("goals", goals),
         ("bake", bake),
+        ("brdf", brdf::brdf),
         ("curved", curved),
     ];
     for (name, section) in sections {

@@ -1,12 +1,15 @@
 //! Light scattered by precomputed visibility (Heidrich et al. 2000): what it costs, and how far it is from light paths.
 //!
-//! `cargo run --release --example scatter -- [converge|table|brdf|all] [FOLDER] [--side N] [--spp N] [-o PICTURE.png]`
+//! `cargo run --release --example scatter -- [converge|table|all|brdf] [FOLDER] [--side N] [--spp N] [-o PICTURE.png]`
 //!
 //! `converge` (part of `all`, the default): three bounces on grooves and on bumps, N² (32) samples that repeat, and on the
 //! moss of FOLDER's `height/` where there is one, by directions and paths, beside N (2048) light paths a sample with and
 //! without bounces; PICTURE.png has direct light, scattered light and light paths of the first and the last of them.
-//! `table`: the paper's table 1 by size. `brdf`: what of a field is seen from afar; see `scatter/brdf.rs`.
+//! `table`: the paper's table 1 by size. `brdf`: what of a field is seen from afar, see `scatter/brdf.rs`, and the paper's figure 9
+//! as brdf.png beside PICTURE.png.
 
+#[path = "scatter/bent.rs"]
+mod bent;
 #[path = "scatter/brdf.rs"]
 mod brdf;
 #[path = "scatter/converge.rs"]
@@ -128,7 +131,7 @@ fn run() -> Result<()> {
     if wanted("table") {
         table::run(&mut gpu)?;
     }
-    if wanted("brdf") {
+    if asked.part == "brdf" {
         brdf::run(&mut gpu, &asked)?;
     }
     Ok(())

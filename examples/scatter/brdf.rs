@@ -17,7 +17,7 @@ use ridgelight::{Error, Result};
 
 use crate::geometry::{Geometry, sun};
 use crate::harmonics::Harmonics;
-use crate::{Asked, moss};
+use crate::{Asked, bent, moss};
 
 pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
 /// Pairs between the angles, and pairs whose geometry is drawn.
@@ -48,20 +48,22 @@ pub struct Seen<'a> {
     pub around: VisiblePoints,
     /// Triangles that each cell is cut into, along an edge.
     pub times: usize,
+    /// And each for its geometry.
+    pub geometry: usize,
     pub limits: Limits,
 }
 
 impl Seen<'_> {
-    pub fn of<'a>(gpu: &mut Headless, scene: &'a Scene) -> Result<Seen<'a>> {
+    pub fn of<'a>(gpu: &mut Headless, scene: &'a Scene, geometry: usize) -> Result<Seen<'a>> {
         let limits = gpu.report().limits;
         let border = scene.surface.border;
         let directions = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
         let around = gpu.visible_points((&scene.field, border), &directions, &limits)?;
-        let times = if scene.field.heights_m().len() > 2048 { 2 } else { 6 };
-        Ok(Seen { scene, around, times, limits })
+        let times = if scene.field.heights_m().len() > 2048 { 2 } else { 4 };
+        Ok(Seen { scene, around, times, geometry, limits })
     }
 
-    /// Mean radiance that is seen of light `l` from `v`, R, G, B, for each pair of numbers that `views` gives of a light.
+    /// Radiance of all triangles under each light in turn.
     pub fn each(
         &self,
         gpu: &mut Headless,
@@ -107,24 +109,17 @@ impl Seen<'_> {
     }
 }
 
-/// One groove of the paper's figure 2: walls at right angles, those that look west red, the others white.
+/// One groove of the paper's figure 2, 32 wide: walls at right angles, those that look west red, the others white. Many columns
+/// and few rows, as along it nothing changes.
 pub fn groove() -> Result<Scene> {
-    const SIDE: usize = 32;
+    const ROWS: usize = 8;
+    const COLS: usize = 128;
     let heights: Vec<f64> =
-        (0..SIDE * SIDE).map(|i| (i % SIDE).abs_diff(SIDE / 2) as f64).collect();
+        (0..ROWS * COLS).map(|i| 0.25 * (i % COLS).abs_diff(COLS / 2) as f64).collect();
     // A triangle has the mean colour of its corners: valley and ridge are pink for a cell.
-    let colour = |i: usize| if i % SIDE > SIDE / 2 { [0.8, 0.1, 0.1] } else { [0.8; 3] };
-    let albedo = Albedo::Map((0..SIDE * SIDE).map(colour).collect());
-    let field = HeightField::new(SIDE, SIDE, &heights, [1.0; 2], None)?;
-    let surface = Surface { albedo, border: Border::Periodic, phong: None };
-    Ok(Scene { field, surface, lights: Lights::default() })
-}
-
-fn waves() -> Result<Scene> {
-    let wave = |n: usize| (std::f64::consts::TAU * n as f64 / 16.0).sin();
-    let heights: Vec<f64> = (0..32 * 32).map(|i| 3.0 * wave(i / 32) * wave(i % 32)).collect();
-    let field = HeightField::new(32, 32, &heights, [1.0; 2], None)?;
-    let albedo = Albedo::Constant([0.8; 3]);
+    let colour = |i: usize| if i % COLS > COLS / 2 { [0.8, 0.1, 0.1] } else { [0.8; 3] };
+    let albedo = Albedo::Map((0..ROWS * COLS).map(colour).collect());
+    let field = HeightField::new(ROWS, COLS, &heights, [0.25, 4.0], None)?;
     let surface = Surface { albedo, border: Border::Periodic, phong: None };
     Ok(Scene { field, surface, lights: Lights::default() })
 }
@@ -159,18 +154,22 @@ pub fn run(gpu: &mut Headless, asked: &Asked) -> Result<()> {
         "Seen from afar: a table of {} × {} angles for lights and for views, {} bounces by {} directions and {} paths\n",
         ANGLES.zeniths, ANGLES.azimuths, SCATTER.bounces, DIRECTIONS, SCATTER.paths
     );
-    let mut scenes = vec![("groove", groove()?), ("waves", waves()?)];
+    let mut scenes = vec![("groove", groove()?, 1)];
     if let Some(folder) = &asked.folder {
-        scenes.push(("moss", moss::tile(folder)?));
+        scenes.push(("moss", moss::tile(folder)?, 4));
     }
-    for (name, scene) in scenes {
-        one(gpu, name, &scene)?;
+    for (name, scene, geometry) in scenes {
+        let seen = Seen::of(gpu, &scene, geometry)?;
+        one(gpu, name, &seen)?;
     }
-    Ok(())
+    match &asked.output {
+        Some(path) => bent::picture(gpu, &path.with_file_name("brdf.png")),
+        None => Ok(()),
+    }
 }
 
-fn one(gpu: &mut Headless, name: &str, scene: &Scene) -> Result<()> {
-    let seen = Seen::of(gpu, scene)?;
+fn one(gpu: &mut Headless, name: &str, seen: &Seen) -> Result<()> {
+    let scene = seen.scene;
     let between = pairs(BETWEEN, 0)?;
     let weights = ANGLES.projected_sr();
     println!(
@@ -213,7 +212,7 @@ fn one(gpu: &mut Headless, name: &str, scene: &Scene) -> Result<()> {
         series.push((Factors::of(&table, ANGLES, KEPT)?, table));
     }
     println!();
-    far(gpu, &seen, &series)
+    far(gpu, seen, &series)
 }
 
 /// Means over what is seen, of pairs that no table knows.
@@ -230,7 +229,7 @@ fn far(gpu: &mut Headless, seen: &Seen, series: &[(Factors, Brdf)]) -> Result<()
         let mut means = [[0.0; 4]; PAIRS];
         for (i, (l, v)) in lights.iter().zip(views).enumerate() {
             let bounces = if is_scattered { SCATTER.bounces } else { 0 };
-            let geometry = Geometry::of(gpu, seen.scene, &[*v], sun(*l), bounces)?;
+            let geometry = Geometry::of(gpu, (seen.scene, seen.geometry), &[*v], sun(*l), bounces)?;
             let drawn = geometry.mean(gpu, *v)?;
             geometry.end(gpu);
             let by = [own[i], table.between(&ANGLES, *l, *v), factors.at(*l, *v)];

@@ -30,31 +30,35 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// As many repetitions as the views need around the middle one, by 64 light paths a sample.
+    /// As many repetitions as the views need around one in the middle, by 64 light paths a sample; the scene's triangles cut so
+    /// many times finer, as samples beside an edge are lit by the mean of its two slopes.
     pub fn of(
         gpu: &mut Headless,
-        scene: &Scene,
+        (scene, times): (&Scene, usize),
         views: &[DVec3],
         sun: Sun,
         bounces: u32,
     ) -> Result<Self> {
-        // Twice as fine: sampled light is of triangles' own slopes, but for a sample beside each edge.
-        let finer = scene.finer(2)?;
-        let field = &finer.field;
+        let scene = scene.finer(times)?;
+        let field = &scene.field;
         let [cols, rows] = [field.cols(), field.rows()];
         let period_m = [cols as f64 * field.cell_m()[0], rows as f64 * field.cell_m()[1]];
         let heights = || field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
         // What stands at the lowest or the highest place is seen that far beside where it stands in the middle's plane.
-        let beside = views.iter().map(|v| 0.5 * (high - low) * v.truncate().length() / v.z);
-        let beside = beside.fold(0.0, f64::max);
-        let repeats = period_m.map(|p| 1 + 2 * (beside / p + 1e-3).ceil() as usize);
+        let beside = |along: fn(&DVec3) -> f64| {
+            views.iter().map(|v| 0.5 * (high - low) * along(v).abs() / v.z).fold(0.0, f64::max)
+        };
+        let beside = [beside(|v| v.x), beside(|v| v.y)];
+        // And a cell, by which the last repetition's mesh is shorter.
+        let margin = [0, 1].map(|i| 2.0 * (beside[i] + field.cell_m()[i]) / period_m[i]);
+        let repeats = margin.map(|m| 1 + m.ceil() as usize);
         let wide = cols * repeats[0];
         let of = |i: usize| i / wide % rows * cols + i % wide % cols;
         let count = wide * rows * repeats[1];
         let all: Vec<f64> =
             (0..count).map(|i| field.base_m() + f64::from(field.heights_m()[of(i)])).collect();
-        let mut surface = finer.surface.clone();
+        let mut surface = scene.surface.clone();
         if let Albedo::Map(map) = &mut surface.albedo {
             *map = (0..count).map(|i| map[of(i)]).collect();
         }
@@ -81,9 +85,8 @@ impl Geometry {
 
     /// The picture from `v`, one repetition of the plane just in it, and for each pixel where in that it lies, if in it.
     pub fn look(&self, gpu: &mut Headless, v: DVec3) -> Result<(Seen, Vec<Option<[f64; 2]>>)> {
-        // Rows of samples end a cell before the next repetition: the middle one is between.
-        let target = [0, 1]
-            .map(|i| (self.repeats[i] / 2) as f64 * self.period_m[i] + 0.5 * self.period_m[i]);
+        // Any place is the middle of a repetition.
+        let target = [0, 1].map(|i| 0.5 * self.repeats[i] as f64 * self.period_m[i]);
         let mut camera = Camera {
             target_m: [target[0], target[1], self.middle_m],
             azimuth_rad: v.y.atan2(v.x),

@@ -16,9 +16,9 @@ pub fn read(folder: &Path) -> Result<HeightField> {
     files::read_heights(&folder.join("height/Moss001_1K_Displacement.png"), &options)
 }
 
-/// All of it as means over squares, 64 a side.
+/// All of it as means over squares, 32 a side.
 pub fn tile(folder: &Path) -> Result<Scene> {
-    const SIDE: usize = 64;
+    const SIDE: usize = 32;
     let whole = read(folder)?;
     let each = whole.cols() / SIDE;
     let mean = |i: usize| {

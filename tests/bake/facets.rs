@@ -1,6 +1,6 @@
 //! Fields seen from afar, held to what diffuse ground is: level, grooves of a closed form, energy, light and view exchanged.
 
-use std::f64::consts::{PI, SQRT_2};
+use std::f64::consts::PI;
 
 use glam::DVec3;
 use ridgelight::bake::{Angles, Brdf, Facets};
@@ -11,6 +11,8 @@ use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Scene, Surface, VisiblePoint, VisiblePoints,
 };
+
+use crate::groove::{groove_bound, groove_brdf};
 
 const ALBEDO: [f32; 3] = [0.8, 0.5, 0.0];
 
@@ -71,37 +73,6 @@ fn grooves() -> Scene {
     scene(2, 2 * WALL, |_, c| c.abs_diff(WALL) as f64)
 }
 
-/// The share of a wall, from its top, that a direction sees, and how much of the view it fills over its own plan; `side` 1 of
-/// the walls that look east, -1 of those that look west.
-///
-/// Over a length of plan w the wall fills w (z + side · x) of the view where it is not hidden. Once the other wall is turned
-/// away, |x| > z, both fill 2 w z together: this one's visible part is 2 z / (z + |x|), and that is its top.
-fn wall(e: DVec3, side: f64) -> [f64; 2] {
-    let share = (e.z + side * e.x).max(0.0);
-    let seen = if e.x.abs() > e.z { 2.0 * e.z / (e.z + e.x.abs()) } else { 1.0 };
-    [if share > 0.0 { seen } else { 0.0 }, share]
-}
-
-/// ρ = 1: of each wall what both see, min(u_l, u_v), half of the plan: f = 1/(π l_z v_z) Σ ½ min(u_l, u_v) s_l s_v n_z.
-fn groove_brdf(light: DVec3, view: DVec3) -> f64 {
-    let of = |side: f64| {
-        let ([u, s], [v, t]) = (wall(light, side), wall(view, side));
-        0.5 * u.min(v) * s * t / SQRT_2
-    };
-    (of(1.0) + of(-1.0)) / (PI * light.z * view.z)
-}
-
-/// The share u of a wall that is seen is counted in triangles, whose middles stand at (j + 1/3)/n and (j + 2/3)/n of n columns:
-/// off by ε = 1/3n at most. Where one of light and view sees all of a wall, what is off of the other's is scaled away; where
-/// both see a part, u_l u_v / min(u_l, u_v) = max(u_l, u_v) = U is counted: f is off by ε / (U - ε) of itself, and of a
-/// middle on the very edge by twice that.
-fn groove_bound(light: DVec3, view: DVec3) -> f64 {
-    let step = 1.0 / (3.0 * WALL as f64);
-    let of = |side: f64| wall(light, side)[0].max(wall(view, side)[0]);
-    let least = [of(1.0), of(-1.0)].into_iter().filter(|u| *u > 0.0).fold(1.0, f64::min);
-    if least < 1.0 { 2.0 * step / (least - step) } else { 0.0 }
-}
-
 #[test]
 fn grooves_reflect_as_their_closed_form() {
     let facets = facets(&grooves(), 1, above(100));
@@ -110,7 +81,7 @@ fn grooves_reflect_as_their_closed_form() {
     let (mut worst, mut caught, mut tight) = (0.0_f64, 0, 0);
     for (light, view) in (0..10_000).map(|i| (i / 100, i % 100)) {
         let known = f64::from(ALBEDO[0]) * groove_brdf(vectors[light], vectors[view]);
-        let allowed = known * (groove_bound(vectors[light], vectors[view]) + 1e-6);
+        let allowed = known * (groove_bound(WALL, vectors[light], vectors[view]) + 1e-6);
         let got = table.at(light, view)[0];
         let off = |got: f64| (got - known).abs() / allowed.max(1e-12);
         worst = worst.max(off(got));

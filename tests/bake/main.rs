@@ -4,6 +4,8 @@
 mod curved;
 mod ellipses;
 mod facets;
+#[path = "../groove/mod.rs"]
+mod groove;
 
 use glam::DVec3;
 use ridgelight::bake::{

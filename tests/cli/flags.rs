@@ -395,6 +395,9 @@ fn help_says_units_and_defaults() {
     ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let bake: &[(&str, &[&str])] = &[
+        ("--angles", &["2..64", "4..256", "[default: 8x16, with btf 3x8]"]),
+        ("--paths", &["1..4096", "[default: 256]"]),
+        ("--seed", &["[default: 0]"]),
         ("--what", &["the list below"]),
         ("--format", &["values in f32", "exr, png, npy, ktx2"]),
         ("--encoding", &["KIND=ENCODING", "default the first"]),
@@ -435,7 +438,7 @@ fn help_says_units_and_defaults() {
         ("trade", &[lit, trade]),
         ("render", &[shared, lit, render]),
         ("horizon", &[shared, horizon]),
-        ("bake", &[shared, bake]),
+        ("bake", &[shared, lit, bake]),
         ("plan", &[shared, lit, plan]),
         ("compare", &[compare]),
         ("devices", &[]),
@@ -457,7 +460,7 @@ fn help_says_units_and_defaults() {
         let has_albedo = help.out.contains("--albedo");
         assert_eq!(
             has_albedo,
-            ["render", "plan", "trade", "reference"].contains(&command),
+            ["render", "plan", "trade", "reference", "bake"].contains(&command),
             "{command} --albedo"
         );
     }

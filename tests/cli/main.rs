@@ -3,11 +3,14 @@
 
 mod auto;
 mod bake;
+mod bake_light;
 mod camera;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
 mod flags;
+#[path = "../groove/mod.rs"]
+mod groove;
 mod idle;
 mod inputs;
 mod light;

@@ -118,9 +118,10 @@ impl Job<'_> {
             used.push(("sh_order".into(), quality.sh_order.to_string()));
         }
         let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
-        if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
+        if is_light {
+            let bounces = self.lit.scatter.map_or(0, |scatter| scatter.bounces);
             used.retain(|(name, _)| name != "bounces");
-            used.push(("bounces".into(), scatter.bounces.to_string()));
+            used.push(("bounces".into(), bounces.to_string()));
         }
         if has(|name| name == "scatter" || name == "light-field") {
             let direct = kinds::direct_plan(&self.lit, limits)?.settings;
