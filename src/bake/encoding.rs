@@ -349,6 +349,16 @@ const SIX: Encoding = Encoding {
 pub static ELLIPSE: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..SIX }, SIX];
 
+const CURVED: Encoding = Encoding {
+    decoding: "layer k from 0 to 4, of a flat base, bent towards east outwards and inwards, towards north outwards and inwards: centre = \
+               (r, g), matrix xx = b, yy = a; xy of ellipses 0 to 3 = layer 5, of 4 = r of layer 6; linear in curvature between",
+    ..SIX
+};
+
+/// Of five ellipses, centre and symmetric matrix: 25 numbers in seven layers.
+pub static CURVED_ELLIPSE: [Encoding; 2] =
+    [Encoding { name: "f16", component: Component::F16, ..CURVED }, CURVED];
+
 /// Of rows and columns up to 65532, -1 for sky and -2 for ground: whole numbers that come back as they were.
 pub static POINTS: [Encoding; 1] = [Encoding {
     name: "unorm16",

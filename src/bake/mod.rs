@@ -37,8 +37,8 @@ pub use bent::BentNormal;
 pub use brdf::{Angles, Brdf, pairs};
 pub use curved::CurvedEllipses;
 pub use encoding::{
-    BENT_NORMAL, Bound, COEFFICIENTS, Component, ELLIPSE, Encoding, HORIZON, POINTS, RADIANCE,
-    REFLECTED, SHARE, TEXELS, encoding_named,
+    BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding, HORIZON,
+    POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
 };
 pub use facets::{DIRECTIONS_A_WORD, Facets, mask_bit};
 pub use factors::Factors;

@@ -46,7 +46,7 @@ impl Curvature {
     pub fn check(&self, field: &HeightField, border: Border) -> Result<()> {
         const NAME: &str = "curvature of the base";
         let shown = |of: &Self| {
-            format!("{:.4} towards east and {:.4} towards north, 1/m", of.per_m[0], of.per_m[1])
+            format!("{:.3e} towards east and {:.3e} towards north, 1/m", of.per_m[0], of.per_m[1])
         };
         if !self.per_m.iter().all(|k| k.is_finite()) {
             return Err(Error::setting(NAME, format!("{:?}", self.per_m), "two numbers, 1/m"));

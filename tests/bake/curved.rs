@@ -133,7 +133,7 @@ fn strong_bends_are_refused_by_name() {
     let limit: f64 = limit.parse().expect("a number");
     assert!((-0.1..0.0).contains(&limit), "{strong}");
     let changed = |k: f64| Curvature { per_m: [k; 2] }.changed(&field, Border::Periodic);
-    // Named to four places, and found to a part in 256.
+    // Named to four figures, and found to a part in 256.
     assert!(changed(0.99 * limit - 1e-4) <= 1.02 * Curvature::MOST_CHANGED, "{strong}");
     assert!(changed(1.01 * limit - 5e-4) > Curvature::MOST_CHANGED, "{strong}");
     assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));

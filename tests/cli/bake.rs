@@ -51,6 +51,14 @@ fn wrong_requests_are_told() {
         (with("--what ellipse --directions 3"), 2, &["directions: found 3", "4 to 4096"]),
         (with("--what ellipse --format png"), 2, &["found png with f16 of ellipse"]),
         (with("--what ellipse --memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
+        (with("--what curved-ellipse"), 2, &["--curvature: found none", "OUT[,IN]"]),
+        (with("--what curved-ellipse --curvature 1,2,3"), 2, &["--curvature", "OUT,IN"]),
+        (
+            with("--what curved-ellipse --curvature 0"),
+            2,
+            &["curvatures of ellipses: found 0 and 0"],
+        ),
+        (with("--what ellipse --curvature 1"), 2, &["--curvature: found 1,1", "curved-ellipse"]),
         (horizon("--paths 8"), 2, &["--paths: found 8", "scatter, brdf"]),
         (horizon("--seed 8"), 2, &["--seed: found 8"]),
         (with("--what scatter --angles 4x8"), 2, &["--angles: found 4x8", "btf or light-field"]),
@@ -172,6 +180,10 @@ fn gpu_every_file_is_there_and_told_of() {
     assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
     assert_eq!(sheets[0]["settings"]["azimuths"], 8);
     assert_eq!(sheets[2]["directions"].as_array().unwrap().len(), 9);
+    // A closed net of n points all over the sphere has 2 n - 4 triangles (Euler).
+    let net = map(&sheets[2], "visible-points")["triangles"].as_array().unwrap();
+    assert_eq!(net.len(), 14, "{net:?}");
+    assert!(net.iter().flat_map(|t| t.as_array().unwrap()).all(|i| i.as_u64().unwrap() < 9));
     assert!(sheets[0]["directions"].is_null() && sheets[2]["horizons"].is_null());
     assert_eq!(sheets[0]["settings"]["method"], "brute");
     // The hash is of the field, whatever is baked of it, and stands in what is written.

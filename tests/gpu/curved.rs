@@ -138,6 +138,7 @@ fn bends_are_refused_by_name() {
     }
     assert!(fitted([1e-3, 0.2]).is_some_and(|said| said.contains("curvature of the base")));
     let mut glossy = scene.clone();
+    glossy.surface.albedo = Albedo::Constant([0.8; 3]);
     glossy.surface.phong = Some(ridgelight::scene::Lobe::Constant(ridgelight::scene::Phong {
         exponent: 5.0,
         scale: 0.1,

@@ -18,6 +18,8 @@ use crate::Device;
 const AZIMUTHS: u32 = 8;
 const ORDER: usize = 3;
 const DIRECTIONS: usize = 8;
+/// Of radii of 100 and 400 km, outwards and inwards.
+const CURVATURES: [f64; 2] = [1e-5, 2.5e-6];
 
 /// A shader of `decoders/`, its decoder, and the constants that the written decoder has by name.
 struct Decoder {
@@ -83,7 +85,7 @@ fn count(_: &Encoding) -> Vec<(&'static str, Constant)> {
     vec![("SH_COUNT", Constant::Int((ORDER * ORDER) as i32))]
 }
 
-fn all() -> [Decoder; 8] {
+fn all() -> [Decoder; 9] {
     let horizon = |encoding: &Encoding| {
         let is_angle = encoding.name.ends_with("-angle");
         let scale = if is_angle { FRAC_PI_2 } else { 1.0 };
@@ -96,6 +98,10 @@ fn all() -> [Decoder; 8] {
         let octahedral = ("BENT_OCTAHEDRAL", Constant::Bool(is_octahedral));
         vec![octahedral, ("BENT_CONE_SCALE", Constant::Float(scale))]
     };
+    let curved = |_: &Encoding| {
+        let [outwards, inwards] = CURVATURES.map(Constant::Float);
+        vec![("CURVATURE_OUTWARDS", outwards), ("CURVATURE_INWARDS", inwards)]
+    };
     let (none, squared) = (|_: &Encoding| Vec::new(), ORDER * ORDER);
     [
         decoder!("horizon", "horizon", bake::HORIZON, true, AZIMUTHS as usize, horizon),
@@ -105,6 +111,7 @@ fn all() -> [Decoder; 8] {
         decoder!("sh_visibility", "sh-visibility", bake::COEFFICIENTS, true, squared, count),
         decoder!("sh_transfer", "sh-transfer", bake::COEFFICIENTS, true, squared, count),
         decoder!("ellipse", "ellipse", bake::ELLIPSE, true, 7, none),
+        decoder!("curved_ellipse", "curved-ellipse", bake::CURVED_ELLIPSE, true, 26, curved),
         decoder!("visible_points", "visible-points", bake::POINTS, true, 2 * DIRECTIONS + 1, none),
     ]
 }
@@ -134,6 +141,9 @@ fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serd
                 .iter()
                 .any(|d| d.kind == "ellipse")
                 .then_some(format!("--directions={DIRECTIONS}")),
+        )
+        .args(
+            wanted.iter().any(|d| d.kind == "curved-ellipse").then_some("--curvature=1e-5,2.5e-6"),
         )
         .args(["--border", border])
         .args(["--azimuths", &AZIMUTHS.to_string(), "--sh-order", &ORDER.to_string()])
@@ -271,6 +281,9 @@ fn decoders_keep_what_sheets_promise() {
             if decoder.kind == "ellipse" {
                 lit_as_told(&found, &truth, promised[0].2);
             }
+            if decoder.kind == "curved-ellipse" {
+                curved_as_told(&found, &truth, promised[0].2);
+            }
             if decoder.kind == "visible-points" {
                 shared_as_told(&found, &truth);
             }
@@ -305,6 +318,36 @@ fn lit_as_told(found: &[f32], truth: &Planes, share: f64) {
         if (ellipse.reach(light) - 1.0).abs() > 4.0 * share * (1.0 + place) {
             let is_lit = ellipse.holds(light);
             assert_eq!(found[6 * samples + i], f32::from(u8::from(is_lit)), "{i}: {ellipse:?}");
+            counts[usize::from(is_lit)] += 1;
+        }
+    }
+    assert!(counts[0] > 0 && counts[1] > 0, "{counts:?}");
+}
+
+/// The last plane is the test between five ellipses on a base bent by half of what they were fitted at: |adj P v| ≤ det P, but
+/// where what is promised of a number n may put it over the edge: three numbers move each of P's by 2 n at most and the
+/// centre's, so that |adj P v| is off by 2 n (|v| + 2 max P) of them and det P by 4 n max P.
+fn curved_as_told(found: &[f32], truth: &Planes, share: f64) {
+    let (samples, light) = (truth.rows * truth.cols, glam::DVec3::new(0.6, 0.48, 0.64));
+    let curvature =
+        ridgelight::scene::Curvature { per_m: [0.5 * CURVATURES[0], -0.5 * CURVATURES[1]] };
+    let mut counts = [0; 2];
+    for i in 0..samples {
+        let of = |plane: usize| f64::from(truth.planes[plane][i]);
+        let numbers = std::array::from_fn(|k| {
+            [of(4 * k), of(4 * k + 1), of(4 * k + 2), of(4 * k + 3), of(20 + k)]
+        });
+        let five = bake::CurvedEllipses { numbers, steps_per_m: CURVATURES };
+        let [x, y, xx, yy, xy] = five.at(curvature);
+        let v = [light.x - x, light.y - y];
+        let largest = numbers.iter().flatten().fold(0.0_f64, |m, n| m.max(n.abs()));
+        let (length, area) =
+            ((yy * v[0] - xy * v[1]).hypot(xx * v[1] - xy * v[0]), xx * yy - xy * xy);
+        let n = 2.0 * (share + 1e-6) * largest;
+        let off = 2.0 * n * (v[0].hypot(v[1]) + 4.0 * largest);
+        if (length - area).abs() > off && area.abs() > off {
+            let is_lit = five.holds(curvature, light);
+            assert_eq!(found[25 * samples + i], f32::from(u8::from(is_lit)), "{i}: {five:?}");
             counts[usize::from(is_lit)] += 1;
         }
     }

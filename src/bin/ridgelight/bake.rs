@@ -95,7 +95,8 @@ impl Job<'_> {
             all.push(horizon::plan_from(field, border, quality, limits, (0, most), false)?);
         }
         for of in self.of_directions() {
-            all.push((of.plan)(field, border, self.lit.around, limits)?);
+            let Lit { around, curvature, .. } = self.lit;
+            all.push((of.plan)(field, border, around, curvature, limits)?);
         }
         for making in &self.making {
             if let Source::Light(of) = making.source {
@@ -149,7 +150,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let (directions, angles) = (asked::directions(args)?, asked::angles(args)?);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
-        (w.kind.begin)(&Asked { border, quality, directions, angles, encoding, samples })
+        let curvature = args.curvature;
+        (w.kind.begin)(&Asked { border, quality, directions, angles, curvature, encoding, samples })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
     asked::check_uses(args, making.iter().map(|m| &m.source))?;
@@ -158,7 +160,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let limits = Limits::boundless(true, u64::MAX);
     let (quality, around) = (&quality, &directions);
     let seed = args.seed.unwrap_or(0);
-    let lit = Lit { scene: &scene, quality, limits, scatter, around, angles, seed };
+    let curvature = args.curvature;
+    let lit = Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed };
     let mut job = Job { lit, wanted, making };
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
@@ -204,7 +207,7 @@ fn bake(
     let (has_horizons, looks_along) = (job.has_horizons(), job.looks_along());
     let is_light = job.wanted.iter().any(|w| asked::is_light(w.kind));
     let Job { lit, wanted, making } = job;
-    let Lit { quality, around: directions, limits, .. } = lit;
+    let Lit { quality, around: directions, curvature, limits, .. } = lit;
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
     let hash = format!("{:016x}", field.hash(border));
     let count = wanted.len();
@@ -236,7 +239,7 @@ fn bake(
             Source::Horizons(_) => {}
             Source::Directions(of) => {
                 bar.set_message("baking: what samples see".to_owned());
-                let own = (of.plan)(field, border, directions, &limits)?;
+                let own = (of.plan)(field, border, directions, curvature, &limits)?;
                 let count = own.outputs().count();
                 plan.get_or_insert_with(|| own.clone());
                 let outputs = gpu.with_frame(own, &[field.heights_m()], |gpu, frame| {
@@ -244,7 +247,9 @@ fn bake(
                     let outputs = (0..count).map(|output| Ok(gpu.pixels(frame, output)?.values));
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
-                (of.take)(&Looked { field, border, directions, outputs: &outputs }, files)?;
+                let outputs = &outputs;
+                let looked = Looked { field, border, directions, curvature, outputs };
+                (of.take)(&looked, files)?;
             }
             Source::Light(of) => {
                 let kind = files.kind();

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::values::{grid, whole};
+use super::values::{curvatures, grid, whole};
 use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
 use crate::bake::{self, Format, Kind};
 
@@ -33,6 +33,10 @@ pub struct BakeArgs {
     /// whose size grows with the square [default: 8x16, with btf 3x8]
     #[arg(long, value_name = "TxP", value_parser = grid)]
     pub angles: Option<[usize; 2]>,
+    /// Curvatures that ellipses of curved-ellipse are fitted at, outwards and inwards, 1/m, each above 0; one number for both. Stronger
+    /// ones hold up to stronger bends and are less like what lies between; what would change what is seen is refused
+    #[arg(long, value_name = "OUT[,IN]", value_parser = curvatures)]
+    pub curvature: Option<[f64; 2]>,
     /// Paths of scattered light, [1..4096]: fewer are faster, and all samples that are alike are wrong alike [default: 256]
     #[arg(long, value_name = "N", value_parser = whole)]
     pub paths: Option<u32>,

@@ -32,6 +32,15 @@ pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
     colour(text).ok()
 }
 
+/// One number for both ways; the range is its taker's to check.
+pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
+    match numbers(text)?.as_slice() {
+        [both] => Ok([*both; 2]),
+        [outwards, inwards] => Ok([*outwards, *inwards]),
+        other => Err(format!("{} numbers, expected OUT or OUT,IN", other.len())),
+    }
+}
+
 /// A lobe as it is asked for.
 #[derive(Clone)]
 pub enum PhongArg {

@@ -56,6 +56,7 @@ Examples:
   ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
   ridgelight bake dem.tif --what horizon --encoding horizon=unorm16-sin -o baked
   ridgelight bake moss.png --what ellipse --directions 512 -o baked
+  ridgelight bake leather.png --border periodic --cell 0.001 --what curved-ellipse --curvature 20,5 -o baked
   ridgelight bake moss.png --border periodic --what sh-transfer --sh-order 3 -o baked
   ridgelight bake dem.tif --what horizon,sky-view,visible-sky --plan -o baked";
     text
@@ -115,9 +116,13 @@ pub fn quality(args: &BakeArgs) -> Result<Quality> {
     Ok(quality)
 }
 
-/// Of kinds that look along directions: ellipses spend none below horizontal.
+/// What is seen below horizontal counts, too: it may rise over it on a bent base.
+const LOOKS_BELOW: [&str; 2] = ["visible-points", "curved-ellipse"];
+
+/// Of kinds that look along directions: ellipses of flat bases spend none below horizontal.
 pub fn directions(args: &BakeArgs) -> Result<Directions> {
-    let looks_around = args.what.iter().any(|kind| kind.name == "visible-points" || is_light(kind));
+    let looks_around =
+        args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
     let lowest_z = if looks_around { -1.0 } else { 0.0 };
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
 }
@@ -165,6 +170,10 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             Err(Error::setting(name, value, format!("--what {by}, which alone have a use for it")))
         }
     };
+    if let Some([outwards, inwards]) = args.curvature {
+        let is_used = args.what.iter().any(|kind| kind.name == "curved-ellipse");
+        found("--curvature", format!("{outwards},{inwards}"), is_used, "curved-ellipse")?;
+    }
     if let Some([zeniths, azimuths]) = args.angles {
         found(
             "--angles",

@@ -5,6 +5,7 @@ mod bent_normal;
 mod brdf;
 mod brdf_factors;
 mod btf;
+mod curved_ellipse;
 mod ellipse;
 mod horizon;
 mod light_field;
@@ -26,7 +27,7 @@ use super::map::{Format, MapFiles};
 pub use afar::direct_plan;
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 13] = [
+pub static KINDS: [&Kind; 14] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
@@ -34,6 +35,7 @@ pub static KINDS: [&Kind; 13] = [
     &sh_visibility::KIND,
     &sh_transfer::KIND,
     &ellipse::KIND,
+    &curved_ellipse::KIND,
     &visible_points::KIND,
     &scatter::KIND,
     &brdf::KIND,
@@ -64,6 +66,8 @@ pub struct Asked<'a> {
     pub quality: &'a Quality,
     pub directions: &'a Directions,
     pub angles: Angles,
+    /// Outwards and inwards, 1/m.
+    pub curvature: Option<[f64; 2]>,
     pub encoding: &'static Encoding,
     /// Of the field.
     pub samples: usize,
@@ -129,10 +133,13 @@ impl Source {
     }
 }
 
+/// What a field's samples see in directions, on bases that are bent outwards and inwards by two curvatures, 1/m.
+pub type PlanOf = fn(&HeightField, Border, &Directions, Option<[f64; 2]>, &Limits) -> Result<Plan>;
+
 /// A kind that the device makes of what samples see in directions.
 #[derive(Clone, Copy)]
 pub struct OfDirections {
-    pub plan: fn(&HeightField, Border, &Directions, &Limits) -> Result<Plan>,
+    pub plan: PlanOf,
     /// Bytes a sample of what comes off the device and waits for files.
     pub bytes: fn(&Directions) -> u64,
     /// To files.
@@ -164,6 +171,8 @@ pub struct Lit<'a> {
     pub around: &'a Directions,
     /// Of lights and views.
     pub angles: Angles,
+    /// Of bent bases.
+    pub curvature: Option<[f64; 2]>,
     /// Of the pairs that a table is asked for between its angles.
     pub seed: u32,
 }
@@ -173,6 +182,7 @@ pub struct Looked<'a> {
     pub field: &'a HeightField,
     pub border: Border,
     pub directions: &'a Directions,
+    pub curvature: Option<[f64; 2]>,
     /// Components of each output, 32 bits each.
     pub outputs: &'a [Vec<f32>],
 }

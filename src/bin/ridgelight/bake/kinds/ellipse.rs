@@ -39,7 +39,9 @@ fn begin(_: &Asked) -> Result<Making> {
         constants: Vec::new(),
         ..Map::default()
     };
-    let of = OfDirections { plan: plan::ellipses, bytes: |_| 2 * 16 + 6 * 4, take };
+    let plan: super::PlanOf =
+        |field, border, directions, _, limits| plan::ellipses(field, border, directions, limits);
+    let of = OfDirections { plan, bytes: |_| 2 * 16 + 6 * 4, take };
     Ok(Making { map, source: Source::Directions(of) })
 }
 

@@ -33,15 +33,22 @@ fn begin(asked: &Asked) -> Result<Making> {
     };
     // Words, and the points made of them.
     let bytes = |directions: &Directions| 8 * directions.count() as u64;
-    let of = OfDirections { plan: plan::visible_points, bytes, take };
+    let plan: super::PlanOf = |field, border, directions, _, limits| {
+        plan::visible_points(field, border, directions, limits)
+    };
+    let of = OfDirections { plan, bytes, take };
     Ok(Making { map, source: Source::Directions(of) })
 }
 
 fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
-    let Looked { field, border, directions, outputs } = looked;
+    let Looked { field, border, directions, outputs, .. } = looked;
     let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
     let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
     let (samples, cols) = (field.rows() * field.cols(), field.cols());
+    // The net that a light lies in, of three directions: what `visible_share` of the decoder is told. Few directions span none.
+    if let Ok(net) = directions.triangles() {
+        files.tell("triangles", serde_json::json!(net.corners()));
+    }
     for direction in 0..directions.count() {
         let seen = |sample| match points.seen(direction, sample) {
             VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
