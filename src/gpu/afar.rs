@@ -95,14 +95,17 @@ impl Headless {
         limits: &Limits,
         take: &mut dyn FnMut(usize, Vec<[f64; 3]>) -> Result<()>,
     ) -> Result<()> {
-        let Some((points, scatter)) = scatter else {
-            return lights.into_iter().try_for_each(|light| take(light, facets.lit_from(light)));
-        };
+        let mut direct_alone =
+            || lights.clone().try_for_each(|light| take(light, facets.lit_from(light)));
+        let Some((points, scatter)) = scatter else { return direct_alone() };
         let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
+        // Level or black ground scatters nothing, and its plan asks for nothing.
+        let Some(direct) = plan.inputs().position(|(_, r)| r.name == "direct") else {
+            return direct_alone();
+        };
         let none = vec![[0.0; 3]; scene.field.heights_m().len()];
         let contents = plan::scatter_inputs(&plan, scene, points, &none)?;
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        let direct = plan.inputs().position(|(_, r)| r.name == "direct").expect("an input");
         self.with_frame(plan, &contents, |gpu, frame| {
             for light in lights {
                 let mut radiance = facets.lit_from(light);

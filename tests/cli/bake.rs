@@ -180,6 +180,10 @@ fn gpu_every_file_is_there_and_told_of() {
     assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
     assert_eq!(sheets[0]["settings"]["azimuths"], 8);
     assert_eq!(sheets[2]["directions"].as_array().unwrap().len(), 9);
+    // A closed net of n points all over the sphere has 2 n - 4 triangles (Euler).
+    let net = map(&sheets[2], "visible-points")["triangles"].as_array().unwrap();
+    assert_eq!(net.len(), 14, "{net:?}");
+    assert!(net.iter().flat_map(|t| t.as_array().unwrap()).all(|i| i.as_u64().unwrap() < 9));
     assert!(sheets[0]["directions"].is_null() && sheets[2]["horizons"].is_null());
     assert_eq!(sheets[0]["settings"]["method"], "brute");
     // The hash is of the field, whatever is baked of it, and stands in what is written.

@@ -45,6 +45,10 @@ fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
     let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
     let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
     let (samples, cols) = (field.rows() * field.cols(), field.cols());
+    // The net that a light lies in, of three directions: what `visible_share` of the decoder is told. Few directions span none.
+    if let Ok(net) = directions.triangles() {
+        files.tell("triangles", serde_json::json!(net.corners()));
+    }
     for direction in 0..directions.count() {
         let seen = |sample| match points.seen(direction, sample) {
             VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
