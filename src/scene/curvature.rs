@@ -26,8 +26,9 @@ const LEAST_RISE: f64 = 1e-9;
 impl Curvature {
     /// A flat base.
     pub const FLAT: Self = Self { per_m: [0.0; 2] };
-    /// The largest share of the hemisphere in which a sample may see something else than the flat field's visible points say,
-    /// in the mean over samples: where shadows are 1 to 2 % worse than on the flat field (`examples/shadows curved`).
+    /// The largest share of a hemisphere's light that a sample may receive from elsewhere than the flat field's visible points say,
+    /// in the mean over samples. Fitted: up to here adapted shadows of bent grooves are wrong of up to 2.2 % more lights than those
+    /// of flat ones, and well beyond it of 6 % and more (`examples/curved` finds it again).
     pub const MOST_CHANGED: f64 = 0.02;
     /// The least that a height may be drawn apart or pushed together by, 1 + curvature times height over the base.
     pub const LEAST_STRETCH: f64 = 0.25;
@@ -99,13 +100,14 @@ impl Curvature {
         ))
     }
 
-    /// In what share of the hemisphere a sample sees something else than the flat field's visible points say, in the mean over
-    /// samples: places that come to be hidden by nearer ones, and places that come out behind them.
+    /// From what share of the hemisphere, by the cosine to its normal, a sample receives light of something else than the flat
+    /// field's visible points say, in the mean over samples: of places that come to be hidden by nearer ones, and of places that come
+    /// out behind them.
     ///
     /// Along an azimuth a place is seen where it stands over all before it. Curvature lowers it by k d/2 or so, each by its own
     /// distance: a place is lost where it stood over those before it and stands under one, by as much as it stood over
-    /// them; one is laid open the other way round, by as much as it stands over them now. Of the sine of the elevation, whose
-    /// differences are shares of the hemisphere. Samples and azimuths are picked evenly; the field is looked at as far as
+    /// them; one is laid open the other way round, by as much as it stands over them now. Differences of the sine
+    /// of the elevation are shares of the hemisphere. Samples and azimuths are picked evenly; the field is looked at as far as
     /// it reaches, one that repeats for one repetition.
     pub fn changed(&self, field: &HeightField, border: Border) -> f64 {
         let samples = field.rows() * field.cols();
