@@ -49,7 +49,7 @@ pub struct Facets {
     slopes: Vec<[f64; 2]>,
     albedo: Vec<[f64; 3]>,
     words: Vec<u32>,
-    /// v_z / S(v) of each direction, infinite of those that show nothing; of a field that ends 1 instead.
+    /// v_z / S(v) of each direction, infinite of those that show no front of a triangle; else of a field that ends 1.
     scales: Vec<f64>,
     repeats: bool,
 }
@@ -130,9 +130,14 @@ impl Facets {
     }
 
     /// S(v) / v_z: what the triangles that are seen from a direction fill of the view, of what the plane does; 1 but for those
-    /// that are hidden in part.
+    /// that are hidden in part, 0 where it shows no front of a triangle.
     pub fn closure(&self, direction: usize) -> f64 {
         1.0 / self.scales[direction]
+    }
+
+    /// Whether a direction shows the front of any triangle.
+    pub fn shows(&self, direction: usize) -> bool {
+        self.scales[direction].is_finite()
     }
 
     /// Refuses what is no plane from afar.
@@ -158,10 +163,12 @@ impl Facets {
         let bit = 2 * (direction % DIRECTIONS_A_WORD);
         let words = &self.words[first..first + cells];
         let seen = (0..self.slopes.len()).filter(move |f| words[f / 2] >> (bit + f % 2) & 1 == 1);
-        seen.map(move |facet| {
+        let filled = seen.map(move |facet| {
             let [east, north] = self.slopes[facet];
-            (facet, (e.z - east * e.x - north * e.y).max(0.0))
-        })
+            (facet, e.z - east * e.x - north * e.y)
+        });
+        // Backs, which a field that ends may show, fill nothing: a direction that shows them alone has no scale.
+        filled.filter(|(_, share)| *share > 0.0)
     }
 
     /// Area of a triangle over that of its plan.
@@ -255,8 +262,8 @@ impl Facets {
             let whole = texel[3];
             if whole > 0.0 {
                 (0..3).for_each(|c| texel[c] /= whole);
+                texel[3] = whole * each * self.scales[view];
             }
-            texel[3] = whole * each * self.scales[view];
         }
         all
     }

@@ -261,6 +261,23 @@ fn textures_hold_what_is_seen() {
     }
 }
 
+/// A ramp that rises by 10 a cell towards the east and ends shows the east its backs alone: nothing is seen from there and
+/// nothing lit, 0 throughout and no quotient of zeros.
+#[test]
+fn backs_are_no_part_of_a_view() {
+    let mut scene = scene(4, 4, |_, c| 10.0 * c as f64);
+    scene.surface.border = Border::Plane;
+    let east = DVec3::new(1.0, 0.0, 1.0).normalize();
+    let two = Directions::from_vectors(vec![DVec3::Z, east], 0.0).expect("directions");
+    let facets = facets(&scene, 1, two);
+    assert_eq!([0, 1].map(|i| facets.shows(i)), [true, false]);
+    assert_eq!(facets.closure(1), 0.0);
+    let from_above = facets.lit_from(0);
+    assert!(from_above.iter().all(|l| l[0] > 0.0));
+    assert!(facets.texels_from(1, &from_above).into_iter().flatten().all(|v| v == 0.0));
+    assert!(facets.lit_from(1).into_iter().flatten().all(|v| v == 0.0));
+}
+
 #[test]
 fn what_is_no_plane_from_afar_is_refused() {
     let mut scene = waves();

@@ -6,10 +6,10 @@ use std::path::Path;
 use glam::DVec3;
 use serde_json::Value;
 
-use crate::Folder;
 use crate::common::npy;
 use crate::groove::{groove_bound, groove_brdf};
 use crate::needs_vulkan::{done, json};
+use crate::{Folder, refused};
 
 /// An array of f32 by NumPy's own description of the file: shape and values, the last axis the fastest.
 fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
@@ -219,4 +219,105 @@ fn gpu_scattered_light_tells_of_its_chance() {
     assert!(level[36..].iter().all(|v| *v == 0.0), "{level:?}");
     // The same seed is the same light.
     assert!(of("again", "--paths 64 --seed 2").1 == seeds[2]);
+}
+
+/// A ramp that rises towards the east by 10 a cell and ends: of θ 22.5° and 67.5° and four φ, those from the east see backs
+/// alone. They hold 0, not what zeros divided by each other are, which a note says.
+#[test]
+fn gpu_views_of_backs_hold_nothing() {
+    let folder = Folder::new();
+    write(&folder, "ramp.npy", [16, 16], |_, c| 10.0 * c as f32);
+    let words =
+        "bake ramp.npy -o out --what light-field,btf --angles 2x4 --bounces 0 --format npy,ktx2";
+    let run = folder.run(&words.split(' ').collect::<Vec<_>>());
+    assert_eq!(run.status, Some(0), "{}", run.err);
+    for kind in ["light-field", "btf"] {
+        let said =
+            format!("note: {kind}: 2 of 8 directions of --angles see nothing of the field's front");
+        assert!(run.err.contains(&said), "{}", run.err);
+    }
+    let sheet = json(&folder.path("out/bake.json"));
+    for (at, name) in ["light_field", "btf"].into_iter().enumerate() {
+        let (_, values) = load(&folder.path("out").join(format!("{name}.npy")));
+        assert!(values.iter().all(|v| v.is_finite()), "{name}");
+        // φ 0 of both zenith angles.
+        assert_eq!(sheet["maps"][at]["blind"], serde_json::json!([0, 4]), "{name}");
+        let last = &values[values.len() - 4 * 4 * 256..];
+        assert!(last[..4 * 256].iter().all(|v| *v == 0.0), "{name}");
+        assert!(last[4 * 256..].iter().any(|v| *v > 0.0), "{name}");
+    }
+}
+
+/// Settings are what was asked for, and parts' paths together; flags that change nothing are told with their own reasons; light
+/// beyond f16 is told of as that, and of f32 not at all.
+#[test]
+fn gpu_what_was_asked_of_scattered_light_is_told() {
+    let folder = Folder::new();
+    write(&folder, "field.npy", [6, 6], |r, c| ((r * 5 + c * 3) % 7) as f32 * 0.5);
+    let words = "bake field.npy --what scatter --paths 20 --seed 3 --directions 64 --sky 1e8 --format ktx2 -o";
+    let of = |more: &str| {
+        let run = folder.run(&format!("{words} {more}").split(' ').collect::<Vec<_>>());
+        assert_eq!(run.status, Some(0), "{}", run.err);
+        run.err
+    };
+    let said = of("half --lines exact --bounces 2 --bounce-engine pyramid");
+    for what in [
+        "--lines exact changes nothing with --method brute",
+        "--bounce-engine pyramid changes nothing for what is baked",
+        "f16 of .ktx2 holds no more, --encoding scatter=f32 does",
+    ] {
+        assert!(said.contains(what), "{said}");
+    }
+    let settings = &json(&folder.path("half/bake.json"))["settings"];
+    // Eight parts of three.
+    for (name, known) in [("paths", 20), ("paths_used", 24), ("seed", 3), ("bounces", 2)] {
+        assert_eq!(settings[name], known, "{name}");
+    }
+    assert_eq!(chance(&folder, "half")["paths"], 24);
+    assert_eq!(of("single --encoding scatter=f32"), "");
+    // Teeth of 30 over four cells: what faces the west is hidden in the middle of each triangle where the view is nearly level.
+    write(&folder, "teeth.npy", [4, 8], |_, c| 10.0 * (c % 4) as f32);
+    let words = "bake teeth.npy -o teeth --border periodic --what brdf --bounces 0 --angles 45x4";
+    let run = folder.run(&words.split(' ').collect::<Vec<_>>());
+    assert!(run.err.starts_with("ridgelight: --angles: found 45x4 with direction"), "{}", run.err);
+}
+
+#[test]
+fn what_light_cannot_be_baked_of_is_told() {
+    let folder = Folder::new();
+    write(&folder, "line.npy", [1, 9], |_, c| (c % 3) as f32);
+    folder.write("none.json", br#"{"quality": {"bounces": 0}}"#);
+    std::fs::create_dir(folder.path("damaged")).unwrap();
+    folder.write("damaged/bake.json", br#"{"maps": ["#);
+    std::fs::create_dir(folder.path("other")).unwrap();
+    folder.write("other/bake.json", br#"{"maps": [{"kind": "btf"}]}"#);
+    refused(
+        &folder,
+        &[
+            ("bake a.asc -o damaged --what sky-view", 1, &["damaged/bake.json", "maps"]),
+            ("bake a.asc -o other --what sky-view", 1, &["other/bake.json", "maps"]),
+            // The least that any driver of Vulkan 1.3 has here.
+            (
+                "bake a.asc -o out --what btf --angles 4x16 --plan",
+                1,
+                &["4096 layers", "2048", "--angles"],
+            ),
+            (
+                "bake a.asc -o out --what visible-points --directions 4096 --plan",
+                1,
+                &["--directions"],
+            ),
+            (
+                "bake a.asc -o out --what scatter --scene none.json",
+                1,
+                &["none.json", "quality.bounces"],
+            ),
+            ("bake line.npy -o out --what btf", 2, &["a field of 9 × 1,"]),
+            (
+                "bake line.npy -o out --border periodic --what btf --cell 1e-12",
+                2,
+                &["--cell: found 1e-12 × 1e-12"],
+            ),
+        ],
+    );
 }

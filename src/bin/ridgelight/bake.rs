@@ -78,6 +78,48 @@ impl Job<'_> {
         })
     }
 
+    /// Refuses a .ktx2 of more layers than an image of the device has.
+    fn check_layers(&self, limits: &Limits) -> Result<()> {
+        for (wanted, making) in self.wanted.iter().zip(&self.making) {
+            let layers = wanted.layers(&making.map);
+            let is_read = wanted.formats.contains(&Format::Ktx2) && making.map.is_array;
+            if !is_read || layers <= limits.image_layers as usize {
+                continue;
+            }
+            let flag = match &making.source {
+                Source::Horizons(_) => "--azimuths",
+                Source::Directions(_) => "--directions",
+                Source::Light(_) => "--angles",
+            };
+            let most = limits.image_layers;
+            return Err(Error::Limit {
+                what: format!("the .ktx2 of {}", wanted.kind.name),
+                needs: format!("{layers} layers"),
+                limit: format!("{most} on this device; fewer {flag} or --format npy fit"),
+            });
+        }
+        Ok(())
+    }
+
+    /// Why a flag changes nothing, where kinds of maps know better than plans.
+    fn idle_reason(&self, setting: &str) -> Option<String> {
+        let names: Vec<&str> = self.wanted.iter().map(|w| w.kind.name).collect();
+        let has_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
+        let is_of_bounces = setting.starts_with("bounce");
+        if is_of_bounces && !has_light {
+            return Some(format!("without a kind that scatters light: {}", asked::LIGHTS));
+        }
+        if is_of_bounces {
+            return Some("for what is baked: light is scattered along --paths".into());
+        }
+        (!self.has_horizons() && !self.has_direct()).then(|| format!("for {}", names.join(", ")))
+    }
+
+    /// Kinds that the scene's lights shine on.
+    fn has_direct(&self) -> bool {
+        self.wanted.iter().any(|w| ["scatter", "light-field"].contains(&w.kind.name))
+    }
+
     fn has_horizons(&self) -> bool {
         self.making.iter().any(|m| matches!(m.source, Source::Horizons(_)))
     }
@@ -88,6 +130,7 @@ impl Job<'_> {
 
     /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions and of light.
     fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
+        self.check_layers(limits)?;
         let (field, border) = (&self.lit.scene.field, self.lit.scene.surface.border);
         let mut all = Vec::new();
         if self.has_horizons() {
@@ -123,7 +166,18 @@ impl Job<'_> {
             used.retain(|(name, _)| name != "bounces");
             used.push(("bounces".into(), bounces.to_string()));
         }
-        if has(|name| name == "scatter" || name == "light-field") {
+        if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
+            // Plans tell of a part of them.
+            used.retain(|(name, _)| !["paths", "seed"].contains(&name.as_str()));
+            used.push(("paths".into(), scatter.paths.to_string()));
+            used.push(("seed".into(), scatter.seed.to_string()));
+            if has(|name| name == "scatter") {
+                used.push(("paths_used".into(), kinds::paths(&scatter).to_string()));
+            }
+        }
+        if self.has_direct() {
+            // How the light of paths is found is no method of horizons.
+            used.retain(|(name, _)| name != "method" || self.has_horizons());
             let direct = kinds::direct_plan(&self.lit, limits)?.settings;
             let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
             let more: Vec<_> = direct.into_iter().filter(is_new).collect();
@@ -179,9 +233,11 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     files::check_room(&room)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     job.lit.limits = limits;
+    job.check_layers(&limits)?;
     check_memory(job.host_bytes(&limits))?;
     let used = job.used(&limits)?;
-    idle::say(args.global.quiet, &args.quality.written, &used);
+    let why = |setting: &str| job.idle_reason(setting);
+    idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
     let made = std::fs::create_dir(&args.output);
     match &made {
         Err(error) if error.kind() != std::io::ErrorKind::AlreadyExists => {
@@ -261,6 +317,10 @@ fn bake(
     }
     let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
+    // A plan's are of a part.
+    metadata.retain(|(name, _)| {
+        !["paths", "seed"].contains(&name.as_str()) || used.iter().all(|(known, _)| known != name)
+    });
     let is_more = |name: &str| {
         ["azimuths", "sh_order"].contains(&name) || metadata.iter().all(|(known, _)| known != name)
     };
@@ -275,7 +335,7 @@ fn bake(
         if let Source::Horizons(maker) = source {
             maker.end(&normals, &mut files)?;
         }
-        if let Some(note) = files.note().filter(|_| !args.global.quiet) {
+        for note in files.notes().into_iter().filter(|_| !args.global.quiet) {
             // A closed stderr is no panic.
             let _ = bar.suspend(|| writeln!(std::io::stderr(), "{note}"));
         }
@@ -293,9 +353,9 @@ fn bake(
         sheet["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
     }
     let path = args.output.join(SHEET);
-    let before = told(&path);
+    let before = told(&path)?;
     files::write_json(&path, &sheet)?;
-    remove_old(&args.output, before);
+    remove_old(&args.output, before)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &sheet)?;
     }

@@ -11,8 +11,28 @@ pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)])
     }
 }
 
+/// The same where the command itself may know why.
+pub fn say_why(
+    quiet: bool,
+    written: &[(String, String)],
+    used: &[(String, String)],
+    why: &dyn Fn(&str) -> Option<String>,
+) {
+    if !quiet {
+        lines(written, used, why).iter().for_each(|line| tell(line));
+    }
+}
+
 /// A line for each.
 pub fn notes(written: &[(String, String)], used: &[(String, String)]) -> Vec<String> {
+    lines(written, used, &|_| None)
+}
+
+fn lines(
+    written: &[(String, String)],
+    used: &[(String, String)],
+    why: &dyn Fn(&str) -> Option<String>,
+) -> Vec<String> {
     let mut lines = Vec::new();
     for (setting, value) in written.iter().filter(|(s, _)| SETTINGS.contains(&s.as_str())) {
         let by_name = |(name, used): &(String, String)| {
@@ -21,7 +41,8 @@ pub fn notes(written: &[(String, String)], used: &[(String, String)]) -> Vec<Str
             name == setting && is_kept
         };
         if !used.iter().any(by_name) {
-            lines.push(line(setting, value, &reason(setting, used)));
+            let why = why(setting).unwrap_or_else(|| reason(setting, used));
+            lines.push(line(setting, value, &why));
         }
     }
     lines

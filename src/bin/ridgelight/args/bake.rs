@@ -7,7 +7,13 @@ use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
 use crate::bake::{self, Format, Kind};
 
 #[derive(Args)]
-#[command(after_help = bake::help())]
+#[command(
+    after_help = bake::help(),
+    mut_arg("bounces", |arg| arg.hide_default_value(true).help(
+        "Times that light may be reflected on its way to a sample, of kinds that scatter it, 0..64; 0 is direct light alone. Time \
+         in proportion [default: 3]"
+    ))
+)]
 pub struct BakeArgs {
     #[command(flatten)]
     pub input: Input,
@@ -29,8 +35,8 @@ pub struct BakeArgs {
     /// ellipses alone, else the whole sphere. More are finer, and each takes a word a sample on the device [default: 256]
     #[arg(long, value_name = "N")]
     pub directions: Option<usize>,
-    /// Zenith angles times azimuths of the lights and views of brdf, btf and light-field, each [2..64]x[4..256]: finer tables,
-    /// whose size grows with the square [default: 8x16, with btf 3x8]
+    /// Zenith angles times azimuths of the lights and views of brdf, btf and light-field, each [2..64]x[4..256], 4096
+    /// together: finer tables, whose size grows with the square [default: 8x16, with btf 3x8]
     #[arg(long, value_name = "TxP", value_parser = grid)]
     pub angles: Option<[usize; 2]>,
     /// Curvatures that ellipses of curved-ellipse are fitted at, outwards and inwards, 1/m, each above 0; one number for both. Stronger

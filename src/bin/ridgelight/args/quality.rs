@@ -108,6 +108,9 @@ pub struct QualityArgs {
     /// Every flag of the command that was written out, as its setting is called, and its first value.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
+    /// Whether --bounces were asked for, here or in a scene file.
+    #[arg(skip)]
+    pub has_bounces: bool,
 }
 
 impl QualityArgs {
@@ -120,6 +123,7 @@ impl QualityArgs {
             Some((id.to_owned(), value.to_string_lossy().into_owned()))
         });
         self.written = written.collect();
+        self.has_bounces = matches.value_source("bounces") == Some(ValueSource::CommandLine);
     }
 }
 

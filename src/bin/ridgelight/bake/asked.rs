@@ -127,6 +127,9 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
 }
 
+/// Those that scatter, in words.
+pub const LIGHTS: &str = "scatter, brdf, brdf-factors, btf or light-field";
+
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
     ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
@@ -135,11 +138,10 @@ pub fn is_light(kind: &Kind) -> bool {
 /// Scattered light, three bounces unless others are asked for, here or in a scene file; none where 0 are written out.
 pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
     let default = Scatter::default();
-    let is_asked = args.quality.written.iter().any(|(name, _)| name == "bounces");
-    let is_asked = is_asked || quality.bounces.count > 0;
-    let bounces = if is_asked { quality.bounces.count } else { default.bounces };
-    let paths = args.paths.unwrap_or(256);
-    (bounces > 0).then_some(Scatter { bounces, paths, seed: args.seed.unwrap_or(0), ..default })
+    let bounces = if args.quality.has_bounces { quality.bounces.count } else { default.bounces };
+    let (paths, seed) = (args.paths.unwrap_or(256), args.seed.unwrap_or(0));
+    let cutoff = quality.bounces.cutoff;
+    (bounces > 0).then_some(Scatter { bounces, paths, cutoff, seed, ..default })
 }
 
 /// Of lights and views: fewer where there is a picture of each pair.
@@ -182,10 +184,9 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             "brdf, brdf-factors, btf or light-field",
         )?;
     }
-    let all = "scatter, brdf, brdf-factors, btf or light-field";
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
         if let Some(value) = value {
-            found(name, value.to_string(), has_light, all)?;
+            found(name, value.to_string(), has_light, LIGHTS)?;
         }
     }
     if has_light && args.surface.phong.is_some() {

@@ -7,17 +7,34 @@ use ridgelight::{Error, Result, files};
 use super::SHEET;
 use super::map::Wanted;
 
-/// The kinds that a sheet tells of, each with its files; of what is no sheet nothing.
-pub fn told(sheet: &Path) -> Vec<(String, Vec<String>)> {
-    let text = std::fs::read(sheet).unwrap_or_default();
-    let sheet: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
-    let word = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
-    let maps = sheet["maps"].as_array().into_iter().flatten();
-    maps.map(|map| {
-        let files = map["files"].as_array().into_iter().flatten();
-        (word(&map["kind"]), files.map(|file| word(&file["file"])).collect())
+/// A kind and its files.
+type Told = (String, Vec<String>);
+
+/// The kinds that a sheet tells of, each with its files; none where there is no sheet.
+///
+/// # Errors
+/// One that cannot be read, or does not tell: what lies beside it is unknown.
+pub fn told(path: &Path) -> Result<Vec<Told>> {
+    let text = match std::fs::read(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        text => text.map_err(|source| Error::Io { path: path.to_owned(), source })?,
+    };
+    let kinds = serde_json::from_slice(&text).ok().and_then(|sheet| kinds(&sheet));
+    kinds.ok_or_else(|| Error::File {
+        path: path.to_owned(),
+        place: "maps".into(),
+        found: "no list of kinds and their files".into(),
+        expected: "what a bake wrote, whole, or a folder without this file".into(),
     })
-    .collect()
+}
+
+fn kinds(sheet: &serde_json::Value) -> Option<Vec<Told>> {
+    let word = |value: &serde_json::Value| value.as_str().map(str::to_owned);
+    let of = |map: &serde_json::Value| {
+        let files = map["files"].as_array()?.iter().map(|file| word(&file["file"]));
+        Some((word(&map["kind"])?, files.collect::<Option<_>>()?))
+    };
+    sheet["maps"].as_array()?.iter().map(of).collect()
 }
 
 /// Where files go: a folder that is there, or can be made. A bake of other kinds there would lose its sheet.
@@ -25,7 +42,7 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
     let shown = || path.display().to_string();
     if path.is_dir() {
         let is_other = |kind: &String| wanted.iter().all(|w| w.kind.name != kind);
-        let told = told(&path.join(SHEET));
+        let told = told(&path.join(SHEET))?;
         if let Some((kind, _)) = told.iter().find(|(kind, _)| is_other(kind)) {
             let found = format!("{} with {kind} in its {SHEET}", shown());
             let expected = "a folder without another bake, or all its kinds among --what";
@@ -59,9 +76,9 @@ pub fn parent(path: &Path) -> &Path {
 }
 
 /// Removes what an earlier bake told of and this one does not: azimuths beyond the last, other formats.
-pub fn remove_old(folder: &Path, before: Vec<(String, Vec<String>)>) {
+pub fn remove_old(folder: &Path, before: Vec<Told>) -> Result<()> {
     let now: Vec<String> =
-        told(&folder.join(SHEET)).into_iter().flat_map(|(_, files)| files).collect();
+        told(&folder.join(SHEET))?.into_iter().flat_map(|(_, files)| files).collect();
     for (kind, names) in before {
         let is_own = |name: &&String| name.starts_with(&kind.replace('-', "_"));
         for name in names.iter().filter(is_own).filter(|name| !now.contains(name)) {
@@ -71,6 +88,7 @@ pub fn remove_old(folder: &Path, before: Vec<(String, Vec<String>)>) {
             }
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene
 
 use super::map::{Format, MapFiles};
 pub use afar::direct_plan;
+pub use scatter::paths;
 
 /// All of them, as --help lists them.
 pub static KINDS: [&Kind; 14] = [

@@ -9,6 +9,7 @@ use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use serde_json::{Value as Json, json};
 
+use super::asked;
 use super::kinds::{Kind, Map};
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -49,7 +50,7 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    fn layers(&self, map: &Map) -> usize {
+    pub fn layers(&self, map: &Map) -> usize {
         map.planes.len().div_ceil(self.encoding.values)
     }
 
@@ -135,6 +136,7 @@ pub struct MapFiles<'a> {
     /// Values beyond their stated range, and the most that one was.
     beyond: (u64, f64),
     told: Vec<(&'static str, Json)>,
+    remarks: Vec<String>,
 }
 
 impl<'a> MapFiles<'a> {
@@ -181,8 +183,9 @@ impl<'a> MapFiles<'a> {
         });
         let open = open.collect::<Result<_>>()?;
         let folder = folder.to_owned();
-        let told = Vec::new();
-        Ok(Self { wanted, map, field, folder, texts, open, taken: 0, beyond: (0, 0.0), told })
+        let (told, remarks) = (Vec::new(), Vec::new());
+        let (taken, beyond) = (0, (0, 0.0));
+        Ok(Self { wanted, map, field, folder, texts, open, taken, beyond, told, remarks })
     }
 
     /// As `--what` calls it.
@@ -193,6 +196,11 @@ impl<'a> MapFiles<'a> {
     /// Says something more of the kind in the sheet.
     pub fn tell(&mut self, name: &'static str, what: Json) {
         self.told.push((name, what));
+    }
+
+    /// Says something more of the kind to who waits.
+    pub fn remark(&mut self, what: String) {
+        self.remarks.push(format!("note: {}: {what}", self.wanted.kind.name));
     }
 
     /// The field's, of a map with a texel a sample.
@@ -312,21 +320,31 @@ impl<'a> MapFiles<'a> {
         (texels, picture)
     }
 
-    /// A line on values beyond their range, where there are any.
-    pub fn note(&self) -> Option<String> {
+    /// Lines on what was remarked, and on values beyond their range.
+    pub fn notes(&self) -> Vec<String> {
+        let mut all = self.remarks.clone();
         let (count, most) = self.beyond;
-        (count > 0).then(|| {
-            let kind = self.wanted.kind.name;
-            let ends = match self.wanted.encoding.component.is_normalised() {
-                true if self.has(Format::Ktx2) || self.has(Format::Png) => {
-                    ", whose end is in .ktx2 and .png"
-                }
-                _ => "",
-            };
-            format!(
-                "note: {kind}: {count} values lie beyond their range{ends}, by up to {most:.2e}: few azimuths for such slopes"
-            )
-        })
+        if count == 0 {
+            return all;
+        }
+        let (kind, component) = (self.wanted.kind.name, self.wanted.encoding.component);
+        let ends = match component.is_normalised() {
+            true if self.has(Format::Ktx2) || self.has(Format::Png) => {
+                ", whose end is in .ktx2 and .png"
+            }
+            _ => "",
+        };
+        let cause = match asked::is_light(self.wanted.kind) {
+            true if component == Component::F16 => {
+                format!("f16 of .ktx2 holds no more, --encoding {kind}=f32 does")
+            }
+            true => "more than f32 holds".to_owned(),
+            false => "few azimuths for such slopes".to_owned(),
+        };
+        all.push(format!(
+            "note: {kind}: {count} values lie beyond their range{ends}, by up to {most:.2e}: {cause}"
+        ));
+        all
     }
 
     /// Puts all files at their places, and says what they are; `metadata` is for those that keep it.

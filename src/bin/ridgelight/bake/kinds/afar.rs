@@ -2,18 +2,20 @@
 
 use std::ops::Range;
 
-use ridgelight::bake::{Angles, DIRECTIONS_A_WORD, Facets};
+use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Encoding, Facets};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Picture, Plan};
-use ridgelight::scene::{Bounces, Directions, HeightField, Quality};
-use ridgelight::{Result, plan};
+use ridgelight::scene::{Border, Bounces, Directions, HeightField, Quality};
+use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
 use super::super::map::MapFiles;
 use super::{Lit, Say, Value};
 
-/// What f16 holds.
-pub const RADIANCES: [f64; 2] = [0.0, 65_504.0];
+/// The most that the components hold.
+pub fn largest(encoding: &Encoding) -> f64 {
+    if encoding.component == Component::F16 { 65_504.0 } else { f64::from(f32::MAX) }
+}
 
 /// Triangles that a small field is cut into: their middles decide for them what is hidden.
 const FACETS: usize = 1 << 17;
@@ -34,14 +36,15 @@ pub fn constants(prefix: &str, angles: Angles) -> Vec<String> {
 }
 
 /// A texel of a picture that a view sees.
-pub fn texel(about: &'static str, unit: &'static str) -> Vec<Value> {
-    let colour = |name| Value { name, about, unit, range: RADIANCES };
+pub fn texel(about: &'static str, unit: &'static str, encoding: &Encoding) -> Vec<Value> {
+    let range = [0.0, largest(encoding)];
+    let colour = |name| Value { name, about, unit, range };
     let share = Value {
         name: "share",
         about: "of the view over the texel's own cell, slope, foreshortening and masking counted: cos θ in the mean where the \
                 field repeats",
         unit: "",
-        range: RADIANCES,
+        range,
     };
     vec![colour("red"), colour("green"), colour("blue"), share]
 }
@@ -77,9 +80,26 @@ pub fn bytes(lit: &Lit, directions: usize) -> u64 {
     (of_facets + of_samples) as u64
 }
 
+/// The field as its triangles are cut, whose own size and cells are told where it cannot be.
+fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
+    let (times, [cols, rows]) = (times(field), [field.cols(), field.rows()]);
+    if border != Border::Periodic && cols.min(rows) < 2 {
+        let found = format!("a field of {cols} × {rows}");
+        return Err(Error::setting("triangles", found, "2 × 2 samples or more"));
+    }
+    field.finer(border, times).map_err(|error| match error {
+        Error::Setting { name, expected, .. } if name == "cell size" => {
+            let [east, north] = field.cell_m();
+            let found = format!("{east:?} × {north:?}");
+            Error::setting(name, found, format!("{expected}, {times} times finer, too"))
+        }
+        other => other,
+    })
+}
+
 pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
-    let finer = field.finer(border, times(field))?;
+    let finer = finer(field, border)?;
     let mut all = vec![plan::facet_mask(&finer, border, &lit.angles.directions()?, limits)?];
     if let Some(scatter) = &lit.scatter {
         all.push(plan::visible_points(field, border, lit.around, limits)?);
@@ -124,14 +144,24 @@ pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
             "are": "θ from straight above, φ counter-clockwise from east; direction k · phis + j, east, north, up, is of θ k and φ j",
         }),
     );
-    let closures = (0..facets.directions().count()).map(|i| facets.closure(i));
+    let count = facets.directions().count();
+    let (shown, blind): (Vec<usize>, Vec<usize>) = (0..count).partition(|i| facets.shows(*i));
+    if !blind.is_empty() {
+        files.remark(format!(
+            "{} of {count} directions of --angles see nothing of the field's front: views from there hold 0, lights from there \
+             bring nothing",
+            blind.len()
+        ));
+        files.tell("blind", json!(blind));
+    }
+    let closures = shown.into_iter().map(|i| facets.closure(i));
     let worst = closures.map(|c| (c - 1.0).abs()).fold(0.0, f64::max);
     files.tell(
         "triangles",
         json!({
             "finer": facets.times(), "count": facets.count(), "worst_closure": worst,
             "are": "flat, seen or hidden as their middles are; worst_closure is how far what they fill of a view was off what \
-                    the plane does, before it was scaled to that",
+                    the plane does, before it was scaled to that, of directions that see any; the others' numbers are blind's",
         }),
     );
     let scatter = match lit.scatter {

@@ -44,7 +44,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
                 light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/sr",
-        range: afar::RADIANCES,
+        range: [0.0, afar::largest(asked.encoding)],
     };
     let map = Map {
         planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
@@ -69,7 +69,13 @@ pub fn table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<(Brdf, Facets)> 
     let directions = lit.angles.directions()?;
     let count = directions.count();
     let facets = afar::facets(gpu, lit, &directions, say)?;
-    facets.check()?;
+    facets.check().map_err(|error| match error {
+        Error::Setting { name, found, expected } if name.starts_with("direction ") => {
+            let angles = format!("{}x{}", lit.angles.zeniths, lit.angles.azimuths);
+            Error::setting("--angles", format!("{angles} with {name}, {found}"), expected)
+        }
+        other => other,
+    })?;
     let mut values = Vec::with_capacity(count * count);
     afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));

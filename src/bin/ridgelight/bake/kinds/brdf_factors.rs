@@ -29,12 +29,13 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("{COUNT} angles or more, one a factor"),
         ));
     }
+    let largest = afar::largest(asked.encoding);
     let value = |name| Value {
         name,
         about: "of a function of one direction: the table is the sum over layers of its values for the light and for the view; \
                 texel (j, k) is of θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/√sr",
-        range: [-65_504.0, 65_504.0],
+        range: [-largest, largest],
     };
     let mut constants = afar::constants("BRDF", angles);
     constants.push(format!("const int BRDF_FACTORS = {COUNT};"));

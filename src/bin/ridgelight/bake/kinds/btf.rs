@@ -26,6 +26,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         values: texel(
             "of what leaves the texel towards the view under a light of irradiance 1 facing it; 0 where the view sees none of it",
             "1/sr",
+            asked.encoding,
         ),
         is_array: true,
         constants: afar::constants("BTF", asked.angles),

@@ -22,7 +22,11 @@ fn begin(asked: &Asked) -> Result<Making> {
         planes: (0..count)
             .flat_map(|view| ["R", "G", "B", "share"].map(|c| format!("light_field.{view:04}.{c}")))
             .collect(),
-        values: texel("of what leaves the texel; 0 where the view sees none of it", "radiance"),
+        values: texel(
+            "of what leaves the texel; 0 where the view sees none of it",
+            "radiance",
+            asked.encoding,
+        ),
         is_array: true,
         constants: afar::constants("LIGHT_FIELD", asked.angles),
         ..Map::default()

@@ -20,8 +20,9 @@ pub static KIND: Kind = Kind {
 /// Parts of the paths, each with directions of its own order, whose spread tells of chance.
 const PARTS: u32 = 8;
 
-fn begin(_: &Asked) -> Result<Making> {
-    let value = |name, about| Value { name, about, unit: "radiance", range: afar::RADIANCES };
+fn begin(asked: &Asked) -> Result<Making> {
+    let range = [0.0, afar::largest(asked.encoding)];
+    let value = |name, about| Value { name, about, unit: "radiance", range };
     let light = "what leaves diffuse ground: direct light and all bounces";
     let error = "one standard error of it by the paths alone, from eight parts of them; samples alike err alike";
     let map = Map {
@@ -41,6 +42,11 @@ fn begin(_: &Asked) -> Result<Making> {
     };
     let of = OfLight { plans, bytes: |lit| lit.scene.field.heights_m().len() as u64 * 200, make };
     Ok(Making { map, source: Source::Light(of) })
+}
+
+/// Paths of all parts: as many as are asked for, or a few more.
+pub fn paths(scatter: &Scatter) -> u32 {
+    scatter.paths.div_ceil(PARTS) * PARTS
 }
 
 /// Of each part as many paths, together as many as are asked for or a few more.
@@ -96,7 +102,7 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let count = values().count() as f64;
     let mean = |of: &dyn Fn(&[f64; 2]) -> f64| values().map(of).sum::<f64>() / count;
     let light = planes[0].iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / count;
-    let paths = part(lit, 0)?.paths * PARTS;
+    let paths = lit.scatter.as_ref().map(paths);
     files.tell(
         "chance",
         json!({
