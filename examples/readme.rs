@@ -110,7 +110,7 @@ fn camera() -> Result<String> {
     let of = |key| figures.number(&figures.all, key);
     let (lit, drawn) = (of("lit_ms")?, of("drawn_ms")?);
     let mut out =
-        String::from("![A mountain range under a low sun, from above](docs/terrain.png)\n\n");
+        String::from("![A mountain range under a low sun, from a camera](docs/terrain.png)\n\n");
     writeln!(
         out,
         "Mt Washington and the Presidential Range, {} × {} samples (SRTM), under the bundled sky and a low sun, {} azimuths and \

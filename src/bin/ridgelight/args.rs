@@ -116,7 +116,8 @@ pub enum Command {
     Trade(TradeArgs),
     /// The truth, slowly: light paths with all bounces, and how far off they may still be
     Reference(ReferenceArgs),
-    /// Maps for engines, of ground that does not move: horizons, sky view, bent normals, harmonics
+    /// Maps for engines, of ground that does not move: horizons, sky view, bent normals, harmonics,
+    /// scattered light, BRDFs
     Bake(BakeArgs),
     /// A window: look around, move the sun, try methods
     View(ViewArgs),
