@@ -113,7 +113,9 @@ fn rows(program: &Path, work: &Path, folder: Option<&Path>) -> Result<()> {
             let mut truth = [Vec::new(), Vec::new()];
             for (truth, seed) in truth.iter_mut().zip(["71", "72"]) {
                 let out = work.join("truth.exr");
-                of("reference", &["--spp", PATHS, "--seed", seed], &out)?;
+                if let Some(why) = of("reference", &["--spp", PATHS, "--seed", seed], &out)? {
+                    return Err(why.into());
+                }
                 *truth = light(&out)?;
             }
             for most in ERRORS {

@@ -22,7 +22,7 @@ layout(constant_id = 3) const int SHADE_LEVELS = 0;
 layout(constant_id = 4) const bool GREY = false;
 // The cosine is exact; else three bands of it, and four Legendre coefficients a slice.
 layout(constant_id = 5) const bool IS_PLANE = true;
-// Samples from node to node: 1, 2 or 4.
+// Samples from node to node: 1, 2, 4 or 8.
 layout(constant_id = 6) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;

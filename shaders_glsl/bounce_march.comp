@@ -20,7 +20,7 @@ layout(constant_id = 2) const bool THIN_COLS = false;
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 // Radiance of one channel.
 layout(constant_id = 4) const bool GREY = false;
-// Samples from node to node: 1, 2 or 4.
+// Samples from node to node: 1, 2, 4 or 8.
 layout(constant_id = 5) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D cells;

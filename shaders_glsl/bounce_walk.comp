@@ -17,7 +17,7 @@ layout(constant_id = 1) const uint BORDER = 0u;
 layout(constant_id = 2) const bool MARCHES_ROWS = false;
 // Radiance of one channel.
 layout(constant_id = 3) const bool GREY = false;
-// Samples from node to node: 1, 2 or 4.
+// Samples from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
 // From which nodes: all, or those of every second lane and of the last, of which every second along and the last keep
 // what is seen for later bounces, or those of the other lanes. Whole lanes, as steps side by side walk alike.

@@ -65,7 +65,7 @@ float away_of(ivec2 here, ivec2 there, float own, vec3 e) {
         bool up = (by_rows ? pace.y : pace.x) > 0.0;
         int first = up ? (gap.x < 0 ? gap.x + size.x : gap.x) : (gap.x > 0 ? gap.x - size.x : gap.x);
         float least = 1e38;
-        for (int k = 0; k <= REACH / size.x; k++) {
+        for (int k = 0; k <= max(REACH / size.x, 1); k++) {
             int main_gap = first + (up ? k : -k) * size.x;
             float turns = floor((float(main_gap) * side - float(gap.y)) / float(size.y) + 0.5);
             vec2 gaps = vec2(main_gap, float(gap.y) + turns * float(size.y));

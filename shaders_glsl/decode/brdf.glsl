@@ -10,7 +10,7 @@ vec3 brdf(sampler2D map, vec2 light, vec2 view) {
     for (int i = 0; i < 16; i++) {
         vec4 corner = floor(place) + vec4(i & 1, i >> 1 & 1, i >> 2 & 1, i >> 3);
         vec4 share = max(1.0 - abs(place - corner), 0.0);
-        corner = vec4(min(corner.x, size.x - 1.0), mod(corner.y, size.y), min(corner.z, size.x - 1.0), mod(corner.w, size.y));
+        corner = vec4(min(corner.x, size.x - 1.0), mod(corner.y + 0.5, size.y), min(corner.z, size.x - 1.0), mod(corner.w + 0.5, size.y));
         ivec2 at = ivec2(corner.zx) * BRDF_PHIS + ivec2(corner.wy);
         sum += share.x * share.y * share.z * share.w * texelFetch(map, at, 0).rgb;
     }

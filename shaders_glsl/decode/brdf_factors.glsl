@@ -6,8 +6,8 @@ vec3 brdf_factor(sampler2DArray map, int k, vec2 e) {
     vec2 place = e.yx * size * vec2(0.159154943, 0.636619772) - vec2(0.0, 0.5);
     place.y = clamp(place.y, 0.0, size.y - 1.0);
     vec2 low = floor(place);
-    vec2 next = vec2(mod(low.x + 1.0, size.x), min(low.y + 1.0, size.y - 1.0));
-    ivec4 at = ivec4(mod(low.x, size.x), low.y, next);
+    vec2 next = vec2(mod(low.x + 1.5, size.x), min(low.y + 1.0, size.y - 1.0));
+    ivec4 at = ivec4(mod(low.x + 0.5, size.x), low.y, next);
     vec3 north = mix(texelFetch(map, ivec3(at.xy, k), 0).rgb, texelFetch(map, ivec3(at.zy, k), 0).rgb, place.x - low.x);
     vec3 south = mix(texelFetch(map, ivec3(at.xw, k), 0).rgb, texelFetch(map, ivec3(at.zw, k), 0).rgb, place.x - low.x);
     return mix(north, south, place.y - low.y);

@@ -90,6 +90,10 @@ impl Angles {
 /// Twice as many as [`Directions::COUNT`] holds, or none.
 pub fn pairs(count: usize, seed: u32) -> Result<Directions> {
     const ROOT: f64 = 1.167_303_978_261_418_7;
+    let most = Directions::COUNT.end() / 2;
+    if !(1..=most).contains(&count) {
+        return Err(Error::setting("pairs", count.to_string(), format!("1 to {most}")));
+    }
     let begin = f64::from(seed) * 2_f64.sqrt();
     let place = |i: usize, axis: i32| (begin + (i + 1) as f64 / ROOT.powi(axis)).fract();
     let of = |i: usize, axis: i32| {

@@ -17,7 +17,8 @@ use crate::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
 
 /// No way turns the frame by more than a right angle, radians.
 pub const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
-/// How far what a repeating field shows is looked for, columns or rows along which the direction runs faster.
+/// How far what a repeating field shows is looked for, columns or rows along which the direction runs faster; one repetition
+/// beyond the nearest at least.
 pub const REACH_CELLS: i64 = 128;
 
 /// Towards what stands `away` m off along `e` on the flat field, from a sample at height `own_m`: of length 1, in the
@@ -82,7 +83,7 @@ pub fn ways(field: &HeightField, border: Border, [here, there]: [usize; 2], e: D
     let (ahead, side) =
         if by_rows { (pace[1], pace[0] / pace[1]) } else { (pace[0], pace[1] / pace[0]) };
     let first = if ahead > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) };
-    let each = (0..=REACH_CELLS / size).flat_map(|k| {
+    let each = (0..=(REACH_CELLS / size).max(1)).flat_map(|k| {
         let main = first + if ahead > 0.0 { k * size } else { -k * size };
         let turns = (main as f64 * side - other_gap as f64) / other_size as f64;
         // The nearer of two rows or columns of repetitions; the other where roundings may tell.

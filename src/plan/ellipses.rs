@@ -50,7 +50,7 @@ pub fn curved_ellipses(
     [outwards, inwards]: [f64; 2],
     limits: &Limits,
 ) -> Result<Plan> {
-    if ![outwards, inwards].iter().all(|k| *k > 0.0 && k.is_finite()) {
+    if ![outwards, inwards].iter().all(|k| *k > 0.0 && (*k as f32).is_normal()) {
         let found = format!("{outwards} and {inwards}");
         return Err(Error::setting("curvatures of ellipses", found, "two numbers above 0, 1/m"));
     }

@@ -28,7 +28,8 @@ pub struct ViewOptions {
     /// column. The light is not reduced. Larger: faster, and off by [`surface_error_m`].
     pub mesh_step: u32,
     /// Radiance, linear RGB, where neither ground nor sky is seen: below horizontal, unless the border is `open`.
-    /// An environment is seen there, too, and added.
+    /// An environment is seen there, too, and added. Also in place of a sky whose radiance the device alone knows
+    /// ([`Picture::colours_on_device`](super::Picture::colours_on_device)).
     pub background: [f32; 3],
 }
 
@@ -116,7 +117,7 @@ impl View {
             settings: settings(camera, options),
             terrain: TerrainDrawPush { tiles_across: across as i32, ..terrain },
             tiles: across * down,
-            sky: sky(scene, camera, options, surface.border),
+            sky: sky(scene, camera, options, lit.find("light_colours").is_some()),
             depths,
         };
         let bytes = view.bytes();
@@ -272,7 +273,8 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
     }
 }
 
-fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, border: Border) -> SkyDrawPush {
+/// `is_on_device`: the device alone knows the sky's radiance.
+fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, is_on_device: bool) -> SkyDrawPush {
     let [right, up, back] = camera.axes();
     let half_m = match camera.lens {
         Lens::Perspective { fov_rad } => (fov_rad / 2.0).tan(),
@@ -280,11 +282,13 @@ fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, border: Border) ->
     };
     let four = |v: DVec3| v.extend(0.0).as_vec4().to_array();
     let colour = |c: [f32; 3]| [c[0], c[1], c[2], 0.0];
-    let above = scene.lights.sky.unwrap_or(match scene.lights.environment {
-        Some(_) => [0.0; 3],
-        None => options.background,
-    });
-    let below = if border == Border::Open { above } else { options.background };
+    let above = match (scene.lights.sky, &scene.lights.environment) {
+        (Some(sky), _) if !is_on_device => sky,
+        (None, Some(_)) => [0.0; 3],
+        _ => options.background,
+    };
+    let is_open = scene.surface.border == Border::Open;
+    let below = if is_open { above } else { options.background };
     let turns = scene.lights.environment.as_ref().map_or(0.0, |e| e.rotation_rad() / TAU);
     SkyDrawPush {
         forward: four(-back),

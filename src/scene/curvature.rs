@@ -175,14 +175,16 @@ impl Curvature {
     }
 }
 
-/// The surface so far east and north of a sample, over the median; `None` off the field, of one that repeats beyond one
-/// repetition.
+/// The surface so far east and north of a sample, over the median; `None` off the field, of one that repeats beyond its
+/// longer side.
 fn height_at(field: &HeightField, border: Border, at: usize, away: DVec2) -> Option<f64> {
     let (rows, cols) = (field.rows(), field.cols());
     let [cell_x, cell_y] = field.cell_m();
     let (right, down) = (away.x / cell_x, -away.y / cell_y);
     let is_periodic = border == Border::Periodic;
-    if is_periodic && (right.abs() > cols as f64 || down.abs() > rows as f64) {
+    // Not its own side each: so few rows as grooves are told by would end what runs along the columns.
+    let reach = cols.max(rows) as f64;
+    if is_periodic && (right.abs() > reach || down.abs() > reach) {
         return None;
     }
     let (x, y) = ((at % cols) as f64 + right, (at / cols) as f64 + down);

@@ -139,6 +139,16 @@ fn strong_bends_are_refused_by_name() {
     assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));
 }
 
+/// Grooves along the rows are the same grooves in fewer rows, and so is what a base changes of them.
+#[test]
+fn what_a_base_changes_is_not_the_tiles() {
+    for k in [-0.08, 0.1] {
+        let of = |rows| Curvature { per_m: [k, 0.0] }.changed(&grooves(rows), Border::Periodic);
+        let (few, many) = (of(2), of(16));
+        assert!(many > 0.01 && (few - many).abs() <= 1e-9, "{k}: {few} {many}");
+    }
+}
+
 /// The light that the middle between two walls has of them, if they shine alike, by weights: that of its hemisphere but for a
 /// lune of twice the opening, π (1 - sin a). The silhouette is two half circles of length π, over which the height is 2/π cos a in
 /// the mean, to each side of which directions stand for what lies within a quarter of their spacing √(4π/N) or so. Without weights the light is that of other walls. On the flat base each

@@ -131,8 +131,10 @@ fn gpu_keys_and_the_mouse_are_heard() {
     let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
     // Nobody manages windows here, so that nobody gives them the keyboard.
     let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
-    let mut xdotool = Command::new("xdotool");
-    let acted = xdotool.env("DISPLAY", &display.name).args(act.split(' ')).status();
+    // It waits for a window that never comes, too.
+    let mut xdotool = Command::new("timeout");
+    xdotool.args(["200", "xdotool"]).args(act.split(' '));
+    let acted = xdotool.env("DISPLAY", &display.name).status();
     let ended = view.wait().unwrap();
     assert!(acted.expect("xdotool: run tools/setup --tests").success() && ended.success());
     let text = std::fs::read_to_string(folder.0.path().join("heard.json")).unwrap();

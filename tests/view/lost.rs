@@ -173,9 +173,18 @@ fn treated(folder: &Folder, display: &Display, how: &str) -> Output {
     let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200"));
     view.env("DISPLAY", &display.name).stdout(Stdio::null()).stderr(Stdio::piped());
     let view = view.spawn().unwrap();
-    let mut xdotool = Command::new("xdotool");
+    // It waits for a window that never comes, too.
+    let mut xdotool = Command::new("timeout");
     // Its title says so once it has drawn.
-    xdotool.args(["search", "--sync", "--name", "hills.asc - ridgelight - ", how]);
+    xdotool.args([
+        "200",
+        "xdotool",
+        "search",
+        "--sync",
+        "--name",
+        "hills.asc - ridgelight - ",
+        how,
+    ]);
     let done = xdotool.env("DISPLAY", &display.name).status();
     let ended = view.wait_with_output().unwrap();
     let is_done = done.expect("xdotool: run tools/setup --tests").success();

@@ -31,11 +31,11 @@ pub struct BakeArgs {
     /// How a kind's values are packed in .ktx2 and .png, as horizon=unorm16-sin; default the first that is listed below
     #[arg(long, value_name = "KIND=ENCODING,…", value_delimiter = ',', value_parser = bake::packing)]
     pub encoding: Vec<bake::Packing>,
-    /// Directions of ellipse, visible-points and what is light, [4..4096]: a spherical Fibonacci set, the upper hemisphere of
+    /// Directions of ellipse, curved-ellipse, visible-points and scattered light, [4..4096]: a spherical Fibonacci set, the upper hemisphere of
     /// ellipses alone, else the whole sphere. More are finer, and each takes a word a sample on the device [default: 256]
     #[arg(long, value_name = "N")]
     pub directions: Option<usize>,
-    /// Zenith angles times azimuths of the lights and views of brdf, btf and light-field, each [2..64]x[4..256], 4096
+    /// Zenith angles times azimuths of the lights and views of brdf, brdf-factors, btf and light-field, each [2..64]x[4..256], 4096
     /// together: finer tables, whose size grows with the square [default: 8x16, with btf 3x8]
     #[arg(long, value_name = "TxP", value_parser = grid)]
     pub angles: Option<[usize; 2]>,

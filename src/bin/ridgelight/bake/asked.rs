@@ -153,8 +153,16 @@ pub fn angles(args: &BakeArgs) -> Result<Angles> {
         Error::Setting { found, expected, .. } => Error::setting("--angles", found, expected),
         other => other,
     })?;
+    let pairs = angles.count().pow(2);
+    if has_pairs && pairs > MOST_PICTURES {
+        let found = format!("{zeniths}x{azimuths}, {pairs} pictures of btf");
+        return Err(Error::setting("--angles", found, format!("at most {MOST_PICTURES}")));
+    }
     Ok(angles)
 }
+
+/// Of pairs, each with four planes that have a name.
+const MOST_PICTURES: usize = 1 << 16;
 
 /// Refuses flags that no kind of the list has a use for.
 pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>) -> Result<()> {
