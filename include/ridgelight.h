@@ -48,7 +48,7 @@
 
 // Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: one more input, the
 // last, "light_colours", a row of texels, the sky's where the scene's is not 0, then each sun's, then each key light's.
-// Those of the scene then count for nothing. Not with balls of light or a lobe.
+// Those of the scene then count for nothing but, the sky's beside an environment, for where azimuths lie. Not with balls of light or a lobe.
 #define RIDGELIGHT_PICTURE_COLOURS_ON_DEVICE 8
 
 // How a call ended.

@@ -93,7 +93,7 @@ impl View {
         camera.check()?;
         options.check()?;
         options.check_within(limits)?;
-        let Scene { field, surface, lights } = scene;
+        let Scene { field, lights, .. } = scene;
         if field.rows() < 2 || field.cols() < 2 {
             let found = format!("{} × {} samples", field.cols(), field.rows());
             return Err(Error::setting("a field before a camera", found, "2 × 2 or more"));
