@@ -69,12 +69,12 @@ pub(super) fn engine(quality: &Quality) -> BounceEngine {
 /// ns an azimuth and sample of a walk, of a march and each sample of the side, of a gather, on lavapipe: "ms" of one
 /// bounce, 1×, of `cargo run --release --example bounce -- table` (`benches/results/bounce_table.txt`, sub-sampled
 /// bounces) over 32 · 128² · 10⁻⁶, of brute force over 128 more. The frames that are drawn correct each.
-const WALK: f64 = 108.0;
-const MARCH: f64 = 4.7;
+const WALK: f64 = 110.0;
+const MARCH: f64 = 4.8;
 const GATHER: f64 = 330.0;
 /// Of a walk's time at every sample what a later, sub-sampled bounce takes that reads what the first has met: sweep, 2×,
 /// there, (three bounces - one) / 2 over one bounce's 1×.
-const CAST: f64 = 0.08;
+const CAST: f64 = 0.033;
 
 /// Work of walks, marches and gathers, one of which there is where bounces are drawn.
 pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
@@ -85,9 +85,9 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
     // every eighth sample by halving once more.
     let nodes = |stride: u32| match stride {
         1 => 1.0,
-        2 => 0.4,
-        4 => 0.19,
-        _ => 0.09,
+        2 => 0.42,
+        4 => 0.2,
+        _ => 0.1,
     };
     let stride = quality.subsample;
     let later = nodes(if stride == 1 { 1 } else { 2 * stride });
