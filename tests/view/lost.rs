@@ -44,11 +44,12 @@ type Fault = (&'static str, u32, u32, i32);
 fn beset(folder: &Folder, command: &mut Command, (name, first, count, result): Fault) {
     let layers = folder.0.path().join("layers");
     let layers = if layers.exists() { layers } else { layer(folder) };
+    // Without a layer below ours loaders lead its calls back to it.
+    let others = std::env::var_os("VK_LAYER_PATH");
+    let others = others.expect("VK_LAYER_PATH: the validation layer's, as tools/test has it");
     let mut path = layers.into_os_string();
-    if let Some(others) = std::env::var_os("VK_LAYER_PATH") {
-        path.push(":");
-        path.push(others);
-    }
+    path.push(":");
+    path.push(others);
     command.env("VK_LAYER_PATH", path).env("VK_INSTANCE_LAYERS", "VK_LAYER_test_faults");
     command.env("RIDGELIGHT_FAULT", format!("{name} {first} {count} {result}"));
 }
