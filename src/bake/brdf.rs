@@ -197,3 +197,17 @@ impl Brdf {
         (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::pairs;
+
+    /// Refused before anything of that size is made.
+    #[test]
+    fn pairs_are_bounded() {
+        for count in [0, 2049, usize::MAX] {
+            assert!(pairs(count, 0).unwrap_err().to_string().contains("1 to 2048"), "{count}");
+        }
+        assert_eq!(pairs(2048, 0).unwrap().count(), 4096);
+    }
+}

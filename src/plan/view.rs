@@ -328,6 +328,29 @@ mod tests {
     use crate::scene::{HeightField, Lights, Quality, Surface};
     use std::f64::consts::FRAC_PI_2;
 
+    /// A sky that the device alone knows the colour of is not drawn in the scene's.
+    #[test]
+    fn a_sky_of_the_device_is_background() {
+        let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
+        let lights = Lights { sky: Some([9.0; 3]), ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let limits = Limits::lavapipe();
+        let options = ViewOptions { background: [0.25; 3], ..ViewOptions::default() };
+        let camera = Camera {
+            target_m: [1.0, 1.0, 7.0],
+            azimuth_rad: 0.0,
+            elevation_rad: 0.5,
+            distance_m: 4.0,
+            lens: Lens::Perspective { fov_rad: FRAC_PI_2 },
+        };
+        for (colours_on_device, want) in [(false, 9.0), (true, 0.25)] {
+            let wanted = Picture { colours_on_device, ..Picture::default() };
+            let lit = picture(&scene, &Quality::default(), &limits, wanted).unwrap();
+            let view = View::new(&scene, &lit, &camera, &options, &limits).unwrap();
+            assert_eq!(view.sky.above[..3], [want; 3]);
+        }
+    }
+
     /// Level ground of 3 by 3 samples at height 7, the eye 4 above its middle. The north-western sample is 1 west and 1
     /// north of it. Under 90° the picture spans 8 there from below to above and, twice as wide as high, 16 across: the
     /// sample is 1/8 to the left and 1/4 up. A parallel picture 5 high and 10 wide: 1/5 and 2/5.

@@ -63,6 +63,7 @@ fn wrong_requests_are_told() {
         (horizon("--seed 8"), 2, &["--seed: found 8"]),
         (with("--what scatter --angles 4x8"), 2, &["--angles: found 4x8", "btf or light-field"]),
         (with("--what btf --angles 1x8"), 2, &["--angles: found 1x8", "2 to 64 zenith angles"]),
+        (with("--what btf --angles 64x64 --plan"), 2, &["--angles: found 64x64", "at most 65536"]),
         (with("--what btf --angles 4"), 2, &["--angles", "as 8x16"]),
         (with("--what brdf"), 2, &["--border: found plane with --what brdf", "periodic"]),
         (
