@@ -7,7 +7,7 @@ use std::ptr;
 
 use ash::vk;
 use ash::vk::Handle;
-use ridgelight::gpu::{Headless, HeadlessOptions, ImageArg};
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, ImageArg};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{Camera, HeightField, Lens, Lights, Quality, Scene, Surface};
 use ridgelight_c::*;
@@ -320,18 +320,15 @@ fn a_buffer_of_c_is_lit_as_an_image_is() {
     assert_eq!(gpu.take_messages(), [""; 0]);
 }
 
-/// A picture before a camera, heights from a buffer and from an image: the library's own, byte for byte.
-#[test]
-fn a_camera_of_c_sees_what_rusts_does() {
-    let (mut gpu, host) = device();
-    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+/// A field as the library lights it, and how a camera sees it.
+pub fn seen_by_rust(gpu: &mut Headless, field: &HeightField) -> (Frame, View, Camera) {
     let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let of_rust = Scene { field, surface: Surface::default(), lights };
+    let scene = Scene { field: field.clone(), surface: Surface::default(), lights };
     let limits = gpu.report().limits;
-    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
+    let planned = plan::picture(&scene, &Quality::default(), &limits, Picture::default());
     let planned = planned.expect("a plan");
-    let texels = of_rust.field.heights_m();
-    let mut frame = gpu.frame(planned.clone(), &[texels]).expect("a frame");
+    let heights = scene.field.heights_m();
+    let mut frame = gpu.frame(planned.clone(), &[heights]).expect("a frame");
     gpu.draw(&mut frame).expect("drawn");
     let at = Camera {
         target_m: [11.0, 12.0, 1.0],
@@ -341,11 +338,20 @@ fn a_camera_of_c_sees_what_rusts_does() {
         lens: Lens::Perspective { fov_rad: 0.8 },
     };
     let options = ViewOptions { size: SIZE, samples: 1, ..ViewOptions::default() };
-    let view_of_rust = View::new(&of_rust, &planned, &at, &options, &limits).expect("a view");
+    let view = View::new(&scene, &planned, &at, &options, &limits).expect("a view");
+    (frame, view, at)
+}
+
+/// A picture before a camera, heights from a buffer and from an image: the library's own, byte for byte.
+#[test]
+fn a_camera_of_c_sees_what_rusts_does() {
+    let (mut gpu, host) = device();
+    let field = HeightField::new(SIDE, SIDE, &heights(), [1.0; 2], None).expect("a field");
+    let (frame, view_of_rust, at) = seen_by_rust(&mut gpu, &field);
     let right = gpu.look(&frame, &view_of_rust, None).expect("a picture").radiance;
     let lent = gpu.host().clone();
     let target = Target::new(&lent);
-    let bytes: Vec<u8> = texels.iter().flat_map(|v| v.to_ne_bytes()).collect();
+    let bytes: Vec<u8> = field.heights_m().iter().flat_map(|v| v.to_ne_bytes()).collect();
     let buffer = gpu.lend_buffer("heights", &bytes).expect("a buffer");
     let camera = RidgelightCamera {
         samples: 1,

@@ -4,11 +4,11 @@ use std::ffi::CStr;
 use std::ptr;
 
 use ash::vk;
-use ridgelight::plan::{self, Picture, View, ViewOptions};
-use ridgelight::scene::{Camera, HeightField, Lens, Lights, Quality, Scene, Sun, Surface};
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{HeightField, Lights, Quality, Scene, Sun, Surface};
 use ridgelight_c::*;
 
-use crate::abi::{SIDE, device, good, heights, image, refused, scene, zeroed};
+use crate::abi::{SIDE, device, good, heights, image, refused, scene, seen_by_rust, zeroed};
 use crate::target::{FORMAT, SIZE, Target};
 
 fn bytes(values: &[f32]) -> Vec<u8> {
@@ -53,22 +53,7 @@ fn voids_of_c_are_filled_and_holes() {
     assert_eq!(filled, field.heights_m());
     assert!(marks.iter().zip(&voids).all(|(mark, void)| *mark == u8::from(*void)));
 
-    let lights = Lights { sky: Some([1.0, 0.5, 0.25]), ..Lights::default() };
-    let of_rust = Scene { field, surface: Surface::default(), lights };
-    let limits = gpu.report().limits;
-    let planned = plan::picture(&of_rust, &Quality::default(), &limits, Picture::default());
-    let planned = planned.expect("a plan");
-    let mut frame = gpu.frame(planned.clone(), &[&filled]).expect("a frame");
-    gpu.draw(&mut frame).expect("drawn");
-    let at = Camera {
-        target_m: [11.0, 12.0, 1.0],
-        azimuth_rad: 0.7,
-        elevation_rad: 0.5,
-        distance_m: 30.0,
-        lens: Lens::Perspective { fov_rad: 0.8 },
-    };
-    let options = ViewOptions { size: SIZE, samples: 1, ..ViewOptions::default() };
-    let view_of_rust = View::new(&of_rust, &planned, &at, &options, &limits).expect("a view");
+    let (frame, view_of_rust, at) = seen_by_rust(&mut gpu, &field);
     let right = gpu.look(&frame, &view_of_rust, Some(&voids)).expect("a picture").radiance;
     let mut whole = view_of_rust;
     whole.has_voids = false;
