@@ -3,11 +3,11 @@
 //!
 //! `cargo run --release --example bake -- -o PICTURE.png --json FIGURES.json`
 
+#[path = "bake/looked.rs"]
+mod looked;
 #[path = "shared/mountain.rs"]
 #[expect(dead_code, reason = "sides are for others to ask")]
 mod mountain;
-#[path = "bake/looked.rs"]
-mod looked;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;

@@ -1,5 +1,6 @@
 //! What is baked by looking along directions, and of light.
 
+use ridgelight::Result;
 use ridgelight::bake::{self, Angles, Brdf, CurvedEllipses, Ellipse, Factors};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Picture, Plan};
@@ -7,7 +8,6 @@ use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Quality, Scatter, Scene, Sun, Surface,
     VisiblePoint,
 };
-use ridgelight::Result;
 
 use crate::Baked;
 
@@ -56,13 +56,8 @@ pub fn looked(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Baked>> {
     };
     let mut planes: Vec<Vec<f32>> = (0..20).map(|i| plane(i / 4, i % 4)).collect();
     planes.extend([0, 1, 2, 3, 4].map(|base| plane(base, 4)));
-    let curved = Baked::of(
-        "curved-ellipse",
-        "five ellipses",
-        "a sample",
-        &bake::CURVED_ELLIPSE,
-        planes,
-    );
+    let curved =
+        Baked::of("curved-ellipse", "five ellipses", "a sample", &bake::CURVED_ELLIPSE, planes);
 
     let few = Directions::fibonacci(POINTS, -1.0, 0)?;
     let points = gpu.visible_points((field, border), &few, &limits)?;
@@ -73,8 +68,7 @@ pub fn looked(gpu: &mut Headless, field: &HeightField) -> Result<Vec<Baked>> {
     };
     let plane = |i: usize| (0..field.heights_m().len()).map(|at| seen(i, at)).collect();
     let planes = (0..2 * POINTS).map(plane).collect();
-    let points =
-        Baked::of("visible-points", "row, column", "a direction", &bake::POINTS, planes);
+    let points = Baked::of("visible-points", "row, column", "a direction", &bake::POINTS, planes);
     Ok(vec![ellipse, curved, points])
 }
 
@@ -112,8 +106,7 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     let scene = Scene { field, surface, lights };
     let mut light = direct(gpu, &scene, &limits)?;
     let around = Directions::fibonacci(DIRECTIONS, -1.0, 0)?;
-    let points =
-        gpu.visible_points((&scene.field, scene.surface.border), &around, &limits)?;
+    let points = gpu.visible_points((&scene.field, scene.surface.border), &around, &limits)?;
     let scatter = Scatter { paths: 64, ..Scatter::default() };
     let more = gpu.scattered(&scene, &points, &light, &scatter, &limits)?;
     light.as_flattened_mut().iter_mut().zip(more.as_flattened()).for_each(|(l, m)| *l += m);
@@ -128,9 +121,9 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
         let z = directions.vectors()[i].z;
         values.extend(facets.seen_from_all(&radiance).into_iter().map(|m| m.map(|v| v / z)));
         for texels in facets.texels_from_all(&radiance) {
-            pictures.extend([0, 1, 2, 3].map(|c| -> Vec<f32> {
-                texels.iter().map(|t| t[c] as f32).collect()
-            }));
+            pictures.extend(
+                [0, 1, 2, 3].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() }),
+            );
         }
         Ok(())
     })?;

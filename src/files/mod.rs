@@ -30,7 +30,9 @@ mod size;
 mod tif;
 mod visible;
 
-pub use atomic::{ResultFolder, Written, abandon_unfinished, check_writable, write_json, write_text};
+pub use atomic::{
+    ResultFolder, Written, abandon_unfinished, check_writable, write_json, write_text,
+};
 pub use codes::write_codes_aside;
 pub use environment::{parse_environment, read_albedo, read_environment};
 pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};

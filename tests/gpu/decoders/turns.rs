@@ -18,7 +18,7 @@ fn on(i: usize, [_, azimuths]: [usize; 2], steps: usize) -> usize {
 }
 
 /// A texture of numbers: of each layer, row and column.
-fn texture(
+pub fn texture(
     [cols, rows, layers]: [usize; 3],
     is_array: bool,
     number: impl Fn(usize, usize, usize) -> [f32; 4],
@@ -36,11 +36,11 @@ fn texture(
     std::fs::read(&path).expect("a texture")
 }
 
-fn whole(numbers: &[usize]) -> Vec<u32> {
+pub fn whole(numbers: &[usize]) -> Vec<u32> {
     numbers.iter().map(|n| Constant::Int(*n as i32).bits()).collect()
 }
 
-fn none(_: &Encoding) -> Vec<(&'static str, Constant)> {
+pub fn none(_: &Encoding) -> Vec<(&'static str, Constant)> {
     Vec::new()
 }
 
@@ -85,9 +85,8 @@ fn turns_of_tables_close() {
     let decoder = decoder!("brdf", "brdf", bake::REFLECTED, false, 3, none);
     let bits = whole(&[zeniths, azimuths]);
     // Radiance is texelFetch(map, (view, light)).
-    let map = texture([count, count, 1], false, |_, light, view| {
-        [light as f32, view as f32, 1.0, 0.0]
-    });
+    let map =
+        texture([count, count, 1], false, |_, light, view| [light as f32, view as f32, 1.0, 0.0]);
     for offset in [0.0_f32, 0.5] {
         let found = decode(gpu, &decoder, &bits, &map, offset);
         let between = |i: usize| match offset {
@@ -101,8 +100,8 @@ fn turns_of_tables_close() {
         let (off, at) = worst(&found, known);
         // A place off by so much takes that of the next zenith angle's number or of the other end of the turn, along two axes,
         // and 16 shares are sums of products that are rounded.
-        let allowed = 4.0 * azimuths as f64 * place(azimuths)
-            + 16.0 * count as f64 / f64::from(1 << 23);
+        let allowed =
+            4.0 * azimuths as f64 * place(azimuths) + 16.0 * count as f64 / f64::from(1 << 23);
         assert!(off <= allowed, "{offset}: {off} of {allowed} at {at}: {}", found[at]);
     }
 }
@@ -129,8 +128,8 @@ fn turns_of_factors_close() {
             [number, k as f64, 1.0][c]
         };
         let (off, at) = worst(&found, known);
-        let allowed = 2.0 * azimuths as f64 * place(azimuths)
-            + 4.0 * count as f64 / f64::from(1 << 23);
+        let allowed =
+            2.0 * azimuths as f64 * place(azimuths) + 4.0 * count as f64 / f64::from(1 << 23);
         assert!(off <= allowed, "{offset}: {off} of {allowed} at {at}: {}", found[at]);
     }
 }

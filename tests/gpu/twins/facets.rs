@@ -20,7 +20,8 @@ pub(super) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let oracle = Oracle::new(&finer, border);
     let elevation = facet_elevation(&Land::of(&finer, border));
     let [cells_x, cells_y] = cells(field, border);
-    let own = first * DIRECTIONS_A_WORD..((first + layers) * DIRECTIONS_A_WORD).min(directions.count());
+    let own =
+        first * DIRECTIONS_A_WORD..((first + layers) * DIRECTIONS_A_WORD).min(directions.count());
     let mut pairs = Vec::new();
     for i in own {
         for facet in 0..2 * cells_x * cells_y {

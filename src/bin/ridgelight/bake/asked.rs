@@ -129,11 +129,11 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
 }
 
 /// Those that scatter, in words.
-pub const LIGHTS: &str = "scatter, brdf, brdf-factors, btf or light-field";
+pub const LIGHTS: &str = "scatter, brdf, brdf-factors, brdf-harmonics, btf or light-field";
 
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
-    ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"].contains(&kind.name)
 }
 
 /// Whose pictures are of floats, each with a scale of its own.
@@ -150,7 +150,11 @@ pub fn is_lit(kind: &Kind) -> bool {
 pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted]) {
     let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
     let groups: [(&[&str], bool, &str); 2] = [
-        (&["sky", "env", "env_rotate", "sun", "key", "light"], has(is_lit), "scatter or light-field"),
+        (
+            &["sky", "env", "env_rotate", "sun", "key", "light"],
+            has(is_lit),
+            "scatter or light-field",
+        ),
         (&["albedo", "phong"], has(is_light), LIGHTS),
     ];
     for (names, is_used, by) in groups {
@@ -215,7 +219,7 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             "--angles",
             format!("{zeniths}x{azimuths}"),
             has_angles,
-            "brdf, brdf-factors, btf or light-field",
+            "brdf, brdf-factors, brdf-harmonics, btf or light-field",
         )?;
     }
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
