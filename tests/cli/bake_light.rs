@@ -295,7 +295,9 @@ fn gpu_paths_are_those_that_were_traced() {
         let words = "--what scatter,light-field --paths 200 --directions 8 --angles 2x4";
         done(
             &folder,
-            &format!("bake {field}.npy -o out --bounces {bounces} {words} --format npy --quiet"),
+            &format!(
+                "bake {field}.npy -o out --bounces {bounces} {words} --format npy,exr --quiet"
+            ),
         );
         let sheet = json(&folder.path("out/bake.json"));
         assert_eq!(sheet["settings"]["paths"], 200);

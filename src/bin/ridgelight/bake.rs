@@ -314,11 +314,10 @@ fn bake(
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
     // A plan's are of a part.
     metadata.retain(|(name, _)| {
-        !["paths", "seed"].contains(&name.as_str()) || used.iter().all(|(known, _)| known != name)
+        let is_part = ["paths", "seed", "azimuths", "sh_order"].contains(&name.as_str());
+        !is_part || used.iter().all(|(known, _)| known != name)
     });
-    let is_more = |name: &str| {
-        ["azimuths", "sh_order"].contains(&name) || metadata.iter().all(|(known, _)| known != name)
-    };
+    let is_more = |name: &str| metadata.iter().all(|(known, _)| known != name);
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
     let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
@@ -388,6 +387,9 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let plans = job.plans(&limits)?;
     if args.global.quiet {
         return Ok(Outcome::Done);
+    }
+    if let Some(json) = &args.global.json {
+        idle::note("json", &json.display().to_string(), "with --plan");
     }
     crate::say!("{:>14}  at most, bytes of {}", "file", args.output.display());
     for (name, bytes) in job.files() {

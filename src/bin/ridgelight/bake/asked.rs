@@ -12,7 +12,7 @@ use crate::bake::Format;
 use crate::{idle, setup};
 
 /// Where none are asked for.
-pub const DIRECTIONS: usize = 256;
+pub const DIRECTIONS: u32 = 256;
 
 /// What `--what` takes.
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
@@ -125,7 +125,7 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     let looks_around =
         args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
     let lowest_z = if looks_around { -1.0 } else { 0.0 };
-    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
+    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
 /// Those that scatter, in words.
@@ -226,6 +226,12 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
         if let Some(value) = value {
             found(name, value.to_string(), has_light, LIGHTS)?;
         }
+    }
+    // Some kinds share them out among parts.
+    if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
+        let expected =
+            format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
+        return Err(Error::setting("--paths", paths.to_string(), expected));
     }
     if has_light && args.surface.phong.is_some() {
         return Err(Error::setting("--phong", "a lobe", "none: what is baked of light is diffuse"));
