@@ -1,5 +1,7 @@
 //! What samples see: all borders, both kinds of words, lines and single samples, prime sides.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 use ridgelight::scene::{
     Albedo, Border, Curvature, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter,
@@ -76,10 +78,13 @@ pub fn ellipses() -> Vec<Case> {
     };
     let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
-    // So low that what is met along flat rays lies dozens of repetitions away, and near a right angle of the base.
-    let low = field(5, 9, [1.0, 1.5], |r, c| 0.3 * (0.7 * c as f64).sin() + 0.1 * (r as f64).cos());
-    let flat = (0..40).map(|k| {
-        let z = [-0.05, -0.008, -0.003, 0.002, 0.4][k % 5];
+    // From the knob of low hills rays meet others 100 to 300 cells away, past dozens of repetitions and near a right angle of the base.
+    let low = field(7, 40, [1.0, 1.5], |r, c| {
+        let knob = if (r, c) == (3, 25) { 0.5 } else { 0.0 };
+        0.05 * (TAU * c as f64 / 40.0).sin() + 0.03 * (TAU * r as f64 / 7.0).cos() + knob
+    });
+    let flat = (0..60).map(|k| {
+        let z = [-0.05, -0.004, -0.002, -0.001, 0.4][k % 5];
         DVec2::from_angle(2.4 * k as f64).extend(z).normalize()
     });
     let flat = Directions::from_vectors(flat.collect(), -1.0).expect("unit vectors");
