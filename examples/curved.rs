@@ -67,7 +67,10 @@ struct Row {
 }
 
 struct Scattered {
-    /// On the base over that on the flat one.
+    /// On the base, by rays, of each compared sample; and turned and weighed.
+    truth: Vec<f64>,
+    weighed: Vec<f64>,
+    /// Their sum over that on the flat base.
     over_flat: f64,
     /// RMSE by directions as they are, turned, and turned and weighed.
     off: [f64; 3],
@@ -245,6 +248,8 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
         }
     }
     let scattered = |k: usize| Scattered {
+        truth: truth(k),
+        weighed: weighed[k].clone(),
         over_flat: truth(k).iter().sum::<f64>() / flat.scattered[k],
         off: [&kinds[0], &kinds[1], &weighed].map(|found| rmse(&found[k], &truth(k))),
     };
@@ -260,30 +265,58 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
     })
 }
 
+/// RMSE of light between that of three bases, those that ellipses are fitted at, as a base that bends on along an object has it.
+fn between(rows: &[Row], row: &Row, k: usize) -> f64 {
+    let end = if row.curvature < 0.0 { -STEPS[1] } else { STEPS[0] };
+    let of = |curvature: f64| {
+        let at = rows.iter().find(|r| r.curvature == curvature).expect("a row of each");
+        &at.light[k].weighed
+    };
+    let share = row.curvature / end;
+    let mixed =
+        of(0.0).iter().zip(of(end)).map(|(flat, end)| (flat + share * (end - flat)).max(0.0));
+    rmse(&mixed.collect::<Vec<_>>(), &row.light[k].truth)
+}
+
 fn table(rows: &[Row]) {
+    let radius = |row: &Row| match row.curvature {
+        0.0 => "flat".to_owned(),
+        k => format!("{:+.0}", 1.0 / k),
+    };
+    let told = |row: &Row| if row.refused.is_some() { "refused" } else { "" };
     println!(
-        "| radius, cells | said of lights, % | lit, % | wrong by flat directions, % | adapted | by flat ellipses | between five | fitted here | \
-         said of light, % | scattered once over flat | off by flat directions, % | turned | turned and weighed | \
-         up to {} times over flat | off by flat directions, % | turned | turned and weighed | device | |",
+        "| radius, cells | lit, % | wrong by flat directions, % | adapted | said, of lights | by flat ellipses | between five | fitted here | |\n\
+         |---|---|---|---|---|---|---|---|---|"
+    );
+    for row in rows {
+        let [by_flat, adapted, ellipses @ ..] = row.shadows.map(|v| format!("{v:.2}"));
+        println!(
+            "| {} | {:.1} | {by_flat} | {adapted} | {:.2} | {} | {} |",
+            radius(row),
+            row.lit,
+            100.0 * row.changed.shadows,
+            ellipses.join(" | "),
+            told(row)
+        );
+    }
+    println!(
+        "\n| radius, cells | scattered once, over flat | off by flat directions, % | turned | turned and weighed | between three | said, of light | \
+         up to {} times, over flat | off by flat directions, % | turned | turned and weighed | between three | device | |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
         BOUNCES[1]
     );
-    println!("|{}", "---|".repeat(19));
     for row in rows {
-        let radius = match row.curvature {
-            0.0 => "flat".to_owned(),
-            k => format!("{:+.0}", 1.0 / k),
-        };
-        let shadows = row.shadows.map(|v| format!("{v:.2}")).join(" | ");
         let [once, more] = [0, 1].map(|k| {
-            let off = row.light[k].off.map(|v| format!("{v:.2}")).join(" | ");
-            format!("{:.3} | {off}", row.light[k].over_flat)
+            let Scattered { over_flat, off, .. } = &row.light[k];
+            let off = off.map(|v| format!("{v:.2}")).join(" | ");
+            format!("{over_flat:.3} | {off} | {:.2}", between(rows, row, k))
         });
         let device = row.device.map_or(String::new(), |off| format!("{off:.2}"));
-        let told = if row.refused.is_some() { "refused" } else { "" };
-        let [lights, light] = [row.changed.shadows, row.changed.light].map(|share| 100.0 * share);
         println!(
-            "| {radius} | {lights:.2} | {:.1} | {shadows} | {light:.2} | {once} | {more} | {device} | {told} |",
-            row.lit
+            "| {} | {once} | {:.2} | {more} | {device} | {} |",
+            radius(row),
+            100.0 * row.changed.light,
+            told(row)
         );
     }
 }
@@ -359,7 +392,7 @@ fn run() -> Result<()> {
         "{GROOVES} grooves of {PERIOD} by {} cells, {ROWS} long; {DIRECTIONS} directions over the sphere, {LIGHTS} lights over each sample's \
          hemisphere, {RAYS} rays. A radius above 0: valleys widen. Said: shares of a hemisphere's lights and light that the base hides or \
          lays open, of light at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
-         Off: RMSE over the mean; device: {PATHS} paths.\n",
+         Off: RMSE over the mean; between three: light of these and the flat base, as straight as ellipses; device: {PATHS} paths.\n",
         PERIOD / 2,
         100.0 * Curvature::MOST_CHANGED,
         1.0 / STEPS[0],
