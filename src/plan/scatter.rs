@@ -57,7 +57,7 @@ pub fn scatter(
     scatter: &Scatter,
     limits: &Limits,
 ) -> Result<Plan> {
-    scatter.check(scene)?;
+    let changed = scatter.check(scene)?;
     let Scene { field, surface, .. } = scene;
     let size = limits.check_size(field.rows(), field.cols())?;
     super::visible_points::check_field(field)?;
@@ -190,6 +190,12 @@ pub fn scatter(
         ("carried", bytes_text(carried_bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
+    if scatter.curvature != Curvature::FLAT && wanted.bounces > 0 {
+        notes.push(format!(
+            "the base {changed}: by it scattered light is off by at most {:.4} of the largest direct light, in the mean over samples",
+            changed.scattered(surface.most_reflected(), wanted.bounces)
+        ));
+    }
     if directions.lowest_z() > -1.0 && wanted.bounces > 0 {
         notes.push(format!(
             "directions reach down to a height of {} alone: slopes lose what light comes from below it",

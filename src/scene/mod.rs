@@ -48,7 +48,7 @@ mod visible;
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
-pub use curvature::Curvature;
+pub use curvature::{Changed, Curvature};
 pub use directions::Directions;
 pub use environment::Environment;
 pub use field::{HeightField, fill_voids};

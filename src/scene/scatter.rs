@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::quality::within;
-use super::{Bounces, Curvature, Scene};
+use super::{Bounces, Changed, Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -52,12 +52,12 @@ impl Scatter {
     /// What [`first_path`](Self::first_path) may be.
     pub const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
 
-    /// Checks every range, and that the scene is one that can be scattered.
+    /// Checks every range, and that the scene is one that can be scattered; what its base changes, nothing of a flat one.
     ///
     /// # Errors
     /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
     /// a base bent more than [`Curvature::check`] allows.
-    pub fn check(&self, scene: &Scene) -> Result<()> {
+    pub fn check(&self, scene: &Scene) -> Result<Changed> {
         within("--bounces", self.bounces, Self::BOUNCES)?;
         within("--paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;

@@ -78,6 +78,11 @@ fn wrong_requests_are_told() {
         (with("--what btf --angles 1x8"), 2, &["--angles: found 1x8", "2 to 64 zenith angles"]),
         (with("--what btf --angles 64x64 --plan"), 2, &["--angles: found 64x64", "at most 65536"]),
         (with("--what btf --angles 4"), 2, &["--angles", "as 8x16"]),
+        (
+            with("--what brdf-harmonics --border periodic --sh-order 3 --angles 2x4"),
+            2,
+            &["--angles: found 2x4 with --sh-order 3", "9 angles or more"],
+        ),
         (with("--what brdf"), 2, &["--border: found plane with --what brdf", "periodic"]),
         (
             with("--what scatter --bounces 0"),

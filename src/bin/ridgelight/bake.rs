@@ -157,7 +157,7 @@ impl Job<'_> {
             false => first(self.plans(limits)?).settings,
         };
         let has = |of: fn(&str) -> bool| self.wanted.iter().any(|w| of(w.kind.name));
-        if has(|name| name.starts_with("sh-")) {
+        if has(|name| name.starts_with("sh-") || name == "brdf-harmonics") {
             used.push(("sh_order".into(), quality.sh_order.to_string()));
         }
         let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));

@@ -36,7 +36,7 @@ pub struct BakeArgs {
     /// ellipses alone, else the whole sphere. More are finer, and each takes a word a sample on the device [default: 256]
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub directions: Option<u32>,
-    /// Zenith angles times azimuths of the lights and views of brdf, brdf-factors, btf and light-field, each [2..64]x[4..256], 4096
+    /// Zenith angles times azimuths of the lights and views of brdf, brdf-factors, brdf-harmonics, btf and light-field, each [2..64]x[4..256], 4096
     /// together: finer tables, whose size grows with the square [default: 8x16, with btf 3x8]
     #[arg(long, value_name = "TxP", value_parser = grid, allow_hyphen_values = true)]
     pub angles: Option<[usize; 2]>,

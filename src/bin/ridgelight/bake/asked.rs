@@ -129,11 +129,11 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
 }
 
 /// Those that scatter, in words.
-pub const LIGHTS: &str = "scatter, brdf, brdf-factors, btf or light-field";
+pub const LIGHTS: &str = "scatter, brdf, brdf-factors, brdf-harmonics, btf or light-field";
 
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
-    ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"].contains(&kind.name)
 }
 
 /// Whose pictures are of floats, each with a scale of its own.
@@ -219,7 +219,7 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             "--angles",
             format!("{zeniths}x{azimuths}"),
             has_angles,
-            "brdf, brdf-factors, btf or light-field",
+            "brdf, brdf-factors, brdf-harmonics, btf or light-field",
         )?;
     }
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
