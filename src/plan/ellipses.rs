@@ -51,7 +51,7 @@ pub fn curved_ellipses(
     limits: &Limits,
 ) -> Result<Plan> {
     if ![outwards, inwards].iter().all(|k| *k > 0.0 && (*k as f32).is_normal()) {
-        let found = format!("{outwards} and {inwards}");
+        let found = format!("{outwards:?} and {inwards:?}");
         return Err(Error::setting("curvatures of ellipses", found, "two numbers above 0, 1/m"));
     }
     let four = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];

@@ -4,6 +4,7 @@ mod afar;
 mod bent_normal;
 mod brdf;
 mod brdf_factors;
+mod brdf_harmonics;
 mod btf;
 mod curved_ellipse;
 mod ellipse;
@@ -15,6 +16,8 @@ mod sh_visibility;
 mod sky_view;
 mod visible_points;
 mod visible_sky;
+
+use std::cell::OnceCell;
 
 use glam::DVec3;
 use ridgelight::Result;
@@ -28,7 +31,7 @@ pub use afar::direct_plan;
 pub use scatter::paths;
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 14] = [
+pub static KINDS: [&Kind; 15] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
@@ -41,6 +44,7 @@ pub static KINDS: [&Kind; 14] = [
     &scatter::KIND,
     &brdf::KIND,
     &brdf_factors::KIND,
+    &brdf_harmonics::KIND,
     &btf::KIND,
     &light_field::KIND,
 ];
@@ -161,6 +165,12 @@ pub struct OfLight {
     pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
 }
 
+/// A whole number among the settings of a plan, which has it.
+fn number(plan: &Plan, name: &str) -> u32 {
+    let of = plan.settings.iter().find(|(known, _)| known == name);
+    of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light tell it")
+}
+
 /// What light is made of.
 pub struct Lit<'a> {
     pub scene: &'a Scene,
@@ -176,6 +186,8 @@ pub struct Lit<'a> {
     pub curvature: Option<[f64; 2]>,
     /// Of the pairs that a table is asked for between its angles.
     pub seed: u32,
+    /// That `brdf` and `brdf-factors` are of, once one of them has asked for it.
+    pub table: OnceCell<brdf::Table>,
 }
 
 /// What came of its plan.
