@@ -384,7 +384,8 @@ fn curved() -> Result<String> {
     let refused: Vec<String> = shadows.lines().filter(is_refused).map(radius).collect();
     Ok(format!(
         "{}\n\n{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
-         ([all of it](benches/results/curved.txt)). A radius above 0 widens them. Refused: {}.\n*{device}{}*\n",
+         ([all of it](benches/results/curved.txt)). A radius above 0 widens them. \
+         Said: what plans say of lights and of light, %. Off: RMSE over the mean. Refused: {}.\n*{device}{}*\n",
         told(shadows)?,
         told(light)?,
         refused.join(", "),

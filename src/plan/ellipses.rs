@@ -64,13 +64,13 @@ pub fn curved_ellipses(
         .map(|i| ["ellipse_axes", "ellipse_radii"].map(|name| begun.output(&format!("{name}.{i}"))))
         .collect();
     begun.fit((None, "flat, "), outputs[0]);
-    let names = ["east +, ", "east -, ", "north +, ", "north -, "];
+    let names = ["east +", "east -", "north +", "north -"];
     let notes =
-        changed.iter().zip(names).map(|(changed, name)| format!("the base bent {name}{changed}"));
+        changed.iter().zip(names).map(|(changed, name)| format!("the base bent {name}: {changed}"));
     for ((curvature, name), outputs) in four.into_iter().zip(names).zip(&outputs[1..]) {
         let seen = [begun.points, begun.ground];
         bends.record(&mut begun.builder, (field, border), curvature, seen);
-        begun.fit((Some(bends.bent), name), *outputs);
+        begun.fit((Some(bends.bent), &format!("{name}, ")), *outputs);
     }
     let method = "ellipses of visible sky on curved bases";
     begun.finish((method, Some([outwards, inwards])), notes.collect(), limits)
