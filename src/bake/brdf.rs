@@ -3,7 +3,7 @@
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Facets;
+use super::{Facets, Leaving};
 use crate::scene::Directions;
 use crate::{Error, Result};
 
@@ -118,10 +118,7 @@ impl Brdf {
     ///
     /// # Errors
     /// A direction that shows no triangle; the first error of `radiance`.
-    pub fn of(
-        facets: &Facets,
-        mut radiance: impl FnMut(usize) -> Result<Vec<[f64; 3]>>,
-    ) -> Result<Self> {
+    pub fn of(facets: &Facets, mut radiance: impl FnMut(usize) -> Result<Leaving>) -> Result<Self> {
         facets.check()?;
         let directions = facets.directions().vectors().to_vec();
         let mut values = Vec::with_capacity(directions.len().pow(2));
@@ -173,10 +170,21 @@ impl Brdf {
     }
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π.
+    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`].
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
+            let value = self.at(light, view);
+            (0..3).for_each(|c| sum[c] += value[c] * weight);
+        }
+        sum
+    }
+
+    /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights, each weighted by its part of
+    /// ∫ cos θ dω, which together are π. No more than what all of the surface reflects, diffusely and by its lobe.
+    pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (light, weight) in projected_sr.iter().enumerate() {
             let value = self.at(light, view);
             (0..3).for_each(|c| sum[c] += value[c] * weight);
         }

@@ -13,7 +13,8 @@ use super::visible_points::{images, one_image, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
-    Albedo, Border, Curvature, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Border, Curvature, Directions, Environment, HeightField, Lobe, Scatter, Scene, Sun,
+    VisiblePoints,
 };
 use crate::{Error, Result};
 use order::order;
@@ -22,6 +23,8 @@ use wanted::Wanted;
 /// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
 /// busy where the field is small.
 const CARRIED_BYTES: u64 = 64 << 20;
+/// Bytes that light scattered towards views side by side may take.
+const VIEWS_BYTES: u64 = 256 << 20;
 /// Paths side by side, at most.
 const MOST_AT_ONCE: u64 = 64;
 
@@ -57,7 +60,30 @@ pub fn scatter(
     scatter: &Scatter,
     limits: &Limits,
 ) -> Result<Plan> {
-    scatter.check(scene)?;
+    scatter_views(scene, directions, scatter, &[scatter.view], limits)
+}
+
+/// The same towards several views, unit vectors: "scattered" has a layer for each, in their order; [`Scatter::view`] counts
+/// for nothing. Paths are walked once up to their last step, which is taken for each view: of d steps to v views
+/// d - 1 + v look-ups a path and sample instead of d v.
+///
+/// # Errors
+/// As [`scatter`](scatter()); none, or more views than an image has layers; one that is not of length 1.
+pub fn scatter_views(
+    scene: &Scene,
+    directions: &Directions,
+    scatter: &Scatter,
+    views: &[DVec3],
+    limits: &Limits,
+) -> Result<Plan> {
+    for view in views {
+        Scatter { view: *view, ..*scatter }.check(scene)?;
+    }
+    let most = limits.image_layers;
+    if !(1..=most as usize).contains(&views.len()) {
+        let found = views.len().to_string();
+        return Err(Error::setting("views", found, format!("1 to {most} on this device")));
+    }
     let Scene { field, surface, .. } = scene;
     let size = limits.check_size(field.rows(), field.cols())?;
     super::visible_points::check_field(field)?;
@@ -65,14 +91,16 @@ pub fn scatter(
     let wanted = Wanted::of(scene, directions.count(), scatter, &mut notes);
     let mut builder = Builder::new();
     let rgba = Format::Rgba32Float;
+    let extent = [size[0], size[1], views.len() as u32];
+    let scattered = builder.image("scattered", Owner::Output, rgba, extent, true);
     let mut image = |name: &str, owner: Owner, format: Format| {
         builder.image(name, owner, format, [size[0], size[1], 1], false)
     };
-    let scattered = image("scattered", Owner::Output, rgba);
+    let layers = views.len() as u32;
     let mut at_once = 0;
     let mut carried = Vec::new();
-    if wanted.bounces == 0 {
-        pass::plan_nothing(&mut builder, field, scattered);
+    if wanted.paths == 0 {
+        pass::plan_nothing(&mut builder, field, (scattered, layers));
     } else {
         let heights = image("heights", Owner::Input, Format::R32Float);
         let mut bound = vec![("direct", image("direct", Owner::Input, rgba))];
@@ -95,6 +123,9 @@ pub fn scatter(
         let (links, first_link) =
             builder.constants(&link_texels(scene, directions, &order, wanted.mirrors_sky));
         let (_, first_sun) = builder.constants(&sun_texels(&wanted.suns));
+        let texels_of_views: Vec<f32> =
+            views.iter().flat_map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0]).collect();
+        let (_, first_view) = builder.constants(&texels_of_views);
         bound.push(("links", links));
         if let Some(suns) = &suns {
             let all = images_of_suns(&mut builder, size, suns, limits)?;
@@ -138,11 +169,12 @@ pub fn scatter(
             albedo: &surface.albedo,
             lobe: wanted.lobe,
             suns: wanted.suns.len(),
-            texels: [first_link, first_sun],
+            texels: [first_link, first_sun, first_view],
             count: steps,
             first_path: scatter.first_path,
             weight_sr: directions.share_sr() * directions.count() as f64,
-            view: scatter.view,
+            views: layers,
+            own_lobe: wanted.own_lobe,
             curvature: scatter.curvature,
         };
         let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
@@ -186,17 +218,25 @@ pub fn scatter(
         ("paths_before", scatter.first_path.to_string()),
         ("paths_at_once", at_once.to_string()),
         ("seed", scatter.seed.to_string()),
+        ("views", views.len().to_string()),
         ("curvature_per_m", format!("{:?}", scatter.curvature.per_m)),
         ("carried", bytes_text(carried_bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    if directions.lowest_z() > -1.0 && wanted.bounces > 0 {
+    if directions.lowest_z() > -1.0 && wanted.paths > 0 {
         notes.push(format!(
             "directions reach down to a height of {} alone: slopes lose what light comes from below it",
             directions.lowest_z()
         ));
     }
     Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
+}
+
+/// Of so many views those that go side by side: light scattered towards them takes 256 MiB at most, and an image has layers
+/// for them. Paths are walked again for the next.
+pub fn views_at_once(field: &HeightField, views: usize, limits: &Limits) -> usize {
+    let fitting = VIEWS_BYTES / (16 * field.heights_m().len() as u64);
+    fitting.clamp(1, limits.image_layers.into()).min(views.max(1) as u64) as usize
 }
 
 fn hash_text(directions: &Directions) -> String {

@@ -25,6 +25,10 @@ pub struct Scatter {
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,
+    /// Whether views see what a sample's own lobe mirrors of suns, sky and environment, too, default not: that is direct light.
+    /// With it `bounces` may be 0. The sky is that of the directions of the paths: lobes narrower than these are apart are
+    /// rough.
+    pub own_lobe: bool,
     /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
     /// each direction counts for, follow the base. Of what is diffuse alone.
     pub curvature: Curvature,
@@ -39,6 +43,7 @@ impl Default for Scatter {
             cutoff: Bounces::NONE.cutoff,
             seed: 0,
             view: DVec3::Z,
+            own_lobe: false,
             curvature: Curvature::FLAT,
         }
     }
@@ -58,7 +63,9 @@ impl Scatter {
     /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
     /// a base bent more than [`Curvature::check`] allows.
     pub fn check(&self, scene: &Scene) -> Result<()> {
-        within("--bounces", self.bounces, Self::BOUNCES)?;
+        if !(self.own_lobe && self.bounces == 0) {
+            within("--bounces", self.bounces, Self::BOUNCES)?;
+        }
         within("--paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;
         Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;

@@ -193,7 +193,8 @@ fn light_and_view_can_be_exchanged() {
     // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
     let of_wrong = |light: usize| {
         let z = facets.directions().vectors()[light].z;
-        Ok(facets.lit_from(light).into_iter().map(|l| l.map(|v| v * z)).collect())
+        let scaled = facets.lit_from(light).alike().iter().map(|l| l.map(|v| v * z)).collect();
+        Ok(Vec::into(scaled))
     };
     let wrong = Brdf::of(&facets, of_wrong).expect("a table");
     assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
@@ -216,7 +217,7 @@ fn scattered_light_leaves_as_much_as_arrives() {
     let facets = facets(&scene, 3, above(VIEWS));
     let lit = |light: usize| {
         let mut radiance = facets.lit_from(light);
-        let samples = facets.to_samples(&radiance);
+        let samples = facets.to_samples(radiance.alike());
         let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
         let more = expected(&scene, &points, &direct, 20);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
@@ -273,9 +274,9 @@ fn backs_are_no_part_of_a_view() {
     assert_eq!([0, 1].map(|i| facets.shows(i)), [true, false]);
     assert_eq!(facets.closure(1), 0.0);
     let from_above = facets.lit_from(0);
-    assert!(from_above.iter().all(|l| l[0] > 0.0));
+    assert!(from_above.alike().iter().all(|l| l[0] > 0.0));
     assert!(facets.texels_from(1, &from_above).into_iter().flatten().all(|v| v == 0.0));
-    assert!(facets.lit_from(1).into_iter().flatten().all(|v| v == 0.0));
+    assert!(facets.lit_from(1).alike().iter().flatten().all(|v| *v == 0.0));
 }
 
 #[test]

@@ -77,7 +77,8 @@ pub fn table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<(Brdf, Facets)> 
         other => other,
     })?;
     let mut values = Vec::with_capacity(count * count);
-    afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
+    let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
+    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
@@ -111,11 +112,26 @@ pub fn tell(
     let is = "of a light's irradiance, over all lights and colours";
     files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
     files.tell("unreciprocal", table.unreciprocal().into());
+    if facets.has_lobes() {
+        let gathered = (0..lit.angles.count()).flat_map(|view| table.gathered(view, &weights));
+        let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+        let is = "radiance of a view under light of 1 from all sides, over all views and colours: at most what the surface \
+                  reflects; of one light, reflected, more than all may leave at grazing angles, as lobes have no cosine";
+        files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
+        if most > 1.0 {
+            files.remark(format!(
+                "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
+                 light, and are not the same with both exchanged ({:.3} unreciprocal)",
+                table.unreciprocal()
+            ));
+        }
+    }
     say(format!("{PAIRS} pairs between"));
     let pairs = bake::pairs(PAIRS, lit.seed)?;
     let between = gpu.facets(lit.scene, facets.times(), &pairs, &lit.limits)?;
     let (mut apart, mut all) = (0.0, 0.0);
-    afar::each_light(gpu, lit, &between, 0..PAIRS, &mut |light, radiance| {
+    let own = |light| PAIRS + light..PAIRS + light + 1;
+    afar::each_light(gpu, lit, &between, (0..PAIRS, &own), &mut |light, radiance| {
         let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
         let own = between.seen_from(PAIRS + light, &radiance).map(|m| m / l.z);
         for (own, found) in own.into_iter().zip(kept(l, v)) {
