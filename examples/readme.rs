@@ -319,7 +319,7 @@ fn auto() -> Result<String> {
 fn bake() -> Result<String> {
     let figures = Figures::read("bake")?;
     let mut out = String::from(
-        "| kind | channels | packed as | bytes a sample | stated error | worst here |\n|---|---|---|---|---|---|\n",
+        "| kind | channels | packed as | bytes | stated error | worst here |\n|---|---|---|---|---|---|\n",
     );
     for row in figures.rows() {
         let word = |key| figures.word(row, key);
@@ -342,11 +342,10 @@ fn bake() -> Result<String> {
             stated.push(format!("{}: {most}", figures.word(bound, "of")?));
             worst.push(shown(number("worst")?));
         }
-        let bytes = figures.number(row, "bytes_a_sample")?;
-        let an_azimuth = if word("kind")? == "horizon" { " an azimuth" } else { "" };
+        let (bytes, each) = (figures.number(row, "bytes")?, word("each")?);
         writeln!(
             out,
-            "| {} | {} | {} | {bytes}{an_azimuth} | {} | {} |",
+            "| {} | {} | {} | {bytes} {each} | {} | {} |",
             word("kind")?,
             word("channels")?,
             word("encoding")?,
@@ -357,9 +356,11 @@ fn bake() -> Result<String> {
     }
     writeln!(
         out,
-        "\nOf decoding a .ktx2 or .png; worst of the bundled mountain, {} times as steep, {} azimuths (`examples/bake`).",
+        "\nOf decoding a .ktx2 or .png; worst of the bundled mountain, {} times as steep, {} azimuths; of light its middle {side}² samples, \
+         which repeat (`examples/bake`).",
         figures.number(&figures.all, "steeper")?,
-        figures.number(&figures.all, "azimuths")?
+        figures.number(&figures.all, "azimuths")?,
+        side = figures.number(&figures.all, "lit_side")?
     )
     .unwrap();
     writeln!(out, "{}", figures.caption()?).unwrap();

@@ -6,7 +6,7 @@
 //! by an orthographic camera, its mean over one repetition; the field's triangles asked for that pair; the table; factors.
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets, Factors, Leaving, pairs};
+use ridgelight::bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, Leaving, pairs};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::Limits;
 use ridgelight::scene::{
@@ -16,7 +16,6 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 
 use crate::geometry::{Geometry, sun};
-use crate::harmonics::Harmonics;
 use crate::{Asked, bent, moss};
 
 pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
@@ -201,7 +200,7 @@ fn one(gpu: &mut Headless, name: &str, seen: &Seen) -> Result<()> {
             row.push(of(&|l, v| factors.at(l, v)));
         }
         for order in ORDERS {
-            let harmonics = Harmonics::of(&table, order, &weights)?;
+            let harmonics = BrdfHarmonics::of(&table, ANGLES, order, false)?;
             row.push(of(&|l, v| harmonics.at(l, v)));
         }
         println!(

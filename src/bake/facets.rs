@@ -40,13 +40,6 @@ pub const DIRECTIONS_A_WORD: usize = 15;
 /// A ray of a word took more steps than there can be.
 const LOST: u32 = 1 << 31;
 
-/// Whether a triangle of so many cells is seen from a direction, of the device's words: triangles count two a cell, first the
-/// one north-east of its diagonal.
-pub fn mask_bit(words: &[u32], cells: usize, direction: usize, facet: usize) -> bool {
-    let word = words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
-    word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1
-}
-
 /// A field's triangles, cut so many times finer, and in which directions each is seen.
 #[derive(Clone, Debug)]
 pub struct Facets {
@@ -247,10 +240,12 @@ impl Facets {
     /// than 0.
     fn share(&self, direction: usize, facet: usize) -> Option<f64> {
         let cells = self.cells[0] * self.cells[1];
+        let word = self.words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
+        let is_seen = word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;
         let e = self.directions.vectors()[direction];
         let [east, north] = self.slopes[facet];
         let share = e.z - east * e.x - north * e.y;
-        (mask_bit(&self.words, cells, direction, facet) && share > 0.0).then_some(share)
+        (is_seen && share > 0.0).then_some(share)
     }
 
     /// What leaves a triangle towards a direction that sees it and of whose view it fills `share`.
@@ -342,13 +337,15 @@ impl Facets {
 
     /// Of each sample as direction `view` shows it: radiance, and the share of the view that it fills over its own cell, masking
     /// counted. The mean over all samples of their product over that of the shares is [`seen_from`](Self::seen_from), and the
-    /// shares' mean is v_z.
+    /// shares' mean is v_z where the field repeats. One that ends has half a cell of the samples at its edges, and of those at
+    /// its corners a third where a diagonal begins or ends, else a sixth: shares times a cell's area are the area of the view
+    /// that is filled.
     ///
     /// # Panics
     /// Where light is not scattered towards that.
     pub fn texels_from(&self, view: usize, light: &Leaving) -> Vec<[f64; 4]> {
         let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
-        let each = all.len() as f64 / self.slopes.len() as f64;
+        let each = 0.5 / self.times.pow(2) as f64;
         for (facet, filled) in self.shares(view) {
             let radiance = self.towards((view, filled), facet, light);
             for (sample, share) in self.between(facet) {

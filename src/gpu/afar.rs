@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Frame, Headless};
+use super::{Frame, Headless, Timing};
 use crate::Result;
 use crate::bake::{Facets, Leaving};
 use crate::plan::{self, Limits};
@@ -57,7 +57,7 @@ impl Headless {
     fn words_of_all(&mut self, plan: plan::Plan, field: &HeightField) -> Result<Vec<u32>> {
         let outputs = plan.outputs().count();
         self.with_frame(plan, &[field.heights_m()], |gpu, frame| {
-            gpu.draw(frame)?;
+            gpu.draw_counted(frame)?;
             let mut words = Vec::new();
             for output in 0..outputs {
                 let pixels = gpu.pixels(frame, output)?;
@@ -83,7 +83,7 @@ impl Headless {
         let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         self.with_frame(plan, &contents, |gpu, frame| {
-            gpu.draw(frame)?;
+            gpu.draw_counted(frame)?;
             gpu.colours(frame)
         })
     }
@@ -106,7 +106,7 @@ impl Headless {
             let contents = plan::scatter_inputs(&plan, scene, points, direct)?;
             let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
             let light = self.with_frame(plan, &contents, |gpu, frame| {
-                gpu.draw(frame)?;
+                gpu.draw_counted(frame)?;
                 gpu.colours(frame)
             })?;
             for (view, light) in light.chunks_exact(direct.len()).enumerate() {
@@ -114,6 +114,29 @@ impl Headless {
             }
         }
         Ok(())
+    }
+
+    /// Runs a frame once, waits, and counts its times for [`take_timings`](Self::take_timings), as everything that is looked
+    /// at along directions does: a light at a time, that is hundreds of frames.
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw).
+    pub fn draw_counted(&mut self, frame: &mut Frame) -> Result<()> {
+        for Timing { label, ns } in self.draw(frame)? {
+            let name = label.split(' ').next().unwrap_or_default();
+            match self.counted.iter_mut().find(|(known, ..)| known == name) {
+                Some((_, runs, sum)) => (*runs, *sum) = (*runs + 1, *sum + ns),
+                None => self.counted.push((name.to_owned(), 1, ns)),
+            }
+        }
+        Ok(())
+    }
+
+    /// What was counted since this was last asked, in the order of the first runs: of every pass the sum over its runs,
+    /// whose number is the label's part.
+    pub fn take_timings(&mut self) -> Vec<Timing> {
+        let all = std::mem::take(&mut self.counted).into_iter();
+        all.map(|(name, runs, ns)| Timing { label: format!("{name} {runs} runs"), ns }).collect()
     }
 
     /// Layer after layer.
@@ -161,7 +184,7 @@ impl Headless {
                 let texels: Vec<f32> =
                     samples.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
                 gpu.refill(frame, direct, &texels)?;
-                gpu.draw(frame)?;
+                gpu.draw_counted(frame)?;
                 facets.add_samples(&gpu.colours(frame)?, &mut radiance);
                 take(light, radiance)?;
             }
@@ -215,7 +238,7 @@ impl Headless {
                 let texels: Vec<f32> =
                     direct.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
                 gpu.refill(frame, place, &texels)?;
-                gpu.draw(frame)?;
+                gpu.draw_counted(frame)?;
                 let light = gpu.colours(frame)?;
                 towards.extend(light.chunks_exact(samples).map(<[_]>::to_vec));
             }

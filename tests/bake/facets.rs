@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets};
+use ridgelight::bake::{Angles, Brdf, Facets, Leaving};
 use ridgelight::cpu::facet_mask::facet_mask;
 use ridgelight::cpu::light::normal;
 use ridgelight::cpu::scatter_gather::expected;
@@ -31,8 +31,20 @@ fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
     Facets::of(scene, times, directions, words).expect("above horizontal")
 }
 
+/// Of all pairs: `radiance` is that of all triangles under a light of irradiance 1 facing it from each direction.
+pub fn table(facets: &Facets, radiance: impl Fn(usize) -> Leaving) -> Brdf {
+    facets.check().expect("a plane from afar");
+    let directions = facets.directions().vectors().to_vec();
+    let of = |(light, e): (usize, &DVec3)| {
+        let seen = facets.seen_from_all(&radiance(light));
+        seen.into_iter().map(|mean| mean.map(|m| m / e.z)).collect::<Vec<_>>()
+    };
+    let values = directions.iter().enumerate().flat_map(of).collect();
+    Brdf::from_values(directions, values).expect("a table")
+}
+
 fn direct(facets: &Facets) -> Brdf {
-    Brdf::of(facets, |light| Ok(facets.lit_from(light))).expect("a table")
+    table(facets, |light| facets.lit_from(light))
 }
 
 fn above(count: usize) -> Directions {
@@ -193,10 +205,10 @@ fn light_and_view_can_be_exchanged() {
     // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
     let of_wrong = |light: usize| {
         let z = facets.directions().vectors()[light].z;
-        let scaled = facets.lit_from(light).alike().iter().map(|l| l.map(|v| v * z)).collect();
-        Ok(Vec::into(scaled))
+        let light = facets.lit_from(light);
+        Vec::into(light.alike().iter().map(|l| l.map(|v| v * z)).collect())
     };
-    let wrong = Brdf::of(&facets, of_wrong).expect("a table");
+    let wrong = self::table(&facets, of_wrong);
     assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
 }
 
@@ -222,9 +234,9 @@ fn scattered_light_leaves_as_much_as_arrives() {
         let more = expected(&scene, &points, &direct, 20);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
         facets.add_samples(&more, &mut radiance);
-        Ok(radiance)
+        radiance
     };
-    let table = Brdf::of(&facets, lit).expect("a table");
+    let table = self::table(&facets, lit);
     let weights = projected_sr(facets.directions());
     let by = |count: f64| 3.0 * 1.16 * PI.powf(0.25) * count.powf(-0.75);
     let allowed = 2.0 * by(AROUND as f64) + by(2.0 * VIEWS as f64);
@@ -262,6 +274,38 @@ fn textures_hold_what_is_seen() {
     }
 }
 
+/// Level ground that ends fills as much of a view as its own area does, v_z a cell: its samples inside all of a cell, at edges
+/// half, at corners a third or, where no diagonal ends, a sixth, as the triangles that meet there go to their corners alike.
+/// Irradiance is the cosine itself, with nothing scaled.
+#[test]
+fn fields_that_end_hold_parts_of_cells() {
+    let mut scene = scene(4, 6, |_, _| 2.0);
+    for (border, times) in [(Border::Plane, 1), (Border::Open, 2)] {
+        scene.surface.border = border;
+        let facets = facets(&scene, times, above(9));
+        let radiance = facets.lit_from(3);
+        let z = facets.directions().vectors()[3].z;
+        let known = f64::from(ALBEDO[0]) / PI * z;
+        assert!(radiance.alike().iter().all(|l| (l[0] - known).abs() < 1e-12));
+        for (view, e) in facets.directions().vectors().iter().enumerate() {
+            let texels = facets.texels_from(view, &radiance);
+            for (at, texel) in texels.iter().enumerate() {
+                let (row, col) = (at / 6, at % 6);
+                let part = match (row == 0 || row == 3, col == 0 || col == 5) {
+                    (false, false) => 1.0,
+                    (true, true) if (row == 0) == (col == 0) => 1.0 / 3.0,
+                    (true, true) => 1.0 / 6.0,
+                    _ => 0.5,
+                };
+                assert!((texel[3] - part * e.z).abs() < 1e-12, "{view}: {row} {col} {}", texel[3]);
+                assert!((texel[0] - known).abs() < 1e-12);
+            }
+            let whole: f64 = texels.iter().map(|t| t[3]).sum();
+            assert!((whole - 15.0 * e.z).abs() < 1e-12, "{view}: {whole}");
+        }
+    }
+}
+
 /// A ramp that rises by 10 a cell towards the east and ends shows the east its backs alone: nothing is seen from there and
 /// nothing lit, 0 throughout and no quotient of zeros.
 #[test]
@@ -285,9 +329,8 @@ fn what_is_no_plane_from_afar_is_refused() {
     let said = |scene: &Scene, directions: Directions| {
         let border = scene.surface.border;
         let words = facet_mask(&scene.field, border, &directions).expect("words");
-        let table = Facets::of(scene, 1, directions, words)
-            .and_then(|f| Brdf::of(&f, |light| Ok(f.lit_from(light))).map(drop));
-        table.unwrap_err().to_string()
+        let checked = Facets::of(scene, 1, directions, words).and_then(|f| f.check());
+        checked.unwrap_err().to_string()
     };
     let below = Directions::fibonacci(8, -1.0, 0).expect("directions");
     assert!(said(&scene, below).contains("above horizontal"));

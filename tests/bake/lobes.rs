@@ -34,7 +34,7 @@ fn facets(scene: &Scene, directions: Directions) -> Facets {
 }
 
 fn table(facets: &Facets) -> Brdf {
-    Brdf::of(facets, |light| Ok(facets.lit_from(light))).expect("a table")
+    crate::facets::table(facets, |light| facets.lit_from(light))
 }
 
 /// (n + 1)/2π cosⁿ about the mirror direction of the view.

@@ -2,6 +2,7 @@
 //! field, against the values that were packed: each within the error that its sheet states.
 
 mod light;
+mod turns;
 
 use std::path::Path;
 use std::process::Command;

@@ -20,11 +20,11 @@ use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
 pub use asked::{help, kind_named, packing};
-use folder::{check_folder, check_memory, parent, remove_old, told};
+use folder::{check_folder, check_memory, parent, remove_old, take_sheet};
 pub use kinds::Kind;
 use kinds::{Asked, Lit, Looked, Making, OfDirections, Source};
 pub use map::Format;
-use map::{MapFiles, Wanted};
+use map::{MapFiles, Wanted, Whole};
 
 /// What the folder's contents are told by; written last.
 const SHEET: &str = "bake.json";
@@ -117,7 +117,7 @@ impl Job<'_> {
 
     /// Kinds that the scene's lights shine on.
     fn has_direct(&self) -> bool {
-        self.wanted.iter().any(|w| ["scatter", "light-field"].contains(&w.kind.name))
+        self.wanted.iter().any(|w| asked::is_lit(w.kind))
     }
 
     fn has_horizons(&self) -> bool {
@@ -172,7 +172,8 @@ impl Job<'_> {
             used.push(("paths".into(), scatter.paths.to_string()));
             used.push(("seed".into(), scatter.seed.to_string()));
             if has(|name| name == "scatter") {
-                used.push(("paths_used".into(), kinds::paths(&scatter).to_string()));
+                let traced = kinds::paths(&self.lit, limits)?;
+                used.push(("paths_used".into(), traced.to_string()));
             }
         }
         if self.has_direct() {
@@ -229,7 +230,9 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let (quality, around) = (&quality, &directions);
     let seed = args.seed.unwrap_or(0);
     let curvature = args.curvature;
-    let lit = Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed };
+    let table = std::cell::OnceCell::new();
+    let lit =
+        Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed, table };
     let mut job = Job { lit, wanted, making };
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
@@ -252,20 +255,11 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let used = job.used(&limits)?;
     let why = |setting: &str| job.idle_reason(setting);
     idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
-    let made = std::fs::create_dir(&args.output);
-    match &made {
-        Err(error) if error.kind() != std::io::ErrorKind::AlreadyExists => {
-            let source = std::io::Error::new(error.kind(), error.to_string());
-            return Err(Error::Io { path: args.output.clone(), source });
-        }
-        _ => {}
+    if !args.global.quiet {
+        asked::say_idle_light(args, &job.wanted);
     }
-    let done = bake(args, job, &mut gpu, &used);
-    if done.is_err() && made.is_ok() {
-        // Nothing was finished: what was made for it goes, too, unless somebody has put something there.
-        let _ = std::fs::remove_dir(&args.output);
-    }
-    done
+    let _folder = files::ResultFolder::create(&args.output)?;
+    bake(args, job, &mut gpu, &used)
 }
 
 fn bake(
@@ -329,6 +323,7 @@ fn bake(
             }
         }
     }
+    times.extend(gpu.take_timings());
     let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
     // A plan's are of a part.
@@ -343,7 +338,7 @@ fn bake(
     let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
-    let mut sheets = Vec::new();
+    let mut whole = Vec::new();
     for (i, (source, mut files)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
         if let Source::Horizons(maker) = source {
@@ -353,8 +348,11 @@ fn bake(
             // A closed stderr is no panic.
             let _ = bar.suspend(|| writeln!(std::io::stderr(), "{note}"));
         }
-        sheets.push(files.finish(&metadata)?);
+        whole.push(files.complete(&metadata)?);
     }
+    // From here on an earlier sheet would tell of files that are no longer its own.
+    let before = take_sheet(&args.output)?;
+    let sheets = whole.into_iter().map(Whole::place).collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
@@ -366,9 +364,7 @@ fn bake(
         let vectors = directions.vectors().iter();
         sheet["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
     }
-    let path = args.output.join(SHEET);
-    let before = told(&path)?;
-    files::write_json(&path, &sheet)?;
+    files::write_json(&args.output.join(SHEET), &sheet)?;
     remove_old(&args.output, before)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &sheet)?;

@@ -25,7 +25,8 @@ pub struct BakeArgs {
     /// What to bake, of the list below
     #[arg(long, value_name = "LIST", value_delimiter = ',', required = true, value_parser = bake::kind_named)]
     pub what: Vec<&'static Kind>,
-    /// Files of each: exr and npy hold values in f32, ktx2 and png what --encoding makes of them. Default each kind's
+    /// Files of each: exr and npy hold values in f32, ktx2 and png what --encoding makes of them. An exr is held in memory
+    /// until the end, the others are written as they come. Default each kind's
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub format: Vec<Format>,
     /// How a kind's values are packed in .ktx2 and .png, as horizon=unorm16-sin; default the first that is listed below

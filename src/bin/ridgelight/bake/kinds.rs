@@ -16,6 +16,8 @@ mod sky_view;
 mod visible_points;
 mod visible_sky;
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::bake::{Angles, Encoding, Ray, Sum, Summing};
@@ -163,6 +165,12 @@ pub struct OfLight {
     pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
 }
 
+/// A whole number among the settings of a plan, which has it.
+fn number(plan: &Plan, name: &str) -> u32 {
+    let of = plan.settings.iter().find(|(known, _)| known == name);
+    of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light tell it")
+}
+
 /// What light is made of.
 pub struct Lit<'a> {
     pub scene: &'a Scene,
@@ -178,6 +186,8 @@ pub struct Lit<'a> {
     pub curvature: Option<[f64; 2]>,
     /// Of the pairs that a table is asked for between its angles.
     pub seed: u32,
+    /// That `brdf` and `brdf-factors` are of, once one of them has asked for it.
+    pub table: OnceCell<brdf::Table>,
 }
 
 /// What came of its plan.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use ridgelight::bake::{Component, Encoding};
-use ridgelight::files::{self, Channels, Ktx2Writer, Layer, NpyWriter, TexelFormat};
+use ridgelight::files::{self, Channels, Ktx2Writer, Layer, NpyWriter, TexelFormat, Written};
 use ridgelight::scene::HeightField;
 use ridgelight::{Error, Result};
 use serde_json::{Value as Json, json};
@@ -30,10 +30,10 @@ impl Format {
         }
     }
 
-    /// Whether it can hold what the encoding makes.
-    pub fn takes(self, encoding: &Encoding) -> bool {
+    /// Whether it can hold what the encoding makes of a kind.
+    pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
         let is_picture = encoding.component.is_normalised() && encoding.components < 4;
-        self != Format::Png || is_picture
+        self != Format::Png || is_picture || asked::is_scaled(kind)
     }
 }
 
@@ -63,13 +63,10 @@ impl Wanted {
         }
     }
 
-    /// Of the pictures, one a layer.
-    fn pictures(&self, map: &Map) -> Vec<String> {
+    /// Of a layer's picture.
+    fn picture(&self, map: &Map, layer: usize) -> String {
         let stem = stem(self.kind);
-        if !map.is_array {
-            return vec![format!("{stem}.png")];
-        }
-        (0..self.layers(map)).map(|k| format!("{stem}_{k:04}.png")).collect()
+        if map.is_array { format!("{stem}_{layer:04}.png") } else { format!("{stem}.png") }
     }
 
     /// Every file, and the most bytes that it may take.
@@ -89,7 +86,7 @@ impl Wanted {
                 }
                 Format::Png => {
                     let most = (texels + 2) * samples / 100 * 101 + 65_536;
-                    all.extend(self.pictures(map).into_iter().map(|name| (name, most)));
+                    all.extend((0..self.layers(map)).map(|k| (self.picture(map, k), most)));
                 }
             }
         }
@@ -97,13 +94,13 @@ impl Wanted {
         all
     }
 
-    /// Bytes that its files hold until they are written.
+    /// Bytes that its files hold until they are written: the others a layer, on its way.
     pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
         let samples = map.texels(samples) as u64;
         let of = |format: &Format| match format {
             Format::Exr => 4 * map.planes.len() as u64 * samples,
-            Format::Png => (self.texels().bytes() + 2) as u64 * self.layers(map) as u64 * samples,
-            // A layer, on its way.
+            // Its samples, and what is packed of them.
+            Format::Png => 2 * (self.texels().bytes() + 2) as u64 * samples,
             Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
         };
         self.formats.iter().map(of).sum()
@@ -120,11 +117,22 @@ enum Open {
     Exr(PathBuf, Vec<Vec<f32>>),
     Npy(PathBuf, NpyWriter),
     Ktx2(PathBuf, Ktx2Writer),
-    /// Samples of each picture.
-    Png(Vec<(PathBuf, Vec<u8>)>),
+    /// One a layer, each with what its samples are times.
+    Png(Vec<(PathBuf, Written, f64)>),
 }
 
-/// A map's files, until [`finish`](Self::finish) nowhere to be seen.
+/// A file that waits for its place, and what it is.
+struct Waiting {
+    file: Written,
+    path: PathBuf,
+    format: Format,
+    /// Texels or samples, in words.
+    holds: String,
+    /// Of samples of pictures.
+    scale: f64,
+}
+
+/// A map's files, until [`Whole::place`] nowhere to be seen.
 pub struct MapFiles<'a> {
     wanted: Wanted,
     map: Map,
@@ -221,7 +229,8 @@ impl<'a> MapFiles<'a> {
     /// Takes a layer: as many planes as [`planes_at_once`](Self::planes_at_once), fewer in the last.
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
-        let (texels, picture) = self.coded(planes);
+        let scale = if self.is_scaled() { self.largest(planes) } else { 1.0 };
+        let (texels, picture) = self.coded(planes, scale);
         let (voids, field) = (self.voids(), self.field);
         let masked = |plane: &[f32]| {
             let mut plane = plane.to_vec();
@@ -230,7 +239,7 @@ impl<'a> MapFiles<'a> {
             }
             plane
         };
-        let pictures = self.wanted.pictures(&self.map);
+        let (size, form, texts) = (self.size(), self.picture_form(), self.picture_texts(scale));
         for open in &mut self.open {
             match open {
                 Open::Exr(_, kept) => kept.extend(planes.iter().map(|plane| masked(plane))),
@@ -244,8 +253,9 @@ impl<'a> MapFiles<'a> {
                 }
                 Open::Ktx2(_, writer) => writer.write(&texels)?,
                 Open::Png(kept) => {
-                    let name = &pictures[self.taken];
-                    kept.push((self.folder.join(name), picture.clone()));
+                    let path = self.folder.join(self.wanted.picture(&self.map, self.taken));
+                    let file = files::write_codes_aside(&path, size, form, &picture, &texts)?;
+                    kept.push((path, file, scale));
                 }
             }
         }
@@ -279,17 +289,55 @@ impl<'a> MapFiles<'a> {
         self.wanted.encoding.components + usize::from(self.voids().is_some())
     }
 
-    /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, 16 bits big-endian.
-    fn coded(&self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
+    /// Whether its pictures are of floats: 16 bits, 1 at the largest of each.
+    fn is_scaled(&self) -> bool {
+        self.has(Format::Png) && !self.wanted.encoding.component.is_normalised()
+    }
+
+    /// What holds a component in its pictures.
+    fn picture_component(&self) -> Component {
+        if self.is_scaled() { Component::Unorm16 } else { self.wanted.encoding.component }
+    }
+
+    /// Channels and bits of its pictures.
+    fn picture_form(&self) -> (usize, u32) {
+        (self.channels(), 8 * self.picture_component().bytes() as u32)
+    }
+
+    /// What its pictures say of themselves.
+    fn picture_texts(&self, scale: f64) -> Vec<(String, String)> {
+        let mut texts = self.texts.clone();
+        if self.is_scaled() {
+            texts.retain(|(name, _)| name != "ridgelight.encoding");
+            texts.push(("ridgelight.encoding".into(), "unorm16, times ridgelight.scale".into()));
+            texts.push(("ridgelight.scale".into(), scale.to_string()));
+        }
+        texts
+    }
+
+    /// The largest number of a layer that is no void's, 1 of none.
+    fn largest(&self, planes: &[&[f32]]) -> f64 {
+        let voids = self.voids();
+        let own = |plane: &&[f32]| {
+            let all = plane.iter().enumerate().filter(|(i, _)| !voids.is_some_and(|v| v[*i]));
+            all.map(|(_, v)| *v).filter(|v| v.is_finite()).fold(0.0, f32::max)
+        };
+        let largest = planes.iter().map(own).fold(0.0, f32::max);
+        if largest > 0.0 { largest.into() } else { 1.0 }
+    }
+
+    /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, over `scale`, 16 bits big-endian.
+    fn coded(&self, planes: &[&[f32]], scale: f64) -> (Vec<u8>, Vec<u8>) {
         let (encoding, voids) = (self.wanted.encoding, self.voids());
         let (component, format) = (encoding.component, self.wanted.texels());
+        let of_picture = self.picture_component();
         let samples = self.size().iter().product::<usize>();
         let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
         let reserve = |is_wanted: bool, each: usize| {
             Vec::with_capacity(if is_wanted { each * samples } else { 0 })
         };
         let mut texels = reserve(has_texels, format.bytes());
-        let mut picture = reserve(has_picture, self.channels() * component.bytes());
+        let mut picture = reserve(has_picture, self.channels() * of_picture.bytes());
         if !has_texels && !has_picture {
             return (texels, picture);
         }
@@ -309,11 +357,12 @@ impl<'a> MapFiles<'a> {
             }
             if has_picture {
                 for part in parts.iter() {
-                    let part = if component.is_signed() { 0.5 + 0.5 * part } else { *part };
-                    sample(&mut picture, component, if is_void { 0.0 } else { part });
+                    let part = part / scale;
+                    let part = if of_picture.is_signed() { 0.5 + 0.5 * part } else { part };
+                    sample(&mut picture, of_picture, if is_void { 0.0 } else { part });
                 }
                 if voids.is_some() {
-                    sample(&mut picture, component, if is_void { 0.0 } else { 1.0 });
+                    sample(&mut picture, of_picture, if is_void { 0.0 } else { 1.0 });
                 }
             }
         }
@@ -347,49 +396,56 @@ impl<'a> MapFiles<'a> {
         all
     }
 
-    /// Puts all files at their places, and says what they are; `metadata` is for those that keep it.
-    pub fn finish(mut self, metadata: &[(String, String)]) -> Result<Json> {
-        let size = self.size();
-        let mut sheets = Vec::new();
-        let bits = 8 * self.wanted.encoding.component.bytes() as u32;
+    /// Ends all files, which wait beside their places; `metadata` is for those that keep it.
+    pub fn complete(mut self, metadata: &[(String, String)]) -> Result<Whole<'a>> {
+        let of_texels = self.wanted.texels().vulkan().map_or("", |(_, name)| name);
+        let mut waiting = Vec::new();
+        let mut wait = |format, path, file, holds: &str, scale| {
+            waiting.push(Waiting { file, path, format, holds: holds.to_owned(), scale });
+        };
         for open in std::mem::take(&mut self.open) {
             match open {
                 Open::Exr(path, planes) => {
-                    let layers = planes.iter().zip(&self.map.planes).map(|(plane, name)| Layer {
-                        name: String::new(),
-                        channels: Channels::Scalar(name, plane),
-                    });
-                    let layers: Vec<Layer> = layers.collect();
-                    let mut all = metadata.to_vec();
-                    // It holds the values themselves, and the field's hash is of the metadata.
-                    all.push(("ridgelight.kind".into(), self.wanted.kind.name.into()));
-                    files::write_exr(&path, size[1], size[0], &layers, &all)?;
-                    sheets.push(self.sheet(Format::Exr, &path, "f32")?);
+                    let file = self.exr(&path, &planes, metadata)?;
+                    wait(Format::Exr, path, file, "f32", 1.0);
                 }
-                Open::Npy(path, writer) => {
-                    writer.finish()?;
-                    sheets.push(self.sheet(Format::Npy, &path, "f32")?);
-                }
+                Open::Npy(path, writer) => wait(Format::Npy, path, writer.close()?, "f32", 1.0),
                 Open::Ktx2(path, writer) => {
-                    writer.finish()?;
-                    let format = self.wanted.texels().vulkan().map_or("", |(_, name)| name);
-                    sheets.push(self.sheet(Format::Ktx2, &path, format)?);
+                    wait(Format::Ktx2, path, writer.close()?, of_texels, 1.0);
                 }
                 Open::Png(pictures) => {
-                    for (path, samples) in pictures {
-                        let channels = (self.channels(), bits);
-                        files::write_codes(&path, size, channels, &samples, &self.texts)?;
-                        let what = format!(
-                            "{} of {bits} bits",
-                            ["Y", "YA", "RGB", "RGBA"][channels.0 - 1]
-                        );
-                        sheets.push(self.sheet(Format::Png, &path, &what)?);
+                    let (channels, bits) = self.picture_form();
+                    let holds =
+                        format!("{} of {bits} bits", ["Y", "YA", "RGB", "RGBA"][channels - 1]);
+                    for (path, file, scale) in pictures {
+                        wait(Format::Png, path, file, &holds, scale);
                     }
                 }
             }
         }
-        let decoder = format!("{}.glsl", stem(self.wanted.kind));
-        files::write_text(&self.folder.join(&decoder), &self.wanted.decoder(&self.map))?;
+        Ok(Whole { map: self, waiting })
+    }
+
+    fn exr(
+        &self,
+        path: &Path,
+        planes: &[Vec<f32>],
+        metadata: &[(String, String)],
+    ) -> Result<Written> {
+        let layers = planes.iter().zip(&self.map.planes).map(|(plane, name)| Layer {
+            name: String::new(),
+            channels: Channels::Scalar(name, plane),
+        });
+        let layers: Vec<Layer> = layers.collect();
+        let mut all = metadata.to_vec();
+        // It holds the values themselves, and the field's hash is of the metadata.
+        all.push(("ridgelight.kind".into(), self.wanted.kind.name.into()));
+        let [cols, rows] = self.size();
+        files::write_exr_aside(path, rows, cols, &layers, &all)
+    }
+
+    /// What is told of the whole of it.
+    fn told(&mut self, files: Vec<Json>, decoder: &str) -> Json {
         let values =
             self.map.values.iter().map(
                 |v| json!({ "name": v.name, "about": v.about, "unit": v.unit, "range": v.range }),
@@ -397,7 +453,7 @@ impl<'a> MapFiles<'a> {
         let values: Vec<Json> = values.collect();
         let mut sheet = json!({
             "kind": self.wanted.kind.name, "about": self.wanted.kind.about, "values": values,
-            "planes": self.map.planes, "encoding": self.wanted.encoding.name, "decoder": decoder, "files": sheets,
+            "planes": self.map.planes, "encoding": self.wanted.encoding.name, "decoder": decoder, "files": files,
         });
         if self.beyond.0 > 0 {
             let (count, most) = self.beyond;
@@ -411,25 +467,26 @@ impl<'a> MapFiles<'a> {
         for (name, what) in std::mem::take(&mut self.told) {
             sheet[name] = what;
         }
-        Ok(sheet)
+        sheet
     }
 
-    /// What one file is.
-    fn sheet(&self, format: Format, path: &Path, holds: &str) -> Result<Json> {
-        let about = std::fs::metadata(path);
-        let about = about.map_err(|source| Error::Io { path: path.to_owned(), source })?;
+    /// What one file is, of so many bytes.
+    fn sheet(&self, waiting: &Waiting, bytes: u64) -> Json {
+        let Waiting { format, path, holds, scale, .. } = waiting;
+        let (format, is_scaled) = (*format, *format == Format::Png && self.is_scaled());
         let encoding = self.wanted.encoding;
         let is_coded = matches!(format, Format::Ktx2 | Format::Png);
         let decoding = match format {
             Format::Exr | Format::Npy => "the values themselves".to_owned(),
+            _ if is_scaled => format!("{}, each times scale", encoding.decoding),
             Format::Png if encoding.component.is_signed() => {
                 format!("{}, where a sample v (0 to 1) stands for 2v - 1", encoding.decoding)
             }
             _ => encoding.decoding.to_owned(),
         };
-        let component = encoding.component;
+        let component = if is_scaled { Component::Unorm16 } else { encoding.component };
         let coded = encoding.bounds.iter().map(|b| {
-            let [most, share] = [b.absolute(component), b.relative(component)];
+            let [most, share] = [scale * b.absolute(component), b.relative(component)];
             json!({ "of": b.of, "unit": b.unit, "at_most": most, "and_of_the_value": share })
         });
         let bounds: Vec<Json> = if is_coded {
@@ -441,9 +498,12 @@ impl<'a> MapFiles<'a> {
             ]
         };
         let mut sheet = json!({
-            "file": path.file_name().map(|n| n.to_string_lossy()), "format": format.name(), "bytes": about.len(),
+            "file": path.file_name().map(|n| n.to_string_lossy()), "format": format.name(), "bytes": bytes,
             "texels": holds, "decoding": decoding, "error": bounds,
         });
+        if is_scaled {
+            sheet["scale"] = json!(scale);
+        }
         if format == Format::Ktx2 && component.is_normalised() && component.bytes() == 2 {
             sheet["sampled"] = format!(
                 "by devices that say so of VK_FORMAT_{holds} (VkFormatProperties): Vulkan asks it of none"
@@ -461,7 +521,31 @@ impl<'a> MapFiles<'a> {
             }
             .into();
         }
-        Ok(sheet)
+        sheet
+    }
+}
+
+/// A map whose files are all made and wait.
+pub struct Whole<'a> {
+    map: MapFiles<'a>,
+    waiting: Vec<Waiting>,
+}
+
+impl Whole<'_> {
+    /// Puts all files at their places, and says what they are.
+    pub fn place(mut self) -> Result<Json> {
+        let mut sheets = Vec::new();
+        for waiting in self.waiting {
+            let path = waiting.path.clone();
+            let about = std::fs::metadata(waiting.file.path());
+            let bytes = about.map_err(|source| Error::Io { path, source })?.len();
+            sheets.push(self.map.sheet(&waiting, bytes));
+            waiting.file.place()?;
+        }
+        let decoder = format!("{}.glsl", stem(self.map.wanted.kind));
+        let text = self.map.wanted.decoder(&self.map.map);
+        files::write_text(&self.map.folder.join(&decoder), &text)?;
+        Ok(self.map.told(sheets, &decoder))
     }
 }
 

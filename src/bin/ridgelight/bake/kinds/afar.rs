@@ -13,7 +13,7 @@ use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
 use super::super::map::MapFiles;
-use super::{Lit, Say, Value};
+use super::{Lit, Say, Value, number};
 
 /// The most that the components hold.
 pub fn largest(encoding: &Encoding) -> f64 {
@@ -45,7 +45,7 @@ pub fn texel(about: &'static str, unit: &'static str, encoding: &Encoding) -> Ve
     let share = Value {
         name: "share",
         about: "of the view over the texel's own cell, slope, foreshortening and masking counted: cos θ in the mean where the \
-                field repeats",
+                field repeats; where it ends, of a whole cell, of which it has half at an edge and a third or a sixth at a corner",
         unit: "",
         range,
     };
@@ -77,7 +77,7 @@ pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 
     let contents = plan::picture_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
+        gpu.draw_counted(frame)?;
         let pixels = gpu.pixels(frame, 0)?;
         crate::render::check_finite(&pixels, &scene.field)?;
         Ok(crate::render::rgb(&pixels))
@@ -114,10 +114,15 @@ fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
     })
 }
 
+/// Of which triangles are seen.
+pub fn mask_plan(lit: &Lit, limits: &Limits) -> Result<Plan> {
+    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
+    plan::facet_mask(&finer(field, border)?, border, &lit.angles.directions()?, limits)
+}
+
 pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
-    let finer = finer(field, border)?;
-    let mut all = vec![plan::facet_mask(&finer, border, &lit.angles.directions()?, limits)?];
+    let mut all = vec![mask_plan(lit, limits)?];
     if let Some(scatter) = &lit.scatter {
         all.push(plan::visible_points(field, border, lit.around, limits)?);
         all.push(match lobe(lit) {
@@ -213,17 +218,28 @@ pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
     }
     let closures = shown.into_iter().map(|i| facets.closure(i));
     let worst = closures.map(|c| (c - 1.0).abs()).fold(0.0, f64::max);
+    let (worst, are) = match lit.scene.surface.border {
+        Border::Periodic => (
+            Some(worst),
+            "flat, seen or hidden as their middles are; worst_closure is how far what they fill of a view was off what \
+             the plane does, before it was scaled to that, of directions that see any; the others' numbers are blind's",
+        ),
+        _ => (
+            None,
+            "flat, seen or hidden as their middles are; worst_closure is null, as a field that ends is no plane from afar: \
+             irradiance and shares are their own, and nothing is scaled",
+        ),
+    };
+    let (finer, count) = (facets.times(), facets.count());
     files.tell(
         "triangles",
-        json!({
-            "finer": facets.times(), "count": facets.count(), "worst_closure": worst,
-            "are": "flat, seen or hidden as their middles are; worst_closure is how far what they fill of a view was off what \
-                    the plane does, before it was scaled to that, of directions that see any; the others' numbers are blind's",
-        }),
+        json!({ "finer": finer, "count": count, "worst_closure": worst, "are": are }),
     );
     let scatter = match lit.scatter {
         Some(s) => {
-            json!({ "bounces": s.bounces, "paths": s.paths, "seed": s.seed, "directions": lit.around.count() })
+            let plan = plan::scatter(lit.scene, lit.around, &s, &lit.limits)?;
+            let [bounces, paths] = ["bounces", "paths"].map(|name| number(&plan, name));
+            json!({ "bounces": bounces, "paths": paths, "seed": s.seed, "directions": lit.around.count() })
         }
         None => serde_json::Value::Null,
     };

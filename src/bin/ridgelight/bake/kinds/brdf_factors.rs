@@ -62,9 +62,10 @@ fn begin(asked: &Asked) -> Result<Making> {
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
-    let (table, facets) = brdf::table(gpu, lit, say)?;
+    let kept = brdf::table(gpu, lit, say)?;
+    let table = &kept.brdf;
     say("factors".into());
-    let factors = Factors::of(&table, lit.angles, COUNT, facets.has_lobes())?;
+    let factors = Factors::of(table, lit.angles, COUNT, kept.facets.has_lobes())?;
     for of_k in factors.values().iter().chain(factors.of_views().unwrap_or_default()) {
         let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
         files.take(&planes.each_ref().map(Vec::as_slice))?;
@@ -79,5 +80,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         }
     }
     files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
-    brdf::tell(gpu, lit, (&table, &facets), &|l, v| factors.at(l, v), files, say)
+    brdf::tell(lit, kept, &|l, v| factors.at(l, v), files)
 }

@@ -44,8 +44,7 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
         let views = &views.vectors()[..plan::views_at_once(field, views.count(), limits)];
         all.push(plan::scatter_views(lit.scene, lit.around, &paths(lit), views, limits)?);
         all.push(plan::visible_points(field, lit.scene.surface.border, lit.around, limits)?);
-        let directions = Lit { scatter: None, ..*lit };
-        all.extend(afar::plans(&directions, limits)?);
+        all.push(afar::mask_plan(lit, limits)?);
         return Ok(all);
     }
     all.extend(afar::plans(lit, limits)?);

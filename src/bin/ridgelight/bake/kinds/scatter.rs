@@ -5,7 +5,7 @@ use ridgelight::{Error, Result, bake, plan};
 use serde_json::json;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, number};
 
 pub static KIND: Kind = Kind {
     name: "scatter",
@@ -49,9 +49,11 @@ fn begin(asked: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Light(of) })
 }
 
-/// Paths of all parts: as many as are asked for, or a few more.
-pub fn paths(scatter: &Scatter) -> u32 {
-    scatter.paths.div_ceil(PARTS) * PARTS
+/// Paths that are traced, of all parts together: a few more than are asked for, fewer where a part has looked along every
+/// direction before its last, 0 where nothing is scattered.
+pub fn paths(lit: &Lit, limits: &Limits) -> Result<u32> {
+    let of_part = plan::scatter(lit.scene, lit.around, &part(lit, 0)?, limits)?;
+    Ok(PARTS * number(&of_part, "paths"))
 }
 
 /// Of each part as many paths, together as many as are asked for or a few more.
@@ -112,7 +114,7 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let count = values().count() as f64;
     let mean = |of: &dyn Fn(&[f64; 2]) -> f64| values().map(of).sum::<f64>() / count;
     let light = planes[0].iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / count;
-    let paths = lit.scatter.as_ref().map(paths);
+    let paths = paths(lit, &lit.limits)?;
     files.tell(
         "chance",
         json!({
