@@ -4,6 +4,7 @@
 mod auto;
 mod bake;
 mod bake_light;
+mod bake_lobes;
 mod camera;
 #[path = "../common/mod.rs"]
 mod common;

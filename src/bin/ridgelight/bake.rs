@@ -410,7 +410,10 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
     crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
-    for (count, what) in job.wanted.iter().filter_map(|w| kinds::looks(&job.lit, w.kind.name)) {
+    let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
+    // Both are of one table.
+    let own = names.iter().filter(|name| **name != "brdf-factors" || !names.contains(&"brdf"));
+    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name)) {
         crate::say!("{count:>14}  {what}");
     }
     Ok(Outcome::Done)

@@ -7,7 +7,7 @@ use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Encoding, Facets, L
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Border, Bounces, Directions, HeightField, Lights, Phong, Quality, Scene, Sun, Surface,
+    Border, Bounces, Directions, HeightField, Lights, Phong, Quality, Scatter, Scene, Sun, Surface,
 };
 use ridgelight::{Error, Result, plan};
 use serde_json::json;
@@ -114,6 +114,20 @@ fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
     })
 }
 
+/// Of what is scattered of one light, and towards as many views as go side by side where it is another towards each.
+fn scatter_plan(lit: &Lit, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
+    if lobe(lit).is_none() {
+        return plan::scatter(lit.scene, lit.around, scatter, limits);
+    }
+    // The scene's own lights have no part in it; whichever sun, it is as much.
+    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 1.0, diameter_rad: 0.0, irradiance: [1.0; 3] };
+    let lights = Lights { suns: vec![sun], ..Lights::default() };
+    let scene = Scene { lights, ..lit.scene.clone() };
+    let views = lit.angles.directions()?;
+    let at_once = plan::views_at_once(&scene.field, views.count(), limits);
+    plan::scatter_views(&scene, lit.around, scatter, &views.vectors()[..at_once], limits)
+}
+
 /// Of which triangles are seen.
 pub fn mask_plan(lit: &Lit, limits: &Limits) -> Result<Plan> {
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
@@ -125,24 +139,7 @@ pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let mut all = vec![mask_plan(lit, limits)?];
     if let Some(scatter) = &lit.scatter {
         all.push(plan::visible_points(field, border, lit.around, limits)?);
-        all.push(match lobe(lit) {
-            None => plan::scatter(lit.scene, lit.around, scatter, limits)?,
-            Some(_) => {
-                // Under each light alone: as much of each.
-                let sun = Sun {
-                    azimuth_rad: 0.0,
-                    elevation_rad: 1.0,
-                    diameter_rad: 0.0,
-                    irradiance: [1.0; 3],
-                };
-                let lights = Lights { suns: vec![sun], ..Lights::default() };
-                let scene = Scene { lights, ..lit.scene.clone() };
-                let views = lit.angles.directions()?;
-                let at_once = plan::views_at_once(field, views.count(), limits);
-                let views = &views.vectors()[..at_once];
-                plan::scatter_views(&scene, lit.around, scatter, views, limits)?
-            }
-        });
+        all.push(scatter_plan(lit, scatter, limits)?);
     }
     Ok(all)
 }
@@ -237,7 +234,7 @@ pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
     );
     let scatter = match lit.scatter {
         Some(s) => {
-            let plan = plan::scatter(lit.scene, lit.around, &s, &lit.limits)?;
+            let plan = scatter_plan(lit, &s, &lit.limits)?;
             let [bounces, paths] = ["bounces", "paths"].map(|name| number(&plan, name));
             json!({ "bounces": bounces, "paths": paths, "seed": s.seed, "directions": lit.around.count() })
         }
