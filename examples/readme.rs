@@ -373,19 +373,20 @@ fn curved() -> Result<String> {
     let text = text(&path)?;
     let missing = || wrong(&path, "no table", "the text of examples/curved");
     let device = text.lines().nth(1).ok_or_else(missing)?;
-    let (refused, told): (Vec<&str>, Vec<&str>) = text
-        .lines()
-        .filter(|line| line.starts_with('|'))
-        .partition(|row| row.ends_with(" refused |"));
-    if told.len() < 3 {
-        return Err(missing());
-    }
-    let radius = |row: &&str| row.split('|').nth(1).unwrap_or_default().trim().to_owned();
-    let refused: Vec<String> = refused.iter().map(radius).collect();
+    let is_refused = |row: &&str| row.ends_with(" refused |");
+    let tables: Vec<&str> = text.split("\n\n").filter(|part| part.starts_with('|')).collect();
+    let [shadows, light] = tables[..] else { return Err(missing()) };
+    let told = |table: &str| {
+        let rows: Vec<&str> = table.lines().filter(|row| !is_refused(row)).collect();
+        if rows.len() < 3 { Err(missing()) } else { Ok(rows.join("\n")) }
+    };
+    let radius = |row: &str| row.split('|').nth(1).unwrap_or_default().trim().to_owned();
+    let refused: Vec<String> = shadows.lines().filter(is_refused).map(radius).collect();
     Ok(format!(
-        "{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
+        "{}\n\n{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
          ([all of it](benches/results/curved.txt)). A radius above 0 widens them. Refused: {}.\n*{device}{}*\n",
-        told.join("\n"),
+        told(shadows)?,
+        told(light)?,
         refused.join(", "),
         made(&path)?
     ))

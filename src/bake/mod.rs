@@ -40,8 +40,8 @@ pub use brdf::{Angles, Brdf, pairs};
 pub use brdf_harmonics::BrdfHarmonics;
 pub use curved::CurvedEllipses;
 pub use encoding::{
-    BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding, HORIZON,
-    POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
+    BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding,
+    HARMONIC_WEIGHTS, HORIZON, POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
 };
 pub use facets::{DIRECTIONS_A_WORD, Facets, Leaving};
 pub use factors::Factors;

@@ -149,6 +149,7 @@ impl Temporary {
         let file = builder.tempfile_in(directory).map_err(|e| {
             // The system's reason without the temporary name, which would only puzzle.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
+            let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
             Error::io(path, std::io::Error::new(e.kind(), reason))
         })?;
         all.files.push(file.path().to_owned());

@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::quality::within;
-use super::{Bounces, Curvature, Scene};
+use super::{Bounces, Changed, Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -57,22 +57,19 @@ impl Scatter {
     /// What [`first_path`](Self::first_path) may be.
     pub const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
 
-    /// Checks every range, and that the scene is one that can be scattered.
+    /// Checks every range, and that the scene is one that can be scattered; what its base changes, nothing of a flat one.
     ///
     /// # Errors
     /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
     /// a base bent more than [`Curvature::check`] allows.
-    pub fn check(&self, scene: &Scene) -> Result<()> {
+    pub fn check(&self, scene: &Scene) -> Result<Changed> {
         if !(self.own_lobe && self.bounces == 0) {
             within("--bounces", self.bounces, Self::BOUNCES)?;
         }
         within("--paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;
         Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;
-        let length = self.view.length();
-        if !(1.0 - 1e-6..=1.0 + 1e-6).contains(&length) {
-            return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));
-        }
+        check_view(self.view)?;
         scene.lights.check()?;
         scene.surface.check(scene.field.rows() * scene.field.cols())?;
         let others = scene.lights.keys.len() + scene.lights.spheres.len();
@@ -93,4 +90,12 @@ impl Scatter {
         }
         self.curvature.check(&scene.field, scene.surface.border)
     }
+}
+
+/// Refuses what is no direction.
+pub(crate) fn check_view(view: DVec3) -> Result<()> {
+    if (1.0 - 1e-6..=1.0 + 1e-6).contains(&view.length()) {
+        return Ok(());
+    }
+    Err(Error::setting("view", view.to_string(), "a vector of length 1"))
 }

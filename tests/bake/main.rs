@@ -1,6 +1,7 @@
 //! What is baked, held to closed forms of horizons that are known: level ground, a basin, a wall, a canyon, planes; and to
 //! the f64 quadrature on fields.
 
+mod bent;
 mod curved;
 mod ellipses;
 mod facets;

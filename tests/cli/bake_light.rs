@@ -309,7 +309,9 @@ fn gpu_paths_are_those_that_were_traced() {
         let words = "--what scatter,light-field --paths 200 --directions 8 --angles 2x4";
         done(
             &folder,
-            &format!("bake {field}.npy -o out --bounces {bounces} {words} --format npy --quiet"),
+            &format!(
+                "bake {field}.npy -o out --bounces {bounces} {words} --format npy,exr --quiet"
+            ),
         );
         let sheet = json(&folder.path("out/bake.json"));
         assert_eq!(sheet["settings"]["paths"], 200);
@@ -358,6 +360,37 @@ fn gpu_tables_are_made_once_and_timed() {
     let factors = ["brdf-factors", "brdf_brdf-factors"]
         .map(|out| load(&folder.path(out).join("brdf_factors.npy")));
     assert!(factors[0] == factors[1]);
+}
+
+/// Level ground reflects ρ/π everywhere, which the first harmonic alone is; the ridge takes at most half a thousandth times the order
+/// for lights and as much for views.
+#[test]
+fn gpu_level_ground_is_one_harmonic() {
+    let folder = Folder::new();
+    write(&folder, "field.npy", [4, 4], |_, _| 2.0);
+    let words = "--border periodic --what brdf-harmonics --sh-order 3 --angles 4x8 --bounces 0 \
+                 --albedo 0.8,0.5,0.1";
+    done(&folder, &format!("bake field.npy -o out {words} --format npy,ktx2"));
+    let (shape, values) = load(&folder.path("out/brdf_harmonics.npy"));
+    assert_eq!(shape, [3, 9, 9]);
+    let ridge = 1e-3 * 3.0;
+    let first = 1.0 / (4.0 * PI).sqrt();
+    for (c, albedo) in [0.8, 0.5, 0.1].into_iter().enumerate() {
+        // Straight above, of light and view: harmonics of m = 0 alone, √(2l + 1) times the first.
+        let above = [(0, 1.0), (2, 3_f64.sqrt()), (6, 5_f64.sqrt())];
+        let mut sum = 0.0;
+        for (i, a) in above {
+            for (j, b) in above {
+                sum += a * b * first * first * f64::from(values[(c * 9 + i) * 9 + j]);
+            }
+        }
+        assert!((sum - albedo / PI).abs() <= ridge * albedo / PI, "{c}: {sum}");
+    }
+    let sheet = json(&folder.path("out/bake.json"));
+    let map = &sheet["maps"][0];
+    assert!(map["residual_of_table"].as_f64().unwrap() <= ridge, "{map}");
+    assert!(map["between"]["residual"].as_f64().unwrap() <= ridge, "{map}");
+    assert_eq!(sheet["settings"]["sh_order"], 3);
 }
 
 /// A picture of 16 bits times its scale is the light, within what its sheet says; voids are transparent and no part of the scale.

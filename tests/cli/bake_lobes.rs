@@ -16,7 +16,7 @@ use crate::needs_vulkan::{done, json};
 fn gpu_lobes_of_level_ground_are_loaded_back() {
     let folder = Folder::new();
     write(&folder, "level.npy", [3, 4], |_, _| 2.0);
-    let words = "bake level.npy -o out --border periodic --what brdf,brdf-factors --angles 6x8 --albedo 0.4 --phong 12,0.5 \
+    let words = "bake level.npy -o out --border periodic --what brdf,brdf-factors,brdf-harmonics --angles 6x8 --albedo 0.4 --phong 12,0.5 \
                  --format npy";
     let run = folder.run(&words.split_whitespace().collect::<Vec<_>>());
     assert_eq!(run.status, Some(0), "{}", run.err);

@@ -1,6 +1,7 @@
 //! The decoders that `bake` writes beside its maps, compiled as they are and run on the device over the files of a real
 //! field, against the values that were packed: each within the error that its sheet states.
 
+mod harmonics;
 mod light;
 mod turns;
 

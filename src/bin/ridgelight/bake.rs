@@ -157,7 +157,7 @@ impl Job<'_> {
             false => first(self.plans(limits)?).settings,
         };
         let has = |of: fn(&str) -> bool| self.wanted.iter().any(|w| of(w.kind.name));
-        if has(|name| name.starts_with("sh-")) {
+        if has(|name| name.starts_with("sh-") || name == "brdf-harmonics") {
             used.push(("sh_order".into(), quality.sh_order.to_string()));
         }
         let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
@@ -328,11 +328,10 @@ fn bake(
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
     // A plan's are of a part.
     metadata.retain(|(name, _)| {
-        !["paths", "seed"].contains(&name.as_str()) || used.iter().all(|(known, _)| known != name)
+        let is_part = ["paths", "seed", "azimuths", "sh_order"].contains(&name.as_str());
+        !is_part || used.iter().all(|(known, _)| known != name)
     });
-    let is_more = |name: &str| {
-        ["azimuths", "sh_order"].contains(&name) || metadata.iter().all(|(known, _)| known != name)
-    };
+    let is_more = |name: &str| metadata.iter().all(|(known, _)| known != name);
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
     let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
@@ -403,6 +402,9 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     if args.global.quiet {
         return Ok(Outcome::Done);
     }
+    if let Some(json) = &args.global.json {
+        idle::note("json", &json.display().to_string(), "with --plan");
+    }
     crate::say!("{:>14}  at most, bytes of {}", "file", args.output.display());
     for (name, bytes) in job.files() {
         crate::say!("{bytes:>14}  {name}");
@@ -411,8 +413,11 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
     let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
-    // Both are of one table.
-    let own = names.iter().filter(|name| **name != "brdf-factors" || !names.contains(&"brdf"));
+    // Those of one table tell of it once.
+    let is_table = |name: &&str| name.starts_with("brdf");
+    let first = names.iter().position(is_table);
+    let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
+    let own = own.map(|(_, name)| name);
     for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name)) {
         crate::say!("{count:>14}  {what}");
     }

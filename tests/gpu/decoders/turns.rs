@@ -18,7 +18,7 @@ fn on(i: usize, [_, azimuths]: [usize; 2], steps: usize) -> usize {
 }
 
 /// A texture of numbers: of each layer, row and column.
-fn texture(
+pub fn texture(
     [cols, rows, layers]: [usize; 3],
     is_array: bool,
     number: impl Fn(usize, usize, usize) -> [f32; 4],
@@ -36,11 +36,11 @@ fn texture(
     std::fs::read(&path).expect("a texture")
 }
 
-fn whole(numbers: &[usize]) -> Vec<u32> {
+pub fn whole(numbers: &[usize]) -> Vec<u32> {
     numbers.iter().map(|n| Constant::Int(*n as i32).bits()).collect()
 }
 
-fn none(_: &Encoding) -> Vec<(&'static str, Constant)> {
+pub fn none(_: &Encoding) -> Vec<(&'static str, Constant)> {
     Vec::new()
 }
 

@@ -12,7 +12,7 @@ use crate::bake::Format;
 use crate::{idle, setup};
 
 /// Where none are asked for.
-pub const DIRECTIONS: usize = 256;
+pub const DIRECTIONS: u32 = 256;
 
 /// What `--what` takes.
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
@@ -129,15 +129,15 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     let looks_around =
         args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
     let lowest_z = if looks_around { -1.0 } else { 0.0 };
-    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
+    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
 /// Those that scatter, in words.
-pub const LIGHTS: &str = "scatter, brdf, brdf-factors, btf or light-field";
+pub const LIGHTS: &str = "scatter, brdf, brdf-factors, brdf-harmonics, btf or light-field";
 
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
-    ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"].contains(&kind.name)
 }
 
 /// Whose pictures are of floats, each with a scale of its own.
@@ -223,13 +223,19 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             "--angles",
             format!("{zeniths}x{azimuths}"),
             has_angles,
-            "brdf, brdf-factors, btf or light-field",
+            "brdf, brdf-factors, brdf-harmonics, btf or light-field",
         )?;
     }
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
         if let Some(value) = value {
             found(name, value.to_string(), has_light, LIGHTS)?;
         }
+    }
+    // Some kinds share them out among parts.
+    if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
+        let expected =
+            format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
+        return Err(Error::setting("--paths", paths.to_string(), expected));
     }
     Ok(())
 }

@@ -62,6 +62,9 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
         }
         return files::check_writable(&path.join(SHEET));
     }
+    if path.is_symlink() && !path.exists() {
+        return Err(Error::setting("-o", format!("{}, a link to nothing", shown()), "a folder"));
+    }
     if path.exists() {
         return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
     }

@@ -4,6 +4,7 @@ mod afar;
 mod bent_normal;
 mod brdf;
 mod brdf_factors;
+mod brdf_harmonics;
 mod btf;
 mod curved_ellipse;
 mod ellipse;
@@ -30,7 +31,7 @@ pub use afar::{diffuse, direct_plan, looks};
 pub use scatter::paths;
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 14] = [
+pub static KINDS: [&Kind; 15] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
@@ -43,6 +44,7 @@ pub static KINDS: [&Kind; 14] = [
     &scatter::KIND,
     &brdf::KIND,
     &brdf_factors::KIND,
+    &brdf_harmonics::KIND,
     &btf::KIND,
     &light_field::KIND,
 ];

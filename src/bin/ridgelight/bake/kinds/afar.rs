@@ -149,7 +149,7 @@ pub fn looks(lit: &Lit, name: &str) -> Option<(u64, String)> {
     let scatter = lit.scatter.as_ref().filter(|_| lobe(lit).is_some())?;
     let views = lit.angles.count() as u64;
     let lights = match name {
-        "brdf" | "brdf-factors" | "btf" => views,
+        "brdf" | "brdf-factors" | "brdf-harmonics" | "btf" => views,
         "light-field" => 1,
         _ => return None,
     };

@@ -64,7 +64,7 @@ fn begin(asked: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Light(of) })
 }
 
-/// What two kinds keep each its own way.
+/// What three kinds keep each its own way.
 pub struct Table {
     pub brdf: Brdf,
     pub facets: Facets,
@@ -123,6 +123,26 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
     tell(lit, table, &|l, v| table.brdf.between(&lit.angles, l, v), files)
+}
+
+/// As [`tell`], and what of the table itself is left by what is kept of it: weighted by what a plane receives and sends.
+pub fn tell_in_short(
+    lit: &Lit,
+    table: &Table,
+    kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
+    files: &mut MapFiles,
+) -> Result<()> {
+    let vectors = table.brdf.directions();
+    let (mut apart, mut all) = (0.0, 0.0);
+    let weights = lit.angles.projected_sr();
+    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
+        for (own, found) in table.brdf.at(l, v).into_iter().zip(kept(vectors[l], vectors[v])) {
+            apart += weights[l] * weights[v] * (own - found).powi(2);
+            all += weights[l] * weights[v] * own * own;
+        }
+    }
+    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
+    tell(lit, table, kept, files)
 }
 
 /// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.

@@ -62,23 +62,12 @@ fn begin(asked: &Asked) -> Result<Making> {
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
-    let kept = brdf::table(gpu, lit, say)?;
-    let table = &kept.brdf;
+    let table = brdf::table(gpu, lit, say)?;
     say("factors".into());
-    let factors = Factors::of(table, lit.angles, COUNT, kept.facets.has_lobes())?;
+    let factors = Factors::of(&table.brdf, lit.angles, COUNT, table.facets.has_lobes())?;
     for of_k in factors.values().iter().chain(factors.of_views().unwrap_or_default()) {
         let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
         files.take(&planes.each_ref().map(Vec::as_slice))?;
     }
-    let vectors = table.directions();
-    let (mut apart, mut all) = (0.0, 0.0);
-    let weights = lit.angles.projected_sr();
-    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
-        for (own, found) in table.at(l, v).into_iter().zip(factors.at(vectors[l], vectors[v])) {
-            apart += weights[l] * weights[v] * (own - found).powi(2);
-            all += weights[l] * weights[v] * own * own;
-        }
-    }
-    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
-    brdf::tell(lit, kept, &|l, v| factors.at(l, v), files)
+    brdf::tell_in_short(lit, table, &|l, v| factors.at(l, v), files)
 }
