@@ -117,16 +117,23 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     let facets = gpu.facets(&scene, 1, &directions, &limits)?;
     facets.check()?;
     let (mut values, mut pictures) = (Vec::new(), Vec::new());
-    gpu.lit_from(&scene, (&facets, 0..ANGLES.count()), None, &limits, &mut |i, radiance| {
-        let z = directions.vectors()[i].z;
-        values.extend(facets.seen_from_all(&radiance).into_iter().map(|m| m.map(|v| v / z)));
-        for texels in facets.texels_from_all(&radiance) {
-            pictures.extend(
-                [0, 1, 2, 3].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() }),
-            );
-        }
-        Ok(())
-    })?;
+    gpu.lit_from(
+        &scene,
+        (&facets, 0..ANGLES.count(), &(|_| 0_usize..0) as &dyn Fn(usize) -> _),
+        None,
+        &limits,
+        &mut |i, radiance| {
+            let z = directions.vectors()[i].z;
+            values.extend(facets.seen_from_all(&radiance).into_iter().map(|m| m.map(|v| v / z)));
+            for texels in facets.texels_from_all(&radiance) {
+                pictures.extend(
+                    [0, 1, 2, 3]
+                        .map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() }),
+                );
+            }
+            Ok(())
+        },
+    )?;
     let of_lit = |view: usize| {
         let share = &pictures[4 * view + 3];
         let shown = |c: usize| {
@@ -137,7 +144,7 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     };
     let field = (0..ANGLES.count()).flat_map(of_lit).collect();
     let table = Brdf::from_values(directions.vectors().to_vec(), values.clone())?;
-    let factors = Factors::of(&table, ANGLES, FACTORS)?;
+    let factors = Factors::of(&table, ANGLES, FACTORS, false)?;
     let of_factors = factors.values().iter().flat_map(|of_k| colours(of_k)).collect();
     let reflected = &bake::REFLECTED;
     Ok(vec![

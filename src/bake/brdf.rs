@@ -153,10 +153,21 @@ impl Brdf {
     }
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π.
+    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`].
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
+            let value = self.at(light, view);
+            (0..3).for_each(|c| sum[c] += value[c] * weight);
+        }
+        sum
+    }
+
+    /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights, each weighted by its part of
+    /// ∫ cos θ dω, which together are π. No more than what all of the surface reflects, diffusely and by its lobe.
+    pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (light, weight) in projected_sr.iter().enumerate() {
             let value = self.at(light, view);
             (0..3).for_each(|c| sum[c] += value[c] * weight);
         }

@@ -7,7 +7,7 @@ use crate::basis::MAX_ORDER;
 use crate::basis::harmonics::evaluate;
 use crate::{Error, Result};
 
-/// f(l, v) ≈ Σ c_ij Y_i(l) Y_j(v), c symmetric, R, G, B: real orthonormal harmonics about x east, y north, z up, index l(l+1) + m.
+/// f(l, v) ≈ Σ c_ij Y_i(l) Y_j(v), c symmetric but for lobes, R, G, B: real orthonormal harmonics about x east, y north, z up, index l(l+1) + m.
 ///
 /// Smooth between all directions, where a table has steps; of mirrors and edges nothing finer than its order, and where it rings
 /// it may be below 0. Below horizontal it means nothing.
@@ -25,12 +25,12 @@ impl BrdfHarmonics {
     /// Of a table over these angles, of order n, by least squares.
     ///
     /// B has the values of n² harmonics in all directions, W the parts of ∫ cos θ dω. With B⁺ = (BᵀWB + r)⁻¹BᵀW and F the table,
-    /// C = B⁺ F B⁺ᵀ leaves the least squares over all pairs, each weighted by what a plane receives and sends; C + Cᵀ
-    /// halves what chance has made different with light and view exchanged.
+    /// C = B⁺ F B⁺ᵀ leaves the least squares over all pairs, each weighted by what a plane receives and sends; without lobes
+    /// C + Cᵀ halves what chance has made different with light and view exchanged.
     ///
     /// # Errors
     /// An order outside of [1..6]; fewer angles than harmonics; a table of others.
-    pub fn of(table: &Brdf, angles: Angles, order: usize) -> Result<Self> {
+    pub fn of(table: &Brdf, angles: Angles, order: usize, has_lobes: bool) -> Result<Self> {
         let (count, terms) = (angles.count(), order.saturating_mul(order));
         if table.directions().len() != count {
             let found = format!("{} directions", table.directions().len());
@@ -64,7 +64,8 @@ impl BrdfHarmonics {
             };
             for (at, texel) in coefficients.iter_mut().enumerate() {
                 let (i, j) = (at / terms, at % terms);
-                texel[channel] = 0.5 * (product(i, j) + product(j, i));
+                let other = if has_lobes { product(i, j) } else { product(j, i) };
+                texel[channel] = 0.5 * (product(i, j) + other);
             }
         }
         Ok(Self { order, coefficients })
@@ -122,7 +123,7 @@ fn pseudo_inverse(rows: &[Vec<f64>], terms: usize, weights: &[f64]) -> Vec<Vec<f
 mod tests {
     use super::*;
 
-    /// Of a sum of harmonics, the same. In coefficients the ridge takes of a part of eigenvalue s of BᵀWB the share r/(s + r), and
+    /// Of a sum of harmonics, the same; of lobes one that is another with light and view exchanged. In coefficients the ridge takes of a part of eigenvalue s of BᵀWB the share r/(s + r), and
     /// of its values √s r/(s + r) ≤ √r/2, as a norm over what a plane receives; at one direction of weight w that is at most
     /// √(r/w)/2 of the coefficients' length. Once for lights and once for views; the other side's harmonics have the length
     /// √(n²/4π) everywhere.
@@ -132,36 +133,39 @@ mod tests {
         let directions = angles.directions().expect("angles").vectors().to_vec();
         let order = 3;
         let terms = order * order;
-        let known: Vec<f64> = (0..terms * terms)
-            .map(|at| {
-                let (i, j) = (at / terms, at % terms);
-                0.1 * ((i * j + i + j) as f64 * 0.618_034).fract()
-            })
-            .collect();
-        let sum = |l: DVec3, v: DVec3| -> f64 {
-            let [a, b] = [l, v].map(|e| evaluate(order, e));
-            (0..terms * terms).map(|at| known[at] * a[at / terms] * b[at % terms]).sum()
-        };
-        let pairs = directions.iter().flat_map(|l| directions.iter().map(move |v| (*l, *v)));
-        let values = pairs.map(|(l, v)| [sum(l, v), 0.0, 2.0 * sum(l, v)]).collect();
-        let table = Brdf::from_values(directions.clone(), values).expect("a table");
-        let found = BrdfHarmonics::of(&table, angles, order).expect("harmonics");
-        let weights = angles.projected_sr();
-        let size = known.iter().map(|c| c * c).sum::<f64>().sqrt();
-        // The largest of BᵀWB's diagonal is ∫ Y² cos θ dω ≤ max Y² π ≤ n²/4π · π.
-        let root = (RIDGE * terms as f64 / 4.0).sqrt();
-        let other = (terms as f64 / (2.0 * std::f64::consts::TAU)).sqrt();
-        for (i, l) in directions.iter().enumerate() {
-            for (j, v) in directions.iter().enumerate() {
-                let (got, own) = (found.at(*l, *v), sum(*l, *v));
-                let bound =
-                    size * other * 0.5 * root * (weights[i].powf(-0.5) + weights[j].powf(-0.5));
-                assert!((got[0] - own).abs() <= bound, "{i} {j}: {} {own} {bound}", got[0]);
-                assert!(got[1].abs() < 1e-12 && (got[2] - 2.0 * got[0]).abs() < 1e-9);
+        for has_lobes in [false, true] {
+            let known: Vec<f64> = (0..terms * terms)
+                .map(|at| {
+                    let (i, j) = (at / terms, at % terms);
+                    0.1 * ((i * j + i + (1 + usize::from(has_lobes)) * j) as f64 * 0.618_034)
+                        .fract()
+                })
+                .collect();
+            let sum = |l: DVec3, v: DVec3| -> f64 {
+                let [a, b] = [l, v].map(|e| evaluate(order, e));
+                (0..terms * terms).map(|at| known[at] * a[at / terms] * b[at % terms]).sum()
+            };
+            let pairs = directions.iter().flat_map(|l| directions.iter().map(move |v| (*l, *v)));
+            let values = pairs.map(|(l, v)| [sum(l, v), 0.0, 2.0 * sum(l, v)]).collect();
+            let table = Brdf::from_values(directions.clone(), values).expect("a table");
+            let found = BrdfHarmonics::of(&table, angles, order, has_lobes).expect("harmonics");
+            let weights = angles.projected_sr();
+            let size = known.iter().map(|c| c * c).sum::<f64>().sqrt();
+            // The largest of BᵀWB's diagonal is ∫ Y² cos θ dω ≤ max Y² π ≤ n²/4π · π.
+            let root = (RIDGE * terms as f64 / 4.0).sqrt();
+            let other = (terms as f64 / (2.0 * std::f64::consts::TAU)).sqrt();
+            for (i, l) in directions.iter().enumerate() {
+                for (j, v) in directions.iter().enumerate() {
+                    let (got, own) = (found.at(*l, *v), sum(*l, *v));
+                    let bound =
+                        size * other * 0.5 * root * (weights[i].powf(-0.5) + weights[j].powf(-0.5));
+                    assert!((got[0] - own).abs() <= bound, "{i} {j}: {} {own} {bound}", got[0]);
+                    assert!(got[1].abs() < 1e-12 && (got[2] - 2.0 * got[0]).abs() < 1e-9);
+                }
             }
+            let most = directions.iter().map(|l| sum(*l, *l).abs()).fold(0.0, f64::max);
+            assert!(most > 0.1, "{most}");
         }
-        let most = directions.iter().map(|l| sum(*l, *l).abs()).fold(0.0, f64::max);
-        assert!(most > 0.1, "{most}");
     }
 
     #[test]
@@ -169,7 +173,7 @@ mod tests {
         let angles = Angles { zeniths: 2, azimuths: 4 };
         let directions = angles.directions().expect("angles").vectors().to_vec();
         let table = Brdf::from_values(directions, vec![[0.1; 3]; 64]).expect("a table");
-        let of = |angles, order| BrdfHarmonics::of(&table, angles, order).map(|_| ());
+        let of = |angles, order| BrdfHarmonics::of(&table, angles, order, false).map(|_| ());
         assert!(of(angles, 2).is_ok());
         for order in [0, 7, usize::MAX] {
             assert!(of(angles, order).unwrap_err().to_string().contains("1 to 6"), "{order}");

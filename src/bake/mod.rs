@@ -43,7 +43,7 @@ pub use encoding::{
     BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding,
     HARMONIC_WEIGHTS, HORIZON, POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
 };
-pub use facets::{DIRECTIONS_A_WORD, Facets};
+pub use facets::{DIRECTIONS_A_WORD, Facets, Leaving};
 pub use factors::Factors;
 pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};
 pub use sky::{SkyView, VisibleSky};

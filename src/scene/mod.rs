@@ -59,6 +59,7 @@ pub use quality::{
     Window,
 };
 pub use scatter::Scatter;
+pub(crate) use scatter::check_view;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
 pub use visible::{VisiblePoint, VisiblePoints};
 

@@ -25,6 +25,10 @@ pub struct Scatter {
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,
+    /// Whether views see what a sample's own lobe mirrors of suns, sky and environment, too, default not: that is direct light.
+    /// With it `bounces` may be 0. The sky is that of the directions of the paths: lobes narrower than these are apart are
+    /// rough.
+    pub own_lobe: bool,
     /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
     /// each direction counts for, follow the base. Of what is diffuse alone. One of the whole field: a map of curvatures over it would
     /// say the same of all its repetitions over an object, which lie on different ones. There, mix linearly what is scattered
@@ -41,6 +45,7 @@ impl Default for Scatter {
             cutoff: Bounces::NONE.cutoff,
             seed: 0,
             view: DVec3::Z,
+            own_lobe: false,
             curvature: Curvature::FLAT,
         }
     }
@@ -60,14 +65,13 @@ impl Scatter {
     /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
     /// a base bent more than [`Curvature::check`] allows.
     pub fn check(&self, scene: &Scene) -> Result<Changed> {
-        within("--bounces", self.bounces, Self::BOUNCES)?;
+        if !(self.own_lobe && self.bounces == 0) {
+            within("--bounces", self.bounces, Self::BOUNCES)?;
+        }
         within("--paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;
         Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;
-        let length = self.view.length();
-        if !(1.0 - 1e-6..=1.0 + 1e-6).contains(&length) {
-            return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));
-        }
+        check_view(self.view)?;
         scene.lights.check()?;
         scene.surface.check(scene.field.rows() * scene.field.cols())?;
         let others = scene.lights.keys.len() + scene.lights.spheres.len();
@@ -88,4 +92,12 @@ impl Scatter {
         }
         self.curvature.check(&scene.field, scene.surface.border)
     }
+}
+
+/// Refuses what is no direction.
+pub(crate) fn check_view(view: DVec3) -> Result<()> {
+    if (1.0 - 1e-6..=1.0 + 1e-6).contains(&view.length()) {
+        return Ok(());
+    }
+    Err(Error::setting("view", view.to_string(), "a vector of length 1"))
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets};
+use ridgelight::bake::{Angles, Brdf, Facets, Leaving};
 use ridgelight::cpu::facet_mask::facet_mask;
 use ridgelight::cpu::light::normal;
 use ridgelight::cpu::scatter_gather::expected;
@@ -32,7 +32,7 @@ fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
 }
 
 /// Of all pairs: `radiance` is that of all triangles under a light of irradiance 1 facing it from each direction.
-fn table(facets: &Facets, radiance: impl Fn(usize) -> Vec<[f64; 3]>) -> Brdf {
+pub fn table(facets: &Facets, radiance: impl Fn(usize) -> Leaving) -> Brdf {
     facets.check().expect("a plane from afar");
     let directions = facets.directions().vectors().to_vec();
     let of = |(light, e): (usize, &DVec3)| {
@@ -205,7 +205,8 @@ fn light_and_view_can_be_exchanged() {
     // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
     let of_wrong = |light: usize| {
         let z = facets.directions().vectors()[light].z;
-        facets.lit_from(light).into_iter().map(|l| l.map(|v| v * z)).collect()
+        let light = facets.lit_from(light);
+        Vec::into(light.alike().iter().map(|l| l.map(|v| v * z)).collect())
     };
     let wrong = self::table(&facets, of_wrong);
     assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
@@ -228,7 +229,7 @@ fn scattered_light_leaves_as_much_as_arrives() {
     let facets = facets(&scene, 3, above(VIEWS));
     let lit = |light: usize| {
         let mut radiance = facets.lit_from(light);
-        let samples = facets.to_samples(&radiance);
+        let samples = facets.to_samples(radiance.alike());
         let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
         let more = expected(&scene, &points, &direct, 20);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
@@ -285,7 +286,7 @@ fn fields_that_end_hold_parts_of_cells() {
         let radiance = facets.lit_from(3);
         let z = facets.directions().vectors()[3].z;
         let known = f64::from(ALBEDO[0]) / PI * z;
-        assert!(radiance.iter().all(|l| (l[0] - known).abs() < 1e-12));
+        assert!(radiance.alike().iter().all(|l| (l[0] - known).abs() < 1e-12));
         for (view, e) in facets.directions().vectors().iter().enumerate() {
             let texels = facets.texels_from(view, &radiance);
             for (at, texel) in texels.iter().enumerate() {
@@ -317,9 +318,9 @@ fn backs_are_no_part_of_a_view() {
     assert_eq!([0, 1].map(|i| facets.shows(i)), [true, false]);
     assert_eq!(facets.closure(1), 0.0);
     let from_above = facets.lit_from(0);
-    assert!(from_above.iter().all(|l| l[0] > 0.0));
+    assert!(from_above.alike().iter().all(|l| l[0] > 0.0));
     assert!(facets.texels_from(1, &from_above).into_iter().flatten().all(|v| v == 0.0));
-    assert!(facets.lit_from(1).into_iter().flatten().all(|v| v == 0.0));
+    assert!(facets.lit_from(1).alike().iter().flatten().all(|v| *v == 0.0));
 }
 
 #[test]

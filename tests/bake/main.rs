@@ -7,6 +7,7 @@ mod ellipses;
 mod facets;
 #[path = "../groove/mod.rs"]
 mod groove;
+mod lobes;
 
 use glam::DVec3;
 use ridgelight::bake::{

@@ -90,7 +90,11 @@ fn wrong_requests_are_told() {
             &["--bounces: found 0 with --what scatter", "1 to 64"],
         ),
         (with("--what scatter --paths 0"), 2, &["--paths: found 0"]),
-        (with("--what btf --phong 5,0.1"), 2, &["--phong: found a lobe"]),
+        (
+            with("--what scatter --albedo 0.5 --phong 5,0.1 --light 1,1,9,1,5"),
+            2,
+            &["a lobe and 1 key lights and balls"],
+        ),
         (with("--what light-field --sun 0,100"), 2, &["--sun"]),
         (horizon("--json out.txt"), 2, &["--json: found out.txt"]),
         ("bake none.asc -o out --what horizon".to_owned(), 1, &["none.asc"]),

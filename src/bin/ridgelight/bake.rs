@@ -179,7 +179,11 @@ impl Job<'_> {
         if self.has_direct() {
             // How the light of paths is found is no method of horizons.
             used.retain(|(name, _)| name != "method" || self.has_horizons());
-            let direct = kinds::direct_plan(&self.lit, limits)?.settings;
+            // Light fields have their lobes along paths.
+            let is_whole = has(|name| name == "scatter");
+            let diffuse = if is_whole { None } else { Some(kinds::diffuse(&self.lit)) };
+            let scene = diffuse.as_ref().unwrap_or(scene);
+            let direct = kinds::direct_plan(&self.lit, scene, limits)?.settings;
             let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
             let more: Vec<_> = direct.into_iter().filter(is_new).collect();
             used.extend(more);
@@ -203,10 +207,20 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
     let (directions, angles) = (asked::directions(args)?, asked::angles(args)?);
+    let has_lobe = scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
         let curvature = args.curvature;
-        (w.kind.begin)(&Asked { border, quality, directions, angles, curvature, encoding, samples })
+        (w.kind.begin)(&Asked {
+            border,
+            quality,
+            directions,
+            angles,
+            curvature,
+            encoding,
+            has_lobe,
+            samples,
+        })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
     asked::check_uses(args, making.iter().map(|m| &m.source))?;
@@ -398,5 +412,14 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
     crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
+    let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
+    // Those of one table tell of it once.
+    let is_table = |name: &&str| name.starts_with("brdf");
+    let first = names.iter().position(is_table);
+    let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
+    let own = own.map(|(_, name)| name);
+    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name)) {
+        crate::say!("{count:>14}  {what}");
+    }
     Ok(Outcome::Done)
 }

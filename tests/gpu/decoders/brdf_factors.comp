@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const int BRDF_THETAS = 2;
 layout(constant_id = 1) const int BRDF_PHIS = 4;
 layout(constant_id = 2) const int BRDF_FACTORS = 8;
+layout(constant_id = 3) const int BRDF_VIEWS = 0;
 layout(binding = 0) uniform sampler2DArray map;
 layout(std430, binding = 1) writeonly buffer Values {
     float values[];

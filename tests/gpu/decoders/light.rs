@@ -27,6 +27,7 @@ fn all() -> [Decoder; 6] {
     let of_factors = |_: &Encoding| {
         let mut all = angles(&["BRDF_THETAS", "BRDF_PHIS"]);
         all.push(("BRDF_FACTORS", Constant::Int(FACTORS as i32)));
+        all.push(("BRDF_VIEWS", Constant::Int(0)));
         all
     };
     let of_harmonics = |_: &Encoding| {

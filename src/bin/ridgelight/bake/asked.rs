@@ -50,7 +50,11 @@ pub fn help() -> String {
     text += "\n\
 Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
 in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
-horizons are near. Vulkan does not ask devices to sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
+horizons are near. With --phong, brdf, brdf-factors and btf mirror each light as their triangles lie, and scatter towards each \
+view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
+scatter is then seen from straight above, and light-field from each view, the sky along --directions. A lobe is bounded by the \
+view, not by the light, and not the same with both exchanged: the sheet says by how much. Vulkan does not ask devices to \
+sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
 A .png of scatter has 16 bits, 1 at the largest number of each picture, whose scale the sheet has.
 
 Examples:
@@ -232,9 +236,6 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
         let expected =
             format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
         return Err(Error::setting("--paths", paths.to_string(), expected));
-    }
-    if has_light && args.surface.phong.is_some() {
-        return Err(Error::setting("--phong", "a lobe", "none: what is baked of light is diffuse"));
     }
     Ok(())
 }

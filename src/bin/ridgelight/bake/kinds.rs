@@ -27,7 +27,7 @@ use ridgelight::plan::{Limits, Plan};
 use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene};
 
 use super::map::{Format, MapFiles};
-pub use afar::direct_plan;
+pub use afar::{diffuse, direct_plan, looks};
 pub use scatter::paths;
 
 /// All of them, as --help lists them.
@@ -74,6 +74,8 @@ pub struct Asked<'a> {
     /// Outwards and inwards, 1/m.
     pub curvature: Option<[f64; 2]>,
     pub encoding: &'static Encoding,
+    /// Whether ground reflects by a lobe, too.
+    pub has_lobe: bool,
     /// Of the field.
     pub samples: usize,
 }

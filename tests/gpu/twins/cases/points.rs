@@ -212,6 +212,20 @@ pub fn scatters() -> Vec<Case> {
             none(),
             (24, bent(1, 24, [-0.002, 0.001]), false),
         ),
+        of(
+            "lobes towards views",
+            rough(8, 9, 77),
+            glossy.clone(),
+            lights.clone(),
+            (17, Scatter { own_lobe: true, ..scatter(1, 20) }, false),
+        ),
+        of(
+            "their own light alone",
+            rough(8, 9, 79),
+            glossy.clone(),
+            lights.clone(),
+            (17, Scatter { own_lobe: true, ..scatter(0, 12) }, false),
+        ),
         of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
         of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),
     ]

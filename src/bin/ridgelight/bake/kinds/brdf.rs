@@ -67,7 +67,7 @@ fn begin(asked: &Asked) -> Result<Making> {
 /// What three kinds keep each its own way.
 pub struct Table {
     pub brdf: Brdf,
-    facets: Facets,
+    pub facets: Facets,
     /// Seeded pairs of light and view between the angles, each with the field's own.
     between: Vec<([DVec3; 2], [f64; 3])>,
 }
@@ -94,7 +94,8 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
         other => other,
     })?;
     let mut values = Vec::with_capacity(count * count);
-    afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
+    let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
+    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
@@ -105,7 +106,8 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     let pairs = bake::pairs(PAIRS, lit.seed)?;
     let seen = gpu.facets(lit.scene, facets.times(), &pairs, &lit.limits)?;
     let mut between = Vec::with_capacity(PAIRS);
-    afar::each_light(gpu, lit, &seen, 0..PAIRS, &mut |light, radiance| {
+    let own = |light| PAIRS + light..PAIRS + light + 1;
+    afar::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
         let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
         between.push(([l, v], seen.seen_from(PAIRS + light, &radiance).map(|m| m / l.z)));
         Ok(())
@@ -156,6 +158,20 @@ pub fn tell(
     let is = "of a light's irradiance, over all lights and colours";
     files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
     files.tell("unreciprocal", table.brdf.unreciprocal().into());
+    if table.facets.has_lobes() {
+        let gathered = (0..lit.angles.count()).flat_map(|view| table.brdf.gathered(view, &weights));
+        let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+        let is = "radiance of a view under light of 1 from all sides, over all views and colours: at most what the surface \
+                  reflects; of one light, reflected, more than all may leave at grazing angles, as lobes have no cosine";
+        files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
+        if most > 1.0 {
+            files.remark(format!(
+                "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
+                 light, and are not the same with both exchanged ({:.3} unreciprocal)",
+                table.brdf.unreciprocal()
+            ));
+        }
+    }
     let (mut apart, mut all) = (0.0, 0.0);
     for ([l, v], own) in &table.between {
         for (own, found) in own.iter().zip(kept(*l, *v)) {

@@ -49,7 +49,8 @@ fn begin(asked: &Asked) -> Result<Making> {
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     let table = brdf::table(gpu, lit, say)?;
     say("harmonics".into());
-    let harmonics = BrdfHarmonics::of(&table.brdf, lit.angles, lit.quality.sh_order as usize)?;
+    let (order, has_lobes) = (lit.quality.sh_order as usize, table.facets.has_lobes());
+    let harmonics = BrdfHarmonics::of(&table.brdf, lit.angles, order, has_lobes)?;
     let texels = harmonics.coefficients();
     let planes = [0, 1, 2].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
