@@ -4,6 +4,7 @@
 mod auto;
 mod bake;
 mod bake_light;
+mod bake_sheet;
 mod camera;
 #[path = "../common/mod.rs"]
 mod common;
