@@ -63,8 +63,8 @@ const LEAST_RISE: f64 = 1e-9;
 impl Curvature {
     /// A flat base.
     pub const FLAT: Self = Self { per_m: [0.0; 2] };
-    /// The largest [`Changed::light`] that is not refused: a choice, as of any bound on an error. Up to here bending adds less
-    /// to what shadows of grooves are wrong by than 1024 directions leave of them on the flat base (`examples/curved`).
+    /// The largest [`Changed::light`] that is not refused: a choice, as of any bound on an error. Up to here bending adds about
+    /// as much to what shadows of grooves are wrong by as 1024 directions leave of them on the flat base (`examples/curved`).
     pub const MOST_CHANGED: f64 = 0.02;
     /// The least that a height may be drawn apart or pushed together by, 1 + curvature times height over the base.
     pub const LEAST_STRETCH: f64 = 0.25;
