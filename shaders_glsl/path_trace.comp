@@ -15,6 +15,7 @@
 #include "shared/conventions.glsl"
 #include "shared/random.glsl"
 #include "shared/lobe.glsl"
+#include "shared/angle.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -114,19 +115,22 @@ int picked(float u, ivec2 at, ivec2 step, int n) {
 }
 
 ivec2 texel_towards(vec3 e, ivec2 size) {
-    float turn = fract(0.5 - atan(e.y, e.x) / (2.0 * PI) + rotation_turns);
-    float down = acos(clamp(e.z, -1.0, 1.0)) / PI;
-    return min(ivec2(vec2(turn, down) * vec2(size)), size - 1);
+    vec2 beside = vec2(abs(e.y), length(e.xy)) / max(vec2(abs(e.x), abs(e.z)), vec2(1e-30));
+    vec2 angle = arc_tangent(beside.xyxy).xy;
+    angle = mix(angle, PI - angle, lessThan(e.xz, vec2(0.0)));
+    float azimuth = e.y < 0.0 ? -angle.x : angle.x;
+    float turn = fract(0.5 - azimuth / (2.0 * PI) + rotation_turns);
+    return min(ivec2(vec2(turn, angle.y / PI) * vec2(size)), size - 1);
 }
 
 // A direction of the environment, by the light of its texels.
 vec3 towards_light(vec2 u, vec2 v, ivec2 size, out ivec2 texel) {
     texel.y = picked(u.x, ivec2(0), ivec2(0, 1), size.y);
     texel.x = picked(u.y, ivec2(1, texel.y), ivec2(1, 0), size.x);
-    // 1 - cos of the zenith angle: 2 sin² of half of it, and evenly on.
-    float half_row = 0.5 * PI / float(size.y);
-    float top = sin(float(texel.y) * half_row);
-    float bottom = sin(float(texel.y + 1) * half_row);
+    // 1 - cos of the zenith angle: 2 sin² of half of it, here in turns, and evenly on.
+    float half_row = 0.25 / float(size.y);
+    float top = on_circle(float(texel.y) * half_row).y;
+    float bottom = on_circle(float(texel.y + 1) * half_row).y;
     float below = 2.0 * mix(top * top, bottom * bottom, v.y);
     float turn = 0.5 - (float(texel.x) + v.x) / float(size.x) + rotation_turns;
     vec2 round = on_circle(turn - floor(turn)) * sqrt(max(below * (2.0 - below), 0.0));

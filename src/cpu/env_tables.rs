@@ -39,6 +39,32 @@ impl EnvTables {
     }
 }
 
+impl EnvTables {
+    /// Three moments above the direction of slope `lowest`; and of each the most by which it changes between two nodes, where
+    /// that elevation is off by `off_rad`.
+    ///
+    /// # Panics
+    /// Outside the tables.
+    pub fn looked_up(&self, azimuth: usize, lowest: f64, off_rad: f64) -> [[DVec3; 2]; 3] {
+        let (nodes, bottom) = (self.nodes, self.bottom_rad);
+        let place = |elevation: f64| {
+            let place = (elevation - bottom) / (FRAC_PI_2 - bottom) * (nodes - 1) as f64;
+            place.clamp(0.0, (nodes - 1) as f64)
+        };
+        let angle = lowest.atan();
+        let node = |place: f64| (place as usize).min(nodes - 2);
+        let [first, last] = [angle - off_rad, angle + off_rad].map(|a| node(place(a)));
+        let here = node(place(angle));
+        let t = place(angle) - here as f64;
+        [0, 1, 2].map(|moment| {
+            let at = |node| self.at(azimuth, moment, node);
+            let step = |i| (at(i + 1) - at(i)).abs();
+            let steepest = (first..=last).map(step).fold(DVec3::ZERO, DVec3::max);
+            [at(here).lerp(at(here + 1), t), steepest]
+        })
+    }
+}
+
 /// Elevation of node 0 under a border: -π/2 where light may come from below horizontal.
 pub fn bottom_rad(border: Border) -> f64 {
     if border == Border::Open { -FRAC_PI_2 } else { 0.0 }

@@ -10,6 +10,7 @@ mod bend;
 mod bounce;
 mod gloss;
 mod light;
+pub mod near;
 mod points;
 
 use std::f64::consts::PI;

@@ -66,7 +66,7 @@ pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64>
 /// most R·L·Ω, from a ball of radiance L at most 2π·R·L, and
 /// from the environment, chosen with density p and weighed by the balance heuristic, at most f·L and
 /// R·L/p; its scattered ray then meets the lights, or the next vertex.
-pub(super) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
+pub(crate) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
     let Scene { surface, lights, .. } = scene;
     let albedo = match &surface.albedo {
         Albedo::Constant(colour) => *colour,

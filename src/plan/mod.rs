@@ -72,6 +72,7 @@ pub(crate) use blocks::Blocks;
 pub(crate) use bounce_nodes::NodeSum;
 pub(crate) use bounces::Bounce;
 pub(crate) use builder::Builder;
+pub(crate) use choice::most_light;
 pub use edit::{Reach, Rectangle};
 pub use ellipses::{curved_ellipses, ellipses};
 pub use facet_mask::facet_mask;

@@ -4,6 +4,7 @@
 mod baked;
 mod html;
 mod hull;
+mod left_out;
 mod picture;
 mod plot;
 mod point;

@@ -1,11 +1,14 @@
 //! What light errs by: through horizons, and of balls.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
 
 use super::{ARC_TANGENT, EPSILON, twin_table, twin_wedge_row};
 use crate::basis::MAX_ORDER;
 use crate::basis::legendre::occlusion_polynomials;
 use crate::basis::slice::{Slices, from_nlp, slice_index};
+use crate::cpu::env_tables::EnvTables;
 use crate::cpu::sh_shade::OFF_PLANE;
 use crate::scene::{HeightField, SphereLight, Wedges};
 
@@ -67,6 +70,32 @@ impl ShadeError {
         let largest = brightest * wedge;
         let table = twin_table(rows * largest, largest, rows + nodes) + 0.5 * row;
         self.environment(brightest) + 3.0_f64.sqrt() * self.count * table
+    }
+
+    /// What an azimuth's wedge of an environment gives a sample of this normal above a slope, from tables made on the device, of
+    /// which each moment is off by `table`.
+    ///
+    /// Each component of the normal times its moment. The place in a table errs as in [`environment`](Self::environment), across
+    /// which a moment changes by no more than from node to node there; the normal's turn moves it by the moments' length; a
+    /// mix, a product and a sum of each round 8 times, and sums of all azimuths once each.
+    pub fn wedge_looked_up(
+        &self,
+        tables: &EnvTables,
+        (azimuth, lowest, normal): (usize, f64, DVec3),
+        table: &[DVec3; 3],
+    ) -> DVec3 {
+        let place_rad = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
+        let nodes = (tables.nodes - 1) as f64 / (FRAC_PI_2 - tables.bottom_rad);
+        let moments = tables.looked_up(azimuth, lowest, place_rad);
+        let mut off = DVec3::ZERO;
+        let mut squared = DVec3::ZERO;
+        for (m, [moment, step]) in moments.into_iter().enumerate() {
+            let across = (place_rad * nodes).min(1.0) * step;
+            let rounded = (8.0 + self.count) * EPSILON * moment.abs();
+            off += normal[m].abs() * (table[m] + across + rounded);
+            squared += moment * moment;
+        }
+        off + self.normal * DVec3::new(squared.x.sqrt(), squared.y.sqrt(), squared.z.sqrt())
     }
 
     /// `sun_shade`, of slices whose weights sum to `weights`, where both agree on what is lit.

@@ -26,6 +26,8 @@ pub(super) enum Wanted {
     Picture(Picture),
     /// Bounces.
     Reference(u32),
+    /// Bounces; bounced light alone of so many samples.
+    ReferenceAt(u32, usize),
     Points(Directions),
     Ellipses(Directions),
     Facets(Directions),
@@ -57,6 +59,9 @@ impl Case {
             ),
             Wanted::Picture(wanted) => plan::picture(&self.scene, &self.quality, limits, *wanted),
             Wanted::Reference(bounces) => plan::reference(&self.scene, *bounces, 1, limits),
+            Wanted::ReferenceAt(bounces, count) => {
+                plan::reference_at(&self.scene, *bounces, 1, *count, limits)
+            }
             Wanted::Points(directions) => plan::visible_points(
                 &self.scene.field,
                 self.scene.surface.border,
@@ -99,6 +104,13 @@ impl Case {
         }
     }
 
+    /// Samples of a list: every third from the last on, some twice.
+    pub fn listed(&self) -> Option<Vec<usize>> {
+        let Wanted::ReferenceAt(_, count) = self.wanted else { return None };
+        let all = self.scene.field.heights_m().len();
+        Some((1..=count).map(|i| (3 * all - 3 * i) % all).collect())
+    }
+
     /// What samples see, by the twin.
     pub fn points(&self) -> Option<VisiblePoints> {
         let Wanted::Scatter(directions, ..) = &self.wanted else { return None };
@@ -110,8 +122,11 @@ impl Case {
 
     /// Texels of the plan's inputs, in its order.
     pub fn contents(&self) -> Vec<Vec<f32>> {
-        if let Wanted::Reference(_) = self.wanted {
-            return plan::reference_inputs(&self.scene);
+        if let Wanted::Reference(_) | Wanted::ReferenceAt(..) = self.wanted {
+            let list = self.listed().map(|list| plan::listed_places(&self.scene, &list));
+            let mut all = plan::reference_inputs(&self.scene);
+            all.extend(list.map(|texels| texels.expect("of the field")));
+            return all;
         }
         if let Wanted::Scatter(..) = self.wanted {
             let mut next = random(71);
@@ -492,8 +507,8 @@ pub(super) fn pictures() -> Vec<Case> {
     ]
 }
 
-/// Light paths: every kind of light, a lobe and a map; and a field that repeats, with two levels of blocks.
-pub(super) fn references() -> Vec<Case> {
+/// Every kind of light on an open field, and a field that repeats, with two levels of blocks.
+fn of_all_lights() -> [Scene; 2] {
     let sun = |diameter_rad| Sun {
         azimuth_rad: 2.0,
         elevation_rad: 0.6,
@@ -529,20 +544,61 @@ pub(super) fn references() -> Vec<Case> {
             ..Lights::default()
         },
     };
-    let reference = |name, scene, bounces| Case {
-        name,
-        scene,
-        quality: Quality::default(),
-        wanted: Wanted::Reference(bounces),
-        loses_lines: false,
-    };
+    [all, repeated]
+}
+
+fn reference(name: &'static str, scene: Scene, wanted: Wanted) -> Case {
+    Case { name, scene, quality: Quality::default(), wanted, loses_lines: false }
+}
+
+fn with_lobes(mut scene: Scene) -> Scene {
+    let lobe = |i: usize| Phong { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.05 };
+    let count = scene.field.heights_m().len();
+    scene.surface.phong = Some(Lobe::Map((0..count).map(lobe).collect()));
+    scene
+}
+
+/// Light paths that the quadrature knows: every kind of light, a lobe and a map; a field that repeats.
+pub(super) fn references() -> Vec<Case> {
+    let [all, repeated] = of_all_lights();
     // The quadrature knows of no lobes that are met.
-    let mut lobes = all.clone();
-    let lobe = |i: usize| Phong { exponent: (i % 12) as f32, scale: (i % 3) as f32 * 0.1 };
-    lobes.surface.phong = Some(Lobe::Map((0..7 * 9).map(lobe).collect()));
+    let lobes = with_lobes(all.clone());
     vec![
-        reference("all lights", all, 1),
-        reference("lobes in all lights", lobes, 0),
-        reference("periodic", repeated, 2),
+        reference("all lights", all, Wanted::Reference(1)),
+        reference("lobes in all lights", lobes, Wanted::Reference(0)),
+        reference("periodic", repeated, Wanted::Reference(2)),
+    ]
+}
+
+/// Light paths that nothing else knows: lobes that are met; batches in parts, by paths and by lights; a list of samples; ground
+/// that goes on level; a line.
+pub(super) fn paths() -> Vec<Case> {
+    let [all, repeated] = of_all_lights();
+    let on = |field, border, lights: &Lights| Scene {
+        field,
+        surface: Surface { border, albedo: Albedo::Constant([0.7, 0.4, 0.2]), phong: None },
+        lights: lights.clone(),
+    };
+    let level = on(rough(17, 13, 25), Border::Plane, &all.lights);
+    let line = on(rough(1, 11, 26), Border::Plane, &repeated.lights);
+    let mut many = on(rough(5, 4, 27), Border::Open, &Lights::default());
+    many.lights.suns = (0..40)
+        .map(|i| Sun {
+            azimuth_rad: 0.1 + 0.7 * f64::from(i),
+            elevation_rad: 0.1 + 0.03 * f64::from(i),
+            diameter_rad: 0.01,
+            irradiance: [0.01, 0.02, 0.03],
+        })
+        .collect();
+    let mut glossy = with_lobes(level.clone());
+    glossy.surface.phong = Some(Lobe::Constant(Phong { exponent: 100.0, scale: 0.05 }));
+    vec![
+        reference("lobes that are met", with_lobes(all.clone()), Wanted::Reference(1)),
+        reference("lobes that repeat", with_lobes(repeated.clone()), Wanted::Reference(1)),
+        reference("a sharp lobe on a plane", glossy, Wanted::Reference(1)),
+        reference("bounced light of a list", all, Wanted::ReferenceAt(1, 40)),
+        reference("many suns", many, Wanted::Reference(1)),
+        reference("on a plane", level, Wanted::Reference(2)),
+        reference("a line", line, Wanted::Reference(1)),
     ]
 }

@@ -23,6 +23,7 @@ use std::ops::Range;
 
 use ridgelight::cpu::gloss_gather::Series;
 use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
+use ridgelight::cpu::path_trace::Traced;
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless, shaders};
@@ -146,6 +147,10 @@ struct Run<'a> {
     directions: Option<Directions>,
     /// Of scattered light.
     points: Option<VisiblePoints>,
+    /// Of a list of samples.
+    listed: Option<Vec<usize>>,
+    /// Of every pixel, the batch of paths that is being traced.
+    batches: Vec<Traced>,
     /// The mean so far, by the twin, and what it may be off by.
     scattered: Vec<([f64; 3], [f64; 3])>,
 }
@@ -173,6 +178,8 @@ impl<'a> Run<'a> {
             edit: None,
             directions: case.directions(),
             points: case.points(),
+            listed: case.listed(),
+            batches: Vec::new(),
             scattered: Vec::new(),
             plan,
         }
@@ -356,6 +363,7 @@ fn every_shader_has_a_twin_and_a_case() {
         cases::pyramids(),
         cases::pictures(),
         cases::references(),
+        cases::paths(),
         cases::points(),
         cases::scatters(),
         cases::ellipses(),
@@ -449,8 +457,21 @@ fn bounces_at_nodes_are_their_twins() {
 #[test]
 fn paths_are_their_twins_pass_by_pass() {
     let mut device = Device::new();
-    for case in cases::references() {
+    for case in cases::references().into_iter().chain(cases::paths()) {
         check(&mut device, &case);
+    }
+}
+
+#[test]
+fn paths_are_the_quadrature() {
+    let mut device = Device::new();
+    for case in cases::references() {
+        let mut run = Run::new(device.gpu.as_mut().expect("alive"), &case);
+        let last = run.plan.passes.last().expect("paths").clone();
+        let pairs = paths::quadrature(&mut run, &last);
+        run.gpu.end(run.frame);
+        let worst = worst(&pairs).expect("values");
+        assert!(worst.ratio() <= 1.0, "{}: {worst:?}", case.name);
     }
 }
 

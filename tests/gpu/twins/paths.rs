@@ -3,8 +3,10 @@
 use ridgelight::cpu::bounce::{Fineness, truth};
 use ridgelight::cpu::height_bounds as bounds_twin;
 use ridgelight::cpu::height_cells as cells_twin;
+use ridgelight::cpu::path_trace::{Traced, Tracer};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::measure::tolerance::EPSILON;
+use ridgelight::measure::tolerance::near::Near;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unmet_error};
 
 use super::{Pair, Run, pushed};
@@ -56,13 +58,130 @@ pub(super) fn height_bounds(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs.collect()
 }
 
+/// Path by path, and then the same of a second batch, of which the device has a mean and a standard error.
+pub(super) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    let is_last = run.plan.passes.last().is_some_and(|last| last.label() == pass.label());
+    let sums = run.floats(pass, "batch_mean").expect("bound").len() / 4;
+    let begun = vec![0.0; 4 * sums];
+    one_part(run, pass, &begun, &begun, &mut pairs);
+    if is_last {
+        let before = run.floats(pass, "batch_mean").expect("written");
+        let spread = run.floats(pass, "batch_spread").expect("written");
+        let passes = run.plan.passes.clone();
+        for (i, pass) in passes.iter().enumerate().filter(|(_, p)| p.name() == "path_trace") {
+            run.gpu.draw_passes(&mut run.frame, &[i]).expect("drawn on");
+            one_part(run, pass, &before, &spread, &mut pairs);
+        }
+        assert_eq!(run.words(pass, "lost_rays").expect("written")[0], 0, "rays were lost");
+    }
+    pairs
+}
+
+/// What one dispatch adds to the sums, given those before the batch.
+fn one_part(run: &mut Run, pass: &Pass, before: &[f32], spread: &[f32], pairs: &mut Vec<Pair>) {
+    use offsets::path_trace_push as push;
+    let [bounces, seed, first_path, last_path, first_light, last_light, lights] = [
+        push::BOUNCES,
+        push::SEED,
+        push::FIRST_PATH,
+        push::LAST_PATH,
+        push::FIRST_LIGHT,
+        push::LAST_LIGHT,
+        push::LIGHT_COUNT,
+    ]
+    .map(|o| pushed(pass, o));
+    let [cols, rows] = run.size();
+    let ground = run.floats(pass, "ground").expect("bound");
+    let ground = ground.chunks_exact(4).map(|g| [g[0], g[1], g[2]]).collect();
+    let is_listed = run.listed.is_some();
+    let listed = run.listed.clone().unwrap_or_else(|| (0..cols * rows).collect());
+    let scene = run.scene;
+    let tracer = Tracer::of(scene, ground, (bounces, seed), !is_listed);
+    let is_begun = first_path == 0 && first_light == 0;
+    if is_begun {
+        run.batches = vec![Traced::default(); listed.len()];
+    }
+    let is_whole = last_path == REFERENCE_BATCH && last_light == lights;
+    let parts = run.floats(pass, "part_sum");
+    let [light, mean, error, kept] = ["radiance", "batch_mean", "standard_error", "batch_spread"]
+        .map(|name| run.floats(pass, name).expect("written"));
+    let mut add = |slot: usize, c: usize, got: f32, want: Near| {
+        let at = [c, slot / cols, slot % cols];
+        pairs.push(Pair { got: got.into(), want: want.v, tolerance: want.off, at });
+    };
+    for (slot, sample) in listed.iter().enumerate() {
+        let batch = before[4 * slot + 3];
+        let ranges = (first_path..last_path, first_light..last_light);
+        let more = tracer.traced(*sample, (slot as u32, batch as u32), ranges);
+        let all = &mut run.batches[slot];
+        all.join(&more);
+        let rays = all.rays;
+        if !is_whole {
+            let got = &parts.as_ref().expect("sums of parts")[4 * slot..];
+            (0..3).for_each(|c| add(slot, c, got[c], all.light[c]));
+            add(slot, 3, got[3], rays);
+            continue;
+        }
+        let n = Near::given(batch + 1.0);
+        let paths = Near::given(REFERENCE_BATCH as f32);
+        for c in 0..3 {
+            let of_batch = all.light[c] / paths;
+            let before = Near::given(before[4 * slot + c]);
+            let off = of_batch - before;
+            let mean_now = before + off / n;
+            let spread = Near::given(spread[4 * slot + c]) + off * (of_batch - mean_now);
+            add(slot, c, mean[4 * slot + c], mean_now);
+            add(slot, c, light[4 * slot + c], mean_now);
+            add(slot, c, kept[4 * slot + c], spread);
+            let of_mean = spread.max(Near::ZERO) / (n * (n - Near::of(1.0)));
+            let unknown = Near { v: f64::INFINITY, off: 0.0 };
+            let error_now = if batch == 0.0 { unknown } else { of_mean.sqrt() };
+            add(slot, c, error[4 * slot + c], error_now);
+        }
+        add(slot, 3, mean[4 * slot + 3], n);
+        add(slot, 3, light[4 * slot + 3], Near::of(1.0));
+        let rays = Near { v: rays.v + f64::from(spread[4 * slot + 3]), ..rays };
+        add(slot, 3, kept[4 * slot + 3], rays);
+        add(slot, 3, error[4 * slot + 3], rays);
+    }
+    if is_whole {
+        held(run);
+    }
+}
+
+/// That the comparison says something: no more decisions are in doubt than twice what the twin expects of rays whose heights over
+/// ground are spread evenly, and three standard deviations of so rare events; what they may bring is no more than an eighth of
+/// all light; and half of the pixels are held within a hundredth of theirs.
+fn held(run: &Run) {
+    let sum = |of: &dyn Fn(&Traced) -> f64| run.batches.iter().map(of).sum::<f64>();
+    let (doubts, expected) = (sum(&|b| b.doubts.into()), sum(&|b| b.expected));
+    let (light, in_doubt) = (sum(&|b| b.light[1].v), sum(&|b| b.in_doubt[1]));
+    let loose = run.batches.iter().filter(|b| b.doubts > 0).count();
+    let lit = run.batches.iter().map(|b| b.light[1]).filter(|l| l.v > 0.0);
+    let mut off: Vec<f64> = lit.map(|l| l.off / l.v).collect();
+    off.sort_by(f64::total_cmp);
+    let middle = off.get(off.len() / 2).copied().unwrap_or(0.0);
+    println!(
+        "{doubts} decisions of {} rays in doubt ({expected:.1} expected), in {loose} of {} pixels, {:.4} of all light; \
+         half of them are held to {middle:.2e}",
+        sum(&|b| b.rays.v),
+        run.batches.len(),
+        in_doubt / light
+    );
+    assert!(doubts <= 2.0 * expected + 3.0 * expected.sqrt().max(1.0), "{doubts} {expected}");
+    assert!(in_doubt <= 0.125 * light, "{in_doubt} of {light} in doubt");
+    assert!(middle < 0.01, "half of all pixels are held to {middle} alone");
+}
+
 /// Against the quadrature, which knows no chance: six standard errors, as `Agreement` takes them and with
 /// that of light that no path has met, and what the quadrature itself may be off by, thrice, as single
 /// samples may do worse than it states.
-pub(super) fn path_trace(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+pub(super) fn quadrature(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     const BATCHES: u32 = 64;
     let last = run.plan.passes.len() - 1;
-    for _ in 1..BATCHES {
+    let drawn = run.floats(pass, "batch_mean").expect("written")[3] as u32;
+    for _ in drawn..BATCHES {
         run.gpu.draw_passes(&mut run.frame, &[last]).expect("drawn on");
     }
     let bounces = pushed(pass, offsets::path_trace_push::BOUNCES) as usize;

@@ -2,8 +2,10 @@
 
 mod balls;
 mod bounces;
+mod environments;
 mod harmonics;
 mod lobes;
+mod spheres;
 mod sweeps;
 
 use ridgelight::cpu::oracle::Oracle;
@@ -194,8 +196,11 @@ impl Verifier {
         let (error, bound) = self.judge(self.truth.error(&picture), quality)?;
         let of_oracle =
             format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound));
-        let of_twin = sweeps::check(&self.scene, &self.truth.places, gpu, quality, limits)?;
-        Ok(of_twin.map_or(of_oracle.clone(), |found| format!("{found}; {of_oracle}")))
+        let places = &self.truth.places;
+        let swept = sweeps::check(&self.scene, places, gpu, quality, limits)?;
+        let balls = spheres::check(&self.scene, places, gpu, &all, limits)?;
+        let found: Vec<String> = [swept, balls, Some(of_oracle)].into_iter().flatten().collect();
+        Ok(found.join("; "))
     }
 
     /// A relative error and its bound, where it is within.

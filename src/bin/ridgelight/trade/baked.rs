@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
-use ridgelight::Result;
 use ridgelight::gpu::{Frame, Timing};
 use ridgelight::measure::statistics::Summary;
 use ridgelight::plan;
-use ridgelight::scene::{Bounces, Directions, Quality, Scatter, Scene, VisiblePoints};
+use ridgelight::scene::{Bounces, Directions, Quality, Scatter, VisiblePoints};
+use ridgelight::{Error, Result};
 use serde_json::{Value, json};
 
 use super::point::Point;
@@ -28,8 +28,8 @@ const SHARE: f64 = 0.2;
 pub struct Baked {
     pub directions: usize,
     pub paths: u32,
-    /// Nanoseconds of finding what samples see, once.
-    pub found_ns: f64,
+    /// Seconds of finding what samples see, once, all told.
+    pub found_s: f64,
     /// What that is kept in.
     pub bytes: u64,
     /// Median of a frame's time over that of the baseline drawn beside it.
@@ -37,23 +37,51 @@ pub struct Baked {
     pub distance: Distance,
 }
 
+/// What the device or the memory budget refused.
+pub struct Refused {
+    pub what: String,
+    pub why: String,
+}
+
+/// What was measured, from few directions and paths on, and what was refused.
+#[derive(Default)]
+pub struct Tried {
+    pub measured: Vec<Baked>,
+    pub refused: Vec<Refused>,
+}
+
+impl Tried {
+    /// What was made; none, and a note of it, where it was refused. Other errors end the trade.
+    fn made<T>(&mut self, what: String, of: Result<T>) -> Result<Option<T>> {
+        match of {
+            Ok(made) => Ok(Some(made)),
+            Err(error @ (Error::Setting { .. } | Error::Limit { .. } | Error::Device { .. })) => {
+                self.refused.push(Refused { what, why: setup::in_flags(error).to_string() });
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
 /// From few directions and paths on, as many as the share of the budget holds; none without bounces, and none of lobes, whose
-/// direct light is no colour a sample.
-pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Vec<Baked>> {
-    let scene = rig.scene;
-    if start.bounces.count == 0 || scene.surface.phong.is_some() {
-        return Ok(Vec::new());
+/// direct light is no colour a sample. What is refused is noted, and what would need more of the same is left.
+pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
+    let mut tried = Tried::default();
+    if start.bounces.count == 0 || rig.scene.surface.phong.is_some() {
+        return Ok(tried);
     }
     let bounces = Bounces { count: 0, ..start.bounces };
     let mut own = rig.frame(start)?;
-    let mut all = Vec::new();
-    let measured = rig.frame(&Quality { bounces, ..*start }).and_then(|mut direct| {
-        let measured = fill(rig, truth, start.bounces, [&mut own, &mut direct], &mut all);
+    let direct = rig.frame(&Quality { bounces, ..*start });
+    let measured = tried.made("direct light".to_owned(), direct).and_then(|direct| {
+        let Some(mut direct) = direct else { return Ok(()) };
+        let measured = fill(rig, truth, start.bounces, [&mut own, &mut direct], &mut tried);
         rig.gpu.end(direct);
         measured
     });
     rig.gpu.end(own);
-    measured.map(|()| all)
+    measured.map(|()| tried)
 }
 
 fn fill(
@@ -61,7 +89,7 @@ fn fill(
     truth: &Truth,
     bounces: Bounces,
     [own, direct]: [&mut Frame; 2],
-    all: &mut Vec<Baked>,
+    tried: &mut Tried,
 ) -> Result<()> {
     let scene = rig.scene;
     let (begun, most_s) = (Instant::now(), SHARE * rig.budget.as_secs_f64());
@@ -77,7 +105,9 @@ fn fill(
         }
         let since = Instant::now();
         let directions = Directions::fibonacci(count, -1.0, 0)?;
-        let Ok((points, found_ns)) = found(rig, scene, &directions) else { break };
+        let land = (&scene.field, scene.surface.border);
+        let points = rig.gpu.visible_points(land, &directions, &rig.limits);
+        let Some(points) = tried.made(format!("{count} directions"), points)? else { break };
         found_s = since.elapsed().as_secs_f64();
         let mut frame_s = 0.0;
         for paths in PATHS {
@@ -91,17 +121,13 @@ fn fill(
                 paths,
                 ..Scatter::default()
             };
-            let Ok(plan) = plan::scatter(scene, &directions, &scatter, &rig.limits) else { break };
-            let contents = plan::scatter_inputs(&plan, scene, &points, &light)?;
-            let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-            let mut frame = rig.gpu.frame(plan, &contents)?;
-            let drawn = timed(rig, &mut frame, [own, direct], &light);
-            rig.gpu.end(frame);
-            let (ratio, planes) = drawn?;
-            all.push(Baked {
+            let drawn = scattered(rig, &scatter, &points, [own, direct], &light);
+            let what = format!("{count} directions, {paths} paths");
+            let Some((ratio, planes)) = tried.made(what, drawn)? else { break };
+            tried.measured.push(Baked {
                 directions: count,
                 paths,
-                found_ns,
+                found_s,
                 bytes: 4 * points.words().len() as u64,
                 ratio,
                 distance: truth.distance(&planes)?,
@@ -110,6 +136,23 @@ fn fill(
         }
     }
     Ok(())
+}
+
+/// What a frame of scattered light and one of direct light take in the baseline's time, and their radiance.
+fn scattered(
+    rig: &mut Rig,
+    scatter: &Scatter,
+    points: &VisiblePoints,
+    others: [&mut Frame; 2],
+    light: &[[f32; 3]],
+) -> Result<(f64, Vec<Vec<f32>>)> {
+    let plan = plan::scatter(rig.scene, points.directions(), scatter, &rig.limits)?;
+    let contents = plan::scatter_inputs(&plan, rig.scene, points, light)?;
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let mut frame = rig.gpu.frame(plan, &contents)?;
+    let drawn = timed(rig, &mut frame, others, light);
+    rig.gpu.end(frame);
+    drawn
 }
 
 fn sum(times: &[Timing]) -> f64 {
@@ -121,24 +164,6 @@ fn colours(rig: &mut Rig, frame: &Frame) -> Result<Vec<[f32; 3]>> {
     let pixels = rig.gpu.pixels(frame, 0)?;
     let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
     Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
-}
-
-/// What samples see, and the device's nanoseconds of finding it.
-fn found(rig: &mut Rig, scene: &Scene, directions: &Directions) -> Result<(VisiblePoints, f64)> {
-    let (field, border) = (&scene.field, scene.surface.border);
-    let plan = plan::visible_points(field, border, directions, &rig.limits)?;
-    let outputs = plan.outputs().count();
-    let mut frame = rig.gpu.frame(plan, &[field.heights_m()])?;
-    let drawn = rig.gpu.draw(&mut frame).and_then(|times| {
-        let mut words = Vec::new();
-        for output in 0..outputs {
-            words.extend(rig.gpu.pixels(&frame, output)?.values.iter().map(|v| v.to_bits()));
-        }
-        Ok((words, sum(&times)))
-    });
-    rig.gpu.end(frame);
-    let (words, ns) = drawn?;
-    Ok((VisiblePoints::new(field, border, directions.clone(), words)?, ns))
 }
 
 /// What a frame of both takes in the baseline's, and its radiance.
@@ -165,8 +190,9 @@ fn timed(
 impl Report<'_> {
     /// What may be baked, beside what is recommended; nothing where nothing was.
     pub fn baked_text(&self, recommended: &Point) -> Vec<String> {
-        if self.baked.is_empty() {
-            return Vec::new();
+        let refused = self.baked.refused.iter().map(|r| format!("{}: refused: {}", r.what, r.why));
+        if self.baked.measured.is_empty() {
+            return refused.collect();
         }
         // The truth's own error at least, as of all others.
         let off = |baked: &Baked| baked.distance.rmse.max(self.truth.floor());
@@ -177,12 +203,12 @@ impl Report<'_> {
                 baked.paths,
                 ms(baked.ratio * self.walk.baseline_ns()),
                 percent(off(baked)),
-                ms(baked.found_ns),
+                ms(1e9 * baked.found_s),
                 digits(baked.bytes as f64 * 1e-6)
             )
         };
         let error = self.error(recommended);
-        let as_near = self.baked.iter().filter(|b| off(b) <= error);
+        let as_near = self.baked.measured.iter().filter(|b| off(b) <= error);
         let cheapest = as_near.min_by(|a, b| a.ratio.total_cmp(&b.ratio));
         let verdict = match cheapest {
             Some(b) => format!(
@@ -192,7 +218,7 @@ impl Report<'_> {
                 digits(b.ratio / recommended.ratio)
             ),
             None => {
-                let nearest = self.baked.iter().map(off).fold(f64::INFINITY, f64::min);
+                let nearest = self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min);
                 format!(
                     "none is as near as what is recommended; the nearest is {} off",
                     percent(nearest)
@@ -203,18 +229,24 @@ impl Report<'_> {
             "Of a field that does not move, bounces may be scattered over visible points that are found once \
              (`plan::scatter`), beside direct light by the defaults: {verdict}."
         );
-        std::iter::once(about).chain(self.baked.iter().map(row)).collect()
+        let rows = self.baked.measured.iter().map(row);
+        std::iter::once(about).chain(rows).chain(refused).collect()
     }
 
     pub fn baked_json(&self) -> Vec<Value> {
         let of = |baked: &Baked| {
             json!({
-                "directions": baked.directions, "paths": baked.paths, "found_once_ns": baked.found_ns, "bytes": baked.bytes,
+                "directions": baked.directions, "paths": baked.paths, "found_once_ns": 1e9 * baked.found_s, "bytes": baked.bytes,
                 "time_ns": baked.ratio * self.walk.baseline_ns(),
                 "relative_rmse": baked.distance.rmse.max(self.truth.floor()),
                 "mean_shift": baked.distance.mean_shift,
             })
         };
-        self.baked.iter().map(of).collect()
+        self.baked.measured.iter().map(of).collect()
+    }
+
+    pub fn baked_refused_json(&self) -> Vec<Value> {
+        let of = |refused: &Refused| json!({ "what": refused.what, "why": refused.why });
+        self.baked.refused.iter().map(of).collect()
     }
 }

@@ -1,13 +1,11 @@
 //! One page that needs nothing else: the template with its places filled.
 
+use super::left_out::{EXAMPLES, GROUPS};
 use super::point::Point;
 use super::report::{Report, ms};
 use crate::terminal::{digits, percent};
 
 const TEMPLATE: &str = include_str!("page.html");
-/// Groups of ruled-out settings, and settings not tried, that are spelt out; all are in the JSON.
-const GROUPS: usize = 40;
-const EXAMPLES: usize = 6;
 
 pub fn page(report: &Report) -> String {
     let of = |name: &str| report.about.iter().find(|(k, _)| k == name).map_or("", |(_, v)| v);
@@ -149,7 +147,7 @@ fn rows(report: &Report) -> String {
 }
 
 fn ruled_out(report: &Report) -> String {
-    let groups = report.skipped();
+    let groups = report.others().skipped();
     let mut all: String = groups
         .iter()
         .take(GROUPS)
@@ -163,24 +161,26 @@ fn ruled_out(report: &Report) -> String {
         .collect();
     let rest = groups.len().saturating_sub(GROUPS);
     if rest > 0 {
-        all += &format!("<li>{rest} more reasons: all are in trade.json\n");
+        let count: usize = groups[GROUPS..].iter().map(|g| g.places.len()).sum();
+        all += &format!("<li>{rest} more reasons, for {count} settings\n");
     }
     if all.is_empty() { "<li>nothing\n".to_owned() } else { all }
 }
 
 fn not_tried(report: &Report) -> String {
-    let open = report.not_tried();
+    let others = report.others();
+    let open = others.not_tried();
     let mut all: String = open
         .iter()
         .take(GROUPS)
         .map(|i| {
             let flags = code(&report.flags(*i));
-            format!("<li>{flags}: expected {}\n", escaped(&report.expected_text(*i)))
+            format!("<li>{flags}: expected {}\n", escaped(&others.expected_text(*i)))
         })
         .collect();
     let rest = open.len().saturating_sub(GROUPS);
     if rest > 0 {
-        all += &format!("<li>{rest} more: all are in trade.json\n");
+        all += &format!("<li>{rest} more, which trade.json counts by the values of each setting\n");
     }
     if all.is_empty() {
         "<li>nothing: every setting was measured, ruled out or given up\n".to_owned()

@@ -1,12 +1,11 @@
 //! What a walk found, for people, for spreadsheets and for machines.
 
-use std::collections::BTreeMap;
-
-use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side, Skip};
+use ridgelight::measure::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side};
 use serde_json::{Value, json};
 
-use super::baked::Baked;
+use super::baked::Tried;
 use super::hull;
+use super::left_out::LeftOut;
 use super::picture::Tones;
 use super::point::Point;
 use super::truth::Truth;
@@ -22,7 +21,7 @@ pub struct Report<'a> {
     pub truth_png: Vec<u8>,
     pub tones: &'a Tones,
     pub hulls: &'a [hull::Place],
-    pub baked: &'a [Baked],
+    pub baked: &'a Tried,
     pub knobs: &'a [Knob],
     pub places: &'a [Place],
     pub walk: &'a Walk,
@@ -37,15 +36,13 @@ pub fn ms(ns: f64) -> String {
     format!("{} ms", digits(ns * 1e-6))
 }
 
-/// Places without a measurement that share a reason.
-pub struct Group {
-    pub why: String,
-    pub places: Vec<usize>,
-}
-
 impl Report<'_> {
     pub fn flags(&self, place: usize) -> String {
-        self.places[place].flags(self.knobs)
+        self.others().flags(place)
+    }
+
+    pub fn others(&self) -> LeftOut<'_> {
+        LeftOut { knobs: self.knobs, places: self.places, walk: self.walk }
     }
 
     /// Points that no other covers, from cheap to dear.
@@ -127,56 +124,10 @@ impl Report<'_> {
         )
     }
 
-    fn skip_text(&self, skip: &Skip) -> String {
-        match skip {
-            Skip::Covered { by, dearer_than, worse_than } => {
-                let error = match worse_than {
-                    Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
-                    None => "no more accurate than the truth can tell".to_owned(),
-                };
-                let dearer = self.flags(*dearer_than);
-                format!("no cheaper than {dearer} and {error}: {} is both", self.flags(*by))
-            }
-            Skip::TooDear { than } => {
-                format!("dearer than {}, which was too dear", self.flags(*than))
-            }
-        }
-    }
-
-    /// Places ruled out, by reason, the largest groups first.
-    pub fn skipped(&self) -> Vec<Group> {
-        let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        for place in 0..self.places.len() {
-            if let Some(skip) = self.walk.search.skip(place) {
-                groups.entry(self.skip_text(&skip)).or_default().push(place);
-            }
-        }
-        for (place, why) in &self.walk.given_up {
-            groups.entry(why.clone()).or_default().push(*place);
-        }
-        let mut all: Vec<Group> =
-            groups.into_iter().map(|(why, places)| Group { why, places }).collect();
-        all.sort_by_key(|g| std::cmp::Reverse(g.places.len()));
-        all
-    }
-
-    /// Places that the budget left open, the most promising first.
-    pub fn not_tried(&self) -> Vec<usize> {
-        let search = &self.walk.search;
-        let mut open: Vec<usize> = (0..self.places.len()).filter(|i| search.is_open(*i)).collect();
-        open.sort_by(|a, b| search.merit(*b).total_cmp(&search.merit(*a)));
-        open
-    }
-
-    pub fn expected_text(&self, place: usize) -> String {
-        let value = self.walk.search.predicted(place);
-        let time = ms(value.cost * self.walk.baseline_ns());
-        format!("{time}, {}", percent(value.error))
-    }
-
     pub fn summary(&self) -> String {
-        let skipped: usize = self.skipped().iter().map(|g| g.places.len()).sum();
-        let open = self.not_tried().len();
+        let others = self.others();
+        let skipped: usize = others.skipped().iter().map(|g| g.places.len()).sum();
+        let open = others.not_tried().len();
         let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
         format!(
             "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {:.1} s \
@@ -303,25 +254,7 @@ impl Report<'_> {
             .iter()
             .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
             .collect();
-        let skipped: Vec<Value> = self
-            .skipped()
-            .iter()
-            .map(|g| {
-                let settings: Vec<String> = g.places.iter().map(|i| self.flags(*i)).collect();
-                json!({ "why": g.why, "settings": settings })
-            })
-            .collect();
-        let open: Vec<Value> = self
-            .not_tried()
-            .iter()
-            .map(|i| {
-                let expected = self.walk.search.predicted(*i);
-                json!({
-                    "flags": self.flags(*i), "expected_ns": expected.cost * self.walk.baseline_ns(),
-                    "expected_relative_rmse": expected.error,
-                })
-            })
-            .collect();
+        let others = self.others();
         let breaks: Vec<String> =
             self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
         json!({
@@ -338,8 +271,8 @@ impl Report<'_> {
                 "point": self.recommended.point, "flags": self.flags(self.recommended().place),
                 "holds": self.recommended.holds, "why": self.why(),
             },
-            "hulls": hulls, "baked": self.baked_json(), "drift": self.drift_text(), "ladders_broken": breaks,
-            "ruled_out": skipped, "not_tried": open,
+            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": breaks,
+            "left_out": others.counts_json(), "ruled_out": others.ruled_out_json(), "not_tried": others.not_tried_json(),
         })
     }
 }

@@ -106,14 +106,15 @@ impl Report<'_> {
 
     /// What was not measured, why, and what it might have changed.
     fn left_out(&self) -> String {
-        let open = self.not_tried();
-        let skipped: usize = self.skipped().iter().map(|g| g.places.len()).sum();
+        let others = self.others();
+        let (open, groups) = (others.not_tried(), others.skipped());
+        let skipped: usize = groups.iter().map(|g| g.places.len()).sum();
         let mut text = format!(
             "Of {} settings {} were measured, {skipped} ruled out or given up",
             self.places.len(),
             self.walk.points.len()
         );
-        if let Some(largest) = self.skipped().first() {
+        if let Some(largest) = groups.first() {
             let [count, first] = [largest.places.len(), largest.places[0]];
             let others = if count > 1 { format!(" and {} more", count - 1) } else { String::new() };
             text += &format!(" ({}{others}: {})", self.flags(first), largest.why);
@@ -126,7 +127,7 @@ impl Report<'_> {
                  frontier, farthest {} ({}): a larger --budget may find better.",
                 open.len(),
                 self.flags(*best),
-                self.expected_text(*best)
+                others.expected_text(*best)
             ),
             Some(_) => format!(
                 ", {} not tried for want of time, none of which is expected beyond the frontier.",

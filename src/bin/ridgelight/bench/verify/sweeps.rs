@@ -16,7 +16,7 @@ use ridgelight::scene::{
     Albedo, Border, KeyLight, Lights, Lines, Method, Precision, Quality, Scene, Sun, Surface,
 };
 
-use super::{percent, rms, within};
+use super::{environments, percent, rms, within};
 
 /// A sky of radiance 1, and the scene's suns and key lights, on its ground, white, at some of its samples; nothing where it is
 /// not swept along lines that the twin follows: packed horizons are rounded, and where a field repeats lines may stand closer
@@ -38,6 +38,7 @@ pub(super) fn check(
         return Ok(None);
     }
     let aimed = check_aimed(scene, places, gpu, quality, limits, lines)?;
+    let around = environments::check(scene, places, gpu, (quality, lines), limits)?;
     let sky = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { lights: sky, ..white(scene) };
     let plan = plan::picture(&scene, quality, limits, Picture::default())?;
@@ -57,7 +58,8 @@ pub(super) fn check(
         percent(error),
         percent(bound)
     );
-    Ok(Some(aimed.map_or(of_sky.clone(), |aimed| format!("{of_sky}; {aimed}"))))
+    let all: Vec<String> = [Some(of_sky), around, aimed].into_iter().flatten().collect();
+    Ok(Some(all.join("; ")))
 }
 
 /// Light of the twin, and what a device's may be off by at any place.
@@ -71,7 +73,7 @@ fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -
 }
 
 /// What `light` makes of sweeps along azimuths, and of what they may err by.
-fn lit<T>(
+pub(super) fn lit<T>(
     scene: &Scene,
     mut azimuths: Vec<Azimuth>,
     quality: &Quality,
@@ -194,7 +196,7 @@ fn aimed(
 }
 
 /// A scene's ground, white, under nothing.
-fn white(scene: &Scene) -> Scene {
+pub(super) fn white(scene: &Scene) -> Scene {
     let white =
         Surface { albedo: Albedo::Constant([1.0; 3]), border: scene.surface.border, phong: None };
     Scene { field: scene.field.clone(), surface: white, lights: Lights::default() }
