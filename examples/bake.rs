@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release --example bake -- -o PICTURE.png --json FIGURES.json`
 
+#[path = "bake/looked.rs"]
+mod looked;
 #[path = "shared/mountain.rs"]
 #[expect(dead_code, reason = "sides are for others to ask")]
 mod mountain;
@@ -29,12 +31,29 @@ const ORDER: usize = 4;
 /// White texels between pictures.
 const GAP: usize = 4;
 
+/// Of fields that are looked at from afar.
+const LIT_SIDE: usize = 64;
+
 /// A kind, what it is of each sample, and its planes.
 struct Baked {
     kind: &'static str,
     channels: String,
+    /// What of it takes so many bytes.
+    each: &'static str,
     encodings: &'static [Encoding],
     planes: Vec<Vec<f32>>,
+}
+
+impl Baked {
+    fn of(
+        kind: &'static str,
+        channels: &str,
+        each: &'static str,
+        encodings: &'static [Encoding],
+        planes: Vec<Vec<f32>>,
+    ) -> Self {
+        Self { kind, channels: channels.to_owned(), each, encodings, planes }
+    }
 }
 
 /// Elevations along even azimuths, exact in each.
@@ -67,7 +86,7 @@ fn all(field: &HeightField, horizons: Vec<Vec<f32>>) -> Vec<Baked> {
     let mut all = Vec::new();
     let mut add = |kind, channels: &str, encodings, what: Box<dyn Sum>| {
         let planes = summed(field, &horizons, what);
-        all.push(Baked { kind, channels: channels.to_owned(), encodings, planes });
+        all.push(Baked::of(kind, channels, "a sample", encodings, planes));
     };
     let coefficients = format!("{} of order {ORDER}", ORDER * ORDER);
     add("sky-view", "1", &bake::SHARE, Box::new(SkyView));
@@ -76,9 +95,7 @@ fn all(field: &HeightField, horizons: Vec<Vec<f32>>) -> Vec<Baked> {
     let series = &bake::COEFFICIENTS;
     add("sh-visibility", &coefficients, series, Box::new(ShVisibility::new(ORDER)));
     add("sh-transfer", &coefficients, series, Box::new(ShTransfer::new(ORDER)));
-    let channels = "1 an azimuth".to_owned();
-    let (kind, encodings) = ("horizon", &bake::HORIZON);
-    all.insert(0, Baked { kind, channels, encodings, planes: horizons });
+    all.insert(0, Baked::of("horizon", "1", "an azimuth", &bake::HORIZON, horizons));
     all
 }
 
@@ -88,7 +105,7 @@ fn rows(baked: &Baked) -> Vec<Value> {
         let mut worst = vec![(0.0_f64, 0.0_f64); encoding.bounds.len()];
         let (mut values, component) = (vec![0.0; encoding.values], encoding.component);
         for layer in baked.planes.chunks(encoding.values) {
-            for i in 0..SIDE * SIDE {
+            for i in 0..layer[0].len() {
                 for (value, plane) in values.iter_mut().zip(layer) {
                     *value = f64::from(plane[i]);
                 }
@@ -107,11 +124,13 @@ fn rows(baked: &Baked) -> Vec<Value> {
         });
         // Three components have a fourth beside them.
         let components = encoding.components.next_power_of_two();
-        let texels =
-            if baked.kind == "horizon" { 1 } else { baked.planes.len().div_ceil(encoding.values) };
+        let texels = match baked.each {
+            "a sample" => baked.planes.len().div_ceil(encoding.values),
+            _ => 1,
+        };
         json!({
             "kind": baked.kind, "channels": baked.channels, "encoding": encoding.name,
-            "bytes_a_sample": texels * components * component.bytes(),
+            "bytes": texels * components * component.bytes(), "each": baked.each,
             "bounds": bounds.collect::<Vec<_>>(),
         })
     };
@@ -197,10 +216,14 @@ fn run(picture_path: &Path, json_path: &Path) -> Result<()> {
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let field = mountain::middle(SIDE, STEEPER)?;
     let horizons = horizons(&mut gpu, &field)?;
-    let all = all(&field, horizons);
+    let mut all = all(&field, horizons);
+    all.extend(looked::looked(&mut gpu, &field)?);
+    all.extend(looked::lit(&mut gpu, mountain::middle(LIT_SIDE, STEEPER)?)?);
     let rows: Vec<Value> = all.iter().flat_map(rows).collect();
     let name = &gpu.report().name;
-    println!("{name}: {SIDE}² samples, {AZIMUTHS} azimuths, exact in each\n");
+    println!(
+        "{name}: {SIDE}² samples, {AZIMUTHS} azimuths, exact in each; kinds of light {LIT_SIDE}² samples that repeat\n"
+    );
     println!("| kind | encoding | bytes | of | at most | worst here | share of what is promised |");
     println!("|---|---|---|---|---|---|---|");
     for row in &rows {
@@ -209,7 +232,7 @@ fn run(picture_path: &Path, json_path: &Path) -> Result<()> {
                 "| {} | {} | {} | {} | {:.2e} | {:.2e} | {:.3} |",
                 row["kind"].as_str().unwrap_or_default(),
                 row["encoding"].as_str().unwrap_or_default(),
-                row["bytes_a_sample"],
+                row["bytes"],
                 bound["of"].as_str().unwrap_or_default(),
                 bound["at_most"].as_f64().unwrap_or_default(),
                 bound["worst"].as_f64().unwrap_or_default(),
@@ -219,7 +242,7 @@ fn run(picture_path: &Path, json_path: &Path) -> Result<()> {
     }
     let report = gpu.report();
     let figures = json!({
-        "device": report.name, "driver": report.driver, "side": SIDE, "steeper": STEEPER, "azimuths": AZIMUTHS,
+        "device": report.name, "driver": report.driver, "side": SIDE, "steeper": STEEPER, "azimuths": AZIMUTHS, "lit_side": LIT_SIDE,
         "rows": rows,
     });
     files::write_json(json_path, &figures)?;

@@ -4,26 +4,31 @@
 //!
 //! Three grooves of 16 by 8 cells, walls of 45°, are bent across their length into a cylinder, outwards and inwards, as a mesh
 //! whose triangles rays are shot at. Beside it what samples see on the flat field, as it is and adapted to the curvature.
-//! Shadows: 200 lights of each sample's own hemisphere. Scattered light: walls that face east shine, all scatter it once.
+//! Shadows: 200 lights of each sample's own hemisphere. Scattered light: walls that face east shine, all scatter it, once and up to
+//! three times.
 
+#[path = "curved/light.rs"]
+mod light;
 #[path = "curved/mesh.rs"]
 mod mesh;
 #[path = "soft/plot.rs"]
 mod plot;
+#[path = "curved/report.rs"]
+mod report;
 #[path = "shared/seen.rs"]
 mod seen;
 
 use std::path::PathBuf;
 
 use glam::DVec3;
+use light::{ALBEDO, BOUNCES, Looks, RAYS};
 use mesh::Mesh;
-use plot::{Curve, Panel};
+use report::{Row, Scattered, picture, rmse, table};
 use ridgelight::bake::CurvedEllipses;
 use ridgelight::basis::triangles::Triangles;
 use ridgelight::cpu::ellipse_fit::{Ellipse, fit, seen_bent};
 use ridgelight::cpu::fan_weigh::weight;
 use ridgelight::cpu::points_bend::{Draped, Fans};
-use ridgelight::cpu::scatter_gather::Samples;
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan;
 use ridgelight::scene::{
@@ -34,8 +39,8 @@ use ridgelight::{Error, Result};
 
 const LIGHTS: usize = 200;
 const DIRECTIONS: usize = 1024;
-/// Rays of a sample to which scattered light is judged, evenly over the hemisphere about its normal by cosine.
-const RAYS: usize = 2048;
+/// Of the device's light that has been scattered several times.
+const PATHS: u32 = 1024;
 const PERIOD: usize = 16;
 const GROOVES: usize = 3;
 const ROWS: usize = 33;
@@ -44,25 +49,8 @@ const COMPARED: [usize; 3] = [8, 16, 24];
 const RADII: [f64; 9] = [100.0, 70.0, 50.0, 35.0, 25.0, 18.0, 12.0, 8.0, 5.0];
 /// What four of five ellipses are fitted at, outwards and inwards, 1/m.
 const STEPS: [f64; 2] = [1.0 / 25.0, 1.0 / 100.0];
-const ALBEDO: f64 = 0.8;
 /// Nothing within a groove lies beyond its end; what does is the field's edge.
 const BORDER: Border = Border::Open;
-
-/// Shares of something wrong, percent, on a base.
-struct Row {
-    curvature: f64,
-    /// Share of lights that arrive.
-    lit: f64,
-    /// By directions as they are and adapted; by flat ellipses, between five, and fitted here.
-    shadows: [f64; 5],
-    /// Scattered light on the base over that on the flat one.
-    scattered: f64,
-    /// RMSE by directions as they are, turned, and turned and weighed.
-    light: [f64; 3],
-    /// What [`Curvature::check`] finds.
-    changed: f64,
-    refused: Option<String>,
-}
 
 fn grooves() -> Result<HeightField> {
     let cols = GROOVES * PERIOD + 1;
@@ -70,15 +58,6 @@ fn grooves() -> Result<HeightField> {
     let height = |i: usize| (((i % cols) % PERIOD) as f64 - half).abs();
     let heights: Vec<f64> = (0..ROWS * cols).map(height).collect();
     HeightField::new(ROWS, cols, &heights, [1.0; 2], None)
-}
-
-/// What shines: walls that face east, half of it between two walls.
-fn shines(col: usize) -> f64 {
-    match col % PERIOD {
-        0 | 8 => 0.5,
-        at if at < PERIOD / 2 => 1.0,
-        _ => 0.0,
-    }
 }
 
 /// Samples that are compared, in the order of everything below.
@@ -91,33 +70,14 @@ fn percent(wrong: usize, of: usize) -> f64 {
     100.0 * wrong as f64 / of as f64
 }
 
-/// Of rays at the mesh: which lights arrive, and the light that samples scatter.
-fn truth(mesh: &Mesh, field: &HeightField, lights: &Directions) -> (Vec<Vec<bool>>, Vec<f64>) {
-    let rays = Directions::fibonacci(RAYS, 0.0, 3).expect("directions");
-    let normals = mesh.normals(field.cols());
-    let of = |sample: usize| {
-        let frame = mesh.frames[sample];
-        let lit =
-            lights.vectors().iter().map(|l| mesh.seen(sample, frame.out(*l)).is_none()).collect();
-        let n = normals[sample];
-        let x = n.cross(frame.north).normalize();
-        let y = n.cross(x);
-        // z = √u of even u is as likely as its cosine.
-        let of_ray = |e: &DVec3| {
-            let (z, r) = (e.z.sqrt(), (1.0 - e.z).sqrt());
-            let plan = e.truncate().normalize_or_zero() * r;
-            let hit = mesh.seen(sample, plan.x * x + plan.y * y + z * n);
-            // Both triangles of a cell go from its north-west to a corner in the east: towards which it falls where it faces east.
-            let shines = |triangle: usize| {
-                let [west, _, east] = mesh.triangles[triangle].map(|i| field.heights_m()[i]);
-                f64::from(u8::from(west > east))
-            };
-            hit.map_or(0.0, |hit| shines(hit.triangle))
-        };
-        let sum: f64 = rays.vectors().iter().map(of_ray).sum();
-        (lit, ALBEDO * sum / RAYS as f64)
+/// Which lights arrive at compared samples, by rays at the mesh.
+fn lit(mesh: &Mesh, samples: &[usize], lights: &Directions) -> Vec<Vec<bool>> {
+    let of = |sample: &usize| {
+        let arrives =
+            |l: &DVec3| mesh.met(mesh.over(*sample), mesh.frames[*sample].out(*l)).is_none();
+        lights.vectors().iter().map(arrives).collect()
     };
-    compared(field).map(of).unzip()
+    samples.iter().map(of).collect()
 }
 
 /// Five ellipses of each sample.
@@ -144,32 +104,25 @@ fn five(
     })
 }
 
-/// Light scattered once, off the device.
-fn scattered(
+/// Light scattered up to so many times, off the device; once by each direction in turn, without chance.
+fn off_device(
     gpu: &mut Headless,
+    flat: &Flat,
     scene: &Scene,
-    points: &VisiblePoints,
-    curvature: Curvature,
+    (curvature, bounces): (Curvature, usize),
 ) -> Result<Vec<f64>> {
-    let (field, directions) = (&scene.field, points.directions());
-    // Each direction once: no chance.
-    let scatter = Scatter { bounces: 1, paths: DIRECTIONS as u32, curvature, ..Scatter::default() };
+    let directions = flat.points.directions();
+    let paths = if bounces == 1 { DIRECTIONS as u32 } else { PATHS };
+    let scatter =
+        Scatter { bounces: bounces as u32, paths, curvature, cutoff: 0.0, ..Scatter::default() };
     let plan = plan::scatter(scene, directions, &scatter, &gpu.report().limits)?;
-    let direct: Vec<[f32; 3]> =
-        (0..field.heights_m().len()).map(|at| [shines(at % field.cols()) as f32; 3]).collect();
-    let inputs = plan::scatter_inputs(&plan, scene, points, &direct)?;
+    let direct: Vec<[f32; 3]> = flat.own.iter().map(|own| [*own as f32; 3]).collect();
+    let inputs = plan::scatter_inputs(&plan, scene, &flat.points, &direct)?;
     let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &inputs, |gpu, frame| {
         gpu.draw(frame)?;
         Ok(gpu.pixels(frame, 0)?.values.chunks_exact(4).map(|t| f64::from(t[0])).collect())
     })
-}
-
-/// Percent of the mean.
-fn rmse(found: &[f64], truth: &[f64]) -> f64 {
-    let squares: f64 = found.iter().zip(truth).map(|(f, t)| (f - t).powi(2)).sum();
-    let count = truth.len() as f64;
-    100.0 * (squares / count).sqrt() / (truth.iter().sum::<f64>() / count)
 }
 
 /// What the flat field tells, whatever the base.
@@ -180,8 +133,10 @@ struct Flat {
     net: Triangles,
     lights: Directions,
     five: Vec<[Ellipse; 5]>,
-    /// Scattered light by rays.
-    scattered: f64,
+    /// What each sample shines by.
+    own: Vec<f64>,
+    /// Scattered light by rays, its sum.
+    scattered: [f64; 2],
 }
 
 impl Flat {
@@ -214,8 +169,9 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
     let curvature = Curvature { per_m: [per_m, 0.0] };
     let refused = curvature.check(field, BORDER).err().map(|error| error.to_string());
     let mesh = Mesh::bent(field, per_m);
-    let (lit, light) = truth(&mesh, field, &flat.lights);
     let all: Vec<usize> = compared(field).collect();
+    let lit = lit(&mesh, &all, &flat.lights);
+    let light = light::truth(&mesh, field, &all)?;
     let draped = |curvature| Draped {
         field,
         border: BORDER,
@@ -224,112 +180,58 @@ fn row(gpu: &mut Headless, flat: &Flat, scene: &Scene, per_m: f64) -> Result<Row
         curvature,
     };
     let (as_is, adapted) = (draped(Curvature::FLAT), draped(curvature));
+    let samples = 0..field.heights_m().len();
     let vectors = flat.points.directions().vectors();
-    let level: Vec<Vec<DVec3>> = vec![vectors.to_vec(); all.len()];
-    let bent: Vec<Vec<DVec3>> = all.iter().map(|at| adapted.bent(*at)).collect();
-    let here = |(n, at): (usize, &usize)| fit(&seen_bent(&flat.points, &bent[n], *at)).0;
-    let fitted: Vec<Ellipse> = all.iter().enumerate().map(here).collect();
+    let bent: Vec<Vec<DVec3>> = samples.map(|at| adapted.bent(at)).collect();
+    let here = |at: &usize| fit(&seen_bent(&flat.points, &bent[*at], *at)).0;
+    let fitted: Vec<Ellipse> = all.iter().map(here).collect();
     let between: Vec<CurvedEllipses> =
         all.iter().map(|at| CurvedEllipses::of(&flat.five[*at], STEPS)).collect();
     let shadows = [
-        flat.wrong(&lit, |n, l| flat.by_directions(&as_is, &level[n], all[n], l)),
-        flat.wrong(&lit, |n, l| flat.by_directions(&adapted, &bent[n], all[n], l)),
+        flat.wrong(&lit, |n, l| flat.by_directions(&as_is, vectors, all[n], l)),
+        flat.wrong(&lit, |n, l| flat.by_directions(&adapted, &bent[all[n]], all[n], l)),
         flat.wrong(&lit, |n, l| flat.five[all[n]][0].holds(l)),
         flat.wrong(&lit, |n, l| between[n].holds(curvature, l)),
         flat.wrong(&lit, |n, l| fitted[n].holds(l)),
     ];
     // The twin, which refuses nothing; the device beside it where it may.
-    let twin = |curvature: Curvature, bent: &[Vec<DVec3>], is_weighed: bool| -> Vec<f64> {
-        let materials = Samples::of(scene).on(curvature);
-        let share = flat.points.directions().share_sr();
-        let of = |(at, bent): (&usize, &Vec<DVec3>)| -> f64 {
-            let of_look = |i: usize| {
-                let VisiblePoint::Sample(there) = flat.points.seen(i, *at) else { return 0.0 };
-                let weight = if is_weighed { weight(&flat.fans, bent, i) } else { 1.0 };
-                let arrives = [[shines(there % field.cols()); 3], [0.0; 3]];
-                materials.scattered(*at, (bent[i], share * weight), DVec3::Z, arrives).light[0]
-            };
-            (0..DIRECTIONS).map(of_look).sum()
-        };
-        all.iter().zip(bent).map(of).collect()
+    let weigh = |bent: &Vec<DVec3>| (0..DIRECTIONS).map(|i| weight(&flat.fans, bent, i)).collect();
+    let weights = bent.iter().map(weigh).collect();
+    let as_is = Looks { bent: vec![vectors.to_vec(); bent.len()], weights: None };
+    let turned = Looks { bent, weights: None };
+    let twin = |curvature: Curvature, looks: &Looks| {
+        let found = light::scattered(scene, &flat.points, curvature, looks, &flat.own);
+        found.map(|light| all.iter().map(|at| light[*at]).collect::<Vec<f64>>())
     };
-    let weighed = twin(curvature, &bent, true);
+    let kinds = [twin(Curvature::FLAT, &as_is), twin(curvature, &turned)];
+    let weighed = twin(curvature, &Looks { weights: Some(weights), ..turned });
+    let truth = |k: usize| light.iter().map(|light| light[k]).collect::<Vec<f64>>();
+    let mut device = None;
     if refused.is_none() {
-        let device = scattered(gpu, scene, &flat.points, curvature)?;
-        let device: Vec<f64> = all.iter().map(|at| device[*at]).collect();
-        let off = rmse(&device, &weighed);
-        assert!(off < 0.1, "the device scatters {off} % off its twin");
+        for (k, bounces) in BOUNCES.into_iter().enumerate() {
+            let found = off_device(gpu, flat, scene, (curvature, bounces))?;
+            let found: Vec<f64> = all.iter().map(|at| found[*at]).collect();
+            let off = rmse(&found, &weighed[k]);
+            assert!(bounces > 1 || off < 0.1, "the device scatters {off} % off its twin");
+            device = Some(rmse(&found, &truth(k)));
+        }
     }
-    let kinds = [twin(Curvature::FLAT, &level, false), twin(curvature, &bent, false), weighed];
+    let scattered = |k: usize| Scattered {
+        truth: truth(k),
+        weighed: weighed[k].clone(),
+        over_flat: truth(k).iter().sum::<f64>() / flat.scattered[k],
+        off: [&kinds[0], &kinds[1], &weighed].map(|found| rmse(&found[k], &truth(k))),
+    };
     let count = lit.iter().flatten().filter(|lit| **lit).count();
     Ok(Row {
         curvature: per_m,
         lit: percent(count, all.len() * LIGHTS),
         shadows,
-        scattered: light.iter().sum::<f64>() / flat.scattered,
-        light: kinds.map(|found| rmse(&found, &light)),
-        changed: 100.0 * curvature.changed(field, BORDER),
+        light: [0, 1].map(scattered),
+        device,
+        changed: curvature.changed(field, BORDER),
         refused,
     })
-}
-
-fn table(rows: &[Row]) {
-    println!(
-        "| radius, cells | changed, % | lit, % | wrong by flat directions, % | adapted | by flat ellipses | between five | fitted here | \
-         scattered over flat | off by flat directions, % | turned | turned and weighed | |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-    for row in rows {
-        let radius = match row.curvature {
-            0.0 => "flat".to_owned(),
-            k => format!("{:+.0}", 1.0 / k),
-        };
-        let [a, b, c, d, e] = row.shadows.map(|v| format!("{v:.2}"));
-        let [f, g, h] = row.light.map(|v| format!("{v:.2}"));
-        let told = if row.refused.is_some() { "refused" } else { "" };
-        println!(
-            "| {radius} | {:.2} | {:.1} | {a} | {b} | {c} | {d} | {e} | {:.3} | {f} | {g} | {h} | {told} |",
-            row.changed, row.lit, row.scattered
-        );
-    }
-}
-
-/// What is wrong over curvature, outwards and inwards.
-fn picture(rows: &[Row]) -> String {
-    let panel = |title: &str, is_out: bool, is_light: bool| {
-        let own: Vec<&Row> =
-            rows.iter().filter(|r| r.curvature != 0.0 && (r.curvature > 0.0) == is_out).collect();
-        let curve = |name: &str, colour: usize, is_floor: bool, of: &dyn Fn(&Row) -> f64| Curve {
-            name: name.into(),
-            points: own.iter().map(|r| [1.0 / r.curvature.abs(), of(r)]).collect(),
-            colour,
-            is_floor,
-        };
-        let curves = if is_light {
-            vec![
-                curve("directions of the flat field", 0, true, &|r| r.light[0]),
-                curve("turned", 1, false, &|r| r.light[1]),
-                curve("turned and weighed", 2, false, &|r| r.light[2]),
-            ]
-        } else {
-            vec![
-                curve("directions of the flat field", 0, true, &|r| r.shadows[0]),
-                curve("adapted directions", 0, false, &|r| r.shadows[1]),
-                curve("the flat field's ellipse", 3, true, &|r| r.shadows[2]),
-                curve("between five ellipses", 3, false, &|r| r.shadows[3]),
-            ]
-        };
-        let y = if is_light { "scattered light, RMSE, %" } else { "lights wrong, %" };
-        let told = own.iter().filter(|r| r.refused.is_none()).map(|r| 1.0 / r.curvature.abs());
-        let title = format!("{title}; refused below {:.0}", told.fold(f64::MAX, f64::min));
-        Panel { title, x: "radius of the base, cells", y, curves }
-    };
-    plot::svg(&[
-        panel("Shadows, bent outwards", true, false),
-        panel("Shadows, bent inwards", false, false),
-        panel("Scattered, outwards", true, true),
-        panel("Scattered, inwards", false, true),
-    ])
 }
 
 fn run() -> Result<()> {
@@ -350,16 +252,20 @@ fn run() -> Result<()> {
     let fans = Fans::of(&net, directions.vectors());
     let lights = Directions::fibonacci(LIGHTS, 0.0, 7)?;
     let five = five(&mut gpu, &field, &directions, STEPS)?;
-    let (_, level) = truth(&Mesh::bent(&field, 0.0), &field, &lights);
+    let all: Vec<usize> = compared(&field).collect();
+    let level = light::truth(&Mesh::bent(&field, 0.0), &field, &all)?;
+    let scattered = [0, 1].map(|k| level.iter().map(|light| light[k]).sum());
+    let own =
+        (0..field.heights_m().len()).map(|at| light::shines(at % field.cols(), PERIOD)).collect();
     let surface =
         Surface { border: BORDER, albedo: Albedo::Constant([ALBEDO as f32; 3]), phong: None };
     let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
-    let flat = Flat { field, points, fans, net, lights, five, scattered: level.iter().sum() };
+    let flat = Flat { field, points, fans, net, lights, five, own, scattered };
     println!(
         "{GROOVES} grooves of {PERIOD} by {} cells, {ROWS} long; {DIRECTIONS} directions over the sphere, {LIGHTS} lights over each sample's \
-         hemisphere, {RAYS} rays. A radius above 0: valleys widen. Changed: share of the hemisphere in which something else is \
-         seen, at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
-         Off: RMSE over the mean.\n",
+         hemisphere, {RAYS} rays. A radius above 0: valleys widen. Said: shares of a hemisphere's lights and light that the base hides or \
+         lays open, of light at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
+         Off: RMSE over the mean; between three: light of these and the flat base, as straight as ellipses; device: {PATHS} paths.\n",
         PERIOD / 2,
         100.0 * Curvature::MOST_CHANGED,
         1.0 / STEPS[0],

@@ -319,7 +319,7 @@ fn auto() -> Result<String> {
 fn bake() -> Result<String> {
     let figures = Figures::read("bake")?;
     let mut out = String::from(
-        "| kind | channels | packed as | bytes a sample | stated error | worst here |\n|---|---|---|---|---|---|\n",
+        "| kind | channels | packed as | bytes | stated error | worst here |\n|---|---|---|---|---|---|\n",
     );
     for row in figures.rows() {
         let word = |key| figures.word(row, key);
@@ -342,11 +342,10 @@ fn bake() -> Result<String> {
             stated.push(format!("{}: {most}", figures.word(bound, "of")?));
             worst.push(shown(number("worst")?));
         }
-        let bytes = figures.number(row, "bytes_a_sample")?;
-        let an_azimuth = if word("kind")? == "horizon" { " an azimuth" } else { "" };
+        let (bytes, each) = (figures.number(row, "bytes")?, word("each")?);
         writeln!(
             out,
-            "| {} | {} | {} | {bytes}{an_azimuth} | {} | {} |",
+            "| {} | {} | {} | {bytes} {each} | {} | {} |",
             word("kind")?,
             word("channels")?,
             word("encoding")?,
@@ -357,9 +356,11 @@ fn bake() -> Result<String> {
     }
     writeln!(
         out,
-        "\nOf decoding a .ktx2 or .png; worst of the bundled mountain, {} times as steep, {} azimuths (`examples/bake`).",
+        "\nOf decoding a .ktx2 or .png; worst of the bundled mountain, {} times as steep, {} azimuths; of light its middle {side}² samples, \
+         which repeat (`examples/bake`).",
         figures.number(&figures.all, "steeper")?,
-        figures.number(&figures.all, "azimuths")?
+        figures.number(&figures.all, "azimuths")?,
+        side = figures.number(&figures.all, "lit_side")?
     )
     .unwrap();
     writeln!(out, "{}", figures.caption()?).unwrap();
@@ -372,19 +373,21 @@ fn curved() -> Result<String> {
     let text = text(&path)?;
     let missing = || wrong(&path, "no table", "the text of examples/curved");
     let device = text.lines().nth(1).ok_or_else(missing)?;
-    let (refused, told): (Vec<&str>, Vec<&str>) = text
-        .lines()
-        .filter(|line| line.starts_with('|'))
-        .partition(|row| row.ends_with(" refused |"));
-    if told.len() < 3 {
-        return Err(missing());
-    }
-    let radius = |row: &&str| row.split('|').nth(1).unwrap_or_default().trim().to_owned();
-    let refused: Vec<String> = refused.iter().map(radius).collect();
+    let is_refused = |row: &&str| row.ends_with(" refused |");
+    let tables: Vec<&str> = text.split("\n\n").filter(|part| part.starts_with('|')).collect();
+    let [shadows, light] = tables[..] else { return Err(missing()) };
+    let told = |table: &str| {
+        let rows: Vec<&str> = table.lines().filter(|row| !is_refused(row)).collect();
+        if rows.len() < 3 { Err(missing()) } else { Ok(rows.join("\n")) }
+    };
+    let radius = |row: &str| row.split('|').nth(1).unwrap_or_default().trim().to_owned();
+    let refused: Vec<String> = shadows.lines().filter(is_refused).map(radius).collect();
     Ok(format!(
-        "{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
-         ([all of it](benches/results/curved.txt)). A radius above 0 widens them. Refused: {}.\n*{device}{}*\n",
-        told.join("\n"),
+        "{}\n\n{}\n\nThree V-shaped grooves, 16 by 8 cells each, bent across their length; rays at the bent mesh are the truth \
+         ([all of it](benches/results/curved.txt)). A radius above 0 widens them. \
+         Said: what plans say of lights and of light, %. Off: RMSE over the mean. Refused: {}.\n*{device}{}*\n",
+        told(shadows)?,
+        told(light)?,
         refused.join(", "),
         made(&path)?
     ))

@@ -16,8 +16,6 @@ mod brdf;
 mod converge;
 #[path = "scatter/geometry.rs"]
 mod geometry;
-#[path = "scatter/harmonics.rs"]
-mod harmonics;
 #[path = "scatter/moss.rs"]
 mod moss;
 #[path = "shared/seen.rs"]

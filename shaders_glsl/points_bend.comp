@@ -17,8 +17,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint BORDER = 0u;
 // Two directions in a word.
 layout(constant_id = 1) const bool SMALL = false;
-// How far what a repeating field shows is looked for.
-layout(constant_id = 2) const int REACH = 128;
+// How far what a repeating field shows is looked for, cells of the axis along which the direction runs faster.
+layout(constant_id = 2) const int REACH = 16384;
+
+// A little more than half a cell, within which a sample is what is met.
+const float HALF_SIDE = 0.51;
+// By this share of what is compared over the surface, a ray still meets it: 128 roundings.
+const float GRAZE = 7.62939453125e-6;
+// Beyond all ways, m.
+const float FAR = 1e18;
 
 layout(binding = 0) uniform utexture2DArray visible_points;
 layout(binding = 1) uniform texture2D ground;
@@ -44,39 +51,110 @@ uint seen(int i, ivec2 at) {
     return point_of(texelFetch(visible_points, ivec3(at, SMALL ? i >> 1 : i), 0).x, i, SMALL);
 }
 
+// Rises from a sample to its neighbours in the east, south, west and north, then in the south-east and north-west.
+struct Around {
+    vec4 sides;
+    vec2 corners;
+};
+
+Around around(ivec2 there) {
+    ivec2 size = ivec2(cols, rows);
+    ivec2 next = ivec2(there.x + 1 == size.x ? 0 : there.x + 1, there.y + 1 == size.y ? 0 : there.y + 1);
+    ivec2 last = ivec2(there.x == 0 ? size.x - 1 : there.x - 1, there.y == 0 ? size.y - 1 : there.y - 1);
+    float own = texelFetch(ground, there, 0).x;
+    vec4 sides = vec4(texelFetch(ground, ivec2(next.x, there.y), 0).x, texelFetch(ground, ivec2(there.x, next.y), 0).x,
+                      texelFetch(ground, ivec2(last.x, there.y), 0).x, texelFetch(ground, ivec2(there.x, last.y), 0).x);
+    vec2 corners = vec2(texelFetch(ground, next, 0).x, texelFetch(ground, last, 0).x);
+    return Around(sides - own, corners - own);
+}
+
+// The surface over the sample, so many columns east and rows south of it, within a cell: of six triangles around it.
+float risen(Around by, vec2 at) {
+    vec2 off = abs(at);
+    float along = at.x >= 0.0 ? by.sides.x : by.sides.z;
+    float down = at.y >= 0.0 ? by.sides.y : by.sides.w;
+    float corner = at.x >= 0.0 ? by.corners.x : by.corners.y;
+    float both = (at.x >= 0.0) == (at.y >= 0.0) ? min(off.x, off.y) : 0.0;
+    return both * corner + (off.x - both) * along + (off.y - both) * down;
+}
+
+// As far in the plan as the sample `there`, so many columns and rows off, stands along e.
+float away_to(vec2 gaps, vec3 e) {
+    return max(dot(gaps * vec2(cell_x_m, -cell_y_m), e.xy), 0.0) / dot(e.xy, e.xy);
+}
+
 // How far along e what is met lies, as far in the plan as the sample `there`, which stands within half a cell of it in the plan
 // but on a steep wall far above or below: what moves with the base is off by half a cell's turn, whatever the slope. Of a field
-// that repeats, the one of its like that e passes nearest by, and of those equally near the first.
+// that repeats, the first of its like whose surface e touches, within half a cell of the sample: what is met is met there
+// first. FAR where the base has turned by a right angle before.
 float away_of(ivec2 here, ivec2 there, float own, vec3 e) {
-    vec2 cell = vec2(cell_x_m, -cell_y_m);
-    float rise = texelFetch(ground, there, 0).x - own;
     ivec2 off = there - here;
-    float flat2 = dot(e.xy, e.xy);
-    if (flat2 < 1e-12) {
+    if (dot(e.xy, e.xy) < 1e-12) {
         return 0.0;
     }
-    float found = dot(vec2(off) * cell, e.xy);
-    vec2 pace = e.xy / cell;  // columns and rows a metre
+    if (BORDER != BORDER_PERIODIC) {
+        return away_to(vec2(off), e);
+    }
+    float rise = texelFetch(ground, there, 0).x - own;
+    vec2 pace = e.xy / vec2(cell_x_m, -cell_y_m);  // columns and rows a metre
     bool by_rows = abs(pace.y) > abs(pace.x);
-    if (BORDER == BORDER_PERIODIC) {
-        ivec2 size = by_rows ? ivec2(rows, cols) : ivec2(cols, rows);
-        ivec2 gap = by_rows ? off.yx : off;
-        float side = by_rows ? pace.x / pace.y : pace.y / pace.x;
-        bool up = (by_rows ? pace.y : pace.x) > 0.0;
-        int first = up ? (gap.x < 0 ? gap.x + size.x : gap.x) : (gap.x > 0 ? gap.x - size.x : gap.x);
-        float least = 1e38;
-        for (int k = 0; k <= max(REACH / size.x, 1); k++) {
-            int main_gap = first + (up ? k : -k) * size.x;
-            float turns = floor((float(main_gap) * side - float(gap.y)) / float(size.y) + 0.5);
-            vec2 gaps = vec2(main_gap, float(gap.y) + turns * float(size.y));
-            vec3 to = vec3((by_rows ? gaps.yx : gaps) * cell, rise);
-            vec3 beside = to - dot(to, e) * e;
-            float miss = dot(beside, beside);
-            found = miss < least ? dot(to.xy, e.xy) : found;
-            least = min(miss, least);
+    ivec2 size = by_rows ? ivec2(rows, cols) : ivec2(cols, rows);
+    ivec2 gap = by_rows ? off.yx : off;
+    float main_pace = max(abs(pace.x), abs(pace.y));
+    vec2 advance = pace / main_pace;  // columns and rows a cell of the faster axis
+    float aside = by_rows ? advance.x : advance.y;
+    float climb = e.z / main_pace;
+    bool up = (by_rows ? pace.y : pace.x) > 0.0;
+    int first = up ? (gap.x < 0 ? gap.x + size.x : gap.x) : (gap.x > 0 ? size.x - gap.x : -gap.x);
+    // Where the ray is level with the surface around the sample; a cell for half a square and roundings.
+    Around by = around(there);
+    float low = min(min(min(by.sides.x, by.sides.y), min(by.sides.z, by.sides.w)), min(min(by.corners.x, by.corners.y), 0.0));
+    float high = max(max(max(by.sides.x, by.sides.y), max(by.sides.z, by.sides.w)), max(max(by.corners.x, by.corners.y), 0.0));
+    float level = abs(climb) < 1e-30 ? (climb < 0.0 ? -1e-30 : 1e-30) : climb;
+    vec2 between = vec2(rise + low, rise + high) / level;
+    float turned = MOST_TURN / max(length(vec2(curvature_x, curvature_y) * e.xy), 1e-30) * main_pace;
+    vec3 cells = vec3(min(between.x, between.y) - 1.0, max(between.x, between.y) + 1.0, turned + 1.0);
+    ivec3 turns = max(ivec3(floor((clamp(cells, vec3(-2.0), vec3(REACH)) - float(first)) / float(size.x))), ivec3(0));
+    bool cut = turns.y > turns.z;
+    float relief = max(high, -low);
+    float found = away_to(vec2(off), e);
+    float least = 1e38;
+    bool met = false;
+    for (int k = turns.x; k <= min(turns.y, turns.z) && !met; k++) {
+        int main_gap = first + k * size.x;
+        float n = float(main_gap);
+        // Within a column's or row's width a ray moves aside by one at most: only of lines two samples wide or less it passes two.
+        float ways = (n * aside - float(gap.y)) / float(size.y);
+        float turn = size.y > 2 ? floor(ways + 0.5) : floor(ways) + (aside < 0.0 ? 1.0 : 0.0);
+        for (int j = 0; j < (size.y > 2 ? 1 : 2) && !met; j++) {
+            float other = float(gap.y) + (turn + float(aside < 0.0 ? -j : j)) * float(size.y);
+            float beside = n * aside - other;
+            // Where it passes the square, cells from where it is beside the sample.
+            vec2 sides = (vec2(-HALF_SIDE, HALF_SIDE) - beside) / (aside == 0.0 ? 1e-30 : aside);
+            float from = max(max(-HALF_SIDE, -n), min(sides.x, sides.y));
+            float to = min(HALF_SIDE, max(sides.x, sides.y));
+            vec2 start = by_rows ? vec2(beside, 0.0) : vec2(0.0, beside);
+            float over = (n + to) * climb - rise - risen(by, start + to * advance);
+            // A sample's own surface is left where the ray begins. Linear between grid lines and the diagonal.
+            bool is_own = main_gap == 0 && other == 0.0;
+            vec3 at = vec3(start, start.x - start.y);
+            vec3 along = vec3(advance, advance.x - advance.y);
+            for (int c = 0; c < 4; c++) {
+                float u = c == 3 ? from : (along[c] == 0.0 ? to : clamp(-at[c] / along[c], from, to));
+                float here_over = (n + u) * climb - rise - risen(by, start + u * advance);
+                over = is_own ? over : min(over, here_over);
+            }
+            bool passes = from <= to;
+            float graze = GRAZE * (abs(rise) + relief * (1.0 + 2.0 * n));
+            met = passes && over <= graze;
+            if (met || (passes && over < least)) {
+                vec2 gaps = vec2(up ? n : -n, other);
+                found = away_to(by_rows ? gaps.yx : gaps, e);
+                least = over;
+            }
         }
     }
-    return max(found, 0.0) / flat2;
+    return !met && cut ? FAR : found;
 }
 
 void main() {

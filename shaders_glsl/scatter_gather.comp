@@ -1,9 +1,9 @@
 // Computes: one step of some light paths at every sample: the light that leaves it back along its path, or, of the last
-// step, towards the view. All samples look along the same directions (method of dependent tests, Heidrich et al. 2000,
+// step, towards each view. All samples look along the same directions (method of dependent tests, Heidrich et al. 2000,
 // section 3.2), so that what a step leaves is a picture that the next one looks things up in.
 // Reads: ground, direct, visible_points, links, carried_in, sun_points, albedo_map, phong_map; on a curved base bent and
 // fan_weights. Writes: carried, or reads and writes scattered (mean of the paths so far; w: how many).
-// One invocation is one sample of one path; of the last step, of all paths.
+// One invocation is one sample of one path; of the last step, one sample of one view, of all paths.
 //
 // The light that a sample scatters is the integral of f_r(e) max(N.e, 0) L(e) de over the sphere, L that of the sample
 // seen along e. With e one of the directions, each as likely, of all the solid angle W that they stand for, its estimate is
@@ -29,13 +29,15 @@ layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_LOBE = false;
 layout(constant_id = 5) const bool LOBE_IS_MAP = false;
 layout(constant_id = 6) const bool BENT = false;
+// Views see what the sample's own lobe mirrors of the lights, too.
+layout(constant_id = 7) const bool OWN_LOBE = false;
 
 layout(binding = 0) uniform texture2D ground;
 // Exit radiance of what is diffuse.
 layout(binding = 1) uniform texture2D direct;
 layout(binding = 2) uniform utexture2DArray visible_points;
 // A path's steps, two texels each: direction and its number; the light of the sky there. Then suns: direction, and
-// irradiance facing it.
+// irradiance facing it. Then views: towards them.
 layout(binding = 3) uniform textureBuffer links;
 layout(binding = 4) uniform texture2DArray carried_in;
 // What samples see towards each sun.
@@ -43,7 +45,7 @@ layout(binding = 5) uniform utexture2DArray sun_points;
 layout(binding = 6) uniform texture2D albedo_map;
 layout(binding = 7) uniform texture2D phong_map;
 layout(binding = 8, rgba32f) uniform writeonly image2DArray carried;
-layout(binding = 9, rgba32f) uniform image2D scattered;
+layout(binding = 9, rgba32f) uniform image2DArray scattered;  // a layer a view
 layout(binding = 10) uniform texture2DArray bent;
 layout(binding = 11) uniform texture2DArray fan_weights;
 
@@ -61,12 +63,10 @@ layout(push_constant) uniform ScatterGatherPush {
     float weight_sr;      // W
     float exponent;
     float lobe_share;
-    float view_x;         // towards the view
-    float view_y;
-    float view_z;
-    vec4 albedo;          // where it is constant
+    int first_view;       // texel
     float curvature_x;    // of the base, 1/m
     float curvature_y;
+    vec4 albedo;          // where it is constant
 };
 
 vec3 sun_lobe(ivec2 here, vec3 normal, vec3 mirror, vec2 lobe) {
@@ -86,8 +86,9 @@ void main() {
     if (at.x >= cols || at.y >= rows) {
         return;
     }
+    int view = int(gl_WorkGroupID.z);
     if (paths == 0) {
-        imageStore(scattered, at, vec4(0.0));
+        imageStore(scattered, ivec3(at, view), vec4(0.0));
         return;
     }
     vec4 own = texelFetch(ground, at, 0);
@@ -107,6 +108,10 @@ void main() {
     }
     int first = SUMS ? 0 : int(gl_WorkGroupID.z);
     int end = SUMS ? paths : first + 1;
+    vec3 towards_view = vec3(0.0, 0.0, 1.0);
+    if (SUMS && HAS_LOBE) {
+        towards_view = texelFetch(links, first_view + view).xyz;
+    }
     vec3 sum = vec3(0.0);
     for (int path = first; path < end; path++) {
         int link = first_link + 2 * (path * steps + step);
@@ -130,10 +135,10 @@ void main() {
         vec3 light = colour * (facing / PI) * arriving;
         vec3 mirror = vec3(0.0);
         if (HAS_LOBE) {
-            vec3 back = SUMS ? vec3(view_x, view_y, view_z) : -texelFetch(links, link - 2).xyz;
+            vec3 back = SUMS ? towards_view : -texelFetch(links, link - 2).xyz;
             mirror = 2.0 * dot(normal, back) * normal - back;
             // The sky's light belongs to the direct light of what is diffuse, and of the sample itself.
-            bool sees_sky = !SUMS && seen == SEES_SKY;
+            bool sees_sky = (!SUMS || OWN_LOBE) && seen == SEES_SKY;
             vec3 all = arriving + (sees_sky ? texelFetch(links, link + 1).rgb : vec3(0.0));
             light += facing > 0.0 ? lobe.y * lobe_density(ahead.xyz - mirror, lobe.x) * all : vec3(0.0);
         }
@@ -148,9 +153,13 @@ void main() {
         sum += light;
     }
     if (SUMS) {
-        vec4 before = imageLoad(scattered, at);
+        if (OWN_LOBE) {
+            vec3 mirror = 2.0 * dot(normal, towards_view) * normal - towards_view;
+            sum += float(paths) * sun_lobe(at, normal, mirror, lobe);
+        }
+        vec4 before = imageLoad(scattered, ivec3(at, view));
         before = first_path > 0 ? before : vec4(0.0);
         float n = before.w + float(paths);
-        imageStore(scattered, at, vec4(before.rgb + (sum - float(paths) * before.rgb) / n, n));
+        imageStore(scattered, ivec3(at, view), vec4(before.rgb + (sum - float(paths) * before.rgb) / n, n));
     }
 }

@@ -124,9 +124,25 @@ impl Mesh {
         at
     }
 
-    /// The first that a ray from just over a sample meets.
-    pub fn seen(&self, sample: usize, e: DVec3) -> Option<Hit> {
-        let from = self.places[sample] + CLEARANCE_M * self.frames[sample].up;
+    /// Just over a sample, where its rays begin.
+    pub fn over(&self, sample: usize) -> DVec3 {
+        self.places[sample] + CLEARANCE_M * self.frames[sample].up
+    }
+
+    /// The side of a triangle that a ray has come to, as its normal.
+    pub fn facing(&self, triangle: usize, e: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        let normal = (b - a).cross(c - a).normalize();
+        if normal.dot(e) > 0.0 { -normal } else { normal }
+    }
+
+    /// Just over what a ray has met, where those begin that go on.
+    pub fn place(&self, hit: &Hit, from: DVec3, e: DVec3) -> DVec3 {
+        from + hit.distance_m * e + CLEARANCE_M * self.facing(hit.triangle, e)
+    }
+
+    /// The first that a ray meets.
+    pub fn met(&self, from: DVec3, e: DVec3) -> Option<Hit> {
         let inverse = e.map(|c| 1.0 / c);
         let (mut open, mut best) = (vec![0], None::<Hit>);
         while let Some(node) = open.pop() {

@@ -6,7 +6,7 @@
 //! by an orthographic camera, its mean over one repetition; the field's triangles asked for that pair; the table; factors.
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets, Factors, pairs};
+use ridgelight::bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, Leaving, pairs};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::Limits;
 use ridgelight::scene::{
@@ -16,7 +16,6 @@ use ridgelight::scene::{
 use ridgelight::{Error, Result};
 
 use crate::geometry::{Geometry, sun};
-use crate::harmonics::Harmonics;
 use crate::{Asked, bent, moss};
 
 pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
@@ -32,6 +31,7 @@ pub const SCATTER: Scatter = Scatter {
     cutoff: 1.0 / 65536.0,
     seed: 0,
     view: DVec3::Z,
+    own_lobe: false,
     curvature: Curvature::FLAT,
 };
 const FACTORS: [usize; 5] = [1, 2, 4, 8, 16];
@@ -70,10 +70,12 @@ impl Seen<'_> {
         facets: &Facets,
         lights: usize,
         is_scattered: bool,
-        mut take: impl FnMut(usize, &[[f64; 3]]),
+        mut take: impl FnMut(usize, &Leaving),
     ) -> Result<()> {
         let scatter = is_scattered.then_some((&self.around, &SCATTER));
-        gpu.lit_from(self.scene, (facets, 0..lights), scatter, &self.limits, &mut |light, l| {
+        // What is diffuse leaves towards all views alike.
+        let of = (facets, 0..lights, &(|_| 0_usize..0) as &dyn Fn(usize) -> _);
+        gpu.lit_from(self.scene, of, scatter, &self.limits, &mut |light, l| {
             take(light, &l);
             Ok(())
         })
@@ -194,11 +196,11 @@ fn one(gpu: &mut Headless, name: &str, seen: &Seen) -> Result<()> {
         };
         let mut row = vec![of(&|l, v| table.between(&ANGLES, l, v))];
         for count in FACTORS {
-            let factors = Factors::of(&table, ANGLES, count)?;
+            let factors = Factors::of(&table, ANGLES, count, false)?;
             row.push(of(&|l, v| factors.at(l, v)));
         }
         for order in ORDERS {
-            let harmonics = Harmonics::of(&table, order, &weights)?;
+            let harmonics = BrdfHarmonics::of(&table, ANGLES, order, false)?;
             row.push(of(&|l, v| harmonics.at(l, v)));
         }
         println!(
@@ -209,7 +211,7 @@ fn one(gpu: &mut Headless, name: &str, seen: &Seen) -> Result<()> {
             100.0 * closure.fold(0.0, f64::max),
             row.join(" | ")
         );
-        series.push((Factors::of(&table, ANGLES, KEPT)?, table));
+        series.push((Factors::of(&table, ANGLES, KEPT, false)?, table));
     }
     println!();
     far(gpu, seen, &series)

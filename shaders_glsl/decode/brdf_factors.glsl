@@ -1,4 +1,5 @@
-// brdf_factors.ktx2: layer k is a function of one direction, texel (j, i) of φ = 2π j / BRDF_PHIS counter-clockwise from east and
+// brdf_factors.ktx2: layer k is a function of the light's direction, layer BRDF_VIEWS + k one of the view's, the same where
+// BRDF_VIEWS is 0; texel (j, i) of φ = 2π j / BRDF_PHIS counter-clockwise from east and
 // θ = (i + ½) π/2 / BRDF_THETAS from straight above. Linear between the angles. A direction is (θ, φ), radians.
 
 vec3 brdf_factor(sampler2DArray map, int k, vec2 e) {
@@ -17,7 +18,7 @@ vec3 brdf_factor(sampler2DArray map, int k, vec2 e) {
 vec3 brdf_of_factors(sampler2DArray map, vec2 light, vec2 view) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < BRDF_FACTORS; k++) {
-        sum += brdf_factor(map, k, light) * brdf_factor(map, k, view);
+        sum += brdf_factor(map, k, light) * brdf_factor(map, BRDF_VIEWS + k, view);
     }
     return sum;
 }

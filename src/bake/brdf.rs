@@ -3,7 +3,6 @@
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Facets;
 use crate::scene::Directions;
 use crate::{Error, Result};
 
@@ -105,7 +104,7 @@ pub fn pairs(count: usize, seed: u32) -> Result<Directions> {
     Directions::from_vectors(lights.chain((0..count).map(|i| of(i, 3))).collect(), 0.0)
 }
 
-/// A square table over the same directions for lights and views, R, G, B, 1/sr: see [`Facets`].
+/// A square table over the same directions for lights and views, R, G, B, 1/sr: see [`Facets`](super::Facets).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brdf {
     directions: Vec<DVec3>,
@@ -113,25 +112,6 @@ pub struct Brdf {
 }
 
 impl Brdf {
-    /// Of all pairs of the directions of `facets`: `radiance` is that of all triangles under a light of irradiance 1 facing it
-    /// from each direction, all its bounces included.
-    ///
-    /// # Errors
-    /// A direction that shows no triangle; the first error of `radiance`.
-    pub fn of(
-        facets: &Facets,
-        mut radiance: impl FnMut(usize) -> Result<Vec<[f64; 3]>>,
-    ) -> Result<Self> {
-        facets.check()?;
-        let directions = facets.directions().vectors().to_vec();
-        let mut values = Vec::with_capacity(directions.len().pow(2));
-        for (light, e) in directions.iter().enumerate() {
-            let seen = facets.seen_from_all(&radiance(light)?);
-            values.extend(seen.into_iter().map(|mean| mean.map(|m| m / e.z)));
-        }
-        Ok(Self { directions, values })
-    }
-
     /// Of values that are known, all views of the first light first.
     ///
     /// # Errors
@@ -173,10 +153,21 @@ impl Brdf {
     }
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π.
+    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`].
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
+            let value = self.at(light, view);
+            (0..3).for_each(|c| sum[c] += value[c] * weight);
+        }
+        sum
+    }
+
+    /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights, each weighted by its part of
+    /// ∫ cos θ dω, which together are π. No more than what all of the surface reflects, diffusely and by its lobe.
+    pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (light, weight) in projected_sr.iter().enumerate() {
             let value = self.at(light, view);
             (0..3).for_each(|c| sum[c] += value[c] * weight);
         }

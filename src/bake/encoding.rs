@@ -6,7 +6,7 @@ use glam::DVec3;
 use half::f16;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-pub use light::{RADIANCE, REFLECTED, TEXELS};
+pub use light::{HARMONIC_WEIGHTS, RADIANCE, REFLECTED, TEXELS};
 
 /// A component of a texel, as Vulkan reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

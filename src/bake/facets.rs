@@ -13,29 +13,32 @@
 //!
 //! the same with l and v exchanged, and ∫ f v_z dv ≤ ρ, as ∫ (n·v)⁺ dv = π and ∫ V (n·l)⁺ / n_z dx = A l_z.
 //!
+//! A lobe of share s and exponent k ([`Phong`](crate::scene::Phong)) adds L(x, v) = s p(l, v) V(x, l) where n·l > 0, with
+//! p = (k + 1)/2π (r·l)⁺ᵏ about the mirror direction r of v: no cosine in it, so that level ground has the closed form
+//!
+//! > f(l, v) = ρ/π + s p(l, v) / l_z.
+//!
+//! p is the same with l and v exchanged, s p / (n·l), which a lobe reflects of what falls on it, is not: **f is not reciprocal
+//! where there are lobes**. Nor is it bounded by the light: a light at grazing angles brings little, a lobe takes no less of
+//! it, and more may leave than arrives. It is bounded by the view: ∫ p dl ≤ 1, so that under light of 1 from all sides
+//! ∫ f l_z dl ≤ ρ + s whatever the view. [`Brdf`](super::Brdf) says how far it is from both.
+//!
 //! Here x are flat triangles, whose slopes are exact, each seen or hidden as a whole by what its middle sees. Where the
 //! edge of what is hidden crosses a triangle, that errs by up to its share, and their sum S(v) is not quite v_z: shares are
 //! taken times v_z / S(v), so that a light brings the triangles what it brings the plane, l_z, and they fill a view as the
 //! plane does, v_z. The exchange of l and v stays exact; what leaves is at most ρ times what sum of cosines a triangle has
 //! over a set of directions. [`Facets::closure`] is how far S is off, and finer triangles bring it to 1.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use crate::cpu::facet_mask::cells;
-use crate::scene::{Albedo, Border, Directions, Scene};
+use crate::scene::{Albedo, Border, Directions, Phong, Scene};
 use crate::{Error, Result};
 
 /// Directions whose bits stand in a word of the device, as in `facets.glsl`.
 pub const DIRECTIONS_A_WORD: usize = 15;
 /// A ray of a word took more steps than there can be.
 const LOST: u32 = 1 << 31;
-
-/// Whether a triangle of so many cells is seen from a direction, of the device's words: triangles count two a cell, first the
-/// one north-east of its diagonal.
-pub fn mask_bit(words: &[u32], cells: usize, direction: usize, facet: usize) -> bool {
-    let word = words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
-    word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1
-}
 
 /// A field's triangles, cut so many times finer, and in which directions each is seen.
 #[derive(Clone, Debug)]
@@ -48,10 +51,43 @@ pub struct Facets {
     /// Rise a length unit towards east and north.
     slopes: Vec<[f64; 2]>,
     albedo: Vec<[f64; 3]>,
+    /// Exponents and shares, where anything is mirrored.
+    lobes: Option<Vec<[f64; 2]>>,
     words: Vec<u32>,
     /// v_z / S(v) of each direction, infinite of those that show no front of a triangle; else of a field that ends 1.
     scales: Vec<f64>,
     repeats: bool,
+}
+
+/// Exit radiance of all triangles under one light, R, G, B each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaving {
+    /// Of each triangle, towards all views alike.
+    alike: Vec<[f64; 3]>,
+    /// The direction of the light that lobes mirror besides, of irradiance 1 facing it.
+    mirrored: Option<usize>,
+    /// What samples scatter towards each direction from the first on, where that is not alike.
+    towards: Option<(usize, Vec<Vec<[f32; 3]>>)>,
+}
+
+impl From<Vec<[f64; 3]>> for Leaving {
+    /// Of each triangle, towards all views alike.
+    fn from(alike: Vec<[f64; 3]>) -> Self {
+        Self { alike, mirrored: None, towards: None }
+    }
+}
+
+impl Leaving {
+    /// What leaves each triangle towards all views alike.
+    pub fn alike(&self) -> &[[f64; 3]] {
+        &self.alike
+    }
+
+    /// With what samples scatter, linear between them, towards each direction from number `first` on: no other may then look.
+    #[must_use]
+    pub fn scattering(self, first: usize, towards: Vec<Vec<[f32; 3]>>) -> Self {
+        Self { towards: Some((first, towards)), ..self }
+    }
 }
 
 impl Facets {
@@ -59,7 +95,7 @@ impl Facets {
     /// its field `times` [`finer`](crate::scene::HeightField::finer).
     ///
     /// # Errors
-    /// A lobe; a direction at or below horizontal, from where no plane is seen; other than a word a cell and fifteen
+    /// A direction at or below horizontal, from where no plane is seen; other than a word a cell and fifteen
     /// directions; a ray that the device has lost.
     pub fn of(
         scene: &Scene,
@@ -67,9 +103,6 @@ impl Facets {
         directions: Directions,
         words: Vec<u32>,
     ) -> Result<Self> {
-        if scene.surface.phong.is_some() {
-            return Err(Error::setting("phong", "a lobe", "none: triangles are diffuse"));
-        }
         if let Some(i) = directions.vectors().iter().position(|v| v.z <= 0.0) {
             let found = format!("{}", directions.vectors()[i]);
             return Err(Error::setting(format!("direction {i}"), found, "one above horizontal"));
@@ -88,6 +121,8 @@ impl Facets {
             return Err(Error::Device { doing: format!("triangles seen: word {i}"), reason });
         }
         let [cell_x, cell_y] = field.cell_m();
+        let lobe = finer.surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
+        let mut lobes = lobe.map(|_| Vec::with_capacity(2 * count));
         let (mut slopes, mut albedo) = (Vec::with_capacity(2 * count), Vec::new());
         for facet in 0..2 * count {
             let corners = corners_of(facet, cells[0], [field.cols(), field.rows()]);
@@ -101,11 +136,18 @@ impl Facets {
                 Albedo::Map(map) => [0, 1, 2]
                     .map(|c| corners.iter().map(|i| f64::from(map[*i][c])).sum::<f64>() / 3.0),
             });
+            if let (Some(lobes), Some(lobe)) = (&mut lobes, lobe) {
+                let all = corners.map(|i| lobe.at(i));
+                let mean = |of: fn(&Phong) -> f32| -> f64 {
+                    all.iter().map(|phong| f64::from(of(phong))).sum::<f64>() / 3.0
+                };
+                lobes.push([mean(|phong| phong.exponent), mean(|phong| phong.scale)]);
+            }
         }
         let size = [scene.field.cols(), scene.field.rows()];
         let (scales, repeats) = (Vec::new(), border == Border::Periodic);
         let mut all =
-            Self { directions, times, size, cells, slopes, albedo, words, scales, repeats };
+            Self { directions, times, size, cells, slopes, albedo, lobes, words, scales, repeats };
         let sums = all.of_all(|direction| all.shares(direction).map(|s| s.1).sum::<f64>());
         let facets = all.slopes.len() as f64;
         let heights = all.directions.vectors().iter().map(|v| v.z);
@@ -133,6 +175,11 @@ impl Facets {
     /// that are hidden in part, 0 where it shows no front of a triangle.
     pub fn closure(&self, direction: usize) -> f64 {
         1.0 / self.scales[direction]
+    }
+
+    /// Whether there are lobes: what leaves is then not alike towards all views.
+    pub fn has_lobes(&self) -> bool {
+        self.lobes.is_some()
     }
 
     /// Whether a direction shows the front of any triangle.
@@ -177,27 +224,70 @@ impl Facets {
         (1.0 + east * east + north * north).sqrt()
     }
 
-    /// Exit radiance of all triangles, diffuse and without scattered light, under a light of irradiance 1 facing it from
-    /// direction `light`.
-    pub fn lit_from(&self, light: usize) -> Vec<[f64; 3]> {
-        let mut all = vec![[0.0; 3]; self.slopes.len()];
+    /// Exit radiance of all triangles, without scattered light, under a light of irradiance 1 facing it from direction
+    /// `light`.
+    pub fn lit_from(&self, light: usize) -> Leaving {
+        let mut alike = vec![[0.0; 3]; self.slopes.len()];
         for (facet, share) in self.shares(light) {
             let irradiance = self.scales[light] * share / self.area(facet);
-            all[facet] = self.albedo[facet].map(|albedo| albedo / PI * irradiance);
+            alike[facet] = self.albedo[facet].map(|albedo| albedo / PI * irradiance);
         }
-        all
+        let mirrored = self.lobes.is_some().then_some(light);
+        Leaving { alike, mirrored, towards: None }
+    }
+
+    /// Whether a direction sees a triangle, and how much of a view from there that fills over its own area of the plan, more
+    /// than 0.
+    fn share(&self, direction: usize, facet: usize) -> Option<f64> {
+        let cells = self.cells[0] * self.cells[1];
+        let word = self.words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
+        let is_seen = word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;
+        let e = self.directions.vectors()[direction];
+        let [east, north] = self.slopes[facet];
+        let share = e.z - east * e.x - north * e.y;
+        (is_seen && share > 0.0).then_some(share)
+    }
+
+    /// What leaves a triangle towards a direction that sees it and of whose view it fills `share`.
+    fn towards(&self, (view, share): (usize, f64), facet: usize, light: &Leaving) -> [f64; 3] {
+        let mut sum = light.alike[facet];
+        if let Some((first, towards)) = &light.towards {
+            let samples = &towards[view - first];
+            for (sample, part) in self.between(facet) {
+                (0..3).for_each(|c| sum[c] += part * f64::from(samples[sample][c]));
+            }
+        }
+        let (Some(lobes), Some(from)) = (&self.lobes, light.mirrored) else { return sum };
+        let [exponent, scale] = lobes[facet];
+        let Some(lit) = self.share(from, facet) else { return sum };
+        let [l, v] = [from, view].map(|i| self.directions.vectors()[i]);
+        let [east, north] = self.slopes[facet];
+        // r·l = 2 (n·v)(n·l) - v·l, and a share is the cosine times the area over the plan's, √(1 + slope²).
+        let along = 2.0 * share * lit / (1.0 + east * east + north * north) - v.dot(l);
+        if along > 0.0 {
+            let density = (exponent + 1.0) / TAU * along.min(1.0).powf(exponent);
+            sum = sum.map(|s| s + self.scales[from] * scale * density);
+        }
+        sum
     }
 
     /// Mean radiance of what is seen from each direction.
-    pub fn seen_from_all(&self, radiance: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        self.of_all(|view| self.seen_from(view, radiance))
+    ///
+    /// # Panics
+    /// Where light is not scattered towards all of them: [`Leaving::scattering`].
+    pub fn seen_from_all(&self, light: &Leaving) -> Vec<[f64; 3]> {
+        self.of_all(|view| self.seen_from(view, light))
     }
 
     /// Mean radiance of what is seen from direction `view`; 0 where nothing is.
-    pub fn seen_from(&self, view: usize, radiance: &[[f64; 3]]) -> [f64; 3] {
+    ///
+    /// # Panics
+    /// Where light is not scattered towards that.
+    pub fn seen_from(&self, view: usize, light: &Leaving) -> [f64; 3] {
         let (mut sum, mut whole) = ([0.0; 3], 0.0);
         for (facet, share) in self.shares(view) {
-            (0..3).for_each(|c| sum[c] += share * radiance[facet][c]);
+            let radiance = self.towards((view, share), facet, light);
+            (0..3).for_each(|c| sum[c] += share * radiance[c]);
             whole += share;
         }
         if whole > 0.0 { sum.map(|s| s / whole) } else { sum }
@@ -236,9 +326,9 @@ impl Facets {
         sums.into_iter().map(|(sum, whole)| sum.map(|s| (s / whole) as f32)).collect()
     }
 
-    /// Adds radiance of samples, linear between them.
-    pub fn add_samples(&self, samples: &[[f32; 3]], radiance: &mut [[f64; 3]]) {
-        for (facet, light) in radiance.iter_mut().enumerate() {
+    /// Adds radiance of samples, the same towards all views, linear between them.
+    pub fn add_samples(&self, samples: &[[f32; 3]], light: &mut Leaving) {
+        for (facet, light) in light.alike.iter_mut().enumerate() {
             for (sample, share) in self.between(facet) {
                 (0..3).for_each(|c| light[c] += share * f64::from(samples[sample][c]));
             }
@@ -247,14 +337,20 @@ impl Facets {
 
     /// Of each sample as direction `view` shows it: radiance, and the share of the view that it fills over its own cell, masking
     /// counted. The mean over all samples of their product over that of the shares is [`seen_from`](Self::seen_from), and the
-    /// shares' mean is v_z.
-    pub fn texels_from(&self, view: usize, radiance: &[[f64; 3]]) -> Vec<[f64; 4]> {
+    /// shares' mean is v_z where the field repeats. One that ends has half a cell of the samples at its edges, and of those at
+    /// its corners a third where a diagonal begins or ends, else a sixth: shares times a cell's area are the area of the view
+    /// that is filled.
+    ///
+    /// # Panics
+    /// Where light is not scattered towards that.
+    pub fn texels_from(&self, view: usize, light: &Leaving) -> Vec<[f64; 4]> {
         let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
-        let each = all.len() as f64 / self.slopes.len() as f64;
+        let each = 0.5 / self.times.pow(2) as f64;
         for (facet, filled) in self.shares(view) {
+            let radiance = self.towards((view, filled), facet, light);
             for (sample, share) in self.between(facet) {
                 let part = share * filled;
-                (0..3).for_each(|c| all[sample][c] += part * radiance[facet][c]);
+                (0..3).for_each(|c| all[sample][c] += part * radiance[c]);
                 all[sample][3] += part;
             }
         }
@@ -269,8 +365,11 @@ impl Facets {
     }
 
     /// The same of all views.
-    pub fn texels_from_all(&self, radiance: &[[f64; 3]]) -> Vec<Vec<[f64; 4]>> {
-        self.of_all(|view| self.texels_from(view, radiance))
+    ///
+    /// # Panics
+    /// Where light is not scattered towards one of them.
+    pub fn texels_from_all(&self, light: &Leaving) -> Vec<Vec<[f64; 4]>> {
+        self.of_all(|view| self.texels_from(view, light))
     }
 
     /// Runs over all directions, on as many threads as there are processors.

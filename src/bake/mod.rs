@@ -12,11 +12,13 @@
 //! [`Ellipse`]s of visible sky and visible points come off the device as they are ([`plan::ellipses`](crate::plan::ellipses),
 //! [`plan::visible_points`](crate::plan::visible_points)).
 //! [`CurvedEllipses`] go between those of [`plan::curved_ellipses`](crate::plan::curved_ellipses) on a curved base.
-//! [`Facets`] are a field as its flat triangles, [`Brdf`] what it reflects as seen from afar, [`Factors`] that in short.
+//! [`Facets`] are a field as its flat triangles, [`Brdf`] what it reflects as seen from afar, [`Factors`] and
+//! [`BrdfHarmonics`] that in short.
 //! [`Encoding`]s take values to texels and back, within errors that they state.
 
 mod bent;
 mod brdf;
+mod brdf_harmonics;
 mod curved;
 mod encoding;
 mod facets;
@@ -35,12 +37,13 @@ use crate::{Error, Result};
 pub use crate::cpu::ellipse_fit::Ellipse;
 pub use bent::BentNormal;
 pub use brdf::{Angles, Brdf, pairs};
+pub use brdf_harmonics::BrdfHarmonics;
 pub use curved::CurvedEllipses;
 pub use encoding::{
-    BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding, HORIZON,
-    POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
+    BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding,
+    HARMONIC_WEIGHTS, HORIZON, POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
 };
-pub use facets::{DIRECTIONS_A_WORD, Facets, mask_bit};
+pub use facets::{DIRECTIONS_A_WORD, Facets, Leaving};
 pub use factors::Factors;
 pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};
 pub use sky::{SkyView, VisibleSky};

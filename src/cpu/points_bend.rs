@@ -7,30 +7,41 @@
 //! upwards, the part across stays. A height h stands on the end's normal, R(w) (0, 0, h). Along the axis of a cylinder's
 //! curvature and everywhere on a sphere that is exact, as ways are geodesics and turn evenly; of others to second order.
 //!
+//! How far a place is follows from the sample and the direction ([`ways`]).
+//!
 //! A convex base (above 0) lets all sink by k d²/2 at a distance d, which lowers its direction by k d / 2; heights above the
 //! base are drawn apart by 1 + k h.
+
+pub mod ways;
 
 use glam::{DVec2, DVec3};
 
 use crate::basis::triangles::Triangles;
 use crate::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
+use ways::Ways;
 
 /// No way turns the frame by more than a right angle, radians.
 pub const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
-/// How far what a repeating field shows is looked for, columns or rows along which the direction runs faster; one repetition
-/// beyond the nearest at least.
-pub const REACH_CELLS: i64 = 128;
-
 /// Towards what stands `away` m off along `e` on the flat field, from a sample at height `own_m`: of length 1, in the
 /// sample's own frame. A way that would turn further is taken as far as [`MOST_TURN`].
 pub fn bent_direction(e: DVec3, away_m: f64, own_m: f64, curvature: Curvature) -> DVec3 {
+    bent_as_far(e, away_m, own_m, (curvature, MOST_TURN))
+}
+
+/// The same of ways that turn the frame by up to `most_turn`, radians.
+pub(crate) fn bent_as_far(
+    e: DVec3,
+    away_m: f64,
+    own_m: f64,
+    (curvature, most_turn): (Curvature, f64),
+) -> DVec3 {
     let o = e.truncate();
     let per_m = DVec2::from_array(curvature.per_m) * o;
     let rate = per_m.length();
     if rate == 0.0 {
         return e;
     }
-    let way_m = away_m.min(MOST_TURN / rate);
+    let way_m = away_m.min(most_turn / rate);
     let height_m = own_m + way_m * e.z;
     let turn = rate * way_m;
     let along = per_m / rate;
@@ -43,67 +54,6 @@ pub fn bent_direction(e: DVec3, away_m: f64, own_m: f64, curvature: Curvature) -
     let plan = o + along * (of_o * (arc - 1.0) + height_m * rate * arc);
     let up = e.z - of_o * fall - height_m * rate * fall;
     DVec3::new(plan.x, plan.y, up).normalize()
-}
-
-/// A sample that may be what a ray has met.
-#[derive(Clone, Copy, Debug)]
-pub struct Way {
-    /// How far along the ray it stands in the plan, m. What is met lies within half a cell of the sample in the plan, but on a
-    /// steep wall far above or below: what moves with the base is off by half a cell's turn, whatever the slope.
-    pub away_m: f64,
-    /// How far beside the ray it is, m.
-    pub miss_m: f64,
-    /// How far it is, m.
-    pub to_m: f64,
-}
-
-/// Where the sample `there` is seen along `e` from `here`: of a field that repeats, each of its like, nearest first.
-pub fn ways(field: &HeightField, border: Border, [here, there]: [usize; 2], e: DVec3) -> Vec<Way> {
-    let (cols, rows) = (field.cols() as i64, field.rows() as i64);
-    let [cell_x, cell_y] = field.cell_m();
-    let height = |at: usize| f64::from(field.heights_m()[at]);
-    let rise = height(there) - height(here);
-    let place = |at: usize| [at as i64 % cols, at as i64 / cols];
-    let [[x, y], [to_x, to_y]] = [here, there].map(place);
-    let flat = e.truncate().length_squared();
-    let way = |right: f64, down: f64| {
-        let to = DVec3::new(right * cell_x, -down * cell_y, rise);
-        let away_m =
-            if flat < 1e-12 { 0.0 } else { to.truncate().dot(e.truncate()).max(0.0) / flat };
-        Way { away_m, miss_m: (to - to.dot(e) * e).length(), to_m: to.length() }
-    };
-    let [right, down] = [to_x - x, to_y - y];
-    let pace = [e.x / cell_x, -e.y / cell_y];
-    if border != Border::Periodic || flat < 1e-12 {
-        return vec![way(right as f64, down as f64)];
-    }
-    let by_rows = pace[1].abs() > pace[0].abs();
-    let swap = |[a, b]: [i64; 2]| if by_rows { [b, a] } else { [a, b] };
-    let ([size, other_size], [gap, other_gap]) = (swap([cols, rows]), swap([right, down]));
-    let (ahead, side) =
-        if by_rows { (pace[1], pace[0] / pace[1]) } else { (pace[0], pace[1] / pace[0]) };
-    let first = if ahead > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) };
-    let each = (0..=(REACH_CELLS / size).max(1)).flat_map(|k| {
-        let main = first + if ahead > 0.0 { k * size } else { -k * size };
-        let turns = (main as f64 * side - other_gap as f64) / other_size as f64;
-        // The nearer of two rows or columns of repetitions; the other where roundings may tell.
-        let near = (turns + 0.5).floor();
-        let next = if turns > near { near + 1.0 } else { near - 1.0 };
-        let count = if (turns - near).abs() > 0.499 { 2 } else { 1 };
-        [near, next].into_iter().take(count).map(move |turns| {
-            let other = other_gap as f64 + turns * other_size as f64;
-            if by_rows { way(other, main as f64) } else { way(main as f64, other) }
-        })
-    });
-    each.collect()
-}
-
-/// The [`ways`]' own that the ray passes nearest by, the first of those equally near, m.
-pub fn away_m(field: &HeightField, border: Border, pair: [usize; 2], e: DVec3) -> f64 {
-    let all = ways(field, border, pair, e);
-    let nearest =
-        all.iter().copied().reduce(|best, way| if way.miss_m < best.miss_m { way } else { best });
-    nearest.map_or(0.0, |way| way.away_m)
 }
 
 /// Directions on the flat field beside each other, and what they cover.
@@ -174,8 +124,9 @@ impl Draped<'_> {
         let own = f64::from(self.field.heights_m()[sample]);
         let of = |i: usize| match self.movers(i, sample, 0.0).first() {
             Some((with, there)) => {
-                let away = away_m(self.field, self.border, [sample, *there], vectors[*with]);
-                bent_direction(vectors[i], away, own, self.curvature)
+                let on = (self.field, self.border);
+                let ways = Ways::of(on, self.curvature, [sample, *there], vectors[*with]);
+                bent_direction(vectors[i], ways.met().away_m, own, self.curvature)
             }
             None => vectors[i],
         };

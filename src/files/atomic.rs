@@ -8,34 +8,116 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
 
-/// Temporary files of this process. Locked while one is made, renamed or removed.
-static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+/// What this process leaves unfinished: temporary files, and folders that it has made for results. Locked while a file is
+/// made, renamed or removed, and a folder made or removed.
+static UNFINISHED: Mutex<Unfinished> =
+    Mutex::new(Unfinished { files: Vec::new(), folders: Vec::new() });
 
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+struct Unfinished {
+    files: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
+}
+
+fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every file that this process has begun and not finished; for a handler of signals, which
-/// ends the process next. Whoever begins or finishes a file from here on waits for that end.
+/// Removes every file that this process has begun and not finished, and folders that it has made and that are empty; for a
+/// handler of signals, which ends the process next. Whoever begins or finishes one from here on waits for that end.
 pub fn abandon_unfinished() {
-    let files = unfinished();
-    for path in files.iter() {
+    let all = unfinished();
+    for path in &all.files {
         // What cannot be removed stays: there is no one left to tell.
         let _ = fs::remove_file(path);
     }
-    std::mem::forget(files);
+    for path in &all.folders {
+        let _ = fs::remove_dir(path);
+    }
+    std::mem::forget(all);
+}
+
+/// A folder for results, made where it was missing. One that was made goes with this, or with the process
+/// ([`abandon_unfinished`]), unless something lies in it by then.
+#[derive(Debug)]
+pub struct ResultFolder {
+    made: Option<PathBuf>,
+}
+
+impl ResultFolder {
+    /// # Errors
+    /// A folder that can neither be found nor made.
+    pub fn create(path: &Path) -> Result<Self> {
+        let mut all = unfinished();
+        match fs::create_dir(path) {
+            Ok(()) => {
+                all.folders.push(path.to_owned());
+                Ok(Self { made: Some(path.to_owned()) })
+            }
+            Err(_) if path.is_dir() => Ok(Self { made: None }),
+            Err(error) => Err(Error::io(path, error)),
+        }
+    }
+}
+
+impl Drop for ResultFolder {
+    fn drop(&mut self) {
+        let Some(path) = self.made.take() else { return };
+        let mut all = unfinished();
+        all.folders.retain(|other| *other != path);
+        // It is no error that it has something in it.
+        let _ = fs::remove_dir(path);
+    }
 }
 
 /// A file under a temporary name beside its destination; dropped unfinished, it is removed.
 #[derive(Debug)]
 pub(super) struct Temporary {
+    // Closed before it is removed.
+    stream: BufWriter<fs::File>,
+    whole: Written,
+}
+
+/// A file that is whole and closed, but under a temporary name still; dropped before [`place`](Self::place), it is removed.
+#[derive(Debug)]
+pub struct Written {
     /// As the caller wrote it, for messages.
     path: PathBuf,
     /// Where it goes: `path`, or what `path` links to.
     destination: PathBuf,
-    stream: BufWriter<fs::File>,
     /// Gone once it is renamed or removed.
     name: Option<TempPath>,
+}
+
+impl Written {
+    /// Where it lies until then.
+    pub fn path(&self) -> &Path {
+        self.name.as_deref().expect("it has a name until it is placed")
+    }
+
+    /// Puts it at its destination.
+    ///
+    /// # Errors
+    /// A destination that cannot be replaced.
+    pub fn place(mut self) -> Result<()> {
+        let destination = self.destination.clone();
+        self.end(|name| name.persist(destination).map_err(|e| e.error))
+            .map_err(|e| Error::io(&self.path, e))
+    }
+
+    /// Has the temporary name taken away, with the list of such names locked.
+    fn end(&mut self, take: impl FnOnce(TempPath) -> std::io::Result<()>) -> std::io::Result<()> {
+        let Some(name) = self.name.take() else { return Ok(()) };
+        let mut all = unfinished();
+        all.files.retain(|path| **path != *name);
+        take(name)
+    }
+}
+
+impl Drop for Written {
+    fn drop(&mut self) {
+        // As for any temporary file, what cannot be removed stays.
+        let _ = self.end(TempPath::close);
+    }
 }
 
 impl Temporary {
@@ -63,21 +145,23 @@ impl Temporary {
         // Temporary files are private by default; a result is as readable as any new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut files = unfinished();
+        let mut all = unfinished();
         let file = builder.tempfile_in(directory).map_err(|e| {
             // The system's reason without the temporary name, which would only puzzle.
             let reason = e.get_ref().and_then(|e| e.source()).map_or(e.to_string(), complaint);
+            let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
             Error::io(path, std::io::Error::new(e.kind(), reason))
         })?;
-        files.push(file.path().to_owned());
+        all.files.push(file.path().to_owned());
         let (file, name) = file.into_parts();
         let stream = BufWriter::new(file);
-        Ok(Self { path: path.to_owned(), destination, stream, name: Some(name) })
+        let whole = Written { path: path.to_owned(), destination, name: Some(name) };
+        Ok(Self { stream, whole })
     }
 
     /// Appends bytes.
     pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
-        self.stream.write_all(bytes).map_err(|e| Error::io(&self.path, e))
+        self.stream.write_all(bytes).map_err(|e| Error::io(&self.whole.path, e))
     }
 
     /// The stream itself, for encoders.
@@ -87,30 +171,18 @@ impl Temporary {
 
     /// Its name until it is finished, for reading back what has been flushed.
     pub fn name(&self) -> &Path {
-        self.name.as_deref().expect("it has one until it is finished")
+        self.whole.path()
+    }
+
+    /// Flushes and closes.
+    pub fn close(mut self) -> Result<Written> {
+        self.stream.flush().map_err(|e| Error::io(&self.whole.path, e))?;
+        Ok(self.whole)
     }
 
     /// Flushes and renames.
-    pub fn finish(mut self) -> Result<()> {
-        self.stream.flush().map_err(|e| Error::io(&self.path, e))?;
-        let destination = self.destination.clone();
-        self.end(|name| name.persist(destination).map_err(|e| e.error))
-            .map_err(|e| Error::io(&self.path, e))
-    }
-
-    /// Has the temporary name taken away, with the list of such names locked.
-    fn end(&mut self, take: impl FnOnce(TempPath) -> std::io::Result<()>) -> std::io::Result<()> {
-        let Some(name) = self.name.take() else { return Ok(()) };
-        let mut files = unfinished();
-        files.retain(|path| **path != *name);
-        take(name)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        // As for any temporary file, what cannot be removed stays.
-        let _ = self.end(TempPath::close);
+    pub fn finish(self) -> Result<()> {
+        self.close()?.place()
     }
 }
 

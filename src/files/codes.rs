@@ -1,6 +1,6 @@
 //! Pictures of codes: PNG whose samples are numbers, not colours.
 
-use super::atomic::Temporary;
+use super::atomic::{Temporary, Written};
 use super::open::complaint;
 use crate::{Error, Result};
 use ::png::{BitDepth, ColorType, Encoder, EncodingError, ScaledFloat};
@@ -8,18 +8,18 @@ use std::path::Path;
 
 /// Writes samples of 8 or 16 bits (big-endian) as they are: 1 to 4 a pixel are grey, grey with alpha, RGB and RGBA.
 ///
-/// The file says that its samples are linear (gAMA 1). `metadata` becomes texts, as of [`write_png`](super::write_png).
+/// It waits beside its destination. It says that its samples are linear (gAMA 1). `metadata` becomes texts, as of [`write_png`](super::write_png).
 ///
 /// # Errors
 /// Samples that are not `rows`·`cols` pixels, other counts or depths, names that PNG does not take, a destination that
 /// cannot be written to.
-pub fn write_codes(
+pub fn write_codes_aside(
     path: &Path,
     [cols, rows]: [usize; 2],
     (channels, bits): (usize, u32),
     samples: &[u8],
     metadata: &[(String, String)],
-) -> Result<()> {
+) -> Result<Written> {
     let colour = match channels {
         1 => ColorType::Grayscale,
         2 => ColorType::GrayscaleAlpha,
@@ -47,7 +47,7 @@ pub fn write_codes(
         .map_err(|e| Error::setting("picture", complaint(e), "one that PNG can hold"))?;
     let mut file = Temporary::create(path)?;
     file.write(&png)?;
-    file.finish()
+    file.close()
 }
 
 fn packed(

@@ -1,6 +1,6 @@
 //! OpenEXR: any channel of any flat file in; one part with f32 channels and ZIP out.
 
-use super::atomic::Temporary;
+use super::atomic::{Temporary, Written};
 use super::heights::Raster;
 use super::open;
 use crate::{Error, Result};
@@ -299,6 +299,20 @@ pub fn write_exr(
     layers: &[Layer],
     metadata: &[(String, String)],
 ) -> Result<()> {
+    write_exr_aside(path, rows, cols, layers, metadata)?.place()
+}
+
+/// What [`write_exr`] writes, but waiting beside its destination.
+///
+/// # Errors
+/// As there.
+pub fn write_exr_aside(
+    path: &Path,
+    rows: usize,
+    cols: usize,
+    layers: &[Layer],
+    metadata: &[(String, String)],
+) -> Result<Written> {
     let count = rows.checked_mul(cols).filter(|n| *n > 0);
     let mut columns = Vec::new();
     for layer in layers {
@@ -356,7 +370,7 @@ pub fn write_exr(
     // cannot be read back is not delivered.
     std::io::Write::flush(file.stream()).map_err(|e| Error::io(path, e))?;
     MetaData::read_from_file(file.name(), true).map_err(wrong)?;
-    file.finish()
+    file.close()
 }
 
 fn header(

@@ -1,6 +1,6 @@
 //! KTX 2.0 textures (Khronos KTX File Format Specification 2.0): one level, uncompressed, an array of layers or one.
 
-use super::atomic::Temporary;
+use super::atomic::{Temporary, Written};
 use crate::bake::Component;
 use crate::{Error, Result};
 use std::path::Path;
@@ -171,13 +171,21 @@ impl Ktx2Writer {
     /// Puts the file at its destination.
     ///
     /// # Errors
-    /// Fewer texels than the texture holds; a destination that cannot be replaced.
+    /// As [`close`](Self::close); a destination that cannot be replaced.
     pub fn finish(self) -> Result<()> {
+        self.close()?.place()
+    }
+
+    /// Ends the file, which waits beside its destination.
+    ///
+    /// # Errors
+    /// Fewer texels than the texture holds; a disk that does not take them.
+    pub fn close(self) -> Result<Written> {
         if self.left > 0 {
             let found = format!("{} bytes too few", self.left);
             return Err(Error::setting("texels", found, "all of them before the end"));
         }
-        self.file.finish()
+        self.file.close()
     }
 }
 

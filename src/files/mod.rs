@@ -30,10 +30,12 @@ mod size;
 mod tif;
 mod visible;
 
-pub use atomic::{abandon_unfinished, check_writable, write_json, write_text};
-pub use codes::write_codes;
+pub use atomic::{
+    ResultFolder, Written, abandon_unfinished, check_writable, write_json, write_text,
+};
+pub use codes::write_codes_aside;
 pub use environment::{parse_environment, read_albedo, read_environment};
-pub use exr::{Channels, Layer, read_metadata, write_exr};
+pub use exr::{Channels, Layer, read_metadata, write_exr, write_exr_aside};
 pub use heights::{HeightOptions, parse_heights, read_heights};
 pub use ktx2::{Ktx2Writer, TexelFormat};
 pub use lobe::read_lobes;

@@ -1,6 +1,6 @@
 //! NumPy arrays: a reader of every integer and float type, a writer of streams of f32.
 
-use super::atomic::Temporary;
+use super::atomic::{Temporary, Written};
 use super::heights::Raster;
 use super::open;
 use crate::scene::HeightField;
@@ -236,8 +236,16 @@ impl NpyWriter {
     /// Puts the file at its destination.
     ///
     /// # Errors
-    /// Fewer values than the shape holds; a destination that cannot be replaced.
+    /// As [`close`](Self::close); a destination that cannot be replaced.
     pub fn finish(self) -> Result<()> {
+        self.close()?.place()
+    }
+
+    /// Ends the file, which waits beside its destination.
+    ///
+    /// # Errors
+    /// Fewer values than the shape holds; a disk that does not take them.
+    pub fn close(self) -> Result<Written> {
         if self.left > 0 {
             return Err(Error::setting(
                 format!("values for the shape {:?}", self.shape),
@@ -245,7 +253,7 @@ impl NpyWriter {
                 "all of them before the end",
             ));
         }
-        self.file.finish()
+        self.file.close()
     }
 }
 

@@ -79,6 +79,8 @@ pub struct Headless {
     pub(super) memory: Memory,
     /// Kept from frame to frame: making them is most of a small frame's time.
     pub(super) pipelines: Pipelines,
+    /// Passes of [`draw_counted`](Self::draw_counted): name, runs, nanoseconds.
+    pub(super) counted: Vec<(String, u32, f64)>,
 }
 
 /// A device with what [`missing`](super::missing) asks for, and the family of its one queue.
@@ -145,8 +147,8 @@ impl Headless {
             Ok((memory, pool)) => {
                 // SAFETY: as above.
                 let queue = unsafe { host.device.get_device_queue(queue_family, 0) };
-                let pipelines = Pipelines::default();
-                Ok(Self { started, host, queue, pool, report, memory, pipelines })
+                let (pipelines, counted) = (Pipelines::default(), Vec::new());
+                Ok(Self { started, host, queue, pool, report, memory, pipelines, counted })
             }
             Err(error) => {
                 // SAFETY: nothing is left that was made on it.

@@ -16,7 +16,7 @@ mod points;
 use std::f64::consts::PI;
 
 use crate::cpu::bounce_shade::LEAST_SHARE;
-pub use bend::{bent, fan_weight, way};
+pub use bend::{bent, fan_weight, over, way};
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
 pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
 pub use light::{BallSeen, ShadeError};

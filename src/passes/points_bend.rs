@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use crate::cpu::points_bend::REACH_CELLS;
+use crate::cpu::points_bend::ways::REACH_CELLS;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
 use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
@@ -48,7 +48,7 @@ pub(crate) fn plan(
         part,
         "where samples see on the curved base what they see on the flat one",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &[(0, border as u32), (1, u32::from(is_small)), (2, REACH_CELLS as u32)],
+        &[(0, border as u32), (1, u32::from(is_small)), (2, REACH_CELLS)],
         &PointsBendPush {
             cols: cols as i32,
             rows: rows as i32,

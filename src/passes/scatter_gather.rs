@@ -20,11 +20,9 @@ struct ScatterGatherPush {
     weight_sr: f32,
     exponent: f32,
     lobe_share: f32,
-    view_x: f32,
-    view_y: f32,
-    view_z: f32,
-    albedo: [f32; 4],
+    first_view: i32,
     curvature: [f32; 2],
+    albedo: [f32; 4],
 }
 
 same_layout!(
@@ -43,11 +41,9 @@ same_layout!(
     weight_sr = WEIGHT_SR,
     exponent = EXPONENT,
     lobe_share = LOBE_SHARE,
-    view_x = VIEW_X,
-    view_y = VIEW_Y,
-    view_z = VIEW_Z,
-    albedo = ALBEDO,
+    first_view = FIRST_VIEW,
     curvature = CURVATURE_X,
+    albedo = ALBEDO,
 );
 
 /// What the samples that are seen give, as in the shader.
@@ -66,16 +62,18 @@ pub(crate) struct Steps<'a> {
     pub lobe: Option<&'a Lobe>,
     /// That it mirrors.
     pub suns: usize,
-    /// Texels of the first path's first step, and of the first sun.
-    pub texels: [usize; 2],
+    /// Texels of the first path's first step, of the first sun, and of the first view.
+    pub texels: [usize; 3],
     /// Steps of a path.
     pub count: u32,
     /// Paths that the output holds before.
     pub first_path: u32,
     /// Solid angle of all directions, sr.
     pub weight_sr: f64,
-    /// Towards the view.
-    pub view: glam::DVec3,
+    /// Towards which the last step goes, each a layer of what is scattered.
+    pub views: u32,
+    /// Whether views see what the sample's own lobe mirrors of the lights, too.
+    pub own_lobe: bool,
     pub curvature: Curvature,
 }
 
@@ -105,15 +103,19 @@ pub(crate) fn plan(
         false => format!("paths {}..{} step {step}", paths.start, paths.end),
     };
     let why = match sums {
+        true if steps.views > 1 => {
+            "what each sample scatters towards each view of the light that it sees along its paths"
+        }
         true => "what each sample scatters of the light that it sees along its paths",
         false => "what each sample sends back along its paths",
     };
-    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let views = if sums { steps.views } else { 1 };
+    let looks = u64::from(cols) * u64::from(rows) * u64::from(count) * u64::from(views);
     builder.pass(
         &shaders::SCATTER_GATHER,
         &part,
         why,
-        [cols.div_ceil(8), rows.div_ceil(8), if sums { 1 } else { count }],
+        [cols.div_ceil(8), rows.div_ceil(8), if sums { views } else { count }],
         &[
             (0, source as u32),
             (1, u32::from(sums)),
@@ -122,6 +124,7 @@ pub(crate) fn plan(
             (4, u32::from(steps.lobe.is_some())),
             (5, u32::from(matches!(steps.lobe, Some(Lobe::Map(_))))),
             (6, u32::from(steps.curvature != Curvature::FLAT)),
+            (7, u32::from(sums && steps.own_lobe)),
         ],
         &ScatterGatherPush {
             cols: cols as i32,
@@ -137,11 +140,9 @@ pub(crate) fn plan(
             weight_sr: steps.weight_sr as f32,
             exponent: lobe.exponent,
             lobe_share: lobe.scale,
-            view_x: steps.view.x as f32,
-            view_y: steps.view.y as f32,
-            view_z: steps.view.z as f32,
-            albedo,
+            first_view: steps.texels[2] as i32,
             curvature: steps.curvature.per_m.map(|k| k as f32),
+            albedo,
         },
         bound,
         looks * (4 + 16 + 16 + 16),
@@ -150,18 +151,22 @@ pub(crate) fn plan(
 }
 
 /// No light, where nothing is scattered.
-pub(crate) fn plan_nothing(builder: &mut Builder, field: &HeightField, scattered: ResourceId) {
+pub(crate) fn plan_nothing(
+    builder: &mut Builder,
+    field: &HeightField,
+    (scattered, views): (ResourceId, u32),
+) {
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let samples = u64::from(cols) * u64::from(rows);
     builder.pass(
         &shaders::SCATTER_GATHER,
         "nothing",
         "no light: nothing is scattered",
-        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        [cols.div_ceil(8), rows.div_ceil(8), views],
         &[(0, Source::None as u32), (1, 1)],
         &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
         &[("scattered", scattered)],
-        16 * samples,
-        samples,
+        16 * samples * u64::from(views),
+        samples * u64::from(views),
     );
 }

@@ -3,7 +3,7 @@ use super::blocks::Blocks;
 use super::visible_points::{check_field, images, one_image, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::ellipse_fit as pass;
-use crate::scene::{Border, Curvature, Directions, HeightField};
+use crate::scene::{Border, Changed, Curvature, Directions, HeightField};
 use crate::{Error, Result};
 
 /// Directions that one dispatch looks at, about, in some dozens of steps with sixteen ellipses each: tenths of a second on
@@ -31,7 +31,7 @@ pub fn ellipses(
     let mut begun = Begun::new(field, border, directions, limits)?;
     let outputs = ["ellipse_axes", "ellipse_radii"].map(|name| begun.output(name));
     begun.fit((None, ""), outputs);
-    begun.finish(("ellipses of visible sky", None), limits)
+    begun.finish(("ellipses of visible sky", None), Vec::new(), limits)
 }
 
 /// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent towards east and then towards north by the
@@ -51,25 +51,29 @@ pub fn curved_ellipses(
     limits: &Limits,
 ) -> Result<Plan> {
     if ![outwards, inwards].iter().all(|k| *k > 0.0 && (*k as f32).is_normal()) {
-        let found = format!("{outwards} and {inwards}");
+        let found = format!("{outwards:?} and {inwards:?}");
         return Err(Error::setting("curvatures of ellipses", found, "two numbers above 0, 1/m"));
     }
     let four = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
     let four = four.map(|per_m| Curvature { per_m });
-    four.iter().try_for_each(|curvature| curvature.check(field, border))?;
+    let changed = four.iter().map(|curvature| curvature.check(field, border));
+    let changed = changed.collect::<Result<Vec<Changed>>>()?;
     let mut begun = Begun::new(field, border, directions, limits)?;
     let bends = Bends::make(&mut begun.builder, begun.size, directions, limits)?;
     let outputs: Vec<[ResourceId; 2]> = (0..5)
         .map(|i| ["ellipse_axes", "ellipse_radii"].map(|name| begun.output(&format!("{name}.{i}"))))
         .collect();
     begun.fit((None, "flat, "), outputs[0]);
-    let names = ["east +, ", "east -, ", "north +, ", "north -, "];
+    let names = ["east +", "east -", "north +", "north -"];
+    let notes =
+        changed.iter().zip(names).map(|(changed, name)| format!("the base bent {name}: {changed}"));
     for ((curvature, name), outputs) in four.into_iter().zip(names).zip(&outputs[1..]) {
         let seen = [begun.points, begun.ground];
         bends.record(&mut begun.builder, (field, border), curvature, seen);
-        begun.fit((Some(bends.bent), name), *outputs);
+        begun.fit((Some(bends.bent), &format!("{name}, ")), *outputs);
     }
-    begun.finish(("ellipses of visible sky on curved bases", Some([outwards, inwards])), limits)
+    let method = "ellipses of visible sky on curved bases";
+    begun.finish((method, Some([outwards, inwards])), notes.collect(), limits)
 }
 
 /// A plan whose visible points are found.
@@ -135,6 +139,7 @@ impl<'a> Begun<'a> {
     fn finish(
         self,
         (method, curvature): (&str, Option<[f64; 2]>),
+        notes: Vec<String>,
         limits: &Limits,
     ) -> Result<Plan> {
         let settings = [
@@ -146,7 +151,6 @@ impl<'a> Begun<'a> {
         let curvature = curvature.map(|k| ("curvatures_per_m", format!("{k:?}")));
         let settings = settings.into_iter().chain(curvature);
         let settings = settings.map(|(name, value)| (name.to_owned(), value)).collect();
-        let none = (Vec::new(), Vec::new(), Vec::new());
-        Plan::finish(self.builder, self.size, none.0, none.1, none.2, settings, limits)
+        Plan::finish(self.builder, self.size, Vec::new(), Vec::new(), notes, settings, limits)
     }
 }

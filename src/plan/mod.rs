@@ -87,7 +87,7 @@ pub use reference::{
     unmet_bounced_error, unmet_error,
 };
 pub use resource::{Format, Kind, Owner, Resource};
-pub use scatter::{scatter, scatter_inputs};
+pub use scatter::{scatter, scatter_inputs, scatter_views, views_at_once};
 pub(crate) use spheres::samples_within;
 pub use sweeping::circle_rad;
 pub use view::{View, ViewOptions, ViewPass, ViewResource, surface_error_m};

@@ -1,7 +1,7 @@
+mod lights;
 mod order;
 mod wanted;
 
-use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use glam::DVec3;
@@ -13,15 +13,19 @@ use super::visible_points::{images, one_image, record, texels};
 use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
-    Albedo, Border, Curvature, Directions, Environment, Lobe, Scatter, Scene, Sun, VisiblePoints,
+    Albedo, Curvature, Directions, HeightField, Lobe, Scatter, Scene, VisiblePoints, check_view,
 };
 use crate::{Error, Result};
+use lights::sun_texels;
+pub(crate) use lights::{sky_of, towards};
 use order::order;
 use wanted::Wanted;
 
 /// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
 /// busy where the field is small.
 const CARRIED_BYTES: u64 = 64 << 20;
+/// Bytes that light scattered towards views side by side may take.
+const VIEWS_BYTES: u64 = 256 << 20;
 /// Paths side by side, at most.
 const MOST_AT_ONCE: u64 = 64;
 
@@ -57,7 +61,29 @@ pub fn scatter(
     scatter: &Scatter,
     limits: &Limits,
 ) -> Result<Plan> {
-    scatter.check(scene)?;
+    scatter_views(scene, directions, scatter, &[scatter.view], limits)
+}
+
+/// The same towards several views, unit vectors: "scattered" has a layer for each, in their order; [`Scatter::view`] counts
+/// for nothing. Paths are walked once up to their last step, which is taken for each view: of d steps to v views
+/// d - 1 + v look-ups a path and sample instead of d v.
+///
+/// # Errors
+/// As [`scatter`](scatter()); none, or more views than an image has layers; one that is not of length 1.
+pub fn scatter_views(
+    scene: &Scene,
+    directions: &Directions,
+    scatter: &Scatter,
+    views: &[DVec3],
+    limits: &Limits,
+) -> Result<Plan> {
+    let changed = scatter.check(scene)?;
+    views.iter().try_for_each(|view| check_view(*view))?;
+    let most = limits.image_layers;
+    if !(1..=most as usize).contains(&views.len()) {
+        let found = views.len().to_string();
+        return Err(Error::setting("views", found, format!("1 to {most} on this device")));
+    }
     let Scene { field, surface, .. } = scene;
     let size = limits.check_size(field.rows(), field.cols())?;
     super::visible_points::check_field(field)?;
@@ -65,14 +91,16 @@ pub fn scatter(
     let wanted = Wanted::of(scene, directions.count(), scatter, &mut notes);
     let mut builder = Builder::new();
     let rgba = Format::Rgba32Float;
+    let extent = [size[0], size[1], views.len() as u32];
+    let scattered = builder.image("scattered", Owner::Output, rgba, extent, true);
     let mut image = |name: &str, owner: Owner, format: Format| {
         builder.image(name, owner, format, [size[0], size[1], 1], false)
     };
-    let scattered = image("scattered", Owner::Output, rgba);
+    let layers = views.len() as u32;
     let mut at_once = 0;
     let mut carried = Vec::new();
-    if wanted.bounces == 0 {
-        pass::plan_nothing(&mut builder, field, scattered);
+    if wanted.paths == 0 {
+        pass::plan_nothing(&mut builder, field, (scattered, layers));
     } else {
         let heights = image("heights", Owner::Input, Format::R32Float);
         let mut bound = vec![("direct", image("direct", Owner::Input, rgba))];
@@ -95,6 +123,9 @@ pub fn scatter(
         let (links, first_link) =
             builder.constants(&link_texels(scene, directions, &order, wanted.mirrors_sky));
         let (_, first_sun) = builder.constants(&sun_texels(&wanted.suns));
+        let texels_of_views: Vec<f32> =
+            views.iter().flat_map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0]).collect();
+        let (_, first_view) = builder.constants(&texels_of_views);
         bound.push(("links", links));
         if let Some(suns) = &suns {
             let all = images_of_suns(&mut builder, size, suns, limits)?;
@@ -138,11 +169,12 @@ pub fn scatter(
             albedo: &surface.albedo,
             lobe: wanted.lobe,
             suns: wanted.suns.len(),
-            texels: [first_link, first_sun],
+            texels: [first_link, first_sun, first_view],
             count: steps,
             first_path: scatter.first_path,
             weight_sr: directions.share_sr() * directions.count() as f64,
-            view: scatter.view,
+            views: layers,
+            own_lobe: wanted.own_lobe,
             curvature: scatter.curvature,
         };
         let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
@@ -186,17 +218,31 @@ pub fn scatter(
         ("paths_before", scatter.first_path.to_string()),
         ("paths_at_once", at_once.to_string()),
         ("seed", scatter.seed.to_string()),
+        ("views", views.len().to_string()),
         ("curvature_per_m", format!("{:?}", scatter.curvature.per_m)),
         ("carried", bytes_text(carried_bytes)),
     ];
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
-    if directions.lowest_z() > -1.0 && wanted.bounces > 0 {
+    if scatter.curvature != Curvature::FLAT && wanted.bounces > 0 {
+        notes.push(format!(
+            "the base {changed}: by it scattered light is off by at most {:.4} of the largest direct light, in the mean over samples",
+            changed.scattered(surface.most_reflected(), wanted.bounces)
+        ));
+    }
+    if directions.lowest_z() > -1.0 && wanted.paths > 0 {
         notes.push(format!(
             "directions reach down to a height of {} alone: slopes lose what light comes from below it",
             directions.lowest_z()
         ));
     }
     Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
+}
+
+/// Of so many views those that go side by side: light scattered towards them takes 256 MiB at most, and an image has layers
+/// for them. Paths are walked again for the next.
+pub fn views_at_once(field: &HeightField, views: usize, limits: &Limits) -> usize {
+    let fitting = VIEWS_BYTES / (16 * field.heights_m().len() as u64);
+    fitting.clamp(1, limits.image_layers.into()).min(views.max(1) as u64) as usize
 }
 
 fn hash_text(directions: &Directions) -> String {
@@ -289,12 +335,6 @@ fn images_of_suns(
     Ok((id, 0..layers))
 }
 
-/// Of a sun's middle.
-pub(crate) fn towards(sun: &Sun) -> DVec3 {
-    let (sin, cos) = sun.elevation_rad.sin_cos();
-    DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
-}
-
 /// Two a step of every path: direction and its number; the light of the sky there.
 fn link_texels(
     scene: &Scene,
@@ -312,92 +352,4 @@ fn link_texels(
         [e.x as f32, e.y as f32, e.z as f32, *i as f32, r as f32, g as f32, b as f32, 0.0]
     };
     order.iter().flat_map(link).collect()
-}
-
-/// Two a sun: towards its middle; irradiance.
-fn sun_texels(suns: &[Sun]) -> Vec<f32> {
-    let texels = suns.iter().flat_map(|sun| {
-        let (e, [r, g, b]) = (towards(sun), sun.irradiance);
-        [e.x as f32, e.y as f32, e.z as f32, 0.0, r, g, b, 0.0]
-    });
-    texels.collect()
-}
-
-/// Radiance of sky and environment in each direction: of an image the mean of the texels that are nearest to it, so that
-/// none of its light is lost between them: above horizontal among the directions above it, which alone may see it. Below
-/// horizontal under `open` alone, down to where there are directions.
-pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
-    let vectors = directions.vectors();
-    let uniform = scene.lights.sky.unwrap_or_default().map(f64::from);
-    let is_open = scene.surface.border == Border::Open;
-    let mut all: Vec<[f64; 3]> =
-        vectors.iter().map(|v| if is_open || v.z > 0.0 { uniform } else { [0.0; 3] }).collect();
-    let Some(environment) = &scene.lights.environment else { return all };
-    let looking: Vec<usize> =
-        (0..vectors.len()).filter(|i| is_open || vectors[*i].z > 0.0).collect();
-    let rows = environment.rows_above_ground(scene.surface.border);
-    let [width, height] = [environment.width(), environment.height()];
-    for row in 0..rows {
-        let (sin, cos) = (PI * (row as f64 + 0.5) / height as f64).sin_cos();
-        if cos < directions.lowest_z() {
-            continue;
-        }
-        let solid = texel_sr(environment, row);
-        for col in 0..width {
-            let azimuth = PI - TAU * (col as f64 + 0.5) / width as f64 + environment.rotation_rad();
-            let e = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos);
-            let along = |i: &&usize| vectors[**i].dot(e);
-            let nearest = looking.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
-            let Some(nearest) = nearest else { return all };
-            let light = environment.texels()[row * width + col].map(f64::from);
-            for (sum, light) in all[*nearest].iter_mut().zip(light) {
-                *sum += light * solid / directions.share_sr();
-            }
-        }
-    }
-    all
-}
-
-fn texel_sr(environment: &Environment, row: usize) -> f64 {
-    let edge = |row: usize| (PI * row as f64 / environment.height() as f64).cos();
-    TAU / environment.width() as f64 * (edge(row) - edge(row + 1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{HeightField, Lights, Surface};
-
-    /// An image of 1 everywhere sends 2π above horizontal as the uniform sky does, and 4π under `open`, however few
-    /// directions: a texel's light and its sums are off by a rounding each.
-    #[test]
-    fn no_light_of_an_image_is_lost() {
-        let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).expect("a field");
-        let total = |border: Border, count: usize, is_image: bool| -> f64 {
-            let image = Environment::new(32, 16, vec![[1.0; 3]; 32 * 16], 0.3).expect("an image");
-            let lights = match is_image {
-                true => Lights { environment: Some(image), ..Lights::default() },
-                false => Lights { sky: Some([1.0; 3]), ..Lights::default() },
-            };
-            let surface = Surface { border, ..Surface::default() };
-            let scene = Scene { field: field.clone(), surface, lights };
-            let directions = Directions::fibonacci(count, -1.0, 0).expect("directions");
-            let all = sky_of(&scene, &directions);
-            let below = directions.vectors().iter().zip(&all).filter(|(v, _)| v.z <= 0.0);
-            let is_dark = below.map(|(_, sky)| sky[0]).sum::<f64>() == 0.0;
-            assert_eq!(is_dark, border != Border::Open);
-            all.iter().map(|sky| sky[0] * directions.share_sr()).sum()
-        };
-        for count in [4, 16, 64, 1024] {
-            for (border, whole) in
-                [(Border::Plane, TAU), (Border::Periodic, TAU), (Border::Open, 2.0 * TAU)]
-            {
-                for is_image in [false, true] {
-                    let off = (total(border, count, is_image) - whole).abs();
-                    let bound = f64::EPSILON * whole * (1024.0 + 512.0);
-                    assert!(off <= bound, "{count} {border:?} {is_image}: {off:e} {bound:e}");
-                }
-            }
-        }
-    }
 }

@@ -1,10 +1,11 @@
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
+use std::fmt;
 
 use glam::{DVec2, DVec3};
 
 use super::{Border, HeightField};
 use crate::cpu::light::normal;
-use crate::cpu::points_bend::{MOST_TURN, bent_direction};
+use crate::cpu::points_bend::{MOST_TURN, bent_as_far, bent_direction};
 use crate::{Error, Result};
 
 /// Curvature of the base that a field lies on, whose principal directions are east and north: that of a surface through
@@ -16,22 +17,60 @@ pub struct Curvature {
     pub per_m: [f64; 2],
 }
 
+/// What a base changes of what samples see, shares of a hemisphere in the mean over samples: what the flat field's visible points
+/// do not tell of.
+///
+/// Places that are seen on the flat field are found where they stand on the base, however it is bent; what errs are places
+/// that it hides or lays open. A direction's light is off by at most the largest that there is, so that these
+/// shares bound errors, beside those that the number of directions leaves on any base. Means over samples stand for means over
+/// the surface, over which what is off spreads by bounces no farther than light does, as places see each other alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Changed {
+    /// Of the directions over a sample those from which light is taken to arrive and does not: the share of lights of
+    /// shadows that is wrong by it.
+    pub shadows: f64,
+    /// Of the light of a hemisphere, by the cosine to the sample's normal, that which comes from elsewhere.
+    pub light: f64,
+}
+
+impl Changed {
+    /// By how much light that is scattered up to so many times may be off in the mean over samples, over the largest direct light.
+    ///
+    /// Of light that arrives, at most L (1 + a + … + aⁿ⁻¹) of the albedo a after n - 1 times, the share c comes from
+    /// elsewhere; the rest is off by what n - 1 times are: Eₙ = a (c L (1 + … + aⁿ⁻¹) + Eₙ₋₁), the sum of c L j aʲ up to n.
+    pub fn scattered(self, albedo: f64, bounces: u32) -> f64 {
+        self.light * (1..=bounces).map(|n| f64::from(n) * albedo.powf(n.into())).sum::<f64>()
+    }
+}
+
+impl fmt::Display for Changed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [shadows, light] = [self.shadows, self.light].map(|share| 100.0 * share);
+        write!(
+            f,
+            "hides or lays open {light:.2} % of a hemisphere's light and {shadows:.2} % of its lights"
+        )
+    }
+}
+
 /// Samples whose views are compared.
 const SAMPLES: usize = 512;
 /// Azimuths of each.
 const AZIMUTHS: usize = 16;
-/// By how much, in the sine of an elevation, a place must stand over those before it to be seen.
+/// By how much, in the sine of an elevation, a place must stand over those before it to be seen on the flat field.
 const LEAST_RISE: f64 = 1e-9;
 
 impl Curvature {
     /// A flat base.
     pub const FLAT: Self = Self { per_m: [0.0; 2] };
-    /// The largest share of a hemisphere's light that a sample may receive from elsewhere than the flat field's visible points say,
-    /// in the mean over samples. Fitted: up to here adapted shadows of bent grooves are wrong of up to 2.2 % more lights than those
-    /// of flat ones, and well beyond it of 6 % and more (`examples/curved` finds it again).
+    /// The largest [`Changed::light`] that is not refused: a choice, as of any bound on an error. Up to here bending adds about
+    /// as much to what shadows of grooves are wrong by as 1024 directions leave of them on the flat base (`examples/curved`).
     pub const MOST_CHANGED: f64 = 0.02;
     /// The least that a height may be drawn apart or pushed together by, 1 + curvature times height over the base.
     pub const LEAST_STRETCH: f64 = 0.25;
+
+    /// The most that the base may turn by across the field, radians.
+    pub const MOST_ACROSS: f64 = PI;
 
     /// The same, so many times as strong.
     #[must_use]
@@ -39,12 +78,13 @@ impl Curvature {
         Self { per_m: self.per_m.map(|k| factor * k) }
     }
 
-    /// Refuses a base that is bent more than what samples see on the flat field tells of.
+    /// Refuses a base that is bent more than what samples see on the flat field tells of; of others, what it changes.
     ///
     /// # Errors
-    /// No number; heights too near to the centre of a hollow's curvature; [`changed`](Self::changed) beyond
+    /// No number; heights too near to the centre of a hollow's curvature; a base that turns by more than half a circle across
+    /// the field; [`changed`](Self::changed) beyond
     /// [`MOST_CHANGED`](Self::MOST_CHANGED): the message names the curvature at which it is reached.
-    pub fn check(&self, field: &HeightField, border: Border) -> Result<()> {
+    pub fn check(&self, field: &HeightField, border: Border) -> Result<Changed> {
         const NAME: &str = "curvature of the base";
         let shown = |of: &Self| {
             format!("{:.3e} towards east and {:.3e} towards north, 1/m", of.per_m[0], of.per_m[1])
@@ -53,7 +93,7 @@ impl Curvature {
             return Err(Error::setting(NAME, format!("{:?}", self.per_m), "two numbers, 1/m"));
         }
         if *self == Self::FLAT {
-            return Ok(());
+            return Ok(Changed::default());
         }
         let heights = field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(l, h), z| (l.min(z), h.max(z)));
@@ -71,15 +111,25 @@ impl Curvature {
                 return Err(Error::setting(NAME, found, expected));
             }
         }
+        let [cols, rows] = [field.cols(), field.rows()].map(|n| n as f64);
+        let across_m = [cols * field.cell_m()[0], rows * field.cell_m()[1]];
+        let turned = (self.per_m[0] * across_m[0]).abs().max((self.per_m[1] * across_m[1]).abs());
+        if turned > Self::MOST_ACROSS {
+            let found =
+                format!("{}, which turns by {turned:.2} radians across the field", shown(self));
+            let expected =
+                "at most half a circle: beyond it the two ends face each other around the base";
+            return Err(Error::setting(NAME, found, expected));
+        }
         let changed = self.changed(field, border);
-        if changed <= Self::MOST_CHANGED {
-            return Ok(());
+        if changed.light <= Self::MOST_CHANGED {
+            return Ok(changed);
         }
         // Between none, where nothing changes, and this.
         let (mut fits, mut breaks) = (0.0, 1.0);
         for _ in 0..8 {
             let middle = 0.5 * (fits + breaks);
-            if self.times(middle).changed(field, border) <= Self::MOST_CHANGED {
+            if self.times(middle).changed(field, border).light <= Self::MOST_CHANGED {
                 fits = middle;
             } else {
                 breaks = middle;
@@ -87,29 +137,26 @@ impl Curvature {
         }
         Err(Error::setting(
             NAME,
+            format!("{}, which {changed}", shown(self)),
             format!(
-                "{}, which changes what is seen in {:.1} % of the hemisphere",
-                shown(self),
-                100.0 * changed
-            ),
-            format!(
-                "at most {}: there it is {} %, and the flat field's visible points tell of no more",
+                "at most {}: there it is {} % of the light",
                 shown(&self.times(fits)),
                 100.0 * Self::MOST_CHANGED
             ),
         ))
     }
 
-    /// From what share of the hemisphere, by the cosine to its normal, a sample receives light of something else than the flat
-    /// field's visible points say, in the mean over samples: of places that come to be hidden by nearer ones, and of places that come
-    /// out behind them.
+    /// What the base changes of what samples see, in the mean over samples: of places that come to be hidden by nearer ones, and of
+    /// places that come out behind them.
     ///
-    /// Along an azimuth a place is seen where it stands over all before it. Curvature lowers it by k d/2 or so, each by its own
-    /// distance: a place is lost where it stood over those before it and stands under one, by as much as it stood over
-    /// them; one is laid open the other way round, by as much as it stands over them now. Differences of the sine
-    /// of the elevation are shares of the hemisphere. Samples and azimuths are picked evenly; the field is looked at as far as
-    /// it reaches, one that repeats for one repetition.
-    pub fn changed(&self, field: &HeightField, border: Border) -> f64 {
+    /// Along an azimuth a place is seen where it stands over all before it, as high as from their horizon to itself; sines of
+    /// elevations are shares of the hemisphere. Curvature lowers it by k d/2 or so, each by its own distance. What is seen on the flat
+    /// field is told to stand, each place from the last, where the base takes it. It stands there from the horizon of all before it,
+    /// which is as high or higher: what is told too much is the error, of shadows what comes out over the horizon of all that is
+    /// told; of both also by how much that horizon may be off, as places are kept to the nearest sample: half a cell nearer or
+    /// farther. Samples and azimuths are picked evenly; the field is looked at as far as it reaches, one that repeats
+    /// for one repetition: what lies beyond is within the slope of its relief over a side of level.
+    pub fn changed(&self, field: &HeightField, border: Border) -> Changed {
         let samples = field.rows() * field.cols();
         let count = samples.min(SAMPLES);
         // Multiples of the golden section lie evenly, in step with no pattern of the field.
@@ -119,23 +166,24 @@ impl Curvature {
                 true => i,
                 false => ((i as f64 * golden).fract() * samples as f64) as usize,
             };
-            (0..AZIMUTHS)
-                .map(|k| {
-                    self.changed_along(field, border, at, TAU * (k as f64 + 0.5) / AZIMUTHS as f64)
-                })
-                .sum::<f64>()
+            let azimuths = (0..AZIMUTHS).map(|k| TAU * (k as f64 + 0.5) / AZIMUTHS as f64);
+            azimuths.map(move |azimuth| self.changed_along(field, border, at, azimuth))
         };
-        (0..count).map(of).sum::<f64>() / (count * AZIMUTHS) as f64
+        let all = (0..count).flat_map(of);
+        let [shadows, light] =
+            all.fold([0.0; 2], |[s, l], [shadow, light]| [s + shadow, l + light]);
+        let looks = (count * AZIMUTHS) as f64;
+        Changed { shadows: shadows / looks, light: light / looks }
     }
 
-    /// Of one sample and azimuth.
+    /// Of one sample and azimuth: shadows and light.
     fn changed_along(
         &self,
         field: &HeightField,
         border: Border,
         at: usize,
         azimuth_rad: f64,
-    ) -> f64 {
+    ) -> [f64; 2] {
         let own = f64::from(field.heights_m()[at]);
         let [cell_x, cell_y] = field.cell_m();
         let o = DVec2::from_angle(azimuth_rad);
@@ -150,28 +198,32 @@ impl Curvature {
             2.0 * (high - low)
                 * (n.z * sine + facing * (1.0 - sine * sine).max(0.0).sqrt()).max(0.0)
         };
-        let (mut flat, mut bent) = (-1.0, -1.0);
+        // Horizons so far: on the flat field; on the base, of all and of what is told. And where the last of these stands.
+        let (mut flat, mut bent, mut told) = (-1.0, -1.0, -1.0_f64);
+        let mut last = -1.0;
         let mut changed = 0.0;
         for k in 1.. {
             let distance_m = step_m * k as f64;
             let Some(height) = height_at(field, border, at, o * distance_m) else { break };
             let to = DVec3::new(o.x * distance_m, o.y * distance_m, height - own);
             let (away_m, e) = (to.length(), to.normalize());
-            let now = bent_direction(e, away_m, own, *self).z;
-            let (stood, stands) = (e.z - flat, now - bent);
-            // What the base turns away by more than a right angle is not told of.
-            let is_told = turn * distance_m <= MOST_TURN;
-            let was = || light(flat, e.z);
-            let is = || light(bent, now);
-            changed += match (stood > LEAST_RISE, stands > LEAST_RISE) {
-                (true, false) => was(),
-                (false, true) => is(),
-                (true, true) if !is_told => was().max(is()),
-                _ => 0.0,
-            };
-            (flat, bent) = (e.z.max(flat), now.max(bent));
+            let now = bent_as_far(e, away_m, own, (*self, PI)).z;
+            if e.z > flat + LEAST_RISE {
+                // What lies beyond a right angle of the base is told as if it were there.
+                let here = bent_direction(e, away_m, own, *self).z;
+                let as_told = light(last, here.max(last));
+                let is_right = turn * distance_m <= MOST_TURN;
+                let right = if is_right { light(bent, now.max(bent)).min(as_told) } else { 0.0 };
+                changed += as_told - right;
+                (flat, last, told) = (e.z, here, here.max(told));
+            }
+            bent = now.max(bent);
         }
-        changed
+        // Half a cell along the way turns what stands there by half as much.
+        let half_cell_m = 0.5 * (o.x.abs() * cell_x + o.y.abs() * cell_y);
+        let moved = told + 0.5 * turn * half_cell_m * (1.0 - told * told).sqrt();
+        let over = (bent - told).max(0.0) + (moved - told);
+        [(told + over).max(0.0) - told.max(0.0), changed + light(told, told + over)]
     }
 }
 

@@ -48,7 +48,7 @@ mod visible;
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
-pub use curvature::Curvature;
+pub use curvature::{Changed, Curvature};
 pub use directions::Directions;
 pub use environment::Environment;
 pub use field::{HeightField, fill_voids};
@@ -59,6 +59,7 @@ pub use quality::{
     Window,
 };
 pub use scatter::Scatter;
+pub(crate) use scatter::check_view;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
 pub use visible::{VisiblePoint, VisiblePoints};
 

@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::quality::within;
-use super::{Bounces, Curvature, Scene};
+use super::{Bounces, Changed, Curvature, Scene};
 use crate::{Error, Result};
 
 /// Light that a field scatters, by paths that look up what samples see ([`VisiblePoints`](super::VisiblePoints)).
@@ -25,8 +25,14 @@ pub struct Scatter {
     pub seed: u32,
     /// Towards the view, of length 1: where lobes are looked at from; default above. Nothing to what is diffuse.
     pub view: DVec3,
+    /// Whether views see what a sample's own lobe mirrors of suns, sky and environment, too, default not: that is direct light.
+    /// With it `bounces` may be 0. The sky is that of the directions of the paths: lobes narrower than these are apart are
+    /// rough.
+    pub own_lobe: bool,
     /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
-    /// each direction counts for, follow the base. Of what is diffuse alone.
+    /// each direction counts for, follow the base. Of what is diffuse alone. One of the whole field: a map of curvatures over it would
+    /// say the same of all its repetitions over an object, which lie on different ones. There, mix linearly what is scattered
+    /// on a few bases, as [`CurvedEllipses`](crate::bake::CurvedEllipses) does with shadows: `examples/curved` tells what that errs by.
     pub curvature: Curvature,
 }
 
@@ -39,6 +45,7 @@ impl Default for Scatter {
             cutoff: Bounces::NONE.cutoff,
             seed: 0,
             view: DVec3::Z,
+            own_lobe: false,
             curvature: Curvature::FLAT,
         }
     }
@@ -52,20 +59,19 @@ impl Scatter {
     /// What [`first_path`](Self::first_path) may be.
     pub const FIRST_PATH: RangeInclusive<u32> = 0..=1 << 24;
 
-    /// Checks every range, and that the scene is one that can be scattered.
+    /// Checks every range, and that the scene is one that can be scattered; what its base changes, nothing of a flat one.
     ///
     /// # Errors
     /// A setting out of range, by name; lobes beside key lights or balls, whose mirror images no path finds; lobes on a curved base;
     /// a base bent more than [`Curvature::check`] allows.
-    pub fn check(&self, scene: &Scene) -> Result<()> {
-        within("--bounces", self.bounces, Self::BOUNCES)?;
+    pub fn check(&self, scene: &Scene) -> Result<Changed> {
+        if !(self.own_lobe && self.bounces == 0) {
+            within("--bounces", self.bounces, Self::BOUNCES)?;
+        }
         within("--paths", self.paths, Self::PATHS)?;
         within("first path", self.first_path, Self::FIRST_PATH)?;
         Bounces { cutoff: self.cutoff, ..Bounces::NONE }.check()?;
-        let length = self.view.length();
-        if !(1.0 - 1e-6..=1.0 + 1e-6).contains(&length) {
-            return Err(Error::setting("view", self.view.to_string(), "a vector of length 1"));
-        }
+        check_view(self.view)?;
         scene.lights.check()?;
         scene.surface.check(scene.field.rows() * scene.field.cols())?;
         let others = scene.lights.keys.len() + scene.lights.spheres.len();
@@ -86,4 +92,12 @@ impl Scatter {
         }
         self.curvature.check(&scene.field, scene.surface.border)
     }
+}
+
+/// Refuses what is no direction.
+pub(crate) fn check_view(view: DVec3) -> Result<()> {
+    if (1.0 - 1e-6..=1.0 + 1e-6).contains(&view.length()) {
+        return Ok(());
+    }
+    Err(Error::setting("view", view.to_string(), "a vector of length 1"))
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets};
+use ridgelight::bake::{Angles, Brdf, Facets, Leaving};
 use ridgelight::cpu::facet_mask::facet_mask;
 use ridgelight::cpu::light::normal;
 use ridgelight::cpu::scatter_gather::expected;
@@ -31,8 +31,20 @@ fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
     Facets::of(scene, times, directions, words).expect("above horizontal")
 }
 
+/// Of all pairs: `radiance` is that of all triangles under a light of irradiance 1 facing it from each direction.
+pub fn table(facets: &Facets, radiance: impl Fn(usize) -> Leaving) -> Brdf {
+    facets.check().expect("a plane from afar");
+    let directions = facets.directions().vectors().to_vec();
+    let of = |(light, e): (usize, &DVec3)| {
+        let seen = facets.seen_from_all(&radiance(light));
+        seen.into_iter().map(|mean| mean.map(|m| m / e.z)).collect::<Vec<_>>()
+    };
+    let values = directions.iter().enumerate().flat_map(of).collect();
+    Brdf::from_values(directions, values).expect("a table")
+}
+
 fn direct(facets: &Facets) -> Brdf {
-    Brdf::of(facets, |light| Ok(facets.lit_from(light))).expect("a table")
+    table(facets, |light| facets.lit_from(light))
 }
 
 fn above(count: usize) -> Directions {
@@ -193,22 +205,23 @@ fn light_and_view_can_be_exchanged() {
     // The irradiance alone forgotten: ½ |l_z - v_z| of values, a sixth in the mean of z even from 0 to 1.
     let of_wrong = |light: usize| {
         let z = facets.directions().vectors()[light].z;
-        Ok(facets.lit_from(light).into_iter().map(|l| l.map(|v| v * z)).collect())
+        let light = facets.lit_from(light);
+        Vec::into(light.alike().iter().map(|l| l.map(|v| v * z)).collect())
     };
-    let wrong = Brdf::of(&facets, of_wrong).expect("a table");
+    let wrong = self::table(&facets, of_wrong);
     assert!(wrong.unreciprocal() > 0.05, "{}", wrong.unreciprocal());
 }
 
 /// What a white field's triangles send, each radiance 1: how much of it leaves over some views, directly and by scattering over
 /// what samples see of each other, of all that it sends. All by sums of the test's own, from the last bounce to the first.
-struct Leaving {
+struct Shares {
     /// Of each triangle, over π times its area in plans of triangles.
     of_facets: Vec<f64>,
     /// By how much that may be off all that it sends.
     off: Vec<f64>,
 }
 
-impl Leaving {
+impl Shares {
     fn of(scene: &Scene, points: &VisiblePoints, facets: &Facets, weights: &[f64]) -> Self {
         const BOUNCES: usize = 20;
         let field = &scene.field;
@@ -230,15 +243,15 @@ impl Leaving {
             radiance[facet] = [1.0; 3];
             radiance
         };
-        let seen = |radiance: &[[f64; 3]]| -> f64 {
-            facets.seen_from_all(radiance).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
+        let seen = |light: &Leaving| -> f64 {
+            facets.seen_from_all(light).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
         };
         let of_sample = |sample: usize| {
             let mut samples = vec![[0.0; 3]; samples];
             samples[sample] = [1.0; 3];
-            let mut radiance = vec![[0.0; 3]; count];
-            facets.add_samples(&samples, &mut radiance);
-            radiance
+            let mut light = Leaving::from(vec![[0.0; 3]; count]);
+            facets.add_samples(&samples, &mut light);
+            light
         };
         let left: Vec<f64> = (0..samples).map(|j| seen(&of_sample(j))).collect();
         let before = |later: &[f64]| -> Vec<f64> {
@@ -268,7 +281,7 @@ impl Leaving {
             let thrown: Vec<f64> =
                 facets.to_samples(&radiance).iter().map(|l| f64::from(l[0])).collect();
             let sum = |of: &[f64]| thrown.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
-            let at_once = seen(&radiance) / sent(count);
+            let at_once = seen(&Leaving::from(radiance)) / sent(count);
             let all = at_once + sum(&scattered) / sent(count);
             let unsent = (at_once + each * sum(&of_others) - 1.0).abs();
             (all, unsent + each * sum(&unsent_later) + most.powi(BOUNCES as i32))
@@ -296,19 +309,19 @@ fn scattered_light_leaves_as_much_as_arrives() {
     let facets = facets(&scene, 3, above(VIEWS));
     let lit = |light: usize, bounces: u32| {
         let mut radiance = facets.lit_from(light);
-        let samples = facets.to_samples(&radiance);
+        let samples = facets.to_samples(radiance.alike());
         let direct: Vec<_> = samples.iter().map(|s| s.map(f64::from)).collect();
         let more = expected(&scene, &points, &direct, bounces);
         let more: Vec<_> = more.iter().map(|s| s.map(|v| v as f32)).collect();
         facets.add_samples(&more, &mut radiance);
-        Ok(radiance)
+        radiance
     };
-    let table = Brdf::of(&facets, |light| lit(light, 20)).expect("a table");
+    let table = self::table(&facets, |light| lit(light, 20));
     let weights = projected_sr(facets.directions());
-    let leaving = Leaving::of(&scene, &points, &facets, &weights);
+    let leaving = Shares::of(&scene, &points, &facets, &weights);
     let mean = |light: usize, of: &[f64]| {
         let arrives = facets.lit_from(light);
-        let all = arrives.iter().zip(of);
+        let all = arrives.alike().iter().zip(of);
         let sums = all.fold([0.0; 2], |[l, a], (e, g)| [l + e[0] * g, a + e[0]]);
         sums[0] / sums[1]
     };
@@ -335,7 +348,7 @@ fn scattered_light_leaves_as_much_as_arrives() {
     let dark = direct(&facets);
     let scattered = largest(&|light| 1.0 - reflected(&dark, light));
     assert!(largest(&allowed) < 0.5 * scattered, "deaf: {scattered}");
-    let fewer = Brdf::of(&facets, |light| lit(light, 8)).expect("a table");
+    let fewer = self::table(&facets, |light| lit(light, 8));
     assert!(off(&fewer) > rounded && off(&dark) > largest(&allowed), "deaf");
 }
 
@@ -363,6 +376,38 @@ fn textures_hold_what_is_seen() {
     }
 }
 
+/// Level ground that ends fills as much of a view as its own area does, v_z a cell: its samples inside all of a cell, at edges
+/// half, at corners a third or, where no diagonal ends, a sixth, as the triangles that meet there go to their corners alike.
+/// Irradiance is the cosine itself, with nothing scaled.
+#[test]
+fn fields_that_end_hold_parts_of_cells() {
+    let mut scene = scene(4, 6, |_, _| 2.0);
+    for (border, times) in [(Border::Plane, 1), (Border::Open, 2)] {
+        scene.surface.border = border;
+        let facets = facets(&scene, times, above(9));
+        let radiance = facets.lit_from(3);
+        let z = facets.directions().vectors()[3].z;
+        let known = f64::from(ALBEDO[0]) / PI * z;
+        assert!(radiance.alike().iter().all(|l| (l[0] - known).abs() < 1e-12));
+        for (view, e) in facets.directions().vectors().iter().enumerate() {
+            let texels = facets.texels_from(view, &radiance);
+            for (at, texel) in texels.iter().enumerate() {
+                let (row, col) = (at / 6, at % 6);
+                let part = match (row == 0 || row == 3, col == 0 || col == 5) {
+                    (false, false) => 1.0,
+                    (true, true) if (row == 0) == (col == 0) => 1.0 / 3.0,
+                    (true, true) => 1.0 / 6.0,
+                    _ => 0.5,
+                };
+                assert!((texel[3] - part * e.z).abs() < 1e-12, "{view}: {row} {col} {}", texel[3]);
+                assert!((texel[0] - known).abs() < 1e-12);
+            }
+            let whole: f64 = texels.iter().map(|t| t[3]).sum();
+            assert!((whole - 15.0 * e.z).abs() < 1e-12, "{view}: {whole}");
+        }
+    }
+}
+
 /// A ramp that rises by 10 a cell towards the east and ends shows the east its backs alone: nothing is seen from there and
 /// nothing lit, 0 throughout and no quotient of zeros.
 #[test]
@@ -375,9 +420,9 @@ fn backs_are_no_part_of_a_view() {
     assert_eq!([0, 1].map(|i| facets.shows(i)), [true, false]);
     assert_eq!(facets.closure(1), 0.0);
     let from_above = facets.lit_from(0);
-    assert!(from_above.iter().all(|l| l[0] > 0.0));
+    assert!(from_above.alike().iter().all(|l| l[0] > 0.0));
     assert!(facets.texels_from(1, &from_above).into_iter().flatten().all(|v| v == 0.0));
-    assert!(facets.lit_from(1).into_iter().flatten().all(|v| v == 0.0));
+    assert!(facets.lit_from(1).alike().iter().flatten().all(|v| *v == 0.0));
 }
 
 #[test]
@@ -386,9 +431,8 @@ fn what_is_no_plane_from_afar_is_refused() {
     let said = |scene: &Scene, directions: Directions| {
         let border = scene.surface.border;
         let words = facet_mask(&scene.field, border, &directions).expect("words");
-        let table = Facets::of(scene, 1, directions, words)
-            .and_then(|f| Brdf::of(&f, |light| Ok(f.lit_from(light))).map(drop));
-        table.unwrap_err().to_string()
+        let checked = Facets::of(scene, 1, directions, words).and_then(|f| f.check());
+        checked.unwrap_err().to_string()
     };
     let below = Directions::fibonacci(8, -1.0, 0).expect("directions");
     assert!(said(&scene, below).contains("above horizontal"));

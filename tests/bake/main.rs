@@ -1,11 +1,13 @@
 //! What is baked, held to closed forms of horizons that are known: level ground, a basin, a wall, a canyon, planes; and to
 //! the f64 quadrature on fields.
 
+mod bent;
 mod curved;
 mod ellipses;
 mod facets;
 #[path = "../groove/mod.rs"]
 mod groove;
+mod lobes;
 
 use glam::DVec3;
 use ridgelight::bake::{

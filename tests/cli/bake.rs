@@ -10,6 +10,8 @@ use crate::{Folder, read, refused};
 fn wrong_requests_are_told() {
     let folder = Folder::new();
     folder.write("taken", b"");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("nowhere", folder.path("link")).unwrap();
     let with = |rest: &str| format!("bake a.asc -o out {rest}");
     let horizon = |rest: &str| with(&format!("--what horizon {rest}"));
     let all = [
@@ -48,16 +50,27 @@ fn wrong_requests_are_told() {
         (horizon("--method sweep --lines exact"), 2, &["--lines: found exact", "--method brute"]),
         (horizon("--memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
         (horizon("--directions 8"), 2, &["--directions: found 8", "ellipse, visible-points"]),
-        (with("--what ellipse --directions 3"), 2, &["directions: found 3", "4 to 4096"]),
+        (with("--what ellipse --directions 3"), 2, &["--directions: found 3", "4 to 4096"]),
+        (with("--what ellipse --directions -1"), 2, &["'-1' for '--directions", "a whole number"]),
+        (with("--what btf --angles -4x4"), 2, &["'-4x4' for '--angles", "as 8x16"]),
+        (with("--what scatter --paths -1"), 2, &["'-1' for '--paths", "a whole number"]),
+        (with("--what scatter --paths 4097"), 2, &["--paths: found 4097", "1 to 4096"]),
+        (with("--what scatter --seed -1"), 2, &["'-1' for '--seed", "a whole number"]),
+        (
+            with("--what curved-ellipse --curvature -1"),
+            2,
+            &["--curvature: found -1.0 and -1.0", "above 0"],
+        ),
+        (
+            with("--what curved-ellipse --curvature 1e300"),
+            2,
+            &["--curvature: found 1e300 and 1e300"],
+        ),
         (with("--what ellipse --format png"), 2, &["found png with f16 of ellipse"]),
         (with("--what ellipse --memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
         (with("--what curved-ellipse"), 2, &["--curvature: found none", "OUT[,IN]"]),
         (with("--what curved-ellipse --curvature 1,2,3"), 2, &["--curvature", "OUT,IN"]),
-        (
-            with("--what curved-ellipse --curvature 0"),
-            2,
-            &["curvatures of ellipses: found 0 and 0"],
-        ),
+        (with("--what curved-ellipse --curvature 0"), 2, &["--curvature: found 0.0 and 0.0"]),
         (with("--what ellipse --curvature 1"), 2, &["--curvature: found 1,1", "curved-ellipse"]),
         (horizon("--paths 8"), 2, &["--paths: found 8", "scatter, brdf"]),
         (horizon("--seed 8"), 2, &["--seed: found 8"]),
@@ -65,6 +78,11 @@ fn wrong_requests_are_told() {
         (with("--what btf --angles 1x8"), 2, &["--angles: found 1x8", "2 to 64 zenith angles"]),
         (with("--what btf --angles 64x64 --plan"), 2, &["--angles: found 64x64", "at most 65536"]),
         (with("--what btf --angles 4"), 2, &["--angles", "as 8x16"]),
+        (
+            with("--what brdf-harmonics --border periodic --sh-order 3 --angles 2x4"),
+            2,
+            &["--angles: found 2x4 with --sh-order 3", "9 angles or more"],
+        ),
         (with("--what brdf"), 2, &["--border: found plane with --what brdf", "periodic"]),
         (
             with("--what scatter --bounces 0"),
@@ -72,11 +90,16 @@ fn wrong_requests_are_told() {
             &["--bounces: found 0 with --what scatter", "1 to 64"],
         ),
         (with("--what scatter --paths 0"), 2, &["--paths: found 0"]),
-        (with("--what btf --phong 5,0.1"), 2, &["--phong: found a lobe"]),
+        (
+            with("--what scatter --albedo 0.5 --phong 5,0.1 --light 1,1,9,1,5"),
+            2,
+            &["a lobe and 1 key lights and balls"],
+        ),
         (with("--what light-field --sun 0,100"), 2, &["--sun"]),
         (horizon("--json out.txt"), 2, &["--json: found out.txt"]),
         ("bake none.asc -o out --what horizon".to_owned(), 1, &["none.asc"]),
         ("bake a.asc -o taken --what horizon".to_owned(), 2, &["-o", "the file taken"]),
+        ("bake a.asc -o link --what horizon".to_owned(), 2, &["-o", "link, a link to nothing"]),
         ("bake a.asc -o no/out --what horizon".to_owned(), 2, &["-o", "a folder no that exists"]),
         (horizon(""), 1, &["driver"]),
     ];

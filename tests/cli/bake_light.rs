@@ -12,7 +12,7 @@ use crate::needs_vulkan::{done, json};
 use crate::{Folder, refused};
 
 /// An array of f32 by NumPy's own description of the file: shape and values, the last axis the fastest.
-fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
+pub fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
     let bytes = std::fs::read(path).unwrap();
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
     let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
@@ -25,14 +25,14 @@ fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
 }
 
 /// A table and the angles that its sheet says of it: f(channel, light, view), each of those (θ, φ) by their numbers.
-struct Table {
+pub struct Table {
     thetas: Vec<f64>,
     phis: Vec<f64>,
     values: Vec<f32>,
 }
 
 impl Table {
-    fn load(folder: &Path) -> Self {
+    pub fn load(folder: &Path) -> Self {
         let sheet = json(&folder.join("bake.json"));
         let map = sheet["maps"].as_array().unwrap().iter().find(|m| m["kind"] == "brdf").unwrap();
         let radians = |name: &str| -> Vec<f64> {
@@ -48,20 +48,20 @@ impl Table {
         Self { thetas, phis, values }
     }
 
-    fn directions(&self) -> Vec<DVec3> {
+    pub fn directions(&self) -> Vec<DVec3> {
         let of = |theta: &f64, phi: &f64| {
             DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
         };
         self.thetas.iter().flat_map(|t| self.phis.iter().map(move |p| of(t, p))).collect()
     }
 
-    fn at(&self, channel: usize, light: usize, view: usize) -> f64 {
+    pub fn at(&self, channel: usize, light: usize, view: usize) -> f64 {
         let count = self.thetas.len() * self.phis.len();
         f64::from(self.values[(channel * count + light) * count + view])
     }
 }
 
-fn write(
+pub fn write(
     folder: &Folder,
     name: &str,
     [rows, cols]: [usize; 2],
@@ -129,12 +129,24 @@ fn gpu_tables_are_loaded_back() {
 /// turn with the view.
 #[test]
 fn gpu_pictures_are_the_table_in_the_mean() {
+    pictures_are_the_table("--albedo 0.9,0.6,0.2", false);
+}
+
+/// The same of lobes, whose light turns with the view.
+#[test]
+fn gpu_pictures_of_lobes_are_the_table_in_the_mean() {
+    pictures_are_the_table("--albedo 0.5,0.4,0.2 --phong 4,0.4", true);
+}
+
+fn pictures_are_the_table(surface: &str, turns: bool) {
     const SIDE: usize = 6;
     let folder = Folder::new();
     write(&folder, "field.npy", [SIDE, SIDE], |r, c| ((r * 5 + c * 3) % 7) as f32 * 0.5);
-    let words = "--border periodic --angles 3x4 --albedo 0.9,0.6,0.2 --bounces 2 --paths 32 --directions 64 --format npy \
-                 --sun 200,40 --sky 0.1";
-    done(&folder, &format!("bake field.npy -o out {words} --what brdf,btf,light-field"));
+    let words = "--border periodic --angles 3x4 --bounces 2 --paths 32 --directions 64 --format npy --sun 200,40 --sky 0.1";
+    done(
+        &folder,
+        &format!("bake field.npy -o out --quiet {words} {surface} --what brdf,btf,light-field"),
+    );
     let table = Table::load(&folder.path("out"));
     let directions = table.directions();
     let (count, texels) = (directions.len(), SIDE * SIDE);
@@ -144,7 +156,7 @@ fn gpu_pictures_are_the_table_in_the_mean() {
     let plane = |of: &[f32], n: usize| -> Vec<f64> {
         of[n * texels..(n + 1) * texels].iter().map(|v| f64::from(*v)).collect()
     };
-    let mut brightest = [0.0_f64; SIDE * SIDE];
+    let (mut brightest, mut turned) = ([0.0_f64; SIDE * SIDE], 0);
     for (l, v) in (0..count * count).map(|i| (i / count, i % count)) {
         let shares = plane(&btf, 4 * (l * count + v) + 3);
         let whole: f64 = shares.iter().sum();
@@ -162,7 +174,8 @@ fn gpu_pictures_are_the_table_in_the_mean() {
         for (texel, light) in plane(&lit, 4 * v).into_iter().enumerate() {
             if own[texel] > 0.0 {
                 let first = brightest[texel];
-                assert!(first == 0.0 || first == light, "{v}: {first} {light}");
+                assert!(turns || first == 0.0 || first == light, "{v}: {first} {light}");
+                turned += usize::from(first != 0.0 && first != light);
                 brightest[texel] = light;
             } else {
                 assert_eq!(light, 0.0, "hidden texel {texel} of {v}");
@@ -170,9 +183,10 @@ fn gpu_pictures_are_the_table_in_the_mean() {
         }
     }
     assert!(brightest.iter().all(|l| *l > 0.0), "{brightest:?}");
+    assert!((turned > 0) == turns, "{turned}");
 }
 
-fn chance(folder: &Folder, out: &str) -> Value {
+pub fn chance(folder: &Folder, out: &str) -> Value {
     let sheet = json(&folder.path(out).join("bake.json"));
     sheet["maps"][0]["chance"].clone()
 }
@@ -280,6 +294,37 @@ fn gpu_what_was_asked_of_scattered_light_is_told() {
     let words = "bake teeth.npy -o teeth --border periodic --what brdf --bounces 0 --angles 45x4";
     let run = folder.run(&words.split(' ').collect::<Vec<_>>());
     assert!(run.err.starts_with("ridgelight: --angles: found 45x4 with direction"), "{}", run.err);
+}
+
+/// Level ground reflects ρ/π everywhere, which the first harmonic alone is; the ridge takes at most half a thousandth times the order
+/// for lights and as much for views.
+#[test]
+fn gpu_level_ground_is_one_harmonic() {
+    let folder = Folder::new();
+    write(&folder, "field.npy", [4, 4], |_, _| 2.0);
+    let words = "--border periodic --what brdf-harmonics --sh-order 3 --angles 4x8 --bounces 0 \
+                 --albedo 0.8,0.5,0.1";
+    done(&folder, &format!("bake field.npy -o out {words} --format npy,ktx2"));
+    let (shape, values) = load(&folder.path("out/brdf_harmonics.npy"));
+    assert_eq!(shape, [3, 9, 9]);
+    let ridge = 1e-3 * 3.0;
+    let first = 1.0 / (4.0 * PI).sqrt();
+    for (c, albedo) in [0.8, 0.5, 0.1].into_iter().enumerate() {
+        // Straight above, of light and view: harmonics of m = 0 alone, √(2l + 1) times the first.
+        let above = [(0, 1.0), (2, 3_f64.sqrt()), (6, 5_f64.sqrt())];
+        let mut sum = 0.0;
+        for (i, a) in above {
+            for (j, b) in above {
+                sum += a * b * first * first * f64::from(values[(c * 9 + i) * 9 + j]);
+            }
+        }
+        assert!((sum - albedo / PI).abs() <= ridge * albedo / PI, "{c}: {sum}");
+    }
+    let sheet = json(&folder.path("out/bake.json"));
+    let map = &sheet["maps"][0];
+    assert!(map["residual_of_table"].as_f64().unwrap() <= ridge, "{map}");
+    assert!(map["between"]["residual"].as_f64().unwrap() <= ridge, "{map}");
+    assert_eq!(sheet["settings"]["sh_order"], 3);
 }
 
 #[test]

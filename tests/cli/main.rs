@@ -4,6 +4,8 @@
 mod auto;
 mod bake;
 mod bake_light;
+mod bake_lobes;
+mod bake_sheet;
 mod camera;
 #[path = "../common/mod.rs"]
 mod common;

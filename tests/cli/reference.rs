@@ -102,12 +102,18 @@ fn gpu_unmet_light_counts_as_error() {
     let run = of("128");
     assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
     assert!(run.out.contains("128 paths a sample, 1.353 % off"), "{}", run.out);
-    assert!(run.out.ends_with("stopped at --spp 128, wanted --until-error 0.005\n"), "{}", run.out);
+    let said = "stopped by --spp 128 at 128 paths, wanted --until-error 0.005\n";
+    assert!(run.out.ends_with(said), "{}", run.out);
     assert!((error() - 3_f64.sqrt() / 128.0).abs() < 1e-5, "{}", error());
     let run = of("4096");
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(run.out.contains("512 paths a sample, 0.338 % off"), "{}", run.out);
     assert_eq!(run.out.lines().count(), 1, "{}", run.out);
+    let run = of("64");
+    let said = "stopped by --spp 64 at 128 paths, whole batches of 64 and at least 128, wanted --until-error 0.005\n";
+    assert!(run.status == Some(1) && run.out.ends_with(said), "{}", run.out);
+    let of_spp = of("129").out;
+    assert!(of_spp.contains("stopped by --spp 129 at 192 paths, whole"), "{of_spp}");
     let quiet = of("128 --quiet");
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
 }

@@ -67,6 +67,33 @@ fn gpu_an_interrupted_command_leaves_no_file() {
     }
 }
 
+/// Pictures of azimuths are written as they come, and wait: what has come goes, and the folder that was made for it; one that was
+/// there stays as it was, sheet and all.
+#[test]
+fn gpu_an_interrupted_bake_leaves_nothing() {
+    let folder = Folder::new();
+    write_field(&folder, 256, |r, c| ((7 * r + 3 * c) % 11) as f32);
+    let words = "--what horizon --azimuths 1024 --method sweep --format png,ktx2";
+    for signal in ["INT", "TERM"] {
+        let before = folder.contents();
+        let child = started(&folder, &format!("bake field.npy -o out {words}"));
+        // The folder, the texture and more than one picture.
+        let began = wait_until(|| folder.contents().len() >= before.len() + 4);
+        assert!(began, "no file was begun");
+        let output = ended_by(signal, child);
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), "ridgelight: interrupted\n");
+        let left = folder.contents();
+        let more: Vec<_> = left.keys().filter(|path| !before.contains_key(*path)).collect();
+        assert!(left == before, "{signal} left {more:?}");
+        if signal == "INT" {
+            crate::needs_vulkan::done(
+                &folder,
+                "bake field.npy -o out --what horizon --azimuths 4 --quiet",
+            );
+        }
+    }
+}
+
 /// A billion paths of 64 bounces a sample are more than any device has traced when its user has enough.
 #[test]
 fn gpu_an_interrupted_reference_writes_what_it_has() {

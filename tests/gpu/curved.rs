@@ -113,6 +113,29 @@ fn views_between_walls_are_those_of_the_opening() {
     }
 }
 
+/// Plans say what a base changes, in the numbers that it was checked by.
+#[test]
+fn plans_say_what_a_base_changes() {
+    let limits = plan::Limits::lavapipe();
+    let grooves = field(2 * HALF, 2 * HALF, [1.0; 2], |_, c| c.abs_diff(HALF) as f64);
+    let mut scene = under_sky(grooves, BORDER);
+    scene.surface.albedo = Albedo::Constant([0.5; 3]);
+    let directions = Directions::fibonacci(64, -1.0, 0).expect("directions");
+    let curvature = Curvature { per_m: [-0.01, 0.0] };
+    let changed = curvature.check(&scene.field, BORDER).expect("a shallow hollow");
+    assert!(changed.light > 0.0 && changed.shadows > 0.0);
+    // Of an albedo of a half, up to three times: 1/2 + 2/4 + 3/8.
+    let off = 1.375 * changed.light;
+    assert!((changed.scattered(0.5, 3) - off).abs() < 1e-12);
+    let scatter = Scatter { curvature, cutoff: 0.0, ..Scatter::default() };
+    let plan = plan::scatter(&scene, &directions, &scatter, &limits).expect("a plan");
+    let said = format!("the base {changed}: by it scattered light is off by at most {off:.4} of");
+    assert!(plan.notes.iter().any(|note| note.starts_with(&said)), "{said}: {:?}", plan.notes);
+    let plan = plan::curved_ellipses(&scene.field, BORDER, &directions, [0.02, 0.01], &limits);
+    let said = format!("the base bent east -: {changed}");
+    assert!(plan.expect("a plan").notes.contains(&said), "{said}");
+}
+
 /// What cannot be is refused by name, before anything is made.
 #[test]
 fn bends_are_refused_by_name() {

@@ -43,6 +43,7 @@ mod reference_numbers;
 mod reference_page;
 mod reference_truth;
 mod scatter;
+mod scatter_views;
 #[path = "../scenes/mod.rs"]
 mod scenes;
 mod soft_spheres;

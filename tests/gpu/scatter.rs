@@ -14,7 +14,7 @@ use crate::reference_page::{
 };
 use crate::{Device, field, random, under_sky};
 
-fn points(device: &mut Device, scene: &Scene, directions: &Directions) -> VisiblePoints {
+pub fn points(device: &mut Device, scene: &Scene, directions: &Directions) -> VisiblePoints {
     let (field, border) = (&scene.field, scene.surface.border);
     let plan = plan::visible_points(field, border, directions, &device.limits()).expect("a plan");
     let drawn = device.draw(plan, &[field.heights_m()]);
@@ -37,7 +37,7 @@ fn scattered(
     values.chunks_exact(4).map(|t| [t[0], t[1], t[2]].map(f64::from)).collect()
 }
 
-fn sphere(count: usize) -> Directions {
+pub fn sphere(count: usize) -> Directions {
     Directions::fibonacci(count, -1.0, 0).expect("directions")
 }
 
@@ -378,6 +378,9 @@ fn scattering_is_refused_by_name() {
     };
     assert!(said(Scatter { bounces: 0, ..Scatter::default() }).contains("--bounces"));
     assert!(said(Scatter { paths: 5000, ..Scatter::default() }).contains("--paths"));
+    assert!(
+        said(Scatter { bounces: 65, own_lobe: true, ..Scatter::default() }).contains("--bounces")
+    );
     assert!(said(Scatter { view: glam::DVec3::ZERO, ..Scatter::default() }).contains("view"));
     let mut device = Device::new();
     let seen = points(&mut device, &scene, &sphere(16));

@@ -24,6 +24,10 @@ pub static RADIANCE: [Encoding; 2] = {
 pub static REFLECTED: [Encoding; 2] =
     [Encoding { component: Component::F32, name: "f32", ..COLOUR }, HALF];
 
+/// Of weights of products of harmonics, 1/sr, which cancel each other: halves of a float would leave more than an order does.
+pub static HARMONIC_WEIGHTS: [Encoding; 1] =
+    [Encoding { component: Component::F32, name: "f32", ..COLOUR }];
+
 /// Of radiance, and the share of a view that a texel fills.
 pub static TEXELS: [Encoding; 2] = {
     const TEXEL: Encoding = Encoding {

@@ -2,6 +2,7 @@
 
 mod asked;
 mod folder;
+mod job;
 mod kinds;
 mod map;
 mod sheet;
@@ -13,18 +14,19 @@ use ridgelight::bake::{Encoding, Ray, normals};
 use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::{self, Limits, Plan};
 use ridgelight::scene::Quality;
-use ridgelight::{Error, Result, files};
+use ridgelight::{Result, files};
 use serde_json::json;
 
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
 pub use asked::{help, kind_named, packing};
-use folder::{check_folder, check_memory, parent, remove_old, told};
+use folder::{check_folder, check_memory, parent, remove_old, take_sheet};
+use job::{Job, first};
 pub use kinds::Kind;
-use kinds::{Asked, Lit, Looked, Making, OfDirections, Source};
+use kinds::{Asked, Lit, Looked, Source};
 pub use map::Format;
-use map::{MapFiles, Wanted};
+use map::{MapFiles, Whole};
 
 /// What the folder's contents are told by; written last.
 const SHEET: &str = "bake.json";
@@ -34,161 +36,6 @@ const SHEET: &str = "bake.json";
 pub struct Packing {
     kind: &'static Kind,
     encoding: &'static Encoding,
-}
-
-/// What is known before anything runs.
-struct Job<'a> {
-    lit: Lit<'a>,
-    wanted: Vec<Wanted>,
-    making: Vec<Making>,
-}
-
-impl Job<'_> {
-    fn samples(&self) -> usize {
-        self.lit.scene.field.heights_m().len()
-    }
-
-    /// Every file and the most bytes that it may take.
-    fn files(&self) -> Vec<(String, u64)> {
-        let pairs = self.wanted.iter().zip(&self.making);
-        let mut all: Vec<_> = pairs.flat_map(|(w, m)| w.files(&m.map, self.samples())).collect();
-        // Of each file what it is and how it is decoded, of each plane a name, of each direction three numbers.
-        let planes: usize = self.making.iter().map(|m| m.map.planes.len()).sum();
-        let directions = self.lit.around.count() + self.making.len() * self.lit.angles.count();
-        let told = 2048 * all.len() + 80 * planes + 160 * directions;
-        all.push((SHEET.into(), 65_536 + told as u64));
-        all
-    }
-
-    /// Bytes on this side: sums, planes that wait for their files, normals, and azimuths as they come.
-    fn host_bytes(&self, limits: &Limits) -> u64 {
-        let (samples, field) = (self.samples(), &self.lit.scene.field);
-        let of =
-            |(w, m): (&Wanted, &Making)| m.source.bytes(&self.lit) + w.held_bytes(&m.map, samples);
-        let pairs = self.wanted.iter().zip(&self.making);
-        let azimuths = u64::from(horizon::at_once(field, limits).min(self.lit.quality.azimuths));
-        pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * samples as u64
-    }
-
-    /// Kinds of directions.
-    fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
-        self.making.iter().filter_map(|m| match m.source {
-            Source::Directions(of) => Some(of),
-            Source::Horizons(_) | Source::Light(_) => None,
-        })
-    }
-
-    /// Refuses a .ktx2 of more layers than an image of the device has.
-    fn check_layers(&self, limits: &Limits) -> Result<()> {
-        for (wanted, making) in self.wanted.iter().zip(&self.making) {
-            let layers = wanted.layers(&making.map);
-            let is_read = wanted.formats.contains(&Format::Ktx2) && making.map.is_array;
-            if !is_read || layers <= limits.image_layers as usize {
-                continue;
-            }
-            let flag = match &making.source {
-                Source::Horizons(_) => "--azimuths",
-                Source::Directions(_) => "--directions",
-                Source::Light(_) => "--angles",
-            };
-            let most = limits.image_layers;
-            return Err(Error::Limit {
-                what: format!("the .ktx2 of {}", wanted.kind.name),
-                needs: format!("{layers} layers"),
-                limit: format!("{most} on this device; fewer {flag} or --format npy fit"),
-            });
-        }
-        Ok(())
-    }
-
-    /// Why a flag changes nothing, where kinds of maps know better than plans.
-    fn idle_reason(&self, setting: &str) -> Option<String> {
-        let names: Vec<&str> = self.wanted.iter().map(|w| w.kind.name).collect();
-        let has_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
-        let is_of_bounces = setting.starts_with("bounce");
-        if is_of_bounces && !has_light {
-            return Some(format!("without a kind that scatters light: {}", asked::LIGHTS));
-        }
-        if is_of_bounces {
-            return Some("for what is baked: light is scattered along --paths".into());
-        }
-        (!self.has_horizons() && !self.has_direct()).then(|| format!("for {}", names.join(", ")))
-    }
-
-    /// Kinds that the scene's lights shine on.
-    fn has_direct(&self) -> bool {
-        self.wanted.iter().any(|w| ["scatter", "light-field"].contains(&w.kind.name))
-    }
-
-    fn has_horizons(&self) -> bool {
-        self.making.iter().any(|m| matches!(m.source, Source::Horizons(_)))
-    }
-
-    fn looks_along(&self) -> bool {
-        self.making.iter().any(|m| !matches!(m.source, Source::Horizons(_)))
-    }
-
-    /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions and of light.
-    fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
-        self.check_layers(limits)?;
-        let (field, border) = (&self.lit.scene.field, self.lit.scene.surface.border);
-        let mut all = Vec::new();
-        if self.has_horizons() {
-            let (most, quality) = (horizon::at_once(field, limits), self.lit.quality);
-            all.push(horizon::plan_from(field, border, quality, limits, (0, most), false)?);
-        }
-        for of in self.of_directions() {
-            let Lit { around, curvature, .. } = self.lit;
-            all.push((of.plan)(field, border, around, curvature, limits)?);
-        }
-        for making in &self.making {
-            if let Source::Light(of) = making.source {
-                all.extend((of.plans)(&self.lit, limits)?);
-            }
-        }
-        Ok(all)
-    }
-
-    /// Settings that were used, of the first plan and what its kinds add.
-    fn used(&self, limits: &Limits) -> Result<Vec<(String, String)>> {
-        let Lit { scene, quality, .. } = &self.lit;
-        let mut used = match self.has_horizons() {
-            true => horizon::used(&scene.field, scene.surface.border, quality, limits, false)?,
-            false => first(self.plans(limits)?).settings,
-        };
-        let has = |of: fn(&str) -> bool| self.wanted.iter().any(|w| of(w.kind.name));
-        if has(|name| name.starts_with("sh-")) {
-            used.push(("sh_order".into(), quality.sh_order.to_string()));
-        }
-        let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
-        if is_light {
-            let bounces = self.lit.scatter.map_or(0, |scatter| scatter.bounces);
-            used.retain(|(name, _)| name != "bounces");
-            used.push(("bounces".into(), bounces.to_string()));
-        }
-        if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
-            // Plans tell of a part of them.
-            used.retain(|(name, _)| !["paths", "seed"].contains(&name.as_str()));
-            used.push(("paths".into(), scatter.paths.to_string()));
-            used.push(("seed".into(), scatter.seed.to_string()));
-            if has(|name| name == "scatter") {
-                used.push(("paths_used".into(), kinds::paths(&scatter).to_string()));
-            }
-        }
-        if self.has_direct() {
-            // How the light of paths is found is no method of horizons.
-            used.retain(|(name, _)| name != "method" || self.has_horizons());
-            let direct = kinds::direct_plan(&self.lit, limits)?.settings;
-            let is_new = |(name, _): &(String, String)| used.iter().all(|(n, _)| n != name);
-            let more: Vec<_> = direct.into_iter().filter(is_new).collect();
-            used.extend(more);
-        }
-        Ok(used)
-    }
-}
-
-fn first(plans: Vec<Plan>) -> Plan {
-    plans.into_iter().next().expect("--what has a kind")
 }
 
 pub fn run(args: &BakeArgs) -> Result<Outcome> {
@@ -202,10 +49,20 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
     let (directions, angles) = (asked::directions(args)?, asked::angles(args)?);
+    let has_lobe = scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
         let curvature = args.curvature;
-        (w.kind.begin)(&Asked { border, quality, directions, angles, curvature, encoding, samples })
+        (w.kind.begin)(&Asked {
+            border,
+            quality,
+            directions,
+            angles,
+            curvature,
+            encoding,
+            has_lobe,
+            samples,
+        })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
     asked::check_uses(args, making.iter().map(|m| &m.source))?;
@@ -215,7 +72,9 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let (quality, around) = (&quality, &directions);
     let seed = args.seed.unwrap_or(0);
     let curvature = args.curvature;
-    let lit = Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed };
+    let table = std::cell::OnceCell::new();
+    let lit =
+        Lit { scene: &scene, quality, limits, scatter, around, angles, curvature, seed, table };
     let mut job = Job { lit, wanted, making };
     let files = job.files();
     let paths: Vec<PathBuf> = files.iter().map(|(name, _)| args.output.join(name)).collect();
@@ -238,20 +97,11 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let used = job.used(&limits)?;
     let why = |setting: &str| job.idle_reason(setting);
     idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
-    let made = std::fs::create_dir(&args.output);
-    match &made {
-        Err(error) if error.kind() != std::io::ErrorKind::AlreadyExists => {
-            let source = std::io::Error::new(error.kind(), error.to_string());
-            return Err(Error::Io { path: args.output.clone(), source });
-        }
-        _ => {}
+    if !args.global.quiet {
+        asked::say_idle_light(args, &job.wanted);
     }
-    let done = bake(args, job, &mut gpu, &used);
-    if done.is_err() && made.is_ok() {
-        // Nothing was finished: what was made for it goes, too, unless somebody has put something there.
-        let _ = std::fs::remove_dir(&args.output);
-    }
-    done
+    let _folder = files::ResultFolder::create(&args.output)?;
+    bake(args, job, &mut gpu, &used)
 }
 
 fn bake(
@@ -315,21 +165,21 @@ fn bake(
             }
         }
     }
+    times.extend(gpu.take_timings());
     let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
     // A plan's are of a part.
     metadata.retain(|(name, _)| {
-        !["paths", "seed"].contains(&name.as_str()) || used.iter().all(|(known, _)| known != name)
+        let is_part = ["paths", "seed", "azimuths", "sh_order"].contains(&name.as_str());
+        !is_part || used.iter().all(|(known, _)| known != name)
     });
-    let is_more = |name: &str| {
-        ["azimuths", "sh_order"].contains(&name) || metadata.iter().all(|(known, _)| known != name)
-    };
+    let is_more = |name: &str| metadata.iter().all(|(known, _)| known != name);
     let more: Vec<_> = used.iter().filter(|(name, _)| is_more(name)).cloned().collect();
     metadata.extend(more);
     let lights = is_light.then_some((&args.lights, &args.surface, lit.scene));
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
-    let mut sheets = Vec::new();
+    let mut whole = Vec::new();
     for (i, (source, mut files)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
         if let Source::Horizons(maker) = source {
@@ -339,8 +189,11 @@ fn bake(
             // A closed stderr is no panic.
             let _ = bar.suspend(|| writeln!(std::io::stderr(), "{note}"));
         }
-        sheets.push(files.finish(&metadata)?);
+        whole.push(files.complete(&metadata)?);
     }
+    // From here on an earlier sheet would tell of files that are no longer its own.
+    let before = take_sheet(&args.output)?;
+    let sheets = whole.into_iter().map(Whole::place).collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
@@ -352,9 +205,7 @@ fn bake(
         let vectors = directions.vectors().iter();
         sheet["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
     }
-    let path = args.output.join(SHEET);
-    let before = told(&path)?;
-    files::write_json(&path, &sheet)?;
+    files::write_json(&args.output.join(SHEET), &sheet)?;
     remove_old(&args.output, before)?;
     if let Some(json) = &args.global.json {
         files::write_json(json, &sheet)?;
@@ -393,6 +244,9 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     if args.global.quiet {
         return Ok(Outcome::Done);
     }
+    if let Some(json) = &args.global.json {
+        idle::note("json", &json.display().to_string(), "with --plan");
+    }
     crate::say!("{:>14}  at most, bytes of {}", "file", args.output.display());
     for (name, bytes) in job.files() {
         crate::say!("{bytes:>14}  {name}");
@@ -400,5 +254,14 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
     crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
     crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
+    let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
+    // Those of one table tell of it once.
+    let is_table = |name: &&str| name.starts_with("brdf");
+    let first = names.iter().position(is_table);
+    let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
+    let own = own.map(|(_, name)| name);
+    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name)) {
+        crate::say!("{count:>14}  {what}");
+    }
     Ok(Outcome::Done)
 }

@@ -60,7 +60,15 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
             gpu.report().name
         );
         if let Some(wanted) = missed {
-            crate::say!("stopped at --spp {paths}, wanted --until-error {wanted}");
+            let least = 2 * REFERENCE_BATCH;
+            let whole = match paths == args.spp {
+                true => String::new(),
+                false => format!(", whole batches of {REFERENCE_BATCH} and at least {least}"),
+            };
+            crate::say!(
+                "stopped by --spp {} at {paths} paths{whole}, wanted --until-error {wanted}",
+                args.spp
+            );
         }
     }
     Ok(match (interrupted, missed) {

@@ -298,7 +298,7 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
 
 /// Settings that the library names its own way, by the flags that their user wrote.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 20] = [
+    const FLAGS: [(&str, &str); 22] = [
         ("sky radiance", "--sky"),
         ("sun ", "--sun "),
         ("key ", "--key "),
@@ -319,6 +319,8 @@ pub fn in_flags(error: Error) -> Error {
         ("picture size", "--size"),
         ("mesh step", "--mesh-step"),
         ("background", "--background"),
+        ("directions", "--directions"),
+        ("curvatures of ellipses", "--curvature"),
     ];
     match error {
         Error::Setting { name, found, expected } => {

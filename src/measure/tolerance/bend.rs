@@ -3,7 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::EPSILON;
-use crate::cpu::points_bend::{Fans, MOST_TURN, Way};
+use crate::cpu::points_bend::ways::Way;
+use crate::cpu::points_bend::{Fans, MOST_TURN};
 use crate::scene::Curvature;
 
 /// By how much `points_bend` may be off beside a way that ends `to_m` away, m: components of the way err by 2 ε of themselves
@@ -11,6 +12,15 @@ use crate::scene::Curvature;
 /// lies beside the ray by the same again.
 pub fn way(to_m: f64) -> f64 {
     16.0 * EPSILON * to_m
+}
+
+/// By how much `points_bend` may be off in how far a ray stays over the surface around a sample, m.
+///
+/// A cell's climb errs by 4 ε of itself (direction, pace, quotient), its product and sum by 3 ε more; the sample's rise and its
+/// difference by 3 ε. With g the relief around the sample and n cells of the way: the place beside it errs by 7 ε of n and ε of
+/// its own, across which the surface rises by 2 g a cell, and so does where a kink is taken to be; products and sums round 12 ε g.
+pub fn over(way: &Way, rise_m: f64) -> f64 {
+    EPSILON * (8.0 * way.climb_m + 4.0 * rise_m.abs() + 48.0 * way.relief_m * (1.0 + way.cells))
 }
 
 /// By how much a component of a direction that has moved as along a way of `away_m` to `to_m`, at a height `own_m` over the

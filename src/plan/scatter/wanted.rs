@@ -15,6 +15,9 @@ pub(super) struct Wanted<'a> {
     pub suns: Vec<Sun>,
     /// 0 where nothing is scattered.
     pub bounces: u32,
+    /// Whether views see what samples themselves mirror of lights.
+    pub own_lobe: bool,
+    /// 0 where there is nothing to look for.
     pub paths: u32,
 }
 
@@ -47,8 +50,9 @@ impl<'a> Wanted<'a> {
             bounces = 0;
             notes.push("no paths: nothing rises above anything else, no place sees another".into());
         }
-        let mut wanted = Self { lobe, mirrors_sky, suns, bounces, paths: 0 };
-        if bounces > 0 {
+        let mut wanted = Self { lobe, mirrors_sky, suns, bounces, own_lobe: false, paths: 0 };
+        wanted.own_lobe = scatter.own_lobe && wanted.mirrors_lights();
+        if bounces > 0 || wanted.own_lobe {
             wanted.paths = scatter.paths;
             // Each direction once is the mean of all already.
             let all = directions as u32;
@@ -68,7 +72,7 @@ impl<'a> Wanted<'a> {
         self.mirrors_sky || !self.suns.is_empty()
     }
 
-    /// One more than bounces where what is met last mirrors lights.
+    /// One more than bounces where what is met last, or the sample itself, mirrors lights.
     pub fn steps(&self) -> u32 {
         self.bounces + u32::from(self.mirrors_lights())
     }

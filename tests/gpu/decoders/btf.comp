@@ -1,5 +1,5 @@
 // Computes: what the decoder that `bake` writes beside a map makes of it.
-// Reads: btf.ktx2.
+// Reads: btf.ktx2, at `offset` of a step on in both azimuths.
 // Writes: values, a plane each: four of every pair.
 // One invocation is a texel and a plane.
 #version 460
@@ -33,7 +33,8 @@ void main() {
     vec2 uv = (vec2(i % cols, i / cols) + 0.5) / vec2(cols, rows);
     int plane = int(gl_GlobalInvocationID.z);
     int count = BTF_THETAS * BTF_PHIS;
-    vec2 light = angles_of(plane / 4 / count);
-    vec2 view = angles_of(plane / 4 % count);
+    vec2 on = vec2(0.0, offset * 6.28318531 / float(BTF_PHIS));
+    vec2 light = angles_of(plane / 4 / count) + on;
+    vec2 view = angles_of(plane / 4 % count) + on;
     values[plane * cols * rows + i] = btf(map, uv, light, view)[plane % 4];
 }

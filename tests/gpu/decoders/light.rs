@@ -12,13 +12,14 @@ use crate::Device;
 
 const ANGLES: Angles = Angles { zeniths: 2, azimuths: 4 };
 const FACTORS: usize = 8;
+const ORDER: i32 = 2;
 
 fn angles(prefix: &'static [&'static str; 2]) -> Vec<(&'static str, Constant)> {
     let counts = [ANGLES.zeniths, ANGLES.azimuths];
     prefix.iter().zip(counts).map(|(name, n)| (*name, Constant::Int(n as i32))).collect()
 }
 
-fn all() -> [Decoder; 5] {
+fn all() -> [Decoder; 6] {
     let none = |_: &Encoding| Vec::new();
     let of_btf = |_: &Encoding| angles(&["BTF_THETAS", "BTF_PHIS"]);
     let of_field = |_: &Encoding| angles(&["LIGHT_FIELD_THETAS", "LIGHT_FIELD_PHIS"]);
@@ -26,7 +27,11 @@ fn all() -> [Decoder; 5] {
     let of_factors = |_: &Encoding| {
         let mut all = angles(&["BRDF_THETAS", "BRDF_PHIS"]);
         all.push(("BRDF_FACTORS", Constant::Int(FACTORS as i32)));
+        all.push(("BRDF_VIEWS", Constant::Int(0)));
         all
+    };
+    let of_harmonics = |_: &Encoding| {
+        vec![("BRDF_ORDER", Constant::Int(ORDER)), ("BRDF_TERMS", Constant::Int(ORDER * ORDER))]
     };
     [
         decoder!("scatter", "scatter", bake::RADIANCE, true, 6, none),
@@ -41,6 +46,14 @@ fn all() -> [Decoder; 5] {
             3 * FACTORS + 3,
             of_factors
         ),
+        decoder!(
+            "brdf_harmonics",
+            "brdf-harmonics",
+            bake::HARMONIC_WEIGHTS,
+            false,
+            5,
+            of_harmonics
+        ),
     ]
 }
 
@@ -53,7 +66,7 @@ fn baked(folder: &Path, number: usize) -> serde_json::Value {
     let kinds: Vec<&str> = all.iter().map(|d| d.kind).collect();
     let encodings = all.iter().map(|d| format!("{}={}", d.kind, numbered(d, number).name));
     let words = "--border periodic --format ktx2,exr --quiet --sun 200,50 --sky 0.2 --albedo 0.7,0.5,0.2 \
-                 --directions 16 --bounces 2 --paths 16 --azimuths 8";
+                 --directions 16 --bounces 2 --paths 16 --azimuths 8 --sh-order 2";
     let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
         .arg("bake")
         .arg(&field)
@@ -112,7 +125,7 @@ fn decoders_of_light_keep_what_sheets_promise() {
             let truth = in_order(&sheet, decoder.kind, read_planes(&path("exr")).expect("values"));
             let texture = std::fs::read(path("ktx2")).expect("a texture");
             let promised = promised(&sheet, decoder.kind);
-            let is_between = decoder.kind.starts_with("brdf");
+            let is_between = ["brdf", "brdf-factors"].contains(&decoder.kind);
             let slack = if is_between { beside(&truth) } else { 0.0 };
             let found = decode(gpu, &decoder, &bits, &texture, 0.0);
             let (share, of) = worst(&promised, &found, &truth, slack);

@@ -1,5 +1,5 @@
 // Computes: what the decoder that `bake` writes beside a map makes of it.
-// Reads: light_field.ktx2.
+// Reads: light_field.ktx2, at `offset` of a step on in azimuth.
 // Writes: values, a plane each: four of every view.
 // One invocation is a texel and a plane.
 #version 460
@@ -32,5 +32,6 @@ void main() {
     }
     vec2 uv = (vec2(i % cols, i / cols) + 0.5) / vec2(cols, rows);
     int plane = int(gl_GlobalInvocationID.z);
-    values[plane * cols * rows + i] = light_field(map, uv, angles_of(plane / 4))[plane % 4];
+    vec2 on = vec2(0.0, offset * 6.28318531 / float(LIGHT_FIELD_PHIS));
+    values[plane * cols * rows + i] = light_field(map, uv, angles_of(plane / 4) + on)[plane % 4];
 }

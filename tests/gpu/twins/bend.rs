@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use ridgelight::cpu::fan_weigh::weight;
-use ridgelight::cpu::points_bend::{Draped, Fans, bent_direction, ways};
+use ridgelight::cpu::points_bend::ways::{HALF_SIDE, Way, Ways};
+use ridgelight::cpu::points_bend::{Draped, Fans, bent_direction};
 use ridgelight::gpu::shaders::offsets::{fan_weigh_push, points_bend_push as push};
-use ridgelight::measure::tolerance::{EPSILON, bent as bent_error, fan_weight, way};
+use ridgelight::measure::tolerance::{EPSILON, bent as bent_error, fan_weight, over};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
 
@@ -33,6 +34,36 @@ pub(super) fn of_samples(run: &mut Run, pass: &Pass, count: usize) -> Vec<Vec<(D
     (0..samples).map(|at| (0..count).map(|i| of(i, at)).collect()).collect()
 }
 
+/// What the device may take for what is met: up to the first that it surely is, all that may be touched; where none surely is,
+/// those passed nearest by, or what lies beyond.
+fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
+    // Places err by far less than this of a cell.
+    let margin = 1e-3;
+    let inner: Vec<Way> = ways.all(HALF_SIDE - margin).collect();
+    let (mut possible, mut passed) = (Vec::new(), Vec::new());
+    for way in ways.all(HALF_SIDE + margin) {
+        let off = over(&way, rise_m);
+        if way.over_m <= way.graze_m + off {
+            possible.push(way);
+        }
+        let is_met = |w: &&Way| w.away_m == way.away_m && w.over_m <= w.graze_m - off;
+        if inner.iter().any(|w| is_met(&w)) {
+            return possible;
+        }
+        passed.push((way, off));
+    }
+    if ways.is_cut() {
+        possible.push(ways.far());
+        return possible;
+    }
+    let least = passed.iter().map(|(w, off)| w.over_m + off).fold(f64::MAX, f64::min);
+    possible.extend(passed.iter().filter(|(w, off)| w.over_m - off <= least).map(|(w, _)| *w));
+    if possible.is_empty() {
+        possible.push(ways.met());
+    }
+    possible
+}
+
 /// The twin's direction, or another that it gives where which neighbour a direction moves with, or which repetition is seen,
 /// hangs on roundings.
 pub(super) fn points_bend(run: &mut Run, pass: &Pass) -> Vec<Pair> {
@@ -53,10 +84,10 @@ pub(super) fn points_bend(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let (found, what) = got[at][i];
             let mut possible = Vec::new();
             for (with, there) in draped.movers(i, at, 8.0 * EPSILON) {
-                let all = ways(field, border, [at, there], vectors[with]);
-                let least = all.iter().map(|w| w.miss_m).fold(f64::MAX, f64::min);
-                let near = all.iter().filter(|w| w.miss_m <= least + 2.0 * way(w.to_m));
-                possible.extend(near.map(|w| {
+                let rise = f64::from(field.heights_m()[there]) - own;
+                let ways = Ways::of((field, border), curvature, [at, there], vectors[with]);
+                let near = may_be_met(&ways, rise);
+                possible.extend(near.iter().map(|w| {
                     let direction = bent_direction(*e, w.away_m, own, curvature);
                     (direction, bent_error(*e, *w, own, curvature))
                 }));

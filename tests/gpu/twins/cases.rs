@@ -16,6 +16,9 @@ pub(super) use points::{ellipses, facets, points, scatters, towards};
 
 use crate::{field, random};
 
+/// Of what lobes scatter towards several.
+const VIEWS: [glam::DVec3; 2] = [glam::DVec3::Z, glam::DVec3::new(0.6, 0.0, 0.8)];
+
 pub(super) enum Wanted {
     Horizons {
         distances: bool,
@@ -78,7 +81,10 @@ impl Case {
             Wanted::Scatter(directions, scatter, is_cut) => {
                 let image_layers = if *is_cut { 2 } else { limits.image_layers };
                 let limits = Limits { image_layers, ..*limits };
-                plan::scatter(&self.scene, directions, scatter, &limits)
+                match scatter.own_lobe {
+                    true => plan::scatter_views(&self.scene, directions, scatter, &VIEWS, &limits),
+                    false => plan::scatter(&self.scene, directions, scatter, &limits),
+                }
             }
         }
         .expect("a plan")

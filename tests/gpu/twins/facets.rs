@@ -1,6 +1,6 @@
 //! Which triangles are seen.
 
-use ridgelight::bake::mask_bit;
+use ridgelight::bake::DIRECTIONS_A_WORD;
 use ridgelight::cpu::facet_mask::{cells, sees_sky};
 use ridgelight::cpu::oracle::Oracle;
 use ridgelight::gpu::shaders::offsets::facet_mask_push as push;
@@ -20,14 +20,16 @@ pub(super) fn facet_mask(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let oracle = Oracle::new(&finer, border);
     let elevation = facet_elevation(&Land::of(&finer, border));
     let [cells_x, cells_y] = cells(field, border);
-    let of_layer = ridgelight::bake::DIRECTIONS_A_WORD;
-    let own = first * of_layer..((first + layers) * of_layer).min(directions.count());
+    let own =
+        first * DIRECTIONS_A_WORD..((first + layers) * DIRECTIONS_A_WORD).min(directions.count());
     let mut pairs = Vec::new();
     for i in own {
         for facet in 0..2 * cells_x * cells_y {
             let e = directions.vectors()[i];
             let [want, is_unsure] = sees_sky(&oracle, (facet, cells_x), e, elevation);
-            let got = mask_bit(&words, cells_x * cells_y, i, facet);
+            // Two bits a cell and direction, first the triangle north-east of the diagonal; the rest of a word's directions next.
+            let word = words[i / DIRECTIONS_A_WORD * cells_x * cells_y + facet / 2];
+            let got = word >> (2 * (i % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;
             let want = if is_unsure { got } else { want };
             let [got, want] = [got, want].map(|is_seen| f64::from(u8::from(is_seen)));
             pairs.push(Pair { got, want, tolerance: 0.0, at: [i, facet / 2, facet % 2] });

@@ -5,7 +5,7 @@ use ridgelight::cpu::scatter_gather::{Gathered, Samples};
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
 use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
 use ridgelight::plan::Pass;
-use ridgelight::scene::{Curvature, Directions, Scatter, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
 
 use super::cases::towards;
 use super::{Pair, Run, constant, pushed};
@@ -28,7 +28,7 @@ impl Sum {
 
 /// One look-up after the other as the twin has it, given what the device was.
 pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let [first_link, steps, step, first_path, paths, first_sun, suns] = [
+    let [first_link, steps, step, first_path, paths, first_sun, suns, first_view] = [
         push::FIRST_LINK,
         push::STEPS,
         push::STEP,
@@ -36,10 +36,12 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         push::PATHS,
         push::FIRST_SUN,
         push::SUNS,
+        push::FIRST_VIEW,
     ]
     .map(|o| pushed(pass, o) as usize);
     let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
     let (source, sums) = (constant(pass, 0), constant(pass, 1) == 1);
+    let own_lobe = paths > 0 && constant(pass, 7) == 1;
     let points = run.points.clone().expect("a case with points");
     let texel = |i: usize| -> [f64; 4] {
         std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))
@@ -48,11 +50,17 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let links: Vec<_> = (0..paths)
         .map(|path| {
             let at = first_link + 2 * (path * steps + step);
-            let back = if sums { Scatter::default().view } else { -vector(texel(at - 2)) };
+            let back = if sums { DVec3::ZERO } else { -vector(texel(at - 2)) };
             let [ahead, sky] = [at, at + 1].map(texel);
             (vector(ahead), ahead[3] as usize, [sky[0], sky[1], sky[2]], back)
         })
         .collect();
+    // Of the last step each view in turn.
+    let views = if sums && paths > 0 { pass.groups[2] as usize } else { 1 };
+    let of_views: Vec<_> = match sums && paths > 0 {
+        true => (0..views).map(|view| vector(texel(first_view + view))).collect(),
+        false => vec![DVec3::ZERO],
+    };
     let shining: Vec<_> = (0..suns)
         .map(|i| [first_sun + 2 * i, first_sun + 2 * i + 1].map(texel))
         .map(|[e, light]| (vector(e), [light[0], light[1], light[2]]))
@@ -93,9 +101,10 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, rows] = run.size();
     let count = rows * cols;
     let mut before = std::mem::take(&mut run.scattered);
-    before.resize(count, ([0.0; 3], [0.0; 3]));
+    before.resize(views * count, ([0.0; 3], [0.0; 3]));
     let mut pairs = Vec::new();
-    for at in 0..count {
+    for texel_at in 0..views * count {
+        let (view, at) = (texel_at / count, texel_at % count);
         let here = [at / cols, at % cols];
         // Slopes of a field that is drawn apart or pushed together by s are turned as much as they were, s or 1/s times; a quotient
         // and a sum more.
@@ -123,7 +132,8 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 (VisiblePoint::Sample(there), 2) => carried[path * count + there],
                 _ => [0.0; 3],
             };
-            let sees_sky = !sums && seen == VisiblePoint::Sky;
+            let back = if sums { &of_views[view] } else { back };
+            let sees_sky = (!sums || own_lobe) && seen == VisiblePoint::Sky;
             let mirrored = if sees_sky { *sky } else { arrives };
             let (e, weight) = match &bent {
                 None => (*e, weight),
@@ -136,6 +146,8 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             of_path.add(of.light, off(&of, e));
             if !sums {
                 of_path.add(direct[at], [0.0; 3]);
+            }
+            if !sums || own_lobe {
                 for (i, (e, irradiance)) in shining.iter().enumerate() {
                     let lit = sun_points.as_ref().expect("suns").seen(i, at) == VisiblePoint::Sky;
                     if lit {
@@ -143,6 +155,8 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                         of_path.add(of.light, off(&of, *e));
                     }
                 }
+            }
+            if !sums {
                 let texel = 4 * (path * count + at);
                 for c in 0..3 {
                     let (want, tolerance) = (of_path.light[c], of_path.off[c]);
@@ -154,20 +168,21 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         }
         if sums {
             // The mean of those before and these; a difference, a quotient, a sum.
-            let (old, old_off) = if first_path > 0 { before[at] } else { ([0.0; 3], [0.0; 3]) };
+            let (old, old_off) =
+                if first_path > 0 { before[texel_at] } else { ([0.0; 3], [0.0; 3]) };
             let all = (first_path + paths) as f64;
             let mean = [0, 1, 2].map(|c| (first_path as f64 * old[c] + sum.light[c]) / all);
             let tolerance = [0, 1, 2].map(|c| {
                 (first_path as f64 * old_off[c] + sum.off[c]) / all
                     + 12.0 * EPSILON * (old[c] + sum.light[c] / all)
             });
-            before[at] = (mean, tolerance);
+            before[texel_at] = (mean, tolerance);
             for c in 0..3 {
-                let got = got[4 * at + c].into();
+                let got = got[4 * texel_at + c].into();
                 let (want, tolerance) = (mean[c], tolerance[c]);
-                pairs.push(Pair { got, want, tolerance, at: [c, here[0], here[1]] });
+                pairs.push(Pair { got, want, tolerance, at: [3 * view + c, here[0], here[1]] });
             }
-            let counted = f64::from(got[4 * at + 3]);
+            let counted = f64::from(got[4 * texel_at + 3]);
             pairs.push(Pair { got: counted, want: all, tolerance: 0.0, at: [3, here[0], here[1]] });
         }
     }

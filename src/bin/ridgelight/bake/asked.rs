@@ -9,10 +9,10 @@ use super::kinds::{KINDS, Kind, Source};
 use super::map::Wanted;
 use crate::args::{BakeArgs, MethodName};
 use crate::bake::Format;
-use crate::setup;
+use crate::{idle, setup};
 
 /// Where none are asked for.
-pub const DIRECTIONS: usize = 256;
+pub const DIRECTIONS: u32 = 256;
 
 /// What `--what` takes.
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
@@ -50,7 +50,12 @@ pub fn help() -> String {
     text += "\n\
 Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
 in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
-horizons are near. Vulkan does not ask devices to sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample.
+horizons are near. With --phong, brdf, brdf-factors and btf mirror each light as their triangles lie, and scatter towards each \
+view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
+scatter is then seen from straight above, and light-field from each view, the sky along --directions. A lobe is bounded by the \
+view, not by the light, and not the same with both exchanged: the sheet says by how much. Vulkan does not ask devices to \
+sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
+A .png of scatter has 16 bits, 1 at the largest number of each picture, whose scale the sheet has.
 
 Examples:
   ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
@@ -76,7 +81,7 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
             return Err(Error::setting("--encoding", found, "one of each kind"));
         }
         let mut formats = if args.format.is_empty() { kind.formats } else { &args.format }.to_vec();
-        let takes = |format: &Format| format.takes(encoding);
+        let takes = |format: &Format| format.takes(kind, encoding);
         if args.format.is_empty() {
             formats.retain(takes);
         } else if let Some(format) = formats.iter().find(|f| !takes(f)) {
@@ -124,15 +129,44 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     let looks_around =
         args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
     let lowest_z = if looks_around { -1.0 } else { 0.0 };
-    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS), lowest_z, 0)
+    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
 /// Those that scatter, in words.
-pub const LIGHTS: &str = "scatter, brdf, brdf-factors, btf or light-field";
+pub const LIGHTS: &str = "scatter, brdf, brdf-factors, brdf-harmonics, btf or light-field";
 
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
-    ["scatter", "brdf", "brdf-factors", "btf", "light-field"].contains(&kind.name)
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"].contains(&kind.name)
+}
+
+/// Whose pictures are of floats, each with a scale of its own.
+pub fn is_scaled(kind: &Kind) -> bool {
+    kind.name == "scatter"
+}
+
+/// Whether the scene's lights shine on it.
+pub fn is_lit(kind: &Kind) -> bool {
+    ["scatter", "light-field"].contains(&kind.name)
+}
+
+/// Says which flags of light were written out and shine on nothing, or are of ground that reflects nothing.
+pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted]) {
+    let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
+    let groups: [(&[&str], bool, &str); 2] = [
+        (
+            &["sky", "env", "env_rotate", "sun", "key", "light"],
+            has(is_lit),
+            "scatter or light-field",
+        ),
+        (&["albedo", "phong"], has(is_light), LIGHTS),
+    ];
+    for (names, is_used, by) in groups {
+        let is_own = |(name, _): &&(String, String)| !is_used && names.contains(&name.as_str());
+        for (name, value) in args.quality.written.iter().filter(is_own) {
+            idle::note(name, value, &format!("without {by}"));
+        }
+    }
 }
 
 /// Scattered light, three bounces unless others are asked for, here or in a scene file; none where 0 are written out.
@@ -189,7 +223,7 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             "--angles",
             format!("{zeniths}x{azimuths}"),
             has_angles,
-            "brdf, brdf-factors, btf or light-field",
+            "brdf, brdf-factors, brdf-harmonics, btf or light-field",
         )?;
     }
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
@@ -197,8 +231,11 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             found(name, value.to_string(), has_light, LIGHTS)?;
         }
     }
-    if has_light && args.surface.phong.is_some() {
-        return Err(Error::setting("--phong", "a lobe", "none: what is baked of light is diffuse"));
+    // Some kinds share them out among parts.
+    if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
+        let expected =
+            format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
+        return Err(Error::setting("--paths", paths.to_string(), expected));
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ type Told = (String, Vec<String>);
 ///
 /// # Errors
 /// One that cannot be read, or does not tell: what lies beside it is unknown.
-pub fn told(path: &Path) -> Result<Vec<Told>> {
+fn told(path: &Path) -> Result<Vec<Told>> {
     let text = match std::fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         text => text.map_err(|source| Error::Io { path: path.to_owned(), source })?,
@@ -26,6 +26,18 @@ pub fn told(path: &Path) -> Result<Vec<Told>> {
         found: "no list of kinds and their files".into(),
         expected: "what a bake wrote, whole, or a folder without this file".into(),
     })
+}
+
+/// What the sheet of an earlier bake tells of, and removes it.
+pub fn take_sheet(folder: &Path) -> Result<Vec<Told>> {
+    let path = folder.join(SHEET);
+    let before = told(&path)?;
+    match std::fs::remove_file(&path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::Io { path, source })
+        }
+        _ => Ok(before),
+    }
 }
 
 fn kinds(sheet: &serde_json::Value) -> Option<Vec<Told>> {
@@ -49,6 +61,9 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
             return Err(Error::setting("-o", found, expected));
         }
         return files::check_writable(&path.join(SHEET));
+    }
+    if path.is_symlink() && !path.exists() {
+        return Err(Error::setting("-o", format!("{}, a link to nothing", shown()), "a folder"));
     }
     if path.exists() {
         return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));

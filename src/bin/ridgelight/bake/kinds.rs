@@ -4,6 +4,7 @@ mod afar;
 mod bent_normal;
 mod brdf;
 mod brdf_factors;
+mod brdf_harmonics;
 mod btf;
 mod curved_ellipse;
 mod ellipse;
@@ -16,6 +17,8 @@ mod sky_view;
 mod visible_points;
 mod visible_sky;
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::bake::{Angles, Encoding, Ray, Sum, Summing};
@@ -24,11 +27,11 @@ use ridgelight::plan::{Limits, Plan};
 use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene};
 
 use super::map::{Format, MapFiles};
-pub use afar::direct_plan;
+pub use afar::{diffuse, direct_plan, looks};
 pub use scatter::paths;
 
 /// All of them, as --help lists them.
-pub static KINDS: [&Kind; 14] = [
+pub static KINDS: [&Kind; 15] = [
     &horizon::KIND,
     &sky_view::KIND,
     &visible_sky::KIND,
@@ -41,6 +44,7 @@ pub static KINDS: [&Kind; 14] = [
     &scatter::KIND,
     &brdf::KIND,
     &brdf_factors::KIND,
+    &brdf_harmonics::KIND,
     &btf::KIND,
     &light_field::KIND,
 ];
@@ -70,6 +74,8 @@ pub struct Asked<'a> {
     /// Outwards and inwards, 1/m.
     pub curvature: Option<[f64; 2]>,
     pub encoding: &'static Encoding,
+    /// Whether ground reflects by a lobe, too.
+    pub has_lobe: bool,
     /// Of the field.
     pub samples: usize,
 }
@@ -161,6 +167,12 @@ pub struct OfLight {
     pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
 }
 
+/// A whole number among the settings of a plan, which has it.
+fn number(plan: &Plan, name: &str) -> u32 {
+    let of = plan.settings.iter().find(|(known, _)| known == name);
+    of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light tell it")
+}
+
 /// What light is made of.
 pub struct Lit<'a> {
     pub scene: &'a Scene,
@@ -176,6 +188,8 @@ pub struct Lit<'a> {
     pub curvature: Option<[f64; 2]>,
     /// Of the pairs that a table is asked for between its angles.
     pub seed: u32,
+    /// That `brdf` and `brdf-factors` are of, once one of them has asked for it.
+    pub table: OnceCell<brdf::Table>,
 }
 
 /// What came of its plan.

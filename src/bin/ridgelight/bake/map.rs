@@ -1,130 +1,31 @@
 //! A map's files: values go to all of them as they come, layer by layer.
 
+mod coded;
+mod told;
+mod wanted;
+mod whole;
+
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-use ridgelight::bake::{Component, Encoding};
-use ridgelight::files::{self, Channels, Ktx2Writer, Layer, NpyWriter, TexelFormat};
+use ridgelight::Result;
+use ridgelight::files::{self, Ktx2Writer, NpyWriter, Written};
 use ridgelight::scene::HeightField;
-use ridgelight::{Error, Result};
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 
 use super::asked;
-use super::kinds::{Kind, Map};
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    Exr,
-    Png,
-    Npy,
-    Ktx2,
-}
-
-impl Format {
-    pub fn name(self) -> &'static str {
-        match self {
-            Format::Exr => "exr",
-            Format::Png => "png",
-            Format::Npy => "npy",
-            Format::Ktx2 => "ktx2",
-        }
-    }
-
-    /// Whether it can hold what the encoding makes.
-    pub fn takes(self, encoding: &Encoding) -> bool {
-        let is_picture = encoding.component.is_normalised() && encoding.components < 4;
-        self != Format::Png || is_picture
-    }
-}
-
-/// What a kind's files are called, before the dot.
-pub fn stem(kind: &Kind) -> String {
-    kind.name.replace('-', "_")
-}
-
-/// What is written of a kind, and how.
-pub struct Wanted {
-    pub kind: &'static Kind,
-    pub encoding: &'static Encoding,
-    pub formats: Vec<Format>,
-}
-
-impl Wanted {
-    pub fn layers(&self, map: &Map) -> usize {
-        map.planes.len().div_ceil(self.encoding.values)
-    }
-
-    fn texels(&self) -> TexelFormat {
-        // Three components have a fourth beside them, as no device must sample textures of three.
-        let count = self.encoding.components;
-        TexelFormat {
-            component: self.encoding.component,
-            count: if count == 3 { 4 } else { count },
-        }
-    }
-
-    /// Of the pictures, one a layer.
-    fn pictures(&self, map: &Map) -> Vec<String> {
-        let stem = stem(self.kind);
-        if !map.is_array {
-            return vec![format!("{stem}.png")];
-        }
-        (0..self.layers(map)).map(|k| format!("{stem}_{k:04}.png")).collect()
-    }
-
-    /// Every file, and the most bytes that it may take.
-    pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
-        let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
-        let samples = map.texels(samples) as u64;
-        let mut all = Vec::new();
-        for format in &self.formats {
-            let name = format!("{stem}.{}", format.name());
-            let texels = self.texels().bytes() as u64;
-            match format {
-                // ZIP adds little to what it cannot make smaller.
-                Format::Exr => all.push((name, 4 * planes * samples / 100 * 101 + 65_536)),
-                Format::Npy => all.push((name, 4 * planes * samples + 256)),
-                Format::Ktx2 => {
-                    all.push((name, texels * self.layers(map) as u64 * samples + 1024));
-                }
-                Format::Png => {
-                    let most = (texels + 2) * samples / 100 * 101 + 65_536;
-                    all.extend(self.pictures(map).into_iter().map(|name| (name, most)));
-                }
-            }
-        }
-        all.push((format!("{stem}.glsl"), self.decoder(map).len() as u64));
-        all
-    }
-
-    /// Bytes that its files hold until they are written.
-    pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
-        let samples = map.texels(samples) as u64;
-        let of = |format: &Format| match format {
-            Format::Exr => 4 * map.planes.len() as u64 * samples,
-            Format::Png => (self.texels().bytes() + 2) as u64 * self.layers(map) as u64 * samples,
-            // A layer, on its way.
-            Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
-        };
-        self.formats.iter().map(of).sum()
-    }
-
-    /// GLSL: constants, then what reads the map by them.
-    pub fn decoder(&self, map: &Map) -> String {
-        let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
-        constants + self.kind.decoder
-    }
-}
+use super::kinds::Map;
+pub use wanted::{Format, Wanted, stem};
+pub use whole::Whole;
 
 enum Open {
     Exr(PathBuf, Vec<Vec<f32>>),
     Npy(PathBuf, NpyWriter),
     Ktx2(PathBuf, Ktx2Writer),
-    /// Samples of each picture.
-    Png(Vec<(PathBuf, Vec<u8>)>),
+    /// One a layer, each with what its samples are times.
+    Png(Vec<(PathBuf, Written, f64)>),
 }
 
-/// A map's files, until [`finish`](Self::finish) nowhere to be seen.
+/// A map's files, until [`Whole::place`] nowhere to be seen.
 pub struct MapFiles<'a> {
     wanted: Wanted,
     map: Map,
@@ -221,7 +122,8 @@ impl<'a> MapFiles<'a> {
     /// Takes a layer: as many planes as [`planes_at_once`](Self::planes_at_once), fewer in the last.
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
-        let (texels, picture) = self.coded(planes);
+        let scale = if self.is_scaled() { self.largest(planes) } else { 1.0 };
+        let (texels, picture) = self.coded(planes, scale);
         let (voids, field) = (self.voids(), self.field);
         let masked = |plane: &[f32]| {
             let mut plane = plane.to_vec();
@@ -230,7 +132,7 @@ impl<'a> MapFiles<'a> {
             }
             plane
         };
-        let pictures = self.wanted.pictures(&self.map);
+        let (size, form, texts) = (self.size(), self.picture_form(), self.picture_texts(scale));
         for open in &mut self.open {
             match open {
                 Open::Exr(_, kept) => kept.extend(planes.iter().map(|plane| masked(plane))),
@@ -244,8 +146,9 @@ impl<'a> MapFiles<'a> {
                 }
                 Open::Ktx2(_, writer) => writer.write(&texels)?,
                 Open::Png(kept) => {
-                    let name = &pictures[self.taken];
-                    kept.push((self.folder.join(name), picture.clone()));
+                    let path = self.folder.join(self.wanted.picture(&self.map, self.taken));
+                    let file = files::write_codes_aside(&path, size, form, &picture, &texts)?;
+                    kept.push((path, file, scale));
                 }
             }
         }
@@ -277,202 +180,5 @@ impl<'a> MapFiles<'a> {
     /// Channels of a picture: components, and opacity where there are voids.
     fn channels(&self) -> usize {
         self.wanted.encoding.components + usize::from(self.voids().is_some())
-    }
-
-    /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, 16 bits big-endian.
-    fn coded(&self, planes: &[&[f32]]) -> (Vec<u8>, Vec<u8>) {
-        let (encoding, voids) = (self.wanted.encoding, self.voids());
-        let (component, format) = (encoding.component, self.wanted.texels());
-        let samples = self.size().iter().product::<usize>();
-        let (has_texels, has_picture) = (self.has(Format::Ktx2), self.has(Format::Png));
-        let reserve = |is_wanted: bool, each: usize| {
-            Vec::with_capacity(if is_wanted { each * samples } else { 0 })
-        };
-        let mut texels = reserve(has_texels, format.bytes());
-        let mut picture = reserve(has_picture, self.channels() * component.bytes());
-        if !has_texels && !has_picture {
-            return (texels, picture);
-        }
-        let (mut values, mut parts) = ([0.0; 4], [0.0; 4]);
-        let (values, parts) = (&mut values[..encoding.values], &mut parts[..encoding.components]);
-        for at in 0..samples {
-            for (value, plane) in values.iter_mut().zip(planes) {
-                *value = f64::from(plane[at]);
-            }
-            (encoding.encode)(values, parts);
-            let is_void = voids.is_some_and(|v| v[at]);
-            if has_texels {
-                parts.iter().for_each(|part| component.put(*part, &mut texels));
-                if parts.len() < format.count {
-                    component.put(if is_void { 0.0 } else { 1.0 }, &mut texels);
-                }
-            }
-            if has_picture {
-                for part in parts.iter() {
-                    let part = if component.is_signed() { 0.5 + 0.5 * part } else { *part };
-                    sample(&mut picture, component, if is_void { 0.0 } else { part });
-                }
-                if voids.is_some() {
-                    sample(&mut picture, component, if is_void { 0.0 } else { 1.0 });
-                }
-            }
-        }
-        (texels, picture)
-    }
-
-    /// Lines on what was remarked, and on values beyond their range.
-    pub fn notes(&self) -> Vec<String> {
-        let mut all = self.remarks.clone();
-        let (count, most) = self.beyond;
-        if count == 0 {
-            return all;
-        }
-        let (kind, component) = (self.wanted.kind.name, self.wanted.encoding.component);
-        let ends = match component.is_normalised() {
-            true if self.has(Format::Ktx2) || self.has(Format::Png) => {
-                ", whose end is in .ktx2 and .png"
-            }
-            _ => "",
-        };
-        let cause = match asked::is_light(self.wanted.kind) {
-            true if component == Component::F16 => {
-                format!("f16 of .ktx2 holds no more, --encoding {kind}=f32 does")
-            }
-            true => "more than f32 holds".to_owned(),
-            false => "few azimuths for such slopes".to_owned(),
-        };
-        all.push(format!(
-            "note: {kind}: {count} values lie beyond their range{ends}, by up to {most:.2e}: {cause}"
-        ));
-        all
-    }
-
-    /// Puts all files at their places, and says what they are; `metadata` is for those that keep it.
-    pub fn finish(mut self, metadata: &[(String, String)]) -> Result<Json> {
-        let size = self.size();
-        let mut sheets = Vec::new();
-        let bits = 8 * self.wanted.encoding.component.bytes() as u32;
-        for open in std::mem::take(&mut self.open) {
-            match open {
-                Open::Exr(path, planes) => {
-                    let layers = planes.iter().zip(&self.map.planes).map(|(plane, name)| Layer {
-                        name: String::new(),
-                        channels: Channels::Scalar(name, plane),
-                    });
-                    let layers: Vec<Layer> = layers.collect();
-                    let mut all = metadata.to_vec();
-                    // It holds the values themselves, and the field's hash is of the metadata.
-                    all.push(("ridgelight.kind".into(), self.wanted.kind.name.into()));
-                    files::write_exr(&path, size[1], size[0], &layers, &all)?;
-                    sheets.push(self.sheet(Format::Exr, &path, "f32")?);
-                }
-                Open::Npy(path, writer) => {
-                    writer.finish()?;
-                    sheets.push(self.sheet(Format::Npy, &path, "f32")?);
-                }
-                Open::Ktx2(path, writer) => {
-                    writer.finish()?;
-                    let format = self.wanted.texels().vulkan().map_or("", |(_, name)| name);
-                    sheets.push(self.sheet(Format::Ktx2, &path, format)?);
-                }
-                Open::Png(pictures) => {
-                    for (path, samples) in pictures {
-                        let channels = (self.channels(), bits);
-                        files::write_codes(&path, size, channels, &samples, &self.texts)?;
-                        let what = format!(
-                            "{} of {bits} bits",
-                            ["Y", "YA", "RGB", "RGBA"][channels.0 - 1]
-                        );
-                        sheets.push(self.sheet(Format::Png, &path, &what)?);
-                    }
-                }
-            }
-        }
-        let decoder = format!("{}.glsl", stem(self.wanted.kind));
-        files::write_text(&self.folder.join(&decoder), &self.wanted.decoder(&self.map))?;
-        let values =
-            self.map.values.iter().map(
-                |v| json!({ "name": v.name, "about": v.about, "unit": v.unit, "range": v.range }),
-            );
-        let values: Vec<Json> = values.collect();
-        let mut sheet = json!({
-            "kind": self.wanted.kind.name, "about": self.wanted.kind.about, "values": values,
-            "planes": self.map.planes, "encoding": self.wanted.encoding.name, "decoder": decoder, "files": sheets,
-        });
-        if self.beyond.0 > 0 {
-            let (count, most) = self.beyond;
-            sheet["beyond_range"] = json!({ "values": count, "at_most": most });
-        }
-        if !self.map.axes.is_empty() {
-            let axes =
-                self.map.axes.iter().map(|(name, count)| json!({ "axis": name, "count": count }));
-            sheet["axes"] = axes.collect();
-        }
-        for (name, what) in std::mem::take(&mut self.told) {
-            sheet[name] = what;
-        }
-        Ok(sheet)
-    }
-
-    /// What one file is.
-    fn sheet(&self, format: Format, path: &Path, holds: &str) -> Result<Json> {
-        let about = std::fs::metadata(path);
-        let about = about.map_err(|source| Error::Io { path: path.to_owned(), source })?;
-        let encoding = self.wanted.encoding;
-        let is_coded = matches!(format, Format::Ktx2 | Format::Png);
-        let decoding = match format {
-            Format::Exr | Format::Npy => "the values themselves".to_owned(),
-            Format::Png if encoding.component.is_signed() => {
-                format!("{}, where a sample v (0 to 1) stands for 2v - 1", encoding.decoding)
-            }
-            _ => encoding.decoding.to_owned(),
-        };
-        let component = encoding.component;
-        let coded = encoding.bounds.iter().map(|b| {
-            let [most, share] = [b.absolute(component), b.relative(component)];
-            json!({ "of": b.of, "unit": b.unit, "at_most": most, "and_of_the_value": share })
-        });
-        let bounds: Vec<Json> = if is_coded {
-            coded.collect()
-        } else {
-            // Of f64 to f32.
-            vec![
-                json!({ "of": "value", "unit": "", "at_most": 0.0, "and_of_the_value": 1.0 / f64::from(1 << 24) }),
-            ]
-        };
-        let mut sheet = json!({
-            "file": path.file_name().map(|n| n.to_string_lossy()), "format": format.name(), "bytes": about.len(),
-            "texels": holds, "decoding": decoding, "error": bounds,
-        });
-        if format == Format::Ktx2 && component.is_normalised() && component.bytes() == 2 {
-            sheet["sampled"] = format!(
-                "by devices that say so of VK_FORMAT_{holds} (VkFormatProperties): Vulkan asks it of none"
-            )
-            .into();
-        }
-        if self.voids().is_some() {
-            sheet["voids"] = match format {
-                Format::Exr | Format::Npy => "NaN",
-                Format::Png => "transparent: opacity is the last channel",
-                Format::Ktx2 if self.wanted.texels().count > encoding.components => {
-                    "what the ground has there once it is filled from around; a is 0 there, else 1"
-                }
-                Format::Ktx2 => "what the ground has there once it is filled from around",
-            }
-            .into();
-        }
-        Ok(sheet)
-    }
-}
-
-/// A sample of a picture, of as many bits as the component.
-fn sample(picture: &mut Vec<u8>, component: Component, value: f64) {
-    match component.bytes() {
-        1 => Component::Unorm8.put(value, picture),
-        _ => {
-            Component::Unorm16.put(value, picture);
-            let end = picture.len();
-            picture.swap(end - 2, end - 1);
-        }
     }
 }

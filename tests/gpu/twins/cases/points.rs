@@ -1,6 +1,8 @@
 //! What samples see: all borders, both kinds of words, lines and single samples, prime sides.
 
-use glam::DVec3;
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
 use ridgelight::scene::{
     Albedo, Border, Curvature, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter,
     Scene, Sun, Surface,
@@ -76,7 +78,38 @@ pub fn ellipses() -> Vec<Case> {
     };
     let deep = field(9, 9, [1.0, 1.0], |r, c| if (r, c) == (4, 4) { 0.0 } else { 60.0 });
     let long = field(3, 257, [2.0, 2.0], |r, c| ((7 * r + 5 * c) % 11) as f64);
+    // From the knob of low hills rays meet others 100 to 300 cells away, past dozens of repetitions and near a right angle of the base.
+    let low = field(7, 40, [1.0, 1.5], |r, c| {
+        let knob = if (r, c) == (3, 25) { 0.5 } else { 0.0 };
+        0.05 * (TAU * c as f64 / 40.0).sin() + 0.03 * (TAU * r as f64 / 7.0).cos() + knob
+    });
+    let flat = (0..60).map(|k| {
+        let z = [-0.05, -0.004, -0.002, -0.001, 0.4][k % 5];
+        DVec2::from_angle(2.4 * k as f64).extend(z).normalize()
+    });
+    let flat = Directions::from_vectors(flat.collect(), -1.0).expect("unit vectors");
     vec![
+        bent(
+            "ellipses of what lies far on curved bases",
+            low,
+            Border::Periodic,
+            flat,
+            [0.01, 1e-3],
+        ),
+        bent(
+            "ellipses of one column that repeats on curved bases",
+            hills(11, 1),
+            Border::Periodic,
+            sphere(40),
+            [1e-3, 1e-3],
+        ),
+        bent(
+            "ellipses of two rows that repeat on curved bases",
+            hills(2, 13),
+            Border::Periodic,
+            sphere(41),
+            [1e-3, 1e-3],
+        ),
         of("ellipses on a plane", rough(19, 13, 91), Border::Plane, above(64)),
         of("ellipses of an open field", rough(11, 17, 92), Border::Open, sphere(61)),
         of("ellipses of a field that repeats", rough(7, 11, 93), Border::Periodic, above(33)),
@@ -192,6 +225,20 @@ pub fn scatters() -> Vec<Case> {
             grey(Border::Periodic),
             none(),
             (24, bent(1, 24, [-0.002, 0.001]), false),
+        ),
+        of(
+            "lobes towards views",
+            rough(8, 9, 77),
+            glossy.clone(),
+            lights.clone(),
+            (17, Scatter { own_lobe: true, ..scatter(1, 20) }, false),
+        ),
+        of(
+            "their own light alone",
+            rough(8, 9, 79),
+            glossy.clone(),
+            lights.clone(),
+            (17, Scatter { own_lobe: true, ..scatter(0, 12) }, false),
         ),
         of("lobes", rough(8, 9, 77), glossy, lights, (17, scatter(2, 20), false)),
         of("a lobe under nothing", rough(5, 7, 78), one, none(), (8, scatter(1, 9), false)),

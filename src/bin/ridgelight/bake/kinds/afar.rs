@@ -1,16 +1,19 @@
 //! What kinds that are light have in common: the direct light of samples, and triangles seen from afar.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
-use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Encoding, Facets};
+use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Encoding, Facets, Leaving};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Picture, Plan};
-use ridgelight::scene::{Border, Bounces, Directions, HeightField, Quality};
+use ridgelight::scene::{
+    Border, Bounces, Directions, HeightField, Lights, Phong, Quality, Scatter, Scene, Sun, Surface,
+};
 use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
 use super::super::map::MapFiles;
-use super::{Lit, Say, Value};
+use super::{Lit, Say, Value, number};
 
 /// The most that the components hold.
 pub fn largest(encoding: &Encoding) -> f64 {
@@ -42,29 +45,41 @@ pub fn texel(about: &'static str, unit: &'static str, encoding: &Encoding) -> Ve
     let share = Value {
         name: "share",
         about: "of the view over the texel's own cell, slope, foreshortening and masking counted: cos θ in the mean where the \
-                field repeats",
+                field repeats; where it ends, of a whole cell, of which it has half at an edge and a third or a sixth at a corner",
         unit: "",
         range,
     };
     vec![colour("red"), colour("green"), colour("blue"), share]
 }
 
-/// Direct light of all samples.
-pub fn direct_plan(lit: &Lit, limits: &Limits) -> Result<Plan> {
+/// Of all lobes the largest exponent and share, where they reflect anything.
+pub fn lobe(lit: &Lit) -> Option<Phong> {
+    let largest = lit.scene.surface.phong.as_ref().map(|lobe| lobe.largest());
+    largest.filter(|phong| phong.scale > 0.0)
+}
+
+/// What of the ground is diffuse, under the same lights.
+pub fn diffuse(lit: &Lit) -> Scene {
+    let surface = Surface { phong: None, ..lit.scene.surface.clone() };
+    Scene { surface, ..lit.scene.clone() }
+}
+
+/// Direct light of all samples, of lobes that towards straight above.
+pub fn direct_plan(lit: &Lit, scene: &Scene, limits: &Limits) -> Result<Plan> {
     let bounces = Bounces { count: 0, ..lit.quality.bounces };
     let quality = Quality { bounces, ..*lit.quality };
     let still = Picture { still: true, ..Picture::default() };
-    plan::picture(lit.scene, &quality, limits, still)
+    plan::picture(scene, &quality, limits, still)
 }
 
-pub fn direct(gpu: &mut Headless, lit: &Lit) -> Result<Vec<[f32; 3]>> {
-    let plan = direct_plan(lit, &lit.limits)?;
-    let contents = plan::picture_inputs(lit.scene);
+pub fn direct(gpu: &mut Headless, lit: &Lit, scene: &Scene) -> Result<Vec<[f32; 3]>> {
+    let plan = direct_plan(lit, scene, &lit.limits)?;
+    let contents = plan::picture_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     gpu.with_frame(plan, &contents, |gpu, frame| {
-        gpu.draw(frame)?;
+        gpu.draw_counted(frame)?;
         let pixels = gpu.pixels(frame, 0)?;
-        crate::render::check_finite(&pixels, &lit.scene.field)?;
+        crate::render::check_finite(&pixels, &scene.field)?;
         Ok(crate::render::rgb(&pixels))
     })
 }
@@ -74,9 +89,11 @@ pub fn bytes(lit: &Lit, directions: usize) -> u64 {
     let samples = lit.scene.field.heights_m().len();
     let facets = 2 * samples * times(&lit.scene.field).pow(2);
     let words = 2 * directions.div_ceil(DIRECTIONS_A_WORD) * 4;
-    // Slopes, albedo, words and as they come, two radiances; a view's texels of all at once, what samples see.
-    let of_facets = facets * (16 + 24 + words + 48);
-    let of_samples = samples * (200 + 36 * directions + 8 * lit.around.count());
+    // Slopes, albedo, lobes, words and as they come, two radiances; a view's texels of all at once, what samples see.
+    let of_facets = facets * (16 + 24 + 16 + words + 48);
+    // And what lobes scatter towards each view, as it comes and as it is kept.
+    let towards = if lobe(lit).is_some() && lit.scatter.is_some() { 28 } else { 0 };
+    let of_samples = samples * (200 + (36 + towards) * directions + 8 * lit.around.count());
     (of_facets + of_samples) as u64
 }
 
@@ -97,15 +114,55 @@ fn finer(field: &HeightField, border: Border) -> Result<HeightField> {
     })
 }
 
+/// Of what is scattered of one light, and towards as many views as go side by side where it is another towards each.
+fn scatter_plan(lit: &Lit, scatter: &Scatter, limits: &Limits) -> Result<Plan> {
+    if lobe(lit).is_none() {
+        return plan::scatter(lit.scene, lit.around, scatter, limits);
+    }
+    // The scene's own lights have no part in it; whichever sun, it is as much.
+    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 1.0, diameter_rad: 0.0, irradiance: [1.0; 3] };
+    let lights = Lights { suns: vec![sun], ..Lights::default() };
+    let scene = Scene { lights, ..lit.scene.clone() };
+    let views = lit.angles.directions()?;
+    let at_once = plan::views_at_once(&scene.field, views.count(), limits);
+    plan::scatter_views(&scene, lit.around, scatter, &views.vectors()[..at_once], limits)
+}
+
+/// Of which triangles are seen.
+pub fn mask_plan(lit: &Lit, limits: &Limits) -> Result<Plan> {
+    let (field, border) = (&lit.scene.field, lit.scene.surface.border);
+    plan::facet_mask(&finer(field, border)?, border, &lit.angles.directions()?, limits)
+}
+
 pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
-    let finer = finer(field, border)?;
-    let mut all = vec![plan::facet_mask(&finer, border, &lit.angles.directions()?, limits)?];
+    let mut all = vec![mask_plan(lit, limits)?];
     if let Some(scatter) = &lit.scatter {
         all.push(plan::visible_points(field, border, lit.around, limits)?);
-        all.push(plan::scatter(lit.scene, lit.around, scatter, limits)?);
+        all.push(scatter_plan(lit, scatter, limits)?);
     }
     Ok(all)
+}
+
+/// Look-ups of what samples see, at most, where lobes scatter towards each view otherwise, and what they are for.
+pub fn looks(lit: &Lit, name: &str) -> Option<(u64, String)> {
+    let scatter = lit.scatter.as_ref().filter(|_| lobe(lit).is_some())?;
+    let views = lit.angles.count() as u64;
+    let lights = match name {
+        "brdf" | "brdf-factors" | "brdf-harmonics" | "btf" => views,
+        "light-field" => 1,
+        _ => return None,
+    };
+    let (paths, steps) = (u64::from(scatter.paths), u64::from(scatter.bounces));
+    let samples = lit.scene.field.heights_m().len() as u64;
+    let looks = samples * lights * paths * (steps + views);
+    let of_lights = if lights == 1 { String::new() } else { format!("of {lights} lights each ") };
+    Some((
+        looks,
+        format!(
+            "look-ups of {name}: {of_lights}{paths} paths of {steps} steps, and one more towards each of {views} views"
+        ),
+    ))
 }
 
 pub fn facets(gpu: &mut Headless, lit: &Lit, directions: &Directions, say: Say) -> Result<Facets> {
@@ -113,20 +170,22 @@ pub fn facets(gpu: &mut Headless, lit: &Lit, directions: &Directions, say: Say) 
     gpu.facets(lit.scene, times(&lit.scene.field), directions, &lit.limits)
 }
 
-/// All triangles' radiance under a light of irradiance 1 from each of some of their directions.
+/// All triangles' radiance under a light of irradiance 1 from each of some of their directions; what lobes scatter goes towards
+/// those views that there are of a light.
 pub fn each_light(
     gpu: &mut Headless,
     lit: &Lit,
     facets: &Facets,
-    lights: Range<usize>,
-    take: &mut dyn FnMut(usize, Vec<[f64; 3]>) -> Result<()>,
+    (lights, views): (Range<usize>, &dyn Fn(usize) -> Range<usize>),
+    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
 ) -> Result<()> {
+    let of = (facets, lights, views);
     let Some(scatter) = &lit.scatter else {
-        return gpu.lit_from(lit.scene, (facets, lights), None, &lit.limits, take);
+        return gpu.lit_from(lit.scene, of, None, &lit.limits, take);
     };
     let border = lit.scene.surface.border;
     let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
-    gpu.lit_from(lit.scene, (facets, lights), Some((&points, scatter)), &lit.limits, take)
+    gpu.lit_from(lit.scene, of, Some((&points, scatter)), &lit.limits, take)
 }
 
 /// The angles, and how well triangles fill the views.
@@ -156,20 +215,67 @@ pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
     }
     let closures = shown.into_iter().map(|i| facets.closure(i));
     let worst = closures.map(|c| (c - 1.0).abs()).fold(0.0, f64::max);
+    let (worst, are) = match lit.scene.surface.border {
+        Border::Periodic => (
+            Some(worst),
+            "flat, seen or hidden as their middles are; worst_closure is how far what they fill of a view was off what \
+             the plane does, before it was scaled to that, of directions that see any; the others' numbers are blind's",
+        ),
+        _ => (
+            None,
+            "flat, seen or hidden as their middles are; worst_closure is null, as a field that ends is no plane from afar: \
+             irradiance and shares are their own, and nothing is scaled",
+        ),
+    };
+    let (finer, count) = (facets.times(), facets.count());
     files.tell(
         "triangles",
-        json!({
-            "finer": facets.times(), "count": facets.count(), "worst_closure": worst,
-            "are": "flat, seen or hidden as their middles are; worst_closure is how far what they fill of a view was off what \
-                    the plane does, before it was scaled to that, of directions that see any; the others' numbers are blind's",
-        }),
+        json!({ "finer": finer, "count": count, "worst_closure": worst, "are": are }),
     );
     let scatter = match lit.scatter {
         Some(s) => {
-            json!({ "bounces": s.bounces, "paths": s.paths, "seed": s.seed, "directions": lit.around.count() })
+            let plan = scatter_plan(lit, &s, &lit.limits)?;
+            let [bounces, paths] = ["bounces", "paths"].map(|name| number(&plan, name));
+            json!({ "bounces": bounces, "paths": paths, "seed": s.seed, "directions": lit.around.count() })
         }
         None => serde_json::Value::Null,
     };
     files.tell("scattered", scatter);
+    tell_lobe(files, lit);
     Ok(())
+}
+
+/// Where the sharpest lobe is half as bright as in its middle, and how far apart what looks at it is.
+fn tell_lobe(files: &mut MapFiles, lit: &Lit) {
+    let Some(Phong { exponent, scale }) = lobe(lit) else { return };
+    // cosⁿ = ½.
+    let half = 0.5_f64.powf(1.0 / f64::from(exponent).max(1e-3)).acos().to_degrees();
+    let Angles { zeniths, azimuths } = lit.angles;
+    let angles = f64::max(90.0 / zeniths as f64, 360.0 / azimuths as f64);
+    // Each of N directions stands for 4π/N.
+    let around = (4.0 * PI / lit.around.count() as f64).sqrt().to_degrees();
+    let scattered = lit.scatter.is_some().then_some(around);
+    files.tell(
+        "lobe",
+        json!({
+            "exponent": exponent, "scale": scale, "half_width_deg": half, "angles_deg": angles, "directions_deg": scattered,
+            "is": "of the sharpest lobe: half as bright half_width_deg beside its middle; angles are up to angles_deg apart, and \
+                   what is linear between them errs by about 0.17 (angles_deg / half_width_deg)² of the peak of a lobe that level \
+                   ground has, while that is small; lobes that see scattered light see it along directions directions_deg apart; \
+                   not the same with light and view exchanged",
+        }),
+    );
+    if angles > half {
+        files.remark(format!(
+            "lobes are half as bright {half:.1}° beside their middle, --angles {zeniths}x{azimuths} are up to {angles:.1}° apart: too \
+             coarse to hold them, but where slopes spread them wider"
+        ));
+    }
+    if let Some(around) = scattered.filter(|around| *around > half) {
+        let count = lit.around.count();
+        files.remark(format!(
+            "lobes are half as bright {half:.1}° beside their middle, --directions {count} are {around:.1}° apart: what lobes mirror of \
+             scattered light is rough"
+        ));
+    }
 }

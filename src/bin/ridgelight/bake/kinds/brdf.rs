@@ -64,8 +64,25 @@ fn begin(asked: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Light(of) })
 }
 
+/// What three kinds keep each its own way.
+pub struct Table {
+    pub brdf: Brdf,
+    pub facets: Facets,
+    /// Seeded pairs of light and view between the angles, each with the field's own.
+    between: Vec<([DVec3; 2], [f64; 3])>,
+}
+
+/// That of this bake, made when it is asked for first.
+pub fn table<'a>(gpu: &mut Headless, lit: &'a Lit, say: Say) -> Result<&'a Table> {
+    if let Some(known) = lit.table.get() {
+        return Ok(known);
+    }
+    let made = make_table(gpu, lit, say)?;
+    Ok(lit.table.get_or_init(|| made))
+}
+
 /// Every light's table row by row.
-pub fn table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<(Brdf, Facets)> {
+fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     let directions = lit.angles.directions()?;
     let count = directions.count();
     let facets = afar::facets(gpu, lit, &directions, say)?;
@@ -77,53 +94,91 @@ pub fn table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<(Brdf, Facets)> 
         other => other,
     })?;
     let mut values = Vec::with_capacity(count * count);
-    afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
+    let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
+    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
         Ok(())
     })?;
-    Ok((Brdf::from_values(directions.vectors().to_vec(), values)?, facets))
+    let brdf = Brdf::from_values(directions.vectors().to_vec(), values)?;
+    say(format!("{PAIRS} pairs between"));
+    let pairs = bake::pairs(PAIRS, lit.seed)?;
+    let seen = gpu.facets(lit.scene, facets.times(), &pairs, &lit.limits)?;
+    let mut between = Vec::with_capacity(PAIRS);
+    let own = |light| PAIRS + light..PAIRS + light + 1;
+    afar::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
+        let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
+        between.push(([l, v], seen.seen_from(PAIRS + light, &radiance).map(|m| m / l.z)));
+        Ok(())
+    })?;
+    Ok(Table { brdf, facets, between })
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
-    let (table, facets) = table(gpu, lit, say)?;
+    let table = table(gpu, lit, say)?;
     let count = lit.angles.count();
     let planes = [0, 1, 2].map(|c| -> Vec<f32> {
-        (0..count * count).map(|i| table.at(i / count, i % count)[c] as f32).collect()
+        (0..count * count).map(|i| table.brdf.at(i / count, i % count)[c] as f32).collect()
     });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
-    tell(gpu, lit, (&table, &facets), &|l, v| table.between(&lit.angles, l, v), files, say)
+    tell(lit, table, &|l, v| table.brdf.between(&lit.angles, l, v), files)
+}
+
+/// As [`tell`], and what of the table itself is left by what is kept of it: weighted by what a plane receives and sends.
+pub fn tell_in_short(
+    lit: &Lit,
+    table: &Table,
+    kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
+    files: &mut MapFiles,
+) -> Result<()> {
+    let vectors = table.brdf.directions();
+    let (mut apart, mut all) = (0.0, 0.0);
+    let weights = lit.angles.projected_sr();
+    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
+        for (own, found) in table.brdf.at(l, v).into_iter().zip(kept(vectors[l], vectors[v])) {
+            apart += weights[l] * weights[v] * (own - found).powi(2);
+            all += weights[l] * weights[v] * own * own;
+        }
+    }
+    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
+    tell(lit, table, kept, files)
 }
 
 /// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.
 pub fn tell(
-    gpu: &mut Headless,
     lit: &Lit,
-    (table, facets): (&Brdf, &Facets),
+    table: &Table,
     kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
     files: &mut MapFiles,
-    say: Say,
 ) -> Result<()> {
     let weights = lit.angles.projected_sr();
-    let reflected = (0..lit.angles.count()).flat_map(|light| table.reflected(light, &weights));
+    let reflected = (0..lit.angles.count()).flat_map(|light| table.brdf.reflected(light, &weights));
     let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
     let is = "of a light's irradiance, over all lights and colours";
     files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
-    files.tell("unreciprocal", table.unreciprocal().into());
-    say(format!("{PAIRS} pairs between"));
-    let pairs = bake::pairs(PAIRS, lit.seed)?;
-    let between = gpu.facets(lit.scene, facets.times(), &pairs, &lit.limits)?;
+    files.tell("unreciprocal", table.brdf.unreciprocal().into());
+    if table.facets.has_lobes() {
+        let gathered = (0..lit.angles.count()).flat_map(|view| table.brdf.gathered(view, &weights));
+        let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+        let is = "radiance of a view under light of 1 from all sides, over all views and colours: at most what the surface \
+                  reflects; of one light, reflected, more than all may leave at grazing angles, as lobes have no cosine";
+        files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
+        if most > 1.0 {
+            files.remark(format!(
+                "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
+                 light, and are not the same with both exchanged ({:.3} unreciprocal)",
+                table.brdf.unreciprocal()
+            ));
+        }
+    }
     let (mut apart, mut all) = (0.0, 0.0);
-    afar::each_light(gpu, lit, &between, 0..PAIRS, &mut |light, radiance| {
-        let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
-        let own = between.seen_from(PAIRS + light, &radiance).map(|m| m / l.z);
-        for (own, found) in own.into_iter().zip(kept(l, v)) {
+    for ([l, v], own) in &table.between {
+        for (own, found) in own.iter().zip(kept(*l, *v)) {
             apart += (own - found).powi(2);
             all += own * own;
         }
-        Ok(())
-    })?;
+    }
     files.tell(
         "between",
         json!({
@@ -132,5 +187,5 @@ pub fn tell(
                    view, each even in what a level plane receives",
         }),
     );
-    afar::tell(files, lit, facets)
+    afar::tell(files, lit, &table.facets)
 }

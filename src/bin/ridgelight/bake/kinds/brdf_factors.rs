@@ -8,7 +8,7 @@ use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, br
 pub static KIND: Kind = Kind {
     name: "brdf-factors",
     about: "the same in short: eight functions g of one direction, as layers over --angles, whose products Σ g(light) g(view) \
-            it is; what they leave of it is told",
+            it is, with --phong Σ g(light) h(view), eight layers more; what they leave of it is told",
     encodings: &bake::REFLECTED,
     formats: &[Format::Ktx2, Format::Npy],
     decoder: include_str!("../../../../../shaders_glsl/decode/brdf_factors.glsl"),
@@ -32,15 +32,18 @@ fn begin(asked: &Asked) -> Result<Making> {
     let largest = afar::largest(asked.encoding);
     let value = |name| Value {
         name,
-        about: "of a function of one direction: the table is the sum over layers of its values for the light and for the view; \
-                texel (j, k) is of θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        about: "of a function of one direction: the table is the sum over k of layer k for the light times layer views + k for \
+                the view, views being 0 without --phong, else 8; texel (j, k) is of θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/√sr",
         range: [-largest, largest],
     };
     let mut constants = afar::constants("BRDF", angles);
     constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
+    // What lobes mirror is of other functions of the view than of the light.
+    let views = if asked.has_lobe { COUNT } else { 0 };
+    constants.push(format!("const int BRDF_VIEWS = {views};"));
     let map = Map {
-        planes: (0..COUNT)
+        planes: (0..COUNT + views)
             .flat_map(|k| ["R", "G", "B"].map(|c| format!("brdf_factors.{k}.{c}")))
             .collect(),
         values: ["red", "green", "blue"].map(value).into(),
@@ -48,7 +51,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         constants,
         size: Some([angles.azimuths, angles.zeniths]),
         axes: vec![
-            ("factor", COUNT),
+            ("factor", COUNT + views),
             ("channel", 3),
             ("theta", angles.zeniths),
             ("phi", angles.azimuths),
@@ -59,22 +62,12 @@ fn begin(asked: &Asked) -> Result<Making> {
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
-    let (table, facets) = brdf::table(gpu, lit, say)?;
+    let table = brdf::table(gpu, lit, say)?;
     say("factors".into());
-    let factors = Factors::of(&table, lit.angles, COUNT)?;
-    for of_k in factors.values() {
+    let factors = Factors::of(&table.brdf, lit.angles, COUNT, table.facets.has_lobes())?;
+    for of_k in factors.values().iter().chain(factors.of_views().unwrap_or_default()) {
         let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
         files.take(&planes.each_ref().map(Vec::as_slice))?;
     }
-    let vectors = table.directions();
-    let (mut apart, mut all) = (0.0, 0.0);
-    let weights = lit.angles.projected_sr();
-    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
-        for (own, found) in table.at(l, v).into_iter().zip(factors.at(vectors[l], vectors[v])) {
-            apart += weights[l] * weights[v] * (own - found).powi(2);
-            all += weights[l] * weights[v] * own * own;
-        }
-    }
-    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
-    brdf::tell(gpu, lit, (&table, &facets), &|l, v| factors.at(l, v), files, say)
+    brdf::tell_in_short(lit, table, &|l, v| factors.at(l, v), files)
 }

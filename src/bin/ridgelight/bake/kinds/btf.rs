@@ -41,7 +41,8 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let count = lit.angles.count();
     let directions = lit.angles.directions()?;
     let facets = afar::facets(gpu, lit, &directions, say)?;
-    afar::each_light(gpu, lit, &facets, 0..count, &mut |light, radiance| {
+    let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
+    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         for texels in facets.texels_from_all(&radiance) {
             let planes =

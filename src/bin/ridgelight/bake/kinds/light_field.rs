@@ -1,5 +1,6 @@
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
+use ridgelight::scene::Scatter;
 use ridgelight::{Result, bake, plan};
 
 use super::super::map::{Format, MapFiles};
@@ -9,7 +10,7 @@ use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source};
 pub static KIND: Kind = Kind {
     name: "light-field",
     about: "a picture in the field's own texels for each of --angles views under the scene's lights: radiance, and what \
-            of the view each texel fills",
+            of the view each texel fills; lobes mirror suns as points and the sky along --directions",
     encodings: &bake::TEXELS,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/light_field.glsl"),
@@ -36,7 +37,16 @@ fn begin(asked: &Asked) -> Result<Making> {
 }
 
 fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
-    let mut all = vec![afar::direct_plan(lit, limits)?];
+    let field = &lit.scene.field;
+    let mut all = vec![afar::direct_plan(lit, &afar::diffuse(lit), limits)?];
+    if afar::lobe(lit).is_some() {
+        let views = lit.angles.directions()?;
+        let views = &views.vectors()[..plan::views_at_once(field, views.count(), limits)];
+        all.push(plan::scatter_views(lit.scene, lit.around, &paths(lit), views, limits)?);
+        all.push(plan::visible_points(field, lit.scene.surface.border, lit.around, limits)?);
+        all.push(afar::mask_plan(lit, limits)?);
+        return Ok(all);
+    }
     all.extend(afar::plans(lit, limits)?);
     if let Some(scatter) = &lit.scatter {
         all.push(plan::scatter(lit.scene, lit.around, scatter, limits)?);
@@ -44,10 +54,17 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     Ok(all)
 }
 
+/// Of lobes, their own direct light in it; without bounces that alone, along each direction once.
+fn paths(lit: &Lit) -> Scatter {
+    let alone = Scatter { bounces: 0, paths: lit.around.count() as u32, ..Scatter::default() };
+    Scatter { own_lobe: true, ..lit.scatter.unwrap_or(alone) }
+}
+
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
-    let mut light = afar::direct(gpu, lit)?;
-    if let Some(scatter) = &lit.scatter {
+    let mut light = afar::direct(gpu, lit, &afar::diffuse(lit))?;
+    let has_lobe = afar::lobe(lit).is_some();
+    if let Some(scatter) = lit.scatter.as_ref().filter(|_| !has_lobe) {
         say(format!("what samples see in {} directions", lit.around.count()));
         let border = lit.scene.surface.border;
         let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
@@ -60,8 +77,8 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     say("what is seen of triangles".into());
     let directions = lit.angles.directions()?;
     let facets = gpu.facets(lit.scene, afar::times(&lit.scene.field), &directions, &lit.limits)?;
-    let none = vec![[0.0; 3]; facets.count()];
-    for view in 0..directions.count() {
+    let none = vec![[0.0; 3]; facets.count()].into();
+    let mut take = |view: usize, light: &[[f32; 3]]| {
         say(format!("view {} of {}", view + 1, directions.count()));
         let shares: Vec<f32> =
             facets.texels_from(view, &none).iter().map(|t| t[3] as f32).collect();
@@ -70,7 +87,22 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
             texels.map(|(l, share)| if *share > 0.0 { l[c] } else { 0.0 }).collect()
         };
         let colours = [0, 1, 2].map(plane);
-        files.take(&[&colours[0], &colours[1], &colours[2], &shares])?;
+        files.take(&[&colours[0], &colours[1], &colours[2], &shares])
+    };
+    if has_lobe {
+        say(format!("what samples see in {} directions", lit.around.count()));
+        let border = lit.scene.surface.border;
+        let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
+        let of = (lit.scene, &points, light.as_slice());
+        let views = directions.vectors();
+        say("scattered light".into());
+        gpu.scattered_towards(of, &paths(lit), views, &lit.limits, &mut |view, more| {
+            let all =
+                light.iter().zip(&more).map(|(own, more)| [0, 1, 2].map(|c| own[c] + more[c]));
+            take(view, &all.collect::<Vec<_>>())
+        })?;
+    } else {
+        (0..directions.count()).try_for_each(|view| take(view, &light))?;
     }
     afar::tell(files, lit, &facets)
 }

@@ -5,7 +5,7 @@ use ridgelight::{Error, Result, bake, plan};
 use serde_json::json;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, number};
 
 pub static KIND: Kind = Kind {
     name: "scatter",
@@ -23,7 +23,12 @@ const PARTS: u32 = 8;
 fn begin(asked: &Asked) -> Result<Making> {
     let range = [0.0, afar::largest(asked.encoding)];
     let value = |name, about| Value { name, about, unit: "radiance", range };
-    let light = "what leaves diffuse ground: direct light and all bounces";
+    let light = match asked.has_lobe {
+        false => "what leaves diffuse ground: direct light and all bounces",
+        true => {
+            "what leaves towards straight above, diffusely and by lobes: direct light as render draws it, and all bounces"
+        }
+    };
     let error = "one standard error of it by the paths alone, from eight parts of them; samples alike err alike";
     let map = Map {
         planes: ["R", "G", "B", "standard_error.R", "standard_error.G", "standard_error.B"]
@@ -40,13 +45,15 @@ fn begin(asked: &Asked) -> Result<Making> {
         is_array: true,
         ..Map::default()
     };
-    let of = OfLight { plans, bytes: |lit| lit.scene.field.heights_m().len() as u64 * 200, make };
+    let of = OfLight { plans, bytes: |lit| lit.scene.field.heights_m().len() as u64 * 212, make };
     Ok(Making { map, source: Source::Light(of) })
 }
 
-/// Paths of all parts: as many as are asked for, or a few more.
-pub fn paths(scatter: &Scatter) -> u32 {
-    scatter.paths.div_ceil(PARTS) * PARTS
+/// Paths that are traced, of all parts together: a few more than are asked for, fewer where a part has looked along every
+/// direction before its last, 0 where nothing is scattered.
+pub fn paths(lit: &Lit, limits: &Limits) -> Result<u32> {
+    let of_part = plan::scatter(lit.scene, lit.around, &part(lit, 0)?, limits)?;
+    Ok(PARTS * number(&of_part, "paths"))
 }
 
 /// Of each part as many paths, together as many as are asked for or a few more.
@@ -63,20 +70,25 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     Ok(vec![
         plan::scatter(lit.scene, lit.around, &part(lit, 0)?, limits)?,
         plan::visible_points(field, border, lit.around, limits)?,
-        afar::direct_plan(lit, limits)?,
+        afar::direct_plan(lit, lit.scene, limits)?,
     ])
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
-    let direct = afar::direct(gpu, lit)?;
+    let direct = afar::direct(gpu, lit, lit.scene)?;
+    // Of lobes paths find themselves what they throw on: it is another towards each place.
+    let thrown = match afar::lobe(lit) {
+        Some(_) => afar::direct(gpu, lit, &afar::diffuse(lit))?,
+        None => direct.clone(),
+    };
     say(format!("what samples see in {} directions", lit.around.count()));
     let border = lit.scene.surface.border;
     let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
     let mut sums = vec![[[0.0_f64; 2]; 3]; direct.len()];
     for k in 0..PARTS {
         say(format!("scattered light, part {} of {PARTS}", k + 1));
-        let light = gpu.scattered(lit.scene, &points, &direct, &part(lit, k)?, &lit.limits)?;
+        let light = gpu.scattered(lit.scene, &points, &thrown, &part(lit, k)?, &lit.limits)?;
         for (sum, light) in sums.iter_mut().zip(&light) {
             for (sum, v) in sum.iter_mut().zip(light) {
                 let v = f64::from(*v);
@@ -102,7 +114,7 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let count = values().count() as f64;
     let mean = |of: &dyn Fn(&[f64; 2]) -> f64| values().map(of).sum::<f64>() / count;
     let light = planes[0].iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / count;
-    let paths = lit.scatter.as_ref().map(paths);
+    let paths = paths(lit, &lit.limits)?;
     files.tell(
         "chance",
         json!({
