@@ -13,26 +13,21 @@ mod nodes;
 mod paths;
 mod points;
 mod pyramid;
+mod run;
 mod scatter;
 mod sh;
 pub(crate) mod soft;
 mod sweep;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use ridgelight::cpu::gloss_gather::Series;
-use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
-use ridgelight::cpu::path_trace::Traced;
-use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::gpu::{Frame, Headless, shaders};
-use ridgelight::measure::tolerance::ShadeError;
-use ridgelight::plan::{Azimuth, Kind, Limits, Pass, Plan, ResourceId};
-use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
+use ridgelight::gpu::shaders;
+use ridgelight::plan::{Limits, Pass};
+use ridgelight::scene::Fuse;
 
 use crate::Device;
 use cases::Case;
+use run::Run;
 
 /// One value of the device, its twin's, and how far apart they may be.
 #[derive(Clone, Copy, Debug)]
@@ -118,198 +113,6 @@ const ELSEWHERE: [&str; 1] = ["map_draw"];
 fn twin_of(pass: &Pass) -> Twin {
     let twin = TWINS.iter().find(|t| t.0 == pass.name());
     twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name())).1
-}
-
-/// A plan run pass by pass, and what its passes have left so far.
-struct Run<'a> {
-    gpu: &'a mut Headless,
-    frame: Frame,
-    plan: Plan,
-    scene: &'a Scene,
-    quality: Quality,
-    /// What the device's sweeps left, by azimuth, as lattices of one layer.
-    lattices: Vec<Option<Lattice>>,
-    /// Where the azimuths of the light that is being summed begin.
-    light_begins: usize,
-    /// The sum of the lights so far, by the twin, and how many they are.
-    radiance: Vec<[f64; 3]>,
-    lights: usize,
-    /// The sum of the balls of light so far, by the twin, and how far each sample may be off it.
-    balls: Vec<([f64; 3], f64)>,
-    /// What the lobe's passes have left so far.
-    gloss: Vec<[f64; 3]>,
-    /// What arrives to be thrown on, as series.
-    arriving: Vec<Series>,
-    /// Groups of four lines whose hull was deeper than its memory.
-    lost: usize,
-    edit: Option<edit::Edit>,
-    /// Of visible points.
-    directions: Option<Directions>,
-    /// Of scattered light.
-    points: Option<VisiblePoints>,
-    /// Of a list of samples.
-    listed: Option<Vec<usize>>,
-    /// Of every pixel, the batch of paths that is being traced.
-    batches: Vec<Traced>,
-    /// The mean so far, by the twin, and what it may be off by.
-    scattered: Vec<([f64; 3], [f64; 3])>,
-}
-
-impl<'a> Run<'a> {
-    fn new(gpu: &'a mut Headless, case: &'a Case) -> Self {
-        let plan = case.plan(&gpu.report().limits);
-        let contents = case.contents();
-        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
-        let mut frame = gpu.frame(plan.clone(), &contents).expect("a frame");
-        gpu.draw(&mut frame).expect("drawn");
-        Self {
-            gpu,
-            frame,
-            scene: &case.scene,
-            quality: case.quality,
-            lattices: vec![None; plan.azimuths.len()],
-            light_begins: 0,
-            radiance: Vec::new(),
-            lights: 0,
-            balls: Vec::new(),
-            gloss: Vec::new(),
-            arriving: Vec::new(),
-            lost: 0,
-            edit: None,
-            directions: case.directions(),
-            points: case.points(),
-            listed: case.listed(),
-            batches: Vec::new(),
-            scattered: Vec::new(),
-            plan,
-        }
-    }
-
-    /// Runs every pass alone, in order, and pairs what it left with its twin's.
-    fn pairs(&mut self) -> Vec<(String, Vec<Pair>)> {
-        let passes = self.plan.passes.clone();
-        let mut all = Vec::new();
-        for (i, pass) in passes.iter().enumerate() {
-            self.gpu.draw_passes(&mut self.frame, &[i]).expect("drawn");
-            all.push((pass.label(), twin_of(pass)(self, pass)));
-        }
-        if !self.plan.edit_passes.is_empty() {
-            self.edit = Some(edit::draw(self));
-            let finds_horizons =
-                ["dirty_mark", "height_transpose", "horizon_resweep", "dirty_list"];
-            let passes = self.plan.edit_passes.clone();
-            for pass in passes.iter().filter(|p| finds_horizons.contains(&p.name())) {
-                all.push((format!("edit: {}", pass.label()), twin_of(pass)(self, pass)));
-            }
-        }
-        all
-    }
-
-    fn bound(pass: &Pass, binding: &str) -> Option<ResourceId> {
-        let place = pass.shader.bindings.iter().position(|b| b.name == binding);
-        pass.bindings[place.unwrap_or_else(|| panic!("{} binds no {binding}", pass.name()))]
-    }
-
-    /// Words of what the pass binds under this name, if it binds anything.
-    fn words(&mut self, pass: &Pass, binding: &str) -> Option<Vec<u32>> {
-        let id = Self::bound(pass, binding)?;
-        Some(self.gpu.read(&self.frame, id).expect("read back"))
-    }
-
-    fn floats(&mut self, pass: &Pass, binding: &str) -> Option<Vec<f32>> {
-        Some(self.words(pass, binding)?.into_iter().map(f32::from_bits).collect())
-    }
-
-    /// Columns and rows of the image that the pass binds under this name.
-    fn extent(&self, pass: &Pass, binding: &str) -> [usize; 2] {
-        let id = Self::bound(pass, binding).expect("bound");
-        match self.plan.resources[id.0].kind {
-            Kind::Image { width, height, .. } => [width as usize, height as usize],
-            Kind::Buffer { .. } => panic!("{binding} is a buffer"),
-        }
-    }
-
-    fn size(&self) -> [usize; 2] {
-        [self.scene.field.cols(), self.scene.field.rows()]
-    }
-
-    fn lobe(&self, sample: usize) -> Phong {
-        self.scene.surface.phong.as_ref().expect("a lobe").at(sample)
-    }
-
-    fn directions(&self) -> Directions {
-        self.directions.clone().expect("a case with directions")
-    }
-
-    /// Of what lies on a curved base.
-    fn bent_directions(&self) -> Directions {
-        match &self.points {
-            Some(points) => points.directions().clone(),
-            None => self.directions(),
-        }
-    }
-
-    fn border(&self) -> Border {
-        self.scene.surface.border
-    }
-
-    fn heights(&self) -> Heights<'a> {
-        let scene = self.scene;
-        Heights::of(&scene.field, scene.surface.border)
-    }
-
-    /// The largest |height| and the relief.
-    fn relief(&self) -> [f64; 2] {
-        let all = || self.scene.field.heights_m().iter().map(|h| f64::from(*h));
-        let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
-        [low.abs().max(high.abs()), high - low]
-    }
-
-    /// What errs at a sample whatever its horizons.
-    fn sample_error(&self) -> ShadeError {
-        let [x, y] = self.scene.field.cell_m();
-        ShadeError::new(0.0, self.relief()[1], x.min(y), 1)
-    }
-
-    /// How far a normal may be turned, radians.
-    fn normal_error(&self) -> f64 {
-        self.sample_error().normal()
-    }
-
-    fn warm_up(&self, marches_rows: bool) -> i32 {
-        let batch = ridgelight::plan::Axis::of(marches_rows, self.plan.size, self.border());
-        batch.warm_up as i32
-    }
-
-    /// What the sweeps of some azimuths left, for the twins of what comes after.
-    fn swept<T>(
-        &self,
-        azimuths: Range<usize>,
-        (fuse, line_shift): (Option<Fuse>, u32),
-        of: impl FnOnce(&Swept) -> T,
-    ) -> T {
-        let mut list: Vec<Azimuth> = self.plan.azimuths[azimuths.clone()].to_vec();
-        number_layers(&mut list);
-        let shift = if fuse.is_none() { 15 } else { line_shift };
-        let mut lattices = Lattices::new(&list, self.size(), shift, self.border());
-        for (azimuth, left) in list.iter().zip(&self.lattices[azimuths]) {
-            let left = left.as_ref().expect("swept before");
-            let all = lattices.of_mut(azimuth);
-            let begin = all.texel(0, 0, azimuth.layer);
-            let texels = begin..begin + left.slopes.len();
-            all.occluders[texels.clone()].copy_from_slice(&left.occluders);
-            all.slopes[texels.clone()].copy_from_slice(&left.slopes);
-            all.distances[texels].copy_from_slice(&left.distances);
-        }
-        of(&Swept {
-            heights: self.heights(),
-            azimuths: &list,
-            lattices: &lattices,
-            fuse,
-            line_shift,
-            warm_up: [self.warm_up(false), self.warm_up(true)],
-        })
-    }
 }
 
 /// A specialisation constant of a pass.
