@@ -10,8 +10,7 @@ use ridgelight::cpu::env_wedges::env_wedges;
 use ridgelight::cpu::shared::gather::Swept;
 use ridgelight::gpu::Headless;
 use ridgelight::measure::tolerance::{ShadeError, twin_resolved, twin_table, twin_wedge_row};
-use ridgelight::plan::azimuths::even;
-use ridgelight::plan::{self, Azimuth, Limits, Picture};
+use ridgelight::plan::{self, Azimuth, Limits, Picture, Plan};
 use ridgelight::scene::{Border, Environment, Lights, Quality, Scene};
 
 use super::sweeps::{lit, white};
@@ -32,6 +31,7 @@ pub(super) fn check(
     let lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
     let scene = Scene { lights, ..white(scene) };
     let plan = plan::picture(&scene, quality, limits, Picture::default())?;
+    let wanted = Wanted::of(&scene, &plan, places, quality, lines);
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
@@ -44,7 +44,6 @@ pub(super) fn check(
         DVec3::from_array([0, 1, 2].map(|c: usize| t[c.min(last)].into()))
     };
     let found: Vec<DVec3> = places.iter().map(texel).collect();
-    let wanted = Wanted::of(&scene, places, quality, lines);
     let (error, bound) = wanted.judge(&found, quality)?;
     Ok(Some(format!(
         "an environment {} off the same sweeps' (RMSE; bound {})",
@@ -57,9 +56,16 @@ pub(super) fn check(
 struct Wanted(Vec<[DVec3; 2]>);
 
 impl Wanted {
-    fn of(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -> Self {
+    /// In the azimuths of a plan, which lie closer where the environment is bright.
+    fn of(
+        scene: &Scene,
+        plan: &Plan,
+        places: &[usize],
+        quality: &Quality,
+        line_shift: u32,
+    ) -> Self {
         let environment = scene.lights.environment.as_ref().expect("an environment");
-        let azimuths = even(quality.azimuths, scene.field.cell_m());
+        let azimuths = plan.azimuths[..quality.azimuths as usize].to_vec();
         let nodes = quality.table_elevations as usize;
         let (cols, border) = (scene.field.cols(), scene.surface.border);
         let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
@@ -162,7 +168,9 @@ mod tests {
                 let field = fractal(48, 1).unwrap();
                 let scene = Scene { field, surface: Surface::default(), lights };
                 let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
-                Wanted::of(&scene, &places, quality, quality.lines.shift().unwrap())
+                let limits = Limits::lavapipe();
+                let plan = plan::picture(&scene, quality, &limits, Picture::default()).unwrap();
+                Wanted::of(&scene, &plan, &places, quality, quality.lines.shift().unwrap())
             };
             let quality = Quality { azimuths: 16, ..Quality::default() };
             let wanted = of(0.0, &quality);
