@@ -1,7 +1,7 @@
 //! What is baked by looking along directions, and of light.
 
 use ridgelight::Result;
-use ridgelight::bake::{self, Angles, Brdf, CurvedEllipses, Ellipse, Factors};
+use ridgelight::bake::{self, Angles, Brdf, BrdfHarmonics, CurvedEllipses, Ellipse, Factors};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
@@ -19,6 +19,8 @@ const CURVATURES: [f64; 2] = [1e-5, 2.5e-6];
 const ANGLES: Angles = Angles { zeniths: 3, azimuths: 8 };
 /// As `bake --what brdf-factors` keeps.
 const FACTORS: usize = 8;
+/// Of harmonics, as many as 3 × 8 angles can tell apart.
+const ORDER: usize = 4;
 
 /// Texels of all outputs of what is made of a field's heights.
 fn drawn(gpu: &mut Headless, plan: Plan, field: &HeightField) -> Result<Vec<Vec<f32>>> {
@@ -146,11 +148,20 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     let table = Brdf::from_values(directions.vectors().to_vec(), values.clone())?;
     let factors = Factors::of(&table, ANGLES, FACTORS, false)?;
     let of_factors = factors.values().iter().flat_map(|of_k| colours(of_k)).collect();
+    let harmonics = BrdfHarmonics::of(&table, ANGLES, ORDER, false)?;
+    let of_harmonics = colours(harmonics.coefficients()).into();
     let reflected = &bake::REFLECTED;
     Ok(vec![
         scattered,
         Baked::of("brdf", "R, G, B", "a pair of angles", reflected, colours(&values).into()),
         Baked::of("brdf-factors", "R, G, B", "an angle and factor", reflected, of_factors),
+        Baked::of(
+            "brdf-harmonics",
+            "R, G, B",
+            "a pair of harmonics",
+            &bake::HARMONIC_WEIGHTS,
+            of_harmonics,
+        ),
         Baked::of("btf", "R, G, B, share", "a sample and pair", &bake::TEXELS, pictures),
         Baked::of("light-field", "R, G, B, share", "a sample and view", &bake::TEXELS, field),
     ])

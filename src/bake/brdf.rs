@@ -153,7 +153,7 @@ impl Brdf {
     }
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`].
+    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`](super::Facets).
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
