@@ -60,12 +60,14 @@ pub struct Traced {
     pub light: Near3,
     /// Rays.
     pub rays: Near,
-    /// Decisions that are in doubt.
-    pub doubts: u32,
+    /// Decisions that are in doubt, of light that has been reflected so often before it is: by samples alone, once besides, more.
+    pub doubts: [u32; 3],
     /// What the light is off by for them.
     pub in_doubt: [f64; 3],
-    /// How many of them are to be expected of rays over ground.
-    pub expected: f64,
+    /// Of rays of each, over all places where one was held against the surface, how many cells it had come, and one.
+    pub crossed: [f64; 3],
+    /// Of which of them it is now.
+    reflected: usize,
 }
 
 impl Default for Traced {
@@ -73,9 +75,10 @@ impl Default for Traced {
         Self {
             light: [Near::ZERO; 3],
             rays: Near::ZERO,
-            doubts: 0,
+            doubts: [0; 3],
             in_doubt: [0.0; 3],
-            expected: 0.0,
+            crossed: [0.0; 3],
+            reflected: 0,
         }
     }
 }
@@ -94,7 +97,7 @@ impl Traced {
     }
 
     fn doubt(&mut self, most: [f64; 3]) {
-        self.doubts += 1;
+        self.doubts[self.reflected] += 1;
         for (c, most) in most.into_iter().enumerate() {
             self.light[c].off += most;
             self.in_doubt[c] += most;
@@ -105,9 +108,11 @@ impl Traced {
     pub fn join(&mut self, more: &Self) {
         self.light = plus(self.light, more.light);
         self.rays = Near { v: self.rays.v + more.rays.v, off: self.rays.off + more.rays.off };
-        self.doubts += more.doubts;
-        (0..3).for_each(|c| self.in_doubt[c] += more.in_doubt[c]);
-        self.expected += more.expected;
+        for i in 0..3 {
+            self.in_doubt[i] += more.in_doubt[i];
+            self.doubts[i] += more.doubts[i];
+            self.crossed[i] += more.crossed[i];
+        }
     }
 
     fn ray(&mut self, is_sent: Option<bool>) {
@@ -329,6 +334,7 @@ impl<'a> Tracer<'a> {
         let mut carried = [one(); 3];
         for bounce in 0..=self.bounces {
             let is_first = bounce == 0;
+            sum.reflected = bounce.min(2) as usize;
             let counts = Some(self.counts_direct || !is_first);
             let first_ray = bounce * (count + 2);
             let points = |r: u32| {
@@ -362,7 +368,7 @@ impl<'a> Tracer<'a> {
                 let far = Near::of(1e30);
                 let t_end = light.end_m.map_or(far, |end| end * ray.scale.min(Near::of(1e6)));
                 let met = trace(&self.ground, &ray, t_end);
-                sum.expected += met.chance;
+                sum.crossed[sum.reflected] += met.crossed;
                 let is_free = met.what.map(|what| what == What::Free);
                 let in_view = match light.end_m {
                     None => is_free,
@@ -387,7 +393,7 @@ impl<'a> Tracer<'a> {
                     sum.ray(is_sent);
                     let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
                     let met = trace(&self.ground, &ray, Near::of(1e30));
-                    sum.expected += met.chance;
+                    sum.crossed[sum.reflected] += met.crossed;
                     let is_free = met.what.map(|what| what == What::Free);
                     let brought = product(carried, brought);
                     sum.add(brought, all([is_sent, is_free]), most(carried, 0));
@@ -407,7 +413,7 @@ impl<'a> Tracer<'a> {
             }
             let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
             let met = trace(&self.ground, &ray, Near::of(1e30));
-            sum.expected += met.chance;
+            sum.crossed[sum.reflected] += met.crossed;
             let scattered = product(carried, of.scattered);
             let Some(what) = met.what else {
                 let (seen, all) = (self.most_seen(left), most(carried, left));
@@ -438,7 +444,7 @@ impl<'a> Tracer<'a> {
             if counts == Some(true) {
                 let light = product(scattered, seen.light);
                 sum.light = plus(sum.light, light);
-                sum.doubts += seen.doubts;
+                sum.doubts[sum.reflected] += seen.doubts[0];
                 (0..3).for_each(|c| sum.in_doubt[c] += scattered[c].most() * seen.in_doubt[c]);
             }
             if left == 0 || what != What::Hit {

@@ -47,7 +47,7 @@ fn straight_above_every_column_is_in_doubt() {
         let mut seen = Traced::default();
         let e = [Near::ZERO.wider(1e-7), Near::ZERO.wider(1e-7), Near::of(1.0)];
         environment.towards(e, one(), &mut seen);
-        assert_eq!(seen.doubts, 1, "{bright}");
+        assert_eq!(seen.doubts, [1, 0, 0], "{bright}");
         let off = seen.in_doubt[0];
         assert!((4.0..4.01).contains(&off), "column {bright}: {off}");
     }
