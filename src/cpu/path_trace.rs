@@ -5,31 +5,27 @@
 //! where ([`Near`]): what such a decision may bring or not bring is added to what the sum may be off by. Where the path goes on
 //! differently afterwards, that is the most which any path may bring from there on.
 
+mod environment;
+mod lights;
+mod place;
+mod traced;
+
 use std::ops::Range;
 
-use super::shared::lobe::lobe_density;
-use super::shared::random::{direction_about, net_point, on_circle, shuffled, words_of};
-use super::shared::trace::{Met, What, trace};
+use super::shared::random::{net_point, shuffled, words_of};
+use super::shared::trace::{What, trace};
 use super::shared::walk::{Ground, ray_from};
-use crate::measure::tolerance::near::{
-    Near, Near3, all, angle, any, dot, minus, normalize, plus, product, times,
-};
+use crate::measure::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
 use crate::plan::{REFERENCE_BATCH, most_light, reference_inputs};
-use crate::scene::{Albedo, Border, Lobe, Scene};
-use std::f64::consts::PI;
+use crate::scene::{Albedo, Lobe, Scene};
+use environment::Environment;
+use place::Place;
+pub use traced::Traced;
 
 const BITS: u32 = REFERENCE_BATCH.ilog2();
 
 /// Below this f32 may have nothing where f64 has something: whether a ray is sent at all is in doubt.
 const FAINTEST: f64 = 1e-30;
-
-/// Radiance, its density of choice.
-struct Environment {
-    size: [i32; 2],
-    texels: Vec<[f32; 4]>,
-    cdf: Vec<f32>,
-    rotation_turns: Near,
-}
 
 /// All that the shader is given.
 pub struct Tracer<'a> {
@@ -51,94 +47,6 @@ pub struct Tracer<'a> {
     /// wherever that ends.
     far: [f64; 3],
     balls: [f64; 3],
-}
-
-/// What some paths of a sample bring.
-#[derive(Clone, Copy, Debug)]
-pub struct Traced {
-    /// The sum of their light.
-    pub light: Near3,
-    /// Rays.
-    pub rays: Near,
-    /// Decisions that are in doubt, of light that has been reflected so often before it is: by samples alone, once besides, more.
-    pub doubts: [u32; 3],
-    /// What the light is off by for them.
-    pub in_doubt: [f64; 3],
-    /// Of rays of each, over all places where one was held against the surface, how many cells it had come, and one.
-    pub crossed: [f64; 3],
-    /// Of which of them it is now.
-    reflected: usize,
-}
-
-impl Default for Traced {
-    fn default() -> Self {
-        Self {
-            light: [Near::ZERO; 3],
-            rays: Near::ZERO,
-            doubts: [0; 3],
-            in_doubt: [0.0; 3],
-            crossed: [0.0; 3],
-            reflected: 0,
-        }
-    }
-}
-
-impl Traced {
-    /// What may or may not be brought, `most` at most: added where it surely is. Where rounding leaves nothing of it, any of that.
-    fn add(&mut self, light: Near3, is_brought: Option<bool>, most: [f64; 3]) {
-        let is_lost = (0..3).any(|c| light[c].off > most[c]);
-        match is_brought {
-            Some(true) if !is_lost => self.light = plus(self.light, light),
-            Some(true) => self.doubt(most),
-            None if is_lost => self.doubt(most),
-            Some(false) => {}
-            None => self.doubt(light.map(Near::most)),
-        }
-    }
-
-    fn doubt(&mut self, most: [f64; 3]) {
-        self.doubts[self.reflected] += 1;
-        for (c, most) in most.into_iter().enumerate() {
-            self.light[c].off += most;
-            self.in_doubt[c] += most;
-        }
-    }
-
-    /// Adds what others bring.
-    pub fn join(&mut self, more: &Self) {
-        self.light = plus(self.light, more.light);
-        self.rays = Near { v: self.rays.v + more.rays.v, off: self.rays.off + more.rays.off };
-        for i in 0..3 {
-            self.in_doubt[i] += more.in_doubt[i];
-            self.doubts[i] += more.doubts[i];
-            self.crossed[i] += more.crossed[i];
-        }
-    }
-
-    fn ray(&mut self, is_sent: Option<bool>) {
-        let sent = if is_sent == Some(false) { 0.0 } else { 1.0 };
-        let off = if is_sent.is_none() { 1.0 } else { 0.0 };
-        self.rays = Near { v: self.rays.v + sent, off: self.rays.off + off };
-    }
-}
-
-/// Where a path stands.
-struct Place {
-    base: [i32; 2],
-    offset: [Near; 2],
-    own: Near,
-    normal: Near3,
-    albedo: Near3,
-    lobe: [Near; 2],
-    mirror: Near3,
-}
-
-/// What a place reflects: see the shader.
-struct Reflected {
-    facing: Near,
-    light: Near3,
-    density: Near,
-    scattered: Near3,
 }
 
 fn given<const N: usize>(of: [f32; N]) -> [Near; N] {
@@ -244,81 +152,6 @@ impl<'a> Tracer<'a> {
             self.path_light(self.first(sample), path, words, &lights, &mut all);
         }
         all
-    }
-
-    /// Of what stands at a sample.
-    fn first(&self, sample: usize) -> Place {
-        let cols = self.scene.field.cols();
-        let [own, east, north] = given(self.samples[sample]);
-        let normal = normalize([-east, -north, one()]);
-        let mirror = times(Near::of(2.0) * normal[2], normal);
-        Place {
-            base: [(sample % cols) as i32, (sample / cols) as i32],
-            offset: [Near::ZERO; 2],
-            own,
-            normal,
-            albedo: given(self.albedo[sample]),
-            lobe: self.lobes.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
-            mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
-        }
-    }
-
-    /// Of what a ray along e has met.
-    fn place_of(&self, met: &Met, is_lower: bool, e: Near3) -> Place {
-        let [nw, ne, sw, se] = self.ground.corners(met.cell);
-        let [east, south] = if is_lower { [se - sw, sw - nw] } else { [ne - nw, se - ne] };
-        let [x, y] = self.ground.cell_m;
-        let normal = normalize([-east / x, south / y, one()]);
-        let (cols, rows) = (self.scene.field.cols(), self.scene.field.rows());
-        let at = met.cell.map(|i| i as usize);
-        let next = [(at[0] + 1) % cols, (at[1] + 1) % rows];
-        let third = if is_lower { [at[0], next[1]] } else { [next[0], at[1]] };
-        let [far, along] = if is_lower { met.offset } else { [met.offset[1], met.offset[0]] };
-        let near = one() - along;
-        let rest = one() - near - far;
-        let samples = [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
-        let between = |of: &dyn Fn(usize) -> Near| {
-            let [a, b, c] = samples.map(|(weight, sample)| weight * of(sample));
-            a + b + c
-        };
-        let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));
-        let lobe_is_map = matches!(self.scene.surface.phong, Some(Lobe::Map(_)));
-        let channel = |c: usize| between(&|i| Near::given(self.albedo[i][c]));
-        let lobe = |c: usize| match (lobe_is_map, self.lobes.first()) {
-            (true, _) => between(&|i| Near::given(self.lobes[i][c])).max(Near::ZERO),
-            (false, Some(lobe)) => Near::given(lobe[c]),
-            (false, None) => Near::ZERO,
-        };
-        Place {
-            base: met.cell,
-            offset: met.offset,
-            own: nw + met.offset[0] * east + met.offset[1] * south,
-            normal,
-            albedo: if is_map { [0, 1, 2].map(channel) } else { given(self.albedo[0]) },
-            lobe: [0, 1].map(lobe),
-            mirror: minus(e, times(Near::of(2.0) * dot(e, normal), normal)),
-        }
-    }
-
-    /// Share of scattered rays that the lobe sends.
-    fn lobe_choice(place: &Place) -> Near {
-        place.lobe[1] / (largest(place.albedo) + place.lobe[1]).max(Near::of(1e-30))
-    }
-
-    fn reflected(&self, place: &Place, e: Near3) -> Reflected {
-        let facing = dot(place.normal, e);
-        let density = facing / Near::of(PI);
-        let light = times(density, place.albedo);
-        if self.lobes.is_empty() {
-            return Reflected { facing, light, density, scattered: place.albedo };
-        }
-        let lobe = lobe_density(minus(e, place.mirror), place.lobe[0]);
-        let choice = Self::lobe_choice(place);
-        let density = density * (one() - choice) + lobe * choice;
-        let more = place.lobe[1] * lobe;
-        let light = light.map(|l| l + more);
-        let scattered = light.map(|l| l / density.max(Near::of(1e-30)));
-        Reflected { facing, light, density, scattered }
     }
 
     /// Adds what one path brings.
@@ -453,176 +286,6 @@ impl<'a> Tracer<'a> {
             carried = scattered;
             let Some(is_lower) = met.lower else { return parts(sum, carried, left - 1) };
             place = self.place_of(&met, is_lower, e);
-        }
-    }
-
-    /// Where the place lies in the world; none where rounding decides whether a field that repeats begins again there.
-    fn centre(&self, place: &Place) -> Option<Near3> {
-        let (cols, rows) = (self.scene.field.cols(), self.scene.field.rows());
-        let mut from = [0, 1].map(|i| Near::given(place.base[i] as f32) + place.offset[i]);
-        if self.scene.surface.border == Border::Periodic {
-            for (from, side) in from.iter_mut().zip([cols, rows]) {
-                if !Near::given(side as f32).above(*from)? {
-                    *from = Near::ZERO;
-                }
-            }
-        }
-        let [x, y] = self.ground.cell_m;
-        Some([from[0] * x, (Near::given((rows - 1) as f32) - from[1]) * y, place.own])
-    }
-
-    /// What a light may bring; none where rounding decides where on it a ray goes.
-    fn light(&self, place: &Place, centre: Near3, r: usize, u: [Near; 2]) -> Option<Shining> {
-        let [suns, keys, _] = self.counts();
-        let source = given(self.lights[2 * r]);
-        let colour = colour(self.lights[2 * r + 1]);
-        let axis = [source[0], source[1], source[2]];
-        let mut end_m = None;
-        let mut shines = Some(true);
-        let mut solid = one();
-        let e = if (suns..suns + keys).contains(&r) {
-            towards_key(source, u)
-        } else {
-            let is_far = r < suns;
-            let to = if is_far { axis } else { minus(axis, centre) };
-            let away = dot(to, to).sqrt();
-            let sine = source[3] / away;
-            let sine2 = sine * sine;
-            let root = (one() - sine2).max(Near::ZERO).sqrt();
-            let cone = if is_far { source[3] } else { sine2 / (one() + root) };
-            let off = u[0] * cone;
-            let is_apart = away.above(Near::ZERO)?;
-            let above = [Near::ZERO, Near::ZERO, one()];
-            let towards = if is_apart { to.map(|t| t / away) } else { above };
-            if !is_far {
-                shines = one().above(sine2);
-                let two = Near::of(2.0);
-                let beside2 = off * (two - off) * away * away;
-                let half = (source[3] * source[3] - beside2).max(Near::ZERO).sqrt();
-                end_m = Some(((one() - off) * away - half).max(Near::ZERO));
-                solid = Near::of(2.0 * PI) * cone;
-                // From inside no ray is sent, whichever way.
-                if shines == Some(false) {
-                    let (e, brought) = (above, [Near::ZERO; 3]);
-                    return Some(Shining { e, brought, reflected: Some(false), shines, end_m });
-                }
-            }
-            direction_about(towards, off, u[1])?
-        };
-        let of = self.reflected(place, e);
-        let brought = product(of.light, colour).map(|l| l * solid);
-        let reflected = of.facing.above(Near::ZERO);
-        Some(Shining { e, brought, reflected, shines, end_m })
-    }
-
-    /// Where the scattered ray goes; none where rounding decides whether by the lobe.
-    fn scattered(&self, place: &Place, u: [Near; 2], v: [Near; 2]) -> Option<Near3> {
-        let by_lobe =
-            if self.lobes.is_empty() { false } else { Self::lobe_choice(place).above(v[0])? };
-        if by_lobe {
-            let power = one() / (place.lobe[0] + one());
-            let near_mirror = u[0].max(Near::of(1e-30)).powf(power);
-            return direction_about(place.mirror, one() - near_mirror, u[1]);
-        }
-        let two = Near::of(2.0);
-        let side = (Near::of(4.0) * u[0] * (one() - u[0])).sqrt();
-        let [cos, sin] = on_circle(u[1]).map(|c| c * side);
-        Some(normalize(plus(place.normal, [cos, sin, one() - two * u[0]])))
-    }
-}
-
-/// A direction of a light and what it may bring.
-struct Shining {
-    e: Near3,
-    brought: Near3,
-    /// Whether it faces the place.
-    reflected: Option<bool>,
-    shines: Option<bool>,
-    /// Where the light begins, of balls.
-    end_m: Option<Near>,
-}
-
-/// A direction of `turn` turns, at 1 - cos of its zenith angle.
-fn at_turn(turn: Near, below: Near) -> Near3 {
-    let root = (below * (Near::of(2.0) - below)).max(Near::ZERO).sqrt();
-    let [cos, sin] = on_circle(turn - Near::of(turn.v.floor())).map(|c| c * root);
-    [cos, sin, one() - below]
-}
-
-fn mix(a: Near, b: Near, share: Near) -> Near {
-    a * (one() - share) + b * share
-}
-
-/// A direction of a key light, evenly over its solid angle.
-fn towards_key(key: [Near; 4], u: [Near; 2]) -> Near3 {
-    at_turn(key[0] + key[1] * u[1], Near::of(2.0) * mix(key[2], key[3], u[0]))
-}
-
-impl Environment {
-    /// First entry above u of n entries of the shares from `at` on, `step` apart: f32 as the shader's.
-    fn picked(&self, u: Near, at: usize, step: usize, n: i32) -> i32 {
-        let (mut low, mut high) = (0, n - 1);
-        while low < high {
-            let middle = (low + high) >> 1;
-            if f64::from(self.cdf[at + middle as usize * step]) > u.v {
-                high = middle;
-            } else {
-                low = middle + 1;
-            }
-        }
-        low
-    }
-
-    /// A direction by the light of its texels, and its texel.
-    fn towards_light(&self, u: [Near; 2], v: [Near; 2]) -> (Near3, [f32; 4]) {
-        let [width, height] = self.size;
-        let across = width as usize + 1;
-        let row = self.picked(u[0], 0, across, height);
-        let col = self.picked(u[1], row as usize * across + 1, 1, width);
-        let half_row = Near::of(0.25) / Near::given(height as f32);
-        let sine2 = |row: i32| {
-            let [_, sine] = on_circle(Near::given(row as f32) * half_row);
-            sine * sine
-        };
-        let below = Near::of(2.0) * mix(sine2(row), sine2(row + 1), v[1]);
-        let across = (Near::given(col as f32) + v[0]) / Near::given(width as f32);
-        let turn = Near::of(0.5) - across + self.rotation_turns;
-        (at_turn(turn, below), self.texels[(row * width + col) as usize])
-    }
-
-    /// Adds what is seen along e, weighed by the balance heuristic: where rounding decides between texels, that of f64, and the
-    /// largest difference to any other of them is in doubt. Straight above, e may be of any column.
-    fn towards(&self, e: Near3, density: Near, seen: &mut Traced) {
-        let [width, height] = self.size;
-        let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
-        let [azimuth, zenith] = [angle(e[1], e[0]), angle(length, e[2])];
-        let turn = Near::of(0.5) - azimuth / Near::of(2.0 * PI) + self.rotation_turns;
-        let down = zenith / Near::of(PI);
-        let texels = |of: Near, n: i32| {
-            let place = of * Near::given(n as f32);
-            [0.0, -1.0, 1.0].map(|side| (place.v + side * place.off).floor() as i32)
-        };
-        let [col, west, east] = texels(turn, width);
-        let [row, top, bottom] = texels(down, height).map(|row| row.clamp(0, height - 1));
-        let at = |col: i32, row: i32| {
-            let from_there = self.texels[(row * width + col.rem_euclid(width)) as usize];
-            let weight = density / (density + Near::given(from_there[3])).max(Near::of(1e-30));
-            times(weight, colour(from_there))
-        };
-        let light = at(col, row);
-        seen.light = plus(seen.light, light);
-        let mut apart = [0.0_f64; 3];
-        // Once around is all of them.
-        let cols = west..=east.min(west.saturating_add(width - 1));
-        for other in cols.flat_map(|c| (top..=bottom).map(move |r| (c, r))) {
-            let other = at(other.0, other.1);
-            for c in 0..3 {
-                let more_off = (other[c].off - light[c].off).max(0.0);
-                apart[c] = apart[c].max((light[c].v - other[c].v).abs() + more_off);
-            }
-        }
-        if apart != [0.0; 3] {
-            seen.doubt(apart);
         }
     }
 }
