@@ -6,80 +6,25 @@
 
 #[path = "readme/brdf.rs"]
 mod brdf;
+#[path = "readme/figures.rs"]
+mod figures;
+#[path = "readme/splice.rs"]
+mod splice;
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
+use figures::{Figures, RESULTS, made, percent, text, wrong};
 use ridgelight::files;
 use serde_json::Value;
+use splice::{broken, with};
 
 /// Or a sentence for the user.
 type Result<T> = std::result::Result<T, String>;
 
-const RESULTS: &str = "benches/results";
 /// A real field of more than a million samples; others lie beside it.
 const ACCURACY: &str = "accuracy_N44W072.txt";
-
-fn text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
-}
-
-fn wrong(path: &Path, found: &str, expected: &str) -> String {
-    format!("{}: found {found}, expected {expected}", path.display())
-}
-
-/// A JSON file of the results, with readers that name what is missing.
-struct Figures {
-    path: PathBuf,
-    all: Value,
-}
-
-impl Figures {
-    fn read(name: &str) -> Result<Self> {
-        let path = Path::new(RESULTS).join(format!("{name}.json"));
-        let all = serde_json::from_str(&text(&path)?)
-            .map_err(|e| wrong(&path, &e.to_string(), "JSON, as tools/bench writes it"))?;
-        Ok(Self { path, all })
-    }
-
-    fn number(&self, of: &Value, key: &str) -> Result<f64> {
-        let missing =
-            || wrong(&self.path, &format!("no number {key}"), "one, as tools/bench writes it");
-        of[key].as_f64().ok_or_else(missing)
-    }
-
-    fn word<'a>(&self, of: &'a Value, key: &str) -> Result<&'a str> {
-        let missing =
-            || wrong(&self.path, &format!("no text {key}"), "one, as tools/bench writes it");
-        of[key].as_str().ok_or_else(missing)
-    }
-
-    fn rows(&self) -> &[Value] {
-        self.all["rows"].as_array().map_or(&[], Vec::as_slice)
-    }
-
-    /// Device and driver, and when, where and at which commit it was measured.
-    fn caption(&self) -> Result<String> {
-        let device =
-            format!("{}, {}", self.word(&self.all, "device")?, self.word(&self.all, "driver")?);
-        let made = made(&self.path.with_extension("txt"))?;
-        Ok(format!("*{device}{made}*"))
-    }
-}
-
-/// The line with which tools/bench begins a text: date, cores, load, commit.
-fn made(path: &Path) -> Result<String> {
-    let text = text(path)?;
-    let first = text.lines().next().unwrap_or_default();
-    let is_dated = first.starts_with(|c: char| c.is_ascii_digit()) && first.contains("load");
-    Ok(if is_dated { format!("; {first}") } else { String::new() })
-}
-
-/// What is not known is not 0.
-fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "error not measured".to_owned(), |v| format!("{:.2} %", 100.0 * v))
-}
 
 fn picture() -> Result<String> {
     let figures = Figures::read("picture")?;
@@ -391,36 +336,6 @@ fn curved() -> Result<String> {
         refused.join(", "),
         made(&path)?
     ))
-}
-
-/// `readme` with what stands between the marks of `name` replaced.
-fn with(readme: &str, name: &str, new: &str) -> Result<String> {
-    let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
-    let missing = || {
-        let expected = format!("{} and {end}, once each", begin.trim_end());
-        wrong(Path::new("README.md"), "no marks", &expected)
-    };
-    let (before, rest) = readme.split_once(&begin).ok_or_else(missing)?;
-    let (_, after) = rest.split_once(&end).ok_or_else(missing)?;
-    if after.contains(&begin) {
-        return Err(missing());
-    }
-    Ok(format!("{before}{begin}\n{new}\n{end}{after}"))
-}
-
-/// What `readme` links to here and is not there.
-fn broken(readme: &str) -> Option<&str> {
-    let links = readme.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0));
-    let headings: Vec<String> = readme
-        .lines()
-        .filter_map(|line| line.strip_prefix("## "))
-        .map(|title| title.to_lowercase().replace(' ', "-"))
-        .collect();
-    let is_there = |link: &&str| match link.strip_prefix('#') {
-        Some(anchor) => headings.iter().any(|h| h == anchor),
-        None => link.starts_with("http") || Path::new(link).exists(),
-    };
-    links.into_iter().find(|link| !is_there(link))
 }
 
 fn run(check: bool) -> Result<bool> {
