@@ -70,7 +70,7 @@ fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
     let bent = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
     for (per_m, base) in bent.into_iter().zip(&BASES[1..]) {
         let changed = Curvature { per_m }.changed(looked.field, looked.border);
-        files.remark(format!("the base {base} {changed}"));
+        files.remark(format!("the base bent {}: {changed}", base.replace('_', " ")));
     }
     let texel = |image: usize, at: usize| {
         <[f32; 4]>::try_from(&looked.outputs[image][4 * at..4 * at + 4]).expect("four")
