@@ -47,8 +47,10 @@ pub struct Tracer<'a> {
     counts_direct: bool,
     /// The most that a path brings which is reflected so many times.
     most: Vec<[f64; 3]>,
-    /// Radiance of all that a ray may see at once: sky, environment, balls.
-    brightest: [f64; 3],
+    /// Radiance of what a ray sees that leaves the ground, sky and environment; and of all balls, which it passes on its way,
+    /// wherever that ends.
+    far: [f64; 3],
+    balls: [f64; 3],
 }
 
 /// What some paths of a sample bring.
@@ -58,12 +60,14 @@ pub struct Traced {
     pub light: Near3,
     /// Rays.
     pub rays: Near,
-    /// Decisions that are in doubt.
-    pub doubts: u32,
+    /// Decisions that are in doubt, of light that has been reflected so often before it is: by samples alone, once besides, more.
+    pub doubts: [u32; 3],
     /// What the light is off by for them.
     pub in_doubt: [f64; 3],
-    /// How many of them are to be expected of rays over ground.
-    pub expected: f64,
+    /// Of rays of each, over all places where one was held against the surface, how many cells it had come, and one.
+    pub crossed: [f64; 3],
+    /// Of which of them it is now.
+    reflected: usize,
 }
 
 impl Default for Traced {
@@ -71,9 +75,10 @@ impl Default for Traced {
         Self {
             light: [Near::ZERO; 3],
             rays: Near::ZERO,
-            doubts: 0,
+            doubts: [0; 3],
             in_doubt: [0.0; 3],
-            expected: 0.0,
+            crossed: [0.0; 3],
+            reflected: 0,
         }
     }
 }
@@ -92,7 +97,7 @@ impl Traced {
     }
 
     fn doubt(&mut self, most: [f64; 3]) {
-        self.doubts += 1;
+        self.doubts[self.reflected] += 1;
         for (c, most) in most.into_iter().enumerate() {
             self.light[c].off += most;
             self.in_doubt[c] += most;
@@ -103,9 +108,11 @@ impl Traced {
     pub fn join(&mut self, more: &Self) {
         self.light = plus(self.light, more.light);
         self.rays = Near { v: self.rays.v + more.rays.v, off: self.rays.off + more.rays.off };
-        self.doubts += more.doubts;
-        (0..3).for_each(|c| self.in_doubt[c] += more.in_doubt[c]);
-        self.expected += more.expected;
+        for i in 0..3 {
+            self.in_doubt[i] += more.in_doubt[i];
+            self.doubts[i] += more.doubts[i];
+            self.crossed[i] += more.crossed[i];
+        }
     }
 
     fn ray(&mut self, is_sent: Option<bool>) {
@@ -181,15 +188,13 @@ impl<'a> Tracer<'a> {
         });
         let count = samples.len();
         let lobe = |phong: crate::scene::Phong| [phong.exponent, phong.scale];
-        let mut brightest = lights.sky.unwrap_or_default().map(f64::from);
+        let sky = lights.sky.unwrap_or_default();
         let texels = lights.environment.iter().flat_map(|e| e.texels());
-        let of_environment = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
-        let balls = lights.spheres.iter().map(|ball| ball.radiance);
-        for radiance in balls.chain([of_environment]) {
-            (0..3).for_each(|c| brightest[c] += f64::from(radiance[c]));
-        }
+        let brightest = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
+        let balls = |c: usize| lights.spheres.iter().map(|ball| f64::from(ball.radiance[c])).sum();
         Self {
-            brightest,
+            far: [0, 1, 2].map(|c| f64::from(sky[c]) + f64::from(brightest[c])),
+            balls: [0, 1, 2].map(balls),
             ground: Ground::of(field, surface.border),
             lights: four(inputs.next().expect("lights")),
             environment,
@@ -209,6 +214,12 @@ impl<'a> Tracer<'a> {
             seed,
             counts_direct,
         }
+    }
+
+    /// The most that a scattered ray sees where so many more may follow: balls that it leaves, and then what is far or ground.
+    fn most_seen(&self, left: u32) -> [f64; 3] {
+        let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
+        [0, 1, 2].map(|c| self.balls[c] + self.far[c].max(later[c]))
     }
 
     /// Suns, key lights, balls.
@@ -323,6 +334,7 @@ impl<'a> Tracer<'a> {
         let mut carried = [one(); 3];
         for bounce in 0..=self.bounces {
             let is_first = bounce == 0;
+            sum.reflected = bounce.min(2) as usize;
             let counts = Some(self.counts_direct || !is_first);
             let first_ray = bounce * (count + 2);
             let points = |r: u32| {
@@ -356,7 +368,7 @@ impl<'a> Tracer<'a> {
                 let far = Near::of(1e30);
                 let t_end = light.end_m.map_or(far, |end| end * ray.scale.min(Near::of(1e6)));
                 let met = trace(&self.ground, &ray, t_end);
-                sum.expected += met.chance;
+                sum.crossed[sum.reflected] += met.crossed;
                 let is_free = met.what.map(|what| what == What::Free);
                 let in_view = match light.end_m {
                     None => is_free,
@@ -381,7 +393,7 @@ impl<'a> Tracer<'a> {
                     sum.ray(is_sent);
                     let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
                     let met = trace(&self.ground, &ray, Near::of(1e30));
-                    sum.expected += met.chance;
+                    sum.crossed[sum.reflected] += met.crossed;
                     let is_free = met.what.map(|what| what == What::Free);
                     let brought = product(carried, brought);
                     sum.add(brought, all([is_sent, is_free]), most(carried, 0));
@@ -401,14 +413,11 @@ impl<'a> Tracer<'a> {
             }
             let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
             let met = trace(&self.ground, &ray, Near::of(1e30));
-            sum.expected += met.chance;
+            sum.crossed[sum.reflected] += met.crossed;
             let scattered = product(carried, of.scattered);
             let Some(what) = met.what else {
-                // It sees what shines, or ground.
-                let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
-                let seen = |c: usize| scattered[c].most() * self.brightest[c].max(later[c]);
-                let all = most(carried, left);
-                sum.doubt([0, 1, 2].map(|c| seen(c).min(all[c])));
+                let (seen, all) = (self.most_seen(left), most(carried, left));
+                sum.doubt([0, 1, 2].map(|c| (scattered[c].most() * seen[c]).min(all[c])));
                 sum.rays.off += f64::from(left * (lights.end - lights.start + 2));
                 return;
             };
@@ -435,7 +444,7 @@ impl<'a> Tracer<'a> {
             if counts == Some(true) {
                 let light = product(scattered, seen.light);
                 sum.light = plus(sum.light, light);
-                sum.doubts += seen.doubts;
+                sum.doubts[sum.reflected] += seen.doubts[0];
                 (0..3).for_each(|c| sum.in_doubt[c] += scattered[c].most() * seen.in_doubt[c]);
             }
             if left == 0 || what != What::Hit {
@@ -581,8 +590,8 @@ impl Environment {
         (at_turn(turn, below), self.texels[(row * width + col) as usize])
     }
 
-    /// Adds what is seen along e, weighed by the balance heuristic: where rounding decides between texels, the first's, and
-    /// the largest difference to another is in doubt.
+    /// Adds what is seen along e, weighed by the balance heuristic: where rounding decides between texels, that of f64, and the
+    /// largest difference to any other of them is in doubt. Straight above, e may be of any column.
     fn towards(&self, e: Near3, density: Near, seen: &mut Traced) {
         let [width, height] = self.size;
         let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
@@ -593,22 +602,30 @@ impl Environment {
             let place = of * Near::given(n as f32);
             [0.0, -1.0, 1.0].map(|side| (place.v + side * place.off).floor() as i32)
         };
-        let cols = texels(turn, width);
-        let rows = texels(down, height);
+        let [col, west, east] = texels(turn, width);
+        let [row, top, bottom] = texels(down, height).map(|row| row.clamp(0, height - 1));
         let at = |col: i32, row: i32| {
-            let (col, row) = (col.rem_euclid(width), row.clamp(0, height - 1));
-            let from_there = self.texels[(row * width + col) as usize];
+            let from_there = self.texels[(row * width + col.rem_euclid(width)) as usize];
             let weight = density / (density + Near::given(from_there[3])).max(Near::of(1e-30));
             times(weight, colour(from_there))
         };
-        let light = at(cols[0], rows[0]);
+        let light = at(col, row);
         seen.light = plus(seen.light, light);
         let mut apart = [0.0_f64; 3];
-        for other in cols.iter().flat_map(|c| rows.iter().map(|r| at(*c, *r))) {
-            (0..3).for_each(|c| apart[c] = apart[c].max((light[c].v - other[c].v).abs()));
+        // Once around is all of them.
+        let cols = west..=east.min(west.saturating_add(width - 1));
+        for other in cols.flat_map(|c| (top..=bottom).map(move |r| (c, r))) {
+            let other = at(other.0, other.1);
+            for c in 0..3 {
+                let more_off = (other[c].off - light[c].off).max(0.0);
+                apart[c] = apart[c].max((light[c].v - other[c].v).abs() + more_off);
+            }
         }
         if apart != [0.0; 3] {
             seen.doubt(apart);
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -65,7 +65,7 @@ pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64>
 /// vertex brings from a sun of irradiance E at most R·E, from a key light of radiance L and solid angle Ω at
 /// most R·L·Ω, from a ball of radiance L at most 2π·R·L, and
 /// from the environment, chosen with density p and weighed by the balance heuristic, at most f·L and
-/// R·L/p; its scattered ray then meets the lights, or the next vertex.
+/// R·L/p; its scattered ray then passes balls on their inside, each at most once, and meets what is far, or the next vertex.
 pub(crate) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
     let Scene { surface, lights, .. } = scene;
     let albedo = match &surface.albedo {
@@ -96,18 +96,19 @@ pub(crate) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
         let keys: f64 = lights.keys.iter().map(|k| key_facing(k, surface.border, c)).sum();
         let balls: f64 = lights.spheres.iter().map(|s| f64::from(s.radiance[c])).sum();
         let diffuse = f64::from(albedo[c]);
-        // Scattered, reflected at most, chosen directly, met by the scattered ray.
+        // Of what is scattered and reflected at most and chosen as densely: what a vertex brings wherever its scattered ray
+        // ends, what that meets where it leaves the ground, and the share of what it meets on the ground.
         let vertex = |scattered: f64, reflected: f64, dense: f64| {
             let chosen = (scattered * environment[0]).min(reflected * environment[1]);
             let direct = reflected * (suns + keys + 2.0 * PI * balls) + chosen;
             let met = environment[0].min(dense * environment[1]);
-            (direct, scattered * (sky + met + balls), scattered)
+            (direct + scattered * balls, scattered * (sky + met), scattered)
         };
         let peak = (lobe[1] + 1.0) / (2.0 * PI);
         let all = if surface.phong.is_some() { f64::from(brightest) + lobe[0] } else { diffuse };
         let dense = if surface.phong.is_some() { peak.max(1.0 / PI) } else { 1.0 / PI };
-        let (direct, met, scattered) = vertex(all, diffuse / PI + lobe[0] * peak, dense);
-        (0..=bounces).fold(0.0, |later, _| direct + met.max(scattered * later))
+        let (always, met, scattered) = vertex(all, diffuse / PI + lobe[0] * peak, dense);
+        (0..=bounces).fold(0.0, |later, _| always + met.max(scattered * later))
     })
 }
 
@@ -120,4 +121,33 @@ fn sun_facing(sun: &Sun, channel: usize) -> f64 {
 fn key_facing(key: &KeyLight, border: Border, channel: usize) -> f64 {
     let [top, bottom] = seen_part(key, border);
     key.width_rad * 2.0 * (bottom - top) * f64::from(key.radiance[channel])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{HeightField, Lights, Phong, SphereLight, Surface};
+
+    /// Two vertices inside a ball of green 1, on ground of albedo (1, 0, 0) with a lobe of 1/2 and exponent 0: where the
+    /// lobe alone sends a ray, at grazing, it scatters 1 + 1/2 of what arrives. Each ray sees the ball and the second also
+    /// brings what the next vertex does: 3/2 (1 + 3/2) at least. Directly no vertex gets more than the lobe's
+    /// 1/2 · 1/2π · 2π: in all 1/2 + 3/2, and 3/2 of as much once more.
+    #[test]
+    fn a_path_sees_the_ball_that_it_leaves_and_goes_on() {
+        let ball =
+            SphereLight { position_m: [1.0, 1.0, 0.0], radius_m: 9.0, radiance: [0.0, 1.0, 0.0] };
+        let scene = Scene {
+            field: HeightField::new(3, 3, &[0.0; 9], [1.0, 1.0], None).unwrap(),
+            surface: Surface {
+                albedo: Albedo::Constant([1.0, 0.0, 0.0]),
+                phong: Some(Lobe::Constant(Phong { exponent: 0.0, scale: 0.5 })),
+                ..Surface::default()
+            },
+            lights: Lights { spheres: vec![ball], ..Lights::default() },
+        };
+        let [red, green, blue] = most_light(&scene, 1);
+        assert!(green >= 1.5 * (1.0 + 1.5), "{green}");
+        assert!((green - 5.0).abs() < 1e-9, "{green}");
+        assert_eq!([red, blue], [0.0; 2]);
+    }
 }

@@ -396,6 +396,33 @@ fn gpu_trade_tells_what_may_be_baked() {
     assert!(!report.contains("found_once_ns") && !none.out.contains("visible points"));
 }
 
+/// What may be baked and needs more than half of the memory budget (the other half is the baseline's) is told as refused, in
+/// the text and in the file; the trade goes on.
+#[test]
+fn gpu_trade_tells_what_the_memory_budget_refuses() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let scene = "--sun 100,40 --albedo 0.8 --bounces 2";
+    let truth = format!(
+        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {scene}"
+    );
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let args = format!(
+        "trade field.npy -o out --budget 2 --max-error 1 --reference truth.exr --memory-budget 300000 {scene}"
+    );
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(": refused: ")).collect();
+    assert!(rows[0].starts_with("64 directions, 40 paths: refused: "), "{rows:?}");
+    // Half of 300,000 bytes is 146.5 KiB.
+    let said = "the limit is 146.5 KiB of --memory-budget";
+    assert!(rows.iter().all(|row| row.contains("needs") && row.ends_with(said)), "{rows:?}");
+    let report = json(&folder.path("out/trade.json"));
+    assert_eq!(report["baked_refused"].as_array().unwrap().len(), rows.len());
+    assert_eq!(report["baked"], serde_json::json!([]));
+    assert!(run.out.contains("<- recommended"), "{}", run.out);
+}
+
 /// A pass that there is not is told before the light is verified.
 #[test]
 fn gpu_a_pass_that_is_not_is_told_at_once() {

@@ -34,8 +34,8 @@ pub struct Met {
     pub offset: [Near; 2],
     /// Whether in its southern triangle; none where rounding decides where in the cell it is.
     pub lower: Option<bool>,
-    /// How likely rounding decided something, were the heights in which rays pass over edges spread evenly over the relief.
-    pub chance: f64,
+    /// At every place where it was held against the surface, how many cells it had come, and one.
+    pub crossed: f64,
 }
 
 impl Met {
@@ -46,7 +46,7 @@ impl Met {
             cell: [0; 2],
             offset: [Near::ZERO; 2],
             lower: None,
-            chance: 0.0,
+            crossed: 0.0,
         }
     }
 }
@@ -59,12 +59,12 @@ fn split(ray: &Ray, from: [Near; 2]) -> Near {
 
 /// What a ray meets before `t_end`.
 pub fn trace(ground: &Ground, ray: &Ray, t_end: Near) -> Met {
-    let mut chance = 0.0;
-    let met = followed(ground, ray, t_end, &mut chance);
-    Met { chance, ..met }
+    let mut crossed = 0.0;
+    let met = followed(ground, ray, t_end, &mut crossed);
+    Met { crossed, ..met }
 }
 
-fn followed(ground: &Ground, ray: &Ray, t_end: Near, chance: &mut f64) -> Met {
+fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
     let Some(mut walk) = Walk::from(ground, ray) else { return Met::nothing(None) };
     let rises = ray.rise.above(Near::ZERO);
     let far = Near::of(1e30);
@@ -106,7 +106,7 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, chance: &mut f64) -> Met {
             walk.on(ground, ray, &block, clear == Some(true));
             continue;
         }
-        match blocked(ground, ray, &walk, ahead, chance) {
+        match blocked(ground, ray, &walk, ahead, crossed) {
             Some(false) => walk.on(ground, ray, &block, true),
             Some(true) if !may_have_ended && walk.t.v > may_have_passed => {
                 return hit(ground, ray, &walk, ahead);
@@ -118,7 +118,13 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, chance: &mut f64) -> Met {
 }
 
 /// Whether the surface is not below the ray at the cell's diagonal or its far edge.
-fn blocked(ground: &Ground, ray: &Ray, walk: &Walk, ahead: Near, chance: &mut f64) -> Option<bool> {
+fn blocked(
+    ground: &Ground,
+    ray: &Ray,
+    walk: &Walk,
+    ahead: Near,
+    crossed: &mut f64,
+) -> Option<bool> {
     let corners = ground.corners(ground.within(walk.at));
     let from = from(ray, walk);
     let t_split = split(ray, from);
@@ -126,8 +132,10 @@ fn blocked(ground: &Ground, ray: &Ray, walk: &Walk, ahead: Near, chance: &mut f6
     let is_between = all([t_split.above(walk.t), ahead.above(t_split)]);
     let in_split = all([is_between, over_split.at_most(Near::ZERO)]);
     let over_exit = over(ground, ray, corners, from, ahead);
-    let split_off = if is_between == Some(false) { 0.0 } else { over_split.off };
-    *chance += (2.0 * (split_off + over_exit.off) / ground.relief_m).min(1.0);
+    *crossed += 1.0 + ahead.v;
+    if is_between != Some(false) {
+        *crossed += 1.0 + t_split.v.clamp(0.0, ahead.v);
+    }
     any([in_split, all([ahead.above(walk.t), over_exit.at_most(Near::ZERO)])])
 }
 
@@ -183,6 +191,6 @@ fn hit(ground: &Ground, ray: &Ray, walk: &Walk, t_next: Near) -> Met {
         cell,
         offset: ray.place(from, t_hit),
         lower,
-        chance: 0.0,
+        crossed: 0.0,
     }
 }

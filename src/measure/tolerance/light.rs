@@ -76,7 +76,7 @@ impl ShadeError {
     /// which each moment is off by `table`.
     ///
     /// Each component of the normal times its moment. The place in a table errs as in [`environment`](Self::environment), across
-    /// which a moment changes by no more than from node to node there; the normal's turn moves it by the moments' length; a
+    /// which a moment changes by no more a node than from any node to the next there; the normal's turn moves it by the moments' length; a
     /// mix, a product and a sum of each round 8 times, and sums of all azimuths once each.
     pub fn wedge_looked_up(
         &self,
@@ -90,7 +90,7 @@ impl ShadeError {
         let mut off = DVec3::ZERO;
         let mut squared = DVec3::ZERO;
         for (m, [moment, step]) in moments.into_iter().enumerate() {
-            let across = (place_rad * nodes).min(1.0) * step;
+            let across = place_rad * nodes * step;
             let rounded = (8.0 + self.count) * EPSILON * moment.abs();
             off += normal[m].abs() * (table[m] + across + rounded);
             squared += moment * moment;
@@ -236,5 +236,24 @@ impl BallSeen {
         let weights = if away_m > r { PI * (r / away_m).asin() } else { 2.0 * PI };
         let normal = ShadeError::new(0.0, self.relief_m, self.cell_m, 1).normal();
         weights / PI * (2.0 * angle + 2.0 * normal + touch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables of 257 nodes whose moments rise by 1 a node, looked up by a slope that is off by 3 nodes: off by 3 of every
+    /// moment, along a normal of one component.
+    #[test]
+    fn a_place_that_is_off_by_nodes_is_off_by_all_of_them() {
+        let nodes = 257;
+        let rising = (0..3 * nodes).map(|i| DVec3::splat((i % nodes) as f64)).collect();
+        let tables = EnvTables { nodes, bottom_rad: 0.0, texels: rising };
+        let node_rad = FRAC_PI_2 / 256.0;
+        let error = ShadeError { lowest_slope: 3.0 * node_rad, normal: 0.0, count: 1.0 };
+        let off = error.wedge_looked_up(&tables, (0, 0.5, DVec3::Z), &[DVec3::ZERO; 3]);
+        // Besides, an arc tangent and roundings of 100 or so.
+        assert!((3.0..3.01).contains(&off.x), "{off}");
     }
 }

@@ -55,7 +55,7 @@ impl Tried {
     fn made<T>(&mut self, what: String, of: Result<T>) -> Result<Option<T>> {
         match of {
             Ok(made) => Ok(Some(made)),
-            Err(error @ (Error::Setting { .. } | Error::Limit { .. } | Error::Device { .. })) => {
+            Err(error) if is_refusal(&error) => {
                 self.refused.push(Refused { what, why: setup::in_flags(error).to_string() });
                 Ok(None)
             }
@@ -64,8 +64,22 @@ impl Tried {
     }
 }
 
-/// From few directions and paths on, as many as the share of the budget holds; none without bounces, and none of lobes, whose
-/// direct light is no colour a sample. What is refused is noted, and what would need more of the same is left.
+/// Whether more than there is was asked for, of a device that goes on: not where one is lost or a driver fails.
+fn is_refusal(error: &Error) -> bool {
+    use ash::vk::Result as Answer;
+    match error {
+        Error::Setting { .. } | Error::Limit { .. } => true,
+        Error::Device { reason, .. } => {
+            let full = [Answer::ERROR_OUT_OF_DEVICE_MEMORY, Answer::ERROR_OUT_OF_HOST_MEMORY];
+            *reason == gpu_allocator::AllocationError::OutOfMemory.to_string()
+                || full.iter().any(|answer| *reason == answer.to_string())
+        }
+        _ => false,
+    }
+}
+
+/// From few directions and paths on, as many as the share of the budget holds, of which the first takes what it takes: nothing
+/// tells before; none without bounces, and none of lobes, whose direct light is no colour a sample. What is refused is noted, and what would need more of the same is left.
 pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
     let mut tried = Tried::default();
     if start.bounces.count == 0 || rig.scene.surface.phong.is_some() {
@@ -248,5 +262,39 @@ impl Report<'_> {
     pub fn baked_refused_json(&self) -> Vec<Value> {
         let of = |refused: &Refused| json!({ "what": refused.what, "why": refused.why });
         self.baked.refused.iter().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ash::vk::Result as Answer;
+
+    use super::*;
+
+    /// What is too large is left out; a device that is lost, a driver that fails and a file that is not there end the trade.
+    #[test]
+    fn only_what_is_too_large_is_refused() {
+        let device = |reason: String| Error::Device { doing: "making it".into(), reason };
+        let [what, needs, limit] = ["it", "2 bytes", "1 byte"].map(String::from);
+        for error in [
+            device(Answer::ERROR_OUT_OF_DEVICE_MEMORY.to_string()),
+            device(Answer::ERROR_OUT_OF_HOST_MEMORY.to_string()),
+            device(gpu_allocator::AllocationError::OutOfMemory.to_string()),
+            Error::Limit { what, needs, limit },
+        ] {
+            let mut tried = Tried::default();
+            let made = tried.made::<()>("it".to_owned(), Err(error));
+            assert!(matches!(made, Ok(None)) && tried.refused.len() == 1);
+        }
+        let source = std::io::ErrorKind::NotFound.into();
+        for error in [
+            device(Answer::ERROR_DEVICE_LOST.to_string()),
+            device(Answer::ERROR_INITIALIZATION_FAILED.to_string()),
+            Error::Io { path: "it".into(), source },
+        ] {
+            let mut tried = Tried::default();
+            let made = tried.made::<()>("it".to_owned(), Err(error));
+            assert!(made.is_err() && tried.refused.is_empty());
+        }
     }
 }
