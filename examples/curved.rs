@@ -263,7 +263,7 @@ fn run() -> Result<()> {
     let flat = Flat { field, points, fans, net, lights, five, own, scattered };
     println!(
         "{GROOVES} grooves of {PERIOD} by {} cells, {ROWS} long; {DIRECTIONS} directions over the sphere, {LIGHTS} lights over each sample's \
-         hemisphere, {RAYS} rays. A radius above 0: valleys widen. Said: shares of a hemisphere's lights and light that the base hides or \
+         hemisphere, {RAYS} rays. A radius above 0: valleys widen. Said: about the shares of a hemisphere's lights and light that the base hides or \
          lays open, of light at most {} % (`Curvature::changed`); beyond, the rows are the twin's, as the renderer refuses. Five: fitted at radii of {} outwards and {} inwards. \
          Off: RMSE over the mean; between three: light of these and the flat base, as straight as ellipses; device: {PATHS} paths.\n",
         PERIOD / 2,

@@ -78,6 +78,26 @@ float risen(Around by, vec2 at) {
     return both * corner + (off.x - both) * along + (off.y - both) * down;
 }
 
+// A ray past a sample: columns and rows from the sample where it is beside it, and of a cell along its faster axis; cells before
+// that; what it rises a cell, and the sample over its start, m.
+struct Ray {
+    vec2 start;
+    vec2 advance;
+    float cells;
+    float climb;
+    float rise;
+};
+
+// How far it is over the surface u cells beyond, m.
+float over_at(Ray ray, Around by, float u) {
+    return (ray.cells + u) * ray.climb - ray.rise - risen(by, ray.start + u * ray.advance);
+}
+
+// Where what is `at` there comes to 0, cells.
+float kink(float at, float pace, float from, float to) {
+    return pace == 0.0 ? to : clamp(-at / pace, from, to);
+}
+
 // As far in the plan as the sample `there`, so many columns and rows off, stands along e.
 float away_to(vec2 gaps, vec3 e) {
     return max(dot(gaps * vec2(cell_x_m, -cell_y_m), e.xy), 0.0) / dot(e.xy, e.xy);
@@ -134,16 +154,16 @@ float away_of(ivec2 here, ivec2 there, float own, vec3 e) {
             float from = max(max(-HALF_SIDE, -n), min(sides.x, sides.y));
             float to = min(HALF_SIDE, max(sides.x, sides.y));
             vec2 start = by_rows ? vec2(beside, 0.0) : vec2(0.0, beside);
-            float over = (n + to) * climb - rise - risen(by, start + to * advance);
-            // A sample's own surface is left where the ray begins. Linear between grid lines and the diagonal.
-            bool is_own = main_gap == 0 && other == 0.0;
-            vec3 at = vec3(start, start.x - start.y);
-            vec3 along = vec3(advance, advance.x - advance.y);
-            for (int c = 0; c < 4; c++) {
-                float u = c == 3 ? from : (along[c] == 0.0 ? to : clamp(-at[c] / along[c], from, to));
-                float here_over = (n + u) * climb - rise - risen(by, start + u * advance);
-                over = is_own ? over : min(over, here_over);
-            }
+            Ray ray = Ray(start, advance, n, climb, rise);
+            // Linear between grid lines and the diagonal. No loop: llvmpipe ends all loops of an invocation together after 65,535
+            // turns, and the two around it have up to 3 REACH.
+            float last = over_at(ray, by, to);
+            float least_at = min(last, over_at(ray, by, from));
+            least_at = min(least_at, over_at(ray, by, kink(start.x, advance.x, from, to)));
+            least_at = min(least_at, over_at(ray, by, kink(start.y, advance.y, from, to)));
+            least_at = min(least_at, over_at(ray, by, kink(start.x - start.y, advance.x - advance.y, from, to)));
+            // A sample's own surface is left where the ray begins.
+            float over = main_gap == 0 && other == 0.0 ? last : least_at;
             bool passes = from <= to;
             float graze = GRAZE * (abs(rise) + relief * (1.0 + 2.0 * n));
             met = passes && over <= graze;

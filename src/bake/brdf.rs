@@ -153,7 +153,8 @@ impl Brdf {
     }
 
     /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`](super::Facets).
+    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`](super::Facets). A sum, not an integral: of
+    /// a lobe narrower than the directions are apart it says nothing.
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
@@ -164,7 +165,10 @@ impl Brdf {
     }
 
     /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights, each weighted by its part of
-    /// ∫ cos θ dω, which together are π. No more than what all of the surface reflects, diffusely and by its lobe.
+    /// ∫ cos θ dω, which together are π. With triangles that fill views and receive light as the plane does
+    /// ([`closure`](super::Facets::closure) 1) no more than what all of the surface reflects, diffusely and by its lobe, but for
+    /// what the sum is off the integral: a lobe much narrower than the directions are apart counts for its density there times
+    /// their solid angle, many times 1 at its middle and nothing beside it.
     pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (light, weight) in projected_sr.iter().enumerate() {

@@ -78,15 +78,39 @@ impl BrdfHarmonics {
 
     /// For a light and a view above horizontal, unit vectors; 1/sr.
     pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
-        let [of_light, of_view] = [light, view].map(|v| evaluate(self.order, v));
-        let mut sum = [0.0; 3];
-        for (row, a) in self.coefficients.chunks_exact(of_view.len()).zip(of_light) {
-            for (texel, b) in row.iter().zip(&of_view) {
-                (0..3).for_each(|c| sum[c] += a * b * texel[c]);
+        weighted(&self.under(light), &evaluate(self.order, view))
+    }
+
+    /// Of a light from each of some directions in turn, towards all of them: [`at`](Self::at), whose harmonics are evaluated once
+    /// a direction.
+    pub fn rows(&self, directions: &[DVec3]) -> impl Iterator<Item = Vec<[f64; 3]>> {
+        let all: Vec<Vec<f64>> = directions.iter().map(|v| evaluate(self.order, *v)).collect();
+        directions.iter().map(move |light| {
+            let under = self.under(*light);
+            all.iter().map(|of_view| weighted(&under, of_view)).collect()
+        })
+    }
+
+    /// Weights of a view's harmonics under a light.
+    fn under(&self, light: DVec3) -> Vec<[f64; 3]> {
+        let of_light = evaluate(self.order, light);
+        let mut sums = vec![[0.0; 3]; of_light.len()];
+        for (row, a) in self.coefficients.chunks_exact(sums.len()).zip(of_light) {
+            for (sum, texel) in sums.iter_mut().zip(row) {
+                (0..3).for_each(|c| sum[c] += a * texel[c]);
             }
         }
-        sum
+        sums
     }
+}
+
+/// Sum of colours, each times its weight.
+fn weighted(colours: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (colour, weight) in colours.iter().zip(weights) {
+        (0..3).for_each(|c| sum[c] += weight * colour[c]);
+    }
+    sum
 }
 
 /// (BᵀWB + r)⁻¹BᵀW by Gauss & Jordan with the largest pivots.
@@ -154,9 +178,11 @@ mod tests {
             // The largest of BᵀWB's diagonal is ∫ Y² cos θ dω ≤ max Y² π ≤ n²/4π · π.
             let root = (RIDGE * terms as f64 / 4.0).sqrt();
             let other = (terms as f64 / (2.0 * std::f64::consts::TAU)).sqrt();
+            let rows = found.rows(&directions).collect::<Vec<_>>();
             for (i, l) in directions.iter().enumerate() {
                 for (j, v) in directions.iter().enumerate() {
                     let (got, own) = (found.at(*l, *v), sum(*l, *v));
+                    assert_eq!(rows[i][j], got, "{i} {j}");
                     let bound =
                         size * other * 0.5 * root * (weights[i].powf(-0.5) + weights[j].powf(-0.5));
                     assert!((got[0] - own).abs() <= bound, "{i} {j}: {} {own} {bound}", got[0]);

@@ -21,13 +21,17 @@
 //! p is the same with l and v exchanged, s p / (n·l), which a lobe reflects of what falls on it, is not: **f is not reciprocal
 //! where there are lobes**. Nor is it bounded by the light: a light at grazing angles brings little, a lobe takes no less of
 //! it, and more may leave than arrives. It is bounded by the view: ∫ p dl ≤ 1, so that under light of 1 from all sides
-//! ∫ f l_z dl ≤ ρ + s whatever the view. [`Brdf`](super::Brdf) says how far it is from both.
+//! ∫ f l_z dl ≤ ρ + s whatever the view. [`Brdf`](super::Brdf) says how far it is from both, where its directions are as close
+//! as lobes are wide: a sum over others is no such integral.
 //!
 //! Here x are flat triangles, whose slopes are exact, each seen or hidden as a whole by what its middle sees. Where the
 //! edge of what is hidden crosses a triangle, that errs by up to its share, and their sum S(v) is not quite v_z: shares are
 //! taken times v_z / S(v), so that a light brings the triangles what it brings the plane, l_z, and they fill a view as the
-//! plane does, v_z. The exchange of l and v stays exact; what leaves is at most ρ times what sum of cosines a triangle has
-//! over a set of directions. [`Facets::closure`] is how far S is off, and finer triangles bring it to 1.
+//! plane does, v_z. The exchange of l and v stays exact of what is diffuse; what leaves of that is at most ρ times what sum of
+//! cosines a triangle has over a set of directions. What a lobe mirrors is scaled as its light is, so that a view sees up to
+//! l_z / S(l) times s. [`Facets::closure`] is how far S is off, and finer triangles bring it to 1.
+
+mod samples;
 
 use std::f64::consts::{PI, TAU};
 
@@ -182,6 +186,14 @@ impl Facets {
         self.lobes.is_some()
     }
 
+    /// Of the triangles that mirror anything the largest exponent, and the largest share that comes with it: a triangle has the
+    /// means of its corners.
+    pub fn sharpest(&self) -> Option<Phong> {
+        let mirrors = self.lobes.iter().flatten().filter(|[_, scale]| *scale > 0.0);
+        let sharpest = mirrors.max_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        sharpest.map(|[exponent, scale]| Phong { exponent: *exponent as f32, scale: *scale as f32 })
+    }
+
     /// Whether a direction shows the front of any triangle.
     pub fn shows(&self, direction: usize) -> bool {
         self.scales[direction].is_finite()
@@ -202,20 +214,26 @@ impl Facets {
         Err(Error::setting(format!("direction {i}"), found, expected))
     }
 
-    /// The triangles that are seen from a direction, and how much of the view each fills over its own area of the plan.
-    fn shares(&self, direction: usize) -> impl Iterator<Item = (usize, f64)> {
+    /// Whether a direction sees a triangle, and how much of a view from there that fills over its own area of the plan, more
+    /// than 0. Backs, which a field that ends may show, fill nothing: a direction that shows them alone has no scale.
+    fn seen(&self, direction: usize) -> impl Fn(usize) -> Option<f64> {
         let e = self.directions.vectors()[direction];
         let cells = self.cells[0] * self.cells[1];
         let first = direction / DIRECTIONS_A_WORD * cells;
         let bit = 2 * (direction % DIRECTIONS_A_WORD);
         let words = &self.words[first..first + cells];
-        let seen = (0..self.slopes.len()).filter(move |f| words[f / 2] >> (bit + f % 2) & 1 == 1);
-        let filled = seen.map(move |facet| {
+        move |facet| {
+            let is_seen = words[facet / 2] >> (bit + facet % 2) & 1 == 1;
             let [east, north] = self.slopes[facet];
-            (facet, e.z - east * e.x - north * e.y)
-        });
-        // Backs, which a field that ends may show, fill nothing: a direction that shows them alone has no scale.
-        filled.filter(|(_, share)| *share > 0.0)
+            let share = e.z - east * e.x - north * e.y;
+            (is_seen && share > 0.0).then_some(share)
+        }
+    }
+
+    /// The triangles that are seen from a direction, each with its [`seen`](Self::seen).
+    fn shares(&self, direction: usize) -> impl Iterator<Item = (usize, f64)> {
+        let seen = self.seen(direction);
+        (0..self.slopes.len()).filter_map(move |facet| Some((facet, seen(facet)?)))
     }
 
     /// Area of a triangle over that of its plan.
@@ -236,18 +254,6 @@ impl Facets {
         Leaving { alike, mirrored, towards: None }
     }
 
-    /// Whether a direction sees a triangle, and how much of a view from there that fills over its own area of the plan, more
-    /// than 0.
-    fn share(&self, direction: usize, facet: usize) -> Option<f64> {
-        let cells = self.cells[0] * self.cells[1];
-        let word = self.words[direction / DIRECTIONS_A_WORD * cells + facet / 2];
-        let is_seen = word >> (2 * (direction % DIRECTIONS_A_WORD) + facet % 2) & 1 == 1;
-        let e = self.directions.vectors()[direction];
-        let [east, north] = self.slopes[facet];
-        let share = e.z - east * e.x - north * e.y;
-        (is_seen && share > 0.0).then_some(share)
-    }
-
     /// What leaves a triangle towards a direction that sees it and of whose view it fills `share`.
     fn towards(&self, (view, share): (usize, f64), facet: usize, light: &Leaving) -> [f64; 3] {
         let mut sum = light.alike[facet];
@@ -259,7 +265,7 @@ impl Facets {
         }
         let (Some(lobes), Some(from)) = (&self.lobes, light.mirrored) else { return sum };
         let [exponent, scale] = lobes[facet];
-        let Some(lit) = self.share(from, facet) else { return sum };
+        let Some(lit) = self.seen(from)(facet) else { return sum };
         let [l, v] = [from, view].map(|i| self.directions.vectors()[i]);
         let [east, north] = self.slopes[facet];
         // r·l = 2 (n·v)(n·l) - v·l, and a share is the cosine times the area over the plan's, √(1 + slope²).
@@ -291,85 +297,6 @@ impl Facets {
             whole += share;
         }
         if whole > 0.0 { sum.map(|s| s / whole) } else { sum }
-    }
-
-    /// The samples of the field, not the finer one, that a triangle lies between, and their shares of it.
-    fn between(&self, facet: usize) -> [(usize, f64); 3] {
-        let times = self.times as f64;
-        let cell = facet / 2;
-        let middle = if facet.is_multiple_of(2) { [2.0, 1.0] } else { [1.0, 2.0] };
-        let place = [cell % self.cells[0], cell / self.cells[0]];
-        let [right, down] = [0, 1].map(|i| {
-            let within = (place[i] % self.times) as f64 + middle[i] / 3.0;
-            within / times
-        });
-        let [col, row] = place.map(|n| n / self.times);
-        let cells = self.cells[0] / self.times;
-        let coarse = 2 * (row * cells + col) + usize::from(down > right);
-        let corners = corners_of(coarse, cells, self.size);
-        let both = down.min(right);
-        let one = (down - right).abs();
-        [(corners[0], 1.0 - both - one), (corners[1], one), (corners[2], both)]
-    }
-
-    /// Exit radiance of samples that leaves as much as that of triangles: the mean over the slopes that each stands for.
-    pub fn to_samples(&self, radiance: &[[f64; 3]]) -> Vec<[f32; 3]> {
-        let mut sums = vec![([0.0; 3], 0.0); self.size[0] * self.size[1]];
-        for (facet, light) in radiance.iter().enumerate() {
-            let area = self.area(facet);
-            for (sample, share) in self.between(facet) {
-                let (sum, whole) = &mut sums[sample];
-                (0..3).for_each(|c| sum[c] += share * area * light[c]);
-                *whole += share * area;
-            }
-        }
-        sums.into_iter().map(|(sum, whole)| sum.map(|s| (s / whole) as f32)).collect()
-    }
-
-    /// Adds radiance of samples, the same towards all views, linear between them.
-    pub fn add_samples(&self, samples: &[[f32; 3]], light: &mut Leaving) {
-        for (facet, light) in light.alike.iter_mut().enumerate() {
-            for (sample, share) in self.between(facet) {
-                (0..3).for_each(|c| light[c] += share * f64::from(samples[sample][c]));
-            }
-        }
-    }
-
-    /// Of each sample as direction `view` shows it: radiance, and the share of the view that it fills over its own cell, masking
-    /// counted. The mean over all samples of their product over that of the shares is [`seen_from`](Self::seen_from), and the
-    /// shares' mean is v_z where the field repeats. One that ends has half a cell of the samples at its edges, and of those at
-    /// its corners a third where a diagonal begins or ends, else a sixth: shares times a cell's area are the area of the view
-    /// that is filled.
-    ///
-    /// # Panics
-    /// Where light is not scattered towards that.
-    pub fn texels_from(&self, view: usize, light: &Leaving) -> Vec<[f64; 4]> {
-        let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
-        let each = 0.5 / self.times.pow(2) as f64;
-        for (facet, filled) in self.shares(view) {
-            let radiance = self.towards((view, filled), facet, light);
-            for (sample, share) in self.between(facet) {
-                let part = share * filled;
-                (0..3).for_each(|c| all[sample][c] += part * radiance[c]);
-                all[sample][3] += part;
-            }
-        }
-        for texel in &mut all {
-            let whole = texel[3];
-            if whole > 0.0 {
-                (0..3).for_each(|c| texel[c] /= whole);
-                texel[3] = whole * each * self.scales[view];
-            }
-        }
-        all
-    }
-
-    /// The same of all views.
-    ///
-    /// # Panics
-    /// Where light is not scattered towards one of them.
-    pub fn texels_from_all(&self, light: &Leaving) -> Vec<Vec<[f64; 4]>> {
-        self.of_all(|view| self.texels_from(view, light))
     }
 
     /// Runs over all directions, on as many threads as there are processors.

@@ -95,6 +95,16 @@ impl Factors {
         self.of_views.as_deref()
     }
 
+    /// Of a light at each of the angles in turn, towards all of them; 1/sr.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<[f64; 3]>> {
+        let of_views = self.of_views.as_ref().unwrap_or(&self.values);
+        let at = move |light: usize, view: usize, c: usize| -> f64 {
+            self.values.iter().zip(of_views).map(|(g, h)| g[light][c] * h[view][c]).sum()
+        };
+        let count = self.angles.count();
+        (0..count).map(move |l| (0..count).map(|v| [0, 1, 2].map(|c| at(l, v, c))).collect())
+    }
+
     /// For a light and a view above horizontal, unit vectors; each factor linear between its angles.
     pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
         let [light, view] = [light, view].map(|e| self.angles.around(e));
@@ -163,8 +173,9 @@ mod tests {
         assert!(found[2].0.abs() < 1e-9);
     }
 
-    /// A table that is a product of two unlike functions, one of them below 0 somewhere, is one such product; and of what is
-    /// symmetric, as of diffuse ground, none is below 0.
+    /// A table that is a product of two unlike functions, one of them below 0 somewhere, is one such product, which it is not of
+    /// one function; a sum of two squares, which like that of diffuse ground is symmetric and has no eigenvalue below 0, is of
+    /// two: nothing is dropped of it.
     #[test]
     fn unlike_sides_are_told_apart() {
         let angles = Angles { zeniths: 2, azimuths: 4 };
@@ -186,5 +197,19 @@ mod tests {
         assert!(off(&factors) < 1e-9, "{}", off(&factors));
         let alike = Factors::of(&table, angles, 1, false).unwrap();
         assert!(alike.of_views().is_none() && off(&alike) > 0.1, "deaf: {}", off(&alike));
+        let squares = |l: &DVec3, v: &DVec3| g(l) * g(v) + h(l) * h(v);
+        let values = directions.iter().flat_map(|l| directions.iter().map(move |v| (l, v)));
+        let values = values.map(|(l, v)| [0.0, squares(l, v), 1.0]).collect();
+        let table = Brdf::from_values(directions.clone(), values).unwrap();
+        let factors = Factors::of(&table, angles, 2, false).unwrap();
+        let rows = factors.rows().collect::<Vec<_>>();
+        for (i, j) in (0..64).map(|i| (i / 8, i % 8)) {
+            let (l, v) = (&directions[i], &directions[j]);
+            for (found, known) in rows[i][j].into_iter().zip([0.0, squares(l, v), 1.0]) {
+                assert!((found - known).abs() < 1e-9, "{i} {j}: {found} {known}");
+            }
+            let between = factors.at(*l, *v);
+            assert!((0..3).all(|c| (rows[i][j][c] - between[c]).abs() < 1e-9), "{between:?}");
+        }
     }
 }

@@ -22,6 +22,7 @@ use ways::Ways;
 
 /// No way turns the frame by more than a right angle, radians.
 pub const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
+
 /// Towards what stands `away` m off along `e` on the flat field, from a sample at height `own_m`: of length 1, in the
 /// sample's own frame. A way that would turn further is taken as far as [`MOST_TURN`].
 pub fn bent_direction(e: DVec3, away_m: f64, own_m: f64, curvature: Curvature) -> DVec3 {

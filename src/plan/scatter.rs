@@ -225,7 +225,7 @@ pub fn scatter_views(
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
     if scatter.curvature != Curvature::FLAT && wanted.bounces > 0 {
         notes.push(format!(
-            "the base {changed}: by it scattered light is off by at most {:.4} of the largest direct light, in the mean over samples",
+            "the base {changed}: by it scattered light is off by about {:.4} or less of the largest direct light, in the mean over samples",
             changed.scattered(surface.most_reflected(), wanted.bounces)
         ));
     }

@@ -89,9 +89,10 @@ fn hills(rows: usize, cols: usize) -> HeightField {
     HeightField::new(rows, cols, &heights, [1.0, 1.5], None).expect("a field")
 }
 
-/// What a field that repeats shows is found in the very repetition that the ray meets, however many it has passed over: within
-/// half a cell each way of where the oracle, which follows the surface piece by piece, meets it. Of the knobs' rays some go
-/// beyond two repetitions and 128 cells, of wide fields and of lines one or two samples wide.
+/// What a field that repeats shows is found in the repetition that the ray meets, however many it has passed over: within
+/// half a cell each way of where the oracle, which follows the surface piece by piece, meets it; or in one before, which the ray
+/// passes over by less than is told from meeting it. Of the knobs' rays some go beyond two repetitions and 128 cells, of wide
+/// fields and of lines one or two samples wide.
 #[test]
 fn repetitions_are_those_that_rays_meet() {
     let (mut met, mut far, mut grazed) = (0, 0, 0);
@@ -114,13 +115,16 @@ fn repetitions_are_those_that_rays_meet() {
                 let want = stretch.distance_m(elevation);
                 let ways = Ways::of((&field, border), Curvature::FLAT, [here, there], e);
                 let way = ways.met();
+                let found = plan * way.away_m;
+                let off = 0.5 * 1.0_f64.hypot(1.5) + 1e-6;
                 // As near over the surface as f32 would not tell from it.
                 if way.over_m > 1e-9 {
+                    let (over, graze) = (way.over_m, way.graze_m);
+                    assert!(over <= graze, "{rows} {cols} {at:?} {e}: {over} over, {graze} grazes");
+                    assert!(found <= want + off, "{rows} {cols} {at:?} {e}: {found} beyond {want}");
                     grazed += 1;
                     continue;
                 }
-                let found = plan * way.away_m;
-                let off = 0.5 * 1.0_f64.hypot(1.5) + 1e-6;
                 assert!((found - want).abs() <= off, "{rows} {cols} {at:?} {e}: {found} {want}");
                 met += 1;
                 far += usize::from(want > 1.5 * 128.0);
@@ -214,14 +218,33 @@ fn strong_bends_are_refused_by_name() {
     assert!(said(f64::NAN, 0.0).is_some_and(|e| e.contains("two numbers")));
 }
 
-/// Grooves along the rows are the same grooves in fewer rows, and so is what a base changes of them.
+/// Grooves along the rows are the same grooves in fewer rows and in more, and so is what a base changes of them. Level ground
+/// that repeats has no relief beside the base's own shape: what of it counts is the next cell, which turns by half a cell, in tiles of any side.
 #[test]
 fn what_a_base_changes_is_not_the_tiles() {
     for k in [-0.08, 0.1] {
         let of =
             |rows| Curvature { per_m: [k, 0.0] }.changed(&grooves(rows), Border::Periodic).light;
-        let (few, many) = (of(2), of(16));
-        assert!(many > 0.005 && (few - many).abs() <= 1e-9, "{k}: {few} {many}");
+        let many = of(32);
+        assert!(many > 0.005, "{k}: {many}");
+        for rows in [2, 16] {
+            assert!((of(rows) - many).abs() <= 1e-9, "{k}, {rows} rows: {} {many}", of(rows));
+        }
+    }
+    let radius = 30.0_f64;
+    let along = |k: usize| {
+        let o = DVec2::from_angle(2.0 * PI * (k as f64 + 0.5) / 16.0);
+        let (sine, half_cell) = ((0.5 / radius).sin(), 0.5 * (o.x.abs() + o.y.abs()));
+        let moved = 0.5 * half_cell / radius * (0.5 / radius).cos();
+        (sine + moved).powi(2) - sine.powi(2)
+    };
+    let want = (0..16).map(along).sum::<f64>() / 16.0;
+    for side in [4, 8, 16] {
+        let level = HeightField::new(side, side, &vec![7.0; side * side], [1.0; 2], None);
+        let level = level.expect("a field");
+        let hollow = Curvature { per_m: [-1.0 / radius; 2] };
+        let found = hollow.check(&level, Border::Periodic).expect("nothing hidden").light;
+        assert!((found - want).abs() <= 1e-9 * want, "{side}: {found} {want}");
     }
 }
 
@@ -263,6 +286,25 @@ fn weights_are_solid_angles_between_bent_walls() {
             assert!((0..count).all(|i| (weight(&fans, &bent, i) - 1.0).abs() < 1e-9));
         }
     }
+}
+
+/// Told by more rows or columns than a base may turn by across, a field that repeats is no other one; a field that does not is
+/// refused.
+#[test]
+fn long_tiles_are_the_same_surface() {
+    let height = |i: usize| if i.is_multiple_of(8) { 0.1 } else { 0.0 };
+    let curvature = Curvature { per_m: [0.0, 0.05] };
+    let of = |rows: usize, border| {
+        let heights: Vec<f64> = (0..2 * rows).map(|i| height(i / 2)).collect();
+        let field = HeightField::new(rows, 2, &heights, [1.0; 2], None).expect("a field");
+        curvature.check(&field, border)
+    };
+    let short = of(8, Border::Periodic).expect("low steps");
+    let long = of(16 * 8, Border::Periodic).expect("the same steps");
+    let [shadows, light] = [short.shadows - long.shadows, short.light - long.light];
+    assert!(shadows.abs() <= 1e-9 && light.abs() <= 1e-9, "{short:?} {long:?}");
+    let across = of(16 * 8, Border::Open).expect_err("a turn of 6.4").to_string();
+    assert!(across.contains("6.40 radians") && across.contains("half a circle"), "{across}");
 }
 
 /// On the flat base lights are lit as before, whichever of two triangles has an edge.

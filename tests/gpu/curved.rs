@@ -77,7 +77,7 @@ fn views_between_walls_are_those_of_the_opening() {
     let mut device = Device::new();
     let walls = walls();
     let directions = Directions::fibonacci(COUNT, -1.0, 0).expect("directions");
-    let steps = [0.03, 0.02];
+    let steps = [0.03, 0.015];
     let plan = plan::curved_ellipses(&walls, BORDER, &directions, steps, &device.limits());
     let images = device.draw(plan.expect("a plan"), &[walls.heights_m()]);
     let texel = |image: usize| <[f32; 4]>::try_from(&images[image].values[4 * HALF..4 * HALF + 4]);
@@ -87,7 +87,7 @@ fn views_between_walls_are_those_of_the_opening() {
     });
     let between = CurvedEllipses::of(&five, steps);
     let views = Directions::fibonacci(1000, 0.0, 5).expect("views");
-    for per_m in [0.03_f64, 0.02, 0.01, 0.0, -0.01, -0.02] {
+    for per_m in [0.03_f64, 0.02, 0.01, 0.0, -0.0075, -0.015] {
         let side = usize::from(per_m < 0.0);
         let end = opening([steps[0], -steps[1]][side]).sin();
         let line = opening(0.0).sin() + per_m.abs() / steps[side] * (end - opening(0.0).sin());
@@ -129,7 +129,8 @@ fn plans_say_what_a_base_changes() {
     assert!((changed.scattered(0.5, 3) - off).abs() < 1e-12);
     let scatter = Scatter { curvature, cutoff: 0.0, ..Scatter::default() };
     let plan = plan::scatter(&scene, &directions, &scatter, &limits).expect("a plan");
-    let said = format!("the base {changed}: by it scattered light is off by at most {off:.4} of");
+    let said =
+        format!("the base {changed}: by it scattered light is off by about {off:.4} or less of");
     assert!(plan.notes.iter().any(|note| note.starts_with(&said)), "{said}: {:?}", plan.notes);
     let plan = plan::curved_ellipses(&scene.field, BORDER, &directions, [0.02, 0.01], &limits);
     let said = format!("the base bent east -: {changed}");

@@ -60,6 +60,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
             angles,
             curvature,
             encoding,
+            has_texels: w.formats.contains(&Format::Ktx2),
             has_lobe,
             samples,
         })
@@ -98,7 +99,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let why = |setting: &str| job.idle_reason(setting);
     idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
     if !args.global.quiet {
-        asked::say_idle_light(args, &job.wanted);
+        asked::say_idle_light(args, &job.wanted, job.lit.scatter.is_some());
     }
     let _folder = files::ResultFolder::create(&args.output)?;
     bake(args, job, &mut gpu, &used)
@@ -180,16 +181,25 @@ fn bake(
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
     let mut whole = Vec::new();
+    // What is the same of several kinds is said once.
+    let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
     for (i, (source, mut files)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
         if let Source::Horizons(maker) = source {
             maker.end(&normals, &mut files)?;
         }
-        for note in files.notes().into_iter().filter(|_| !args.global.quiet) {
-            // A closed stderr is no panic.
-            let _ = bar.suspend(|| writeln!(std::io::stderr(), "{note}"));
+        for note in files.notes() {
+            match notes.iter_mut().find(|(known, _)| *known == note) {
+                Some((_, kinds)) => kinds.push(files.kind()),
+                None => notes.push((note, vec![files.kind()])),
+            }
         }
         whole.push(files.complete(&metadata)?);
+    }
+    for (note, kinds) in notes.iter().filter(|_| !args.global.quiet) {
+        // A closed stderr is no panic.
+        let say = || writeln!(std::io::stderr(), "note: {}: {note}", kinds.join(", "));
+        let _ = bar.suspend(say);
     }
     // From here on an earlier sheet would tell of files that are no longer its own.
     let before = take_sheet(&args.output)?;
@@ -260,7 +270,7 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let first = names.iter().position(is_table);
     let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
     let own = own.map(|(_, name)| name);
-    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name)) {
+    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name, &limits)) {
         crate::say!("{count:>14}  {what}");
     }
     Ok(Outcome::Done)

@@ -134,6 +134,32 @@ fn turns_of_factors_close() {
     }
 }
 
+/// With lobes the view has functions of its own, behind those of the light: sums are of the products of both.
+#[test]
+fn views_have_factors_of_their_own() {
+    let device = Device::new();
+    let gpu = device.gpu.as_ref().expect("alive");
+    let planes = 3 * FACTORS + 3;
+    let decoder = decoder!("brdf_factors", "brdf-factors", bake::REFLECTED, true, planes, none);
+    let numbers = |layer: usize| [(layer + 1) as f32, (layer * layer) as f32, 1.0, 0.0];
+    for views in [0, FACTORS] {
+        let bits = whole(&[2, 4, FACTORS, views]);
+        let map = texture([4, 2, FACTORS + views], true, |layer, _, _| numbers(layer));
+        let found = decode(gpu, &decoder, &bits, &map, 0.0);
+        let known = |at: usize| {
+            let plane = at / 8;
+            let (k, c) = (plane / 3, plane % 3);
+            let product = |k: usize| numbers(k)[c] * numbers(views + k)[c];
+            f64::from(if k < FACTORS { numbers(k)[c] } else { (0..FACTORS).map(product).sum() })
+        };
+        // Whole numbers, all alike in a layer; mixes of four of them round thrice each.
+        let largest = (0..found.len()).map(known).fold(0.0, f64::max);
+        let (off, at) = worst(&found, known);
+        let allowed = 8.0 * largest / f64::from(1 << 23);
+        assert!(off <= allowed, "{views}: {off} of {allowed} at {at}: {}", found[at]);
+    }
+}
+
 /// Pictures of the nearest direction hold its number: asked for two fifths of a step before and behind it is the same.
 #[test]
 fn turns_of_pictures_close() {

@@ -50,10 +50,11 @@ pub fn help() -> String {
     text += "\n\
 Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
 in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
-horizons are near. With --phong, brdf, brdf-factors and btf mirror each light as their triangles lie, and scatter towards each \
-view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
-scatter is then seen from straight above, and light-field from each view, the sky along --directions. A lobe is bounded by the \
-view, not by the light, and not the same with both exchanged: the sheet says by how much. Vulkan does not ask devices to \
+horizons are near. With --phong, brdf, brdf-factors, brdf-harmonics and btf mirror each light as their triangles lie, and scatter towards \
+each view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
+scatter is then seen from straight above, and light-field from each view, the sky along --directions, with --bounces 0 along each \
+once. A lobe is bounded by the view, not by the light, and not the same with both exchanged: the sheet says by how much, where \
+--angles are as close as it is wide. Vulkan does not ask devices to \
 sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
 A .png of scatter has 16 bits, 1 at the largest number of each picture, whose scale the sheet has.
 
@@ -132,12 +133,27 @@ pub fn directions(args: &BakeArgs) -> Result<Directions> {
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
+/// Those that scatter: the first as samples, the others as triangles seen along --angles.
+const LIGHTS: [&str; 6] =
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"];
+
+/// Those of them that the scene's lights shine on.
+const LIT: [&str; 2] = ["scatter", "light-field"];
+
 /// Those that scatter, in words.
-pub const LIGHTS: &str = "scatter, brdf, brdf-factors, brdf-harmonics, btf or light-field";
+pub fn lights() -> String {
+    either(&LIGHTS)
+}
+
+/// One of some, in words.
+fn either(names: &[&str]) -> String {
+    let (last, others) = names.split_last().expect("a name");
+    format!("{} or {last}", others.join(", "))
+}
 
 /// Those that scatter.
 pub fn is_light(kind: &Kind) -> bool {
-    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"].contains(&kind.name)
+    LIGHTS.contains(&kind.name)
 }
 
 /// Whose pictures are of floats, each with a scale of its own.
@@ -147,25 +163,24 @@ pub fn is_scaled(kind: &Kind) -> bool {
 
 /// Whether the scene's lights shine on it.
 pub fn is_lit(kind: &Kind) -> bool {
-    ["scatter", "light-field"].contains(&kind.name)
+    LIT.contains(&kind.name)
 }
 
 /// Says which flags of light were written out and shine on nothing, or are of ground that reflects nothing.
-pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted]) {
+pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted], scatters: bool) {
     let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
-    let groups: [(&[&str], bool, &str); 2] = [
-        (
-            &["sky", "env", "env_rotate", "sun", "key", "light"],
-            has(is_lit),
-            "scatter or light-field",
-        ),
-        (&["albedo", "phong"], has(is_light), LIGHTS),
+    let groups: [(&[&str], bool, &[&str]); 2] = [
+        (&["sky", "env", "env_rotate", "sun", "key", "light"], has(is_lit), &LIT),
+        (&["albedo", "phong"], has(is_light), &LIGHTS),
     ];
     for (names, is_used, by) in groups {
         let is_own = |(name, _): &&(String, String)| !is_used && names.contains(&name.as_str());
         for (name, value) in args.quality.written.iter().filter(is_own) {
-            idle::note(name, value, &format!("without {by}"));
+            idle::note(name, value, &format!("without {}", either(by)));
         }
+    }
+    if let (Some(paths), false) = (args.paths, scatters) {
+        idle::note("paths", &paths.to_string(), "with --bounces 0");
     }
 }
 
@@ -219,16 +234,11 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
         found("--curvature", format!("{outwards},{inwards}"), is_used, "curved-ellipse")?;
     }
     if let Some([zeniths, azimuths]) = args.angles {
-        found(
-            "--angles",
-            format!("{zeniths}x{azimuths}"),
-            has_angles,
-            "brdf, brdf-factors, brdf-harmonics, btf or light-field",
-        )?;
+        found("--angles", format!("{zeniths}x{azimuths}"), has_angles, &either(&LIGHTS[1..]))?;
     }
     for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
         if let Some(value) = value {
-            found(name, value.to_string(), has_light, LIGHTS)?;
+            found(name, value.to_string(), has_light, &lights())?;
         }
     }
     // Some kinds share them out among parts.

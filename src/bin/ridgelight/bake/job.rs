@@ -79,7 +79,7 @@ impl Job<'_> {
         let has_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
         let is_of_bounces = setting.starts_with("bounce");
         if is_of_bounces && !has_light {
-            return Some(format!("without a kind that scatters light: {}", asked::LIGHTS));
+            return Some(format!("without a kind that scatters light: {}", asked::lights()));
         }
         if is_of_bounces {
             return Some("for what is baked: light is scattered along --paths".into());

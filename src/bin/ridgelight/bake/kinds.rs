@@ -74,6 +74,8 @@ pub struct Asked<'a> {
     /// Outwards and inwards, 1/m.
     pub curvature: Option<[f64; 2]>,
     pub encoding: &'static Encoding,
+    /// Whether a .ktx2 is written, whose components may hold less than f32.
+    pub has_texels: bool,
     /// Whether ground reflects by a lobe, too.
     pub has_lobe: bool,
     /// Of the field.
@@ -188,7 +190,7 @@ pub struct Lit<'a> {
     pub curvature: Option<[f64; 2]>,
     /// Of the pairs that a table is asked for between its angles.
     pub seed: u32,
-    /// That `brdf` and `brdf-factors` are of, once one of them has asked for it.
+    /// That `brdf`, `brdf-factors` and `brdf-harmonics` are of, once one of them has asked for it.
     pub table: OnceCell<brdf::Table>,
 }
 

@@ -101,7 +101,7 @@ impl<'a> MapFiles<'a> {
 
     /// Says something more of the kind to who waits.
     pub fn remark(&mut self, what: String) {
-        self.remarks.push(format!("note: {}: {what}", self.wanted.kind.name));
+        self.remarks.push(what);
     }
 
     /// The field's, of a map with a texel a sample.

@@ -88,7 +88,23 @@ pub fn ellipses() -> Vec<Case> {
         DVec2::from_angle(2.4 * k as f64).extend(z).normalize()
     });
     let flat = Directions::from_vectors(flat.collect(), -1.0).expect("unit vectors");
+    // Steps 12 m apart in cells a millimetre wide: from the foot of one rays pass 10,000 columns and more to the next, all of which
+    // are looked at, as steps rise by as much as rays.
+    let steps = field(12, 1, [1e-3, 1.0], |r, _| if r == 0 { 1.0 } else { 0.0 });
+    let slant = (0..8).map(|k| {
+        let k = f64::from(k);
+        DVec3::new(1.1 + 0.03 * k, -1.0, 0.03 + 0.003 * k).normalize()
+    });
+    let slant: Vec<DVec3> = sphere(24).vectors().iter().copied().chain(slant).collect();
+    let slant = Directions::from_vectors(slant, -1.0).expect("unit vectors");
     vec![
+        bent(
+            "ellipses past thousands of repetitions on curved bases",
+            steps,
+            Border::Periodic,
+            slant,
+            [1e-3, 1e-3],
+        ),
         bent(
             "ellipses of what lies far on curved bases",
             low,

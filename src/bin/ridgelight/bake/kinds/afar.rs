@@ -3,21 +3,23 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Encoding, Facets, Leaving};
+use ridgelight::bake::{Angles, Component, DIRECTIONS_A_WORD, Facets, Leaving};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Border, Bounces, Directions, HeightField, Lights, Phong, Quality, Scatter, Scene, Sun, Surface,
+    Border, Bounces, Directions, HeightField, Lights, Lobe, Phong, Quality, Scatter, Scene, Sun,
+    Surface,
 };
 use ridgelight::{Error, Result, plan};
 use serde_json::json;
 
 use super::super::map::MapFiles;
-use super::{Lit, Say, Value, number};
+use super::{Asked, Lit, Say, Value, brdf, light_field, number};
 
-/// The most that the components hold.
-pub fn largest(encoding: &Encoding) -> f64 {
-    if encoding.component == Component::F16 { 65_504.0 } else { f64::from(f32::MAX) }
+/// The most that the files hold: f32 all but a .ktx2, whose components may be less.
+pub fn largest(asked: &Asked) -> f64 {
+    let is_half = asked.encoding.component == Component::F16 && asked.has_texels;
+    if is_half { 65_504.0 } else { f64::from(f32::MAX) }
 }
 
 /// Triangles that a small field is cut into: their middles decide for them what is hidden.
@@ -39,8 +41,8 @@ pub fn constants(prefix: &str, angles: Angles) -> Vec<String> {
 }
 
 /// A texel of a picture that a view sees.
-pub fn texel(about: &'static str, unit: &'static str, encoding: &Encoding) -> Vec<Value> {
-    let range = [0.0, largest(encoding)];
+pub fn texel(about: &'static str, unit: &'static str, asked: &Asked) -> Vec<Value> {
+    let range = [0.0, largest(asked)];
     let colour = |name| Value { name, about, unit, range };
     let share = Value {
         name: "share",
@@ -144,23 +146,35 @@ pub fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     Ok(all)
 }
 
-/// Look-ups of what samples see, at most, where lobes scatter towards each view otherwise, and what they are for.
-pub fn looks(lit: &Lit, name: &str) -> Option<(u64, String)> {
-    let scatter = lit.scatter.as_ref().filter(|_| lobe(lit).is_some())?;
-    let views = lit.angles.count() as u64;
-    let lights = match name {
-        "brdf" | "brdf-factors" | "brdf-harmonics" | "btf" => views,
-        "light-field" => 1,
+/// Look-ups of what samples see along paths, at most, where lobes scatter towards each view otherwise, and what they are for.
+pub fn looks(lit: &Lit, name: &str, limits: &Limits) -> Option<(u128, String)> {
+    lobe(lit)?;
+    let views = lit.angles.count();
+    let (scatter, lights, pairs) = match name {
+        "brdf" | "brdf-factors" | "brdf-harmonics" => (lit.scatter?, views, brdf::PAIRS),
+        "btf" => (lit.scatter?, views, 0),
+        "light-field" => (light_field::paths(lit), 1, 0),
         _ => return None,
     };
-    let (paths, steps) = (u64::from(scatter.paths), u64::from(scatter.bounces));
-    let samples = lit.scene.field.heights_m().len() as u64;
-    let looks = samples * lights * paths * (steps + views);
+    let field = &lit.scene.field;
+    // For views that do not go side by side with the others paths are walked again.
+    let walks = views.div_ceil(plan::views_at_once(field, views, limits));
+    let (paths, steps) = (scatter.paths, scatter.bounces);
+    let a_path = u128::from(steps) * walks as u128 + views as u128;
+    let of_pairs = pairs as u128 * u128::from(steps + 1);
+    let samples = field.heights_m().len() as u128;
+    let looks = samples * u128::from(paths) * (lights as u128 * a_path + of_pairs);
     let of_lights = if lights == 1 { String::new() } else { format!("of {lights} lights each ") };
+    let again = if walks == 1 { String::new() } else { format!(", walked {walks} times") };
+    let of_pairs = match pairs {
+        0 => String::new(),
+        _ => format!("; of {pairs} pairs between each {paths} of {} steps", steps + 1),
+    };
     Some((
         looks,
         format!(
-            "look-ups of {name}: {of_lights}{paths} paths of {steps} steps, and one more towards each of {views} views"
+            "look-ups of {name}: {of_lights}{paths} paths of {steps} steps{again}, and one more towards each of {views} \
+             views{of_pairs}"
         ),
     ))
 }
@@ -188,8 +202,28 @@ pub fn each_light(
     gpu.lit_from(lit.scene, of, Some((&points, scatter)), &lit.limits, take)
 }
 
-/// The angles, and how well triangles fill the views.
-pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
+/// Paths that were walked.
+pub struct Walked {
+    pub plan: Plan,
+    /// Whether lobes mirror the sky along them.
+    pub mirrors_sky: bool,
+}
+
+/// Those of lights that face the field from one direction each.
+pub fn walked(lit: &Lit) -> Result<Option<Walked>> {
+    let Some(scatter) = &lit.scatter else { return Ok(None) };
+    let plan = scatter_plan(lit, scatter, &lit.limits)?;
+    Ok(Some(Walked { plan, mirrors_sky: false }))
+}
+
+/// The angles, and how well triangles fill the views; of what is kept whether it is linear between the angles.
+pub fn tell(
+    files: &mut MapFiles,
+    lit: &Lit,
+    facets: &Facets,
+    walked: Option<&Walked>,
+    is_linear: bool,
+) -> Result<()> {
     let angles = lit.angles;
     let directions = facets.directions().vectors().iter().map(|e| json!([e.x, e.y, e.z]));
     let thetas = (0..angles.zeniths).map(|k| facets.directions().vectors()[k * angles.azimuths].z);
@@ -232,50 +266,96 @@ pub fn tell(files: &mut MapFiles, lit: &Lit, facets: &Facets) -> Result<()> {
         "triangles",
         json!({ "finer": finer, "count": count, "worst_closure": worst, "are": are }),
     );
-    let scatter = match lit.scatter {
-        Some(s) => {
-            let plan = scatter_plan(lit, &s, &lit.limits)?;
-            let [bounces, paths] = ["bounces", "paths"].map(|name| number(&plan, name));
-            json!({ "bounces": bounces, "paths": paths, "seed": s.seed, "directions": lit.around.count() })
-        }
-        None => serde_json::Value::Null,
-    };
-    files.tell("scattered", scatter);
-    tell_lobe(files, lit);
+    let scattered = walked.map(|Walked { plan, .. }| {
+        let [bounces, paths, seed] = ["bounces", "paths", "seed"].map(|name| number(plan, name));
+        json!({ "bounces": bounces, "paths": paths, "seed": seed, "directions": lit.around.count() })
+    });
+    files.tell("scattered", scattered.into());
+    tell_lobe(files, lit, facets, walked, is_linear);
     Ok(())
 }
 
+/// Of all that mirrors anything the sharpest: of triangles, which have means of their corners, and of samples, whose light paths
+/// find.
+fn sharpest(lit: &Lit, facets: &Facets) -> Option<Phong> {
+    let samples = match &lit.scene.surface.phong {
+        Some(Lobe::Constant(phong)) => std::slice::from_ref(phong),
+        Some(Lobe::Map(map)) => map,
+        None => &[],
+    };
+    let all = facets.sharpest().into_iter().chain(samples.iter().copied());
+    let of = all.filter(|phong| phong.scale > 0.0);
+    of.max_by(|a, b| a.exponent.total_cmp(&b.exponent).then(a.scale.total_cmp(&b.scale)))
+}
+
+/// How far beside its middle a lobe is half as bright, degrees: cosⁿ = ½.
+fn half_width_deg(phong: &Phong) -> f64 {
+    0.5_f64.powf(1.0 / f64::from(phong.exponent).max(1e-3)).acos().to_degrees()
+}
+
+/// How far apart directions of the angles are, at most.
+fn apart_deg(angles: &Angles) -> f64 {
+    f64::max(90.0 / angles.zeniths as f64, 360.0 / angles.azimuths as f64)
+}
+
+/// Whether the angles are farther apart than the sharpest lobe is half as bright: sums over them are then no integrals.
+pub fn is_coarse(lit: &Lit, facets: &Facets) -> bool {
+    sharpest(lit, facets).is_some_and(|phong| apart_deg(&lit.angles) > half_width_deg(&phong))
+}
+
 /// Where the sharpest lobe is half as bright as in its middle, and how far apart what looks at it is.
-fn tell_lobe(files: &mut MapFiles, lit: &Lit) {
-    let Some(Phong { exponent, scale }) = lobe(lit) else { return };
-    // cosⁿ = ½.
-    let half = 0.5_f64.powf(1.0 / f64::from(exponent).max(1e-3)).acos().to_degrees();
-    let Angles { zeniths, azimuths } = lit.angles;
-    let angles = f64::max(90.0 / zeniths as f64, 360.0 / azimuths as f64);
+fn tell_lobe(
+    files: &mut MapFiles,
+    lit: &Lit,
+    facets: &Facets,
+    walked: Option<&Walked>,
+    is_linear: bool,
+) {
+    let Some(phong) = sharpest(lit, facets) else { return };
+    let (half, angles) = (half_width_deg(&phong), apart_deg(&lit.angles));
     // Each of N directions stands for 4π/N.
     let around = (4.0 * PI / lit.around.count() as f64).sqrt().to_degrees();
-    let scattered = lit.scatter.is_some().then_some(around);
+    let mirrored = walked.and_then(|Walked { plan, mirrors_sky }| {
+        let scatters = number(plan, "paths") > 0 && number(plan, "bounces") > 0;
+        match (scatters, *mirrors_sky) {
+            (true, true) => Some("of scattered light and of the sky"),
+            (true, false) => Some("of scattered light"),
+            (false, true) => Some("of the sky"),
+            (false, false) => None,
+        }
+    });
+    // Of cosⁿ the second derivative at its peak is n = 2 ln 2 / half_width²; what is linear over h errs by h²/8 of it.
+    let between = if is_linear {
+        "what is linear between them errs by about 0.17 (angles_deg / half_width_deg)² of the peak of a lobe that level ground has, \
+         for each angle that it is linear in, four of light and view together, while that is small"
+    } else {
+        "harmonics are fitted to what these angles show of it"
+    };
     files.tell(
         "lobe",
         json!({
-            "exponent": exponent, "scale": scale, "half_width_deg": half, "angles_deg": angles, "directions_deg": scattered,
-            "is": "of the sharpest lobe: half as bright half_width_deg beside its middle; angles are up to angles_deg apart, and \
-                   what is linear between them errs by about 0.17 (angles_deg / half_width_deg)² of the peak of a lobe that level \
-                   ground has, while that is small; lobes that see scattered light see it along directions directions_deg apart; \
-                   not the same with light and view exchanged",
+            "exponent": phong.exponent, "scale": phong.scale, "half_width_deg": half, "angles_deg": angles,
+            "directions_deg": mirrored.map(|_| around),
+            "is": format!(
+                "of the sharpest lobe of any triangle or sample that mirrors anything: half as bright half_width_deg beside its \
+                 middle; angles are up to angles_deg apart, and {between}; what lobes mirror along paths, scattered light and a \
+                 light-field's sky, they see along directions directions_deg apart, null where they mirror nothing there; not the \
+                 same with light and view exchanged"
+            ),
         }),
     );
     if angles > half {
+        let Angles { zeniths, azimuths } = lit.angles;
         files.remark(format!(
             "lobes are half as bright {half:.1}° beside their middle, --angles {zeniths}x{azimuths} are up to {angles:.1}° apart: too \
              coarse to hold them, but where slopes spread them wider"
         ));
     }
-    if let Some(around) = scattered.filter(|around| *around > half) {
+    if let Some(what) = mirrored.filter(|_| around > half) {
         let count = lit.around.count();
         files.remark(format!(
-            "lobes are half as bright {half:.1}° beside their middle, --directions {count} are {around:.1}° apart: what lobes mirror of \
-             scattered light is rough"
+            "lobes are half as bright {half:.1}° beside their middle, --directions {count} are {around:.1}° apart: what lobes mirror \
+             {what} is rough"
         ));
     }
 }

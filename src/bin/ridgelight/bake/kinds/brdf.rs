@@ -19,7 +19,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// Pairs of light and view that the table is asked for beside its own.
-const PAIRS: usize = 64;
+pub const PAIRS: usize = 64;
 
 /// From afar a field is a plane where it repeats.
 pub fn check(asked: &Asked, name: &str) -> Result<()> {
@@ -44,7 +44,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
                 light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/sr",
-        range: [0.0, afar::largest(asked.encoding)],
+        range: [0.0, afar::largest(asked)],
     };
     let map = Map {
         planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
@@ -122,23 +122,29 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         (0..count * count).map(|i| table.brdf.at(i / count, i % count)[c] as f32).collect()
     });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
-    tell(lit, table, &|l, v| table.brdf.between(&lit.angles, l, v), files)
+    tell(lit, table, (&|l, v| table.brdf.between(&lit.angles, l, v), true), files)
 }
 
-/// As [`tell`], and what of the table itself is left by what is kept of it: weighted by what a plane receives and sends.
+/// Between all directions what is kept of a table, and whether that is linear between its angles.
+type Kept<'a> = (&'a dyn Fn(DVec3, DVec3) -> [f64; 3], bool);
+
+/// As [`tell`], and what of the table itself is left by what is kept of it, light by light towards all views: weighted by what a
+/// plane receives and sends.
 pub fn tell_in_short(
     lit: &Lit,
     table: &Table,
-    kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
+    rows: impl Iterator<Item = Vec<[f64; 3]>>,
+    kept: Kept,
     files: &mut MapFiles,
 ) -> Result<()> {
-    let vectors = table.brdf.directions();
     let (mut apart, mut all) = (0.0, 0.0);
     let weights = lit.angles.projected_sr();
-    for (l, v) in (0..vectors.len().pow(2)).map(|i| (i / vectors.len(), i % vectors.len())) {
-        for (own, found) in table.brdf.at(l, v).into_iter().zip(kept(vectors[l], vectors[v])) {
-            apart += weights[l] * weights[v] * (own - found).powi(2);
-            all += weights[l] * weights[v] * own * own;
+    for (l, row) in rows.enumerate() {
+        for (v, found) in row.into_iter().enumerate() {
+            for (own, found) in table.brdf.at(l, v).into_iter().zip(found) {
+                apart += weights[l] * weights[v] * (own - found).powi(2);
+                all += weights[l] * weights[v] * own * own;
+            }
         }
     }
     files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
@@ -146,25 +152,32 @@ pub fn tell_in_short(
 }
 
 /// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.
-pub fn tell(
-    lit: &Lit,
-    table: &Table,
-    kept: &dyn Fn(DVec3, DVec3) -> [f64; 3],
-    files: &mut MapFiles,
-) -> Result<()> {
+pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFiles) -> Result<()> {
     let weights = lit.angles.projected_sr();
     let reflected = (0..lit.angles.count()).flat_map(|light| table.brdf.reflected(light, &weights));
     let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
-    let is = "of a light's irradiance, over all lights and colours";
+    let is_coarse = afar::is_coarse(lit, &table.facets);
+    let is = if is_coarse {
+        "of a light's irradiance, over all lights and colours, summed over --angles: the sharpest lobe is narrower than they are \
+         apart, and sums say nothing of what it reflects"
+    } else {
+        "of a light's irradiance, over all lights and colours, summed over --angles"
+    };
     files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
     files.tell("unreciprocal", table.brdf.unreciprocal().into());
     if table.facets.has_lobes() {
         let gathered = (0..lit.angles.count()).flat_map(|view| table.brdf.gathered(view, &weights));
         let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
-        let is = "radiance of a view under light of 1 from all sides, over all views and colours: at most what the surface \
-                  reflects; of one light, reflected, more than all may leave at grazing angles, as lobes have no cosine";
+        let is = if is_coarse {
+            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: the sharpest \
+             lobe is narrower than they are apart, and sums may be many times what the surface reflects"
+        } else {
+            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: but for \
+             that and worst_closure at most what the surface reflects; of one light, reflected, more than all may leave at \
+             grazing angles, as lobes have no cosine"
+        };
         files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
-        if most > 1.0 {
+        if most > 1.0 && !is_coarse {
             files.remark(format!(
                 "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
                  light, and are not the same with both exchanged ({:.3} unreciprocal)",
@@ -183,9 +196,12 @@ pub fn tell(
         "between",
         json!({
             "residual": (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt(), "pairs": PAIRS, "seed": lit.seed,
-            "is": "rms of what is kept, linear between its angles, less the field's own, over that: seeded pairs of light and \
-                   view, each even in what a level plane receives",
+            "is": format!(
+                "rms of what is kept, {}, less the field's own, over that: seeded pairs of light and view, each even in what a \
+                 level plane receives",
+                if is_linear { "linear between its angles" } else { "harmonics of all directions" }
+            ),
         }),
     );
-    afar::tell(files, lit, &table.facets)
+    afar::tell(files, lit, &table.facets, afar::walked(lit)?.as_ref(), is_linear)
 }

@@ -29,7 +29,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("{COUNT} angles or more, one a factor"),
         ));
     }
-    let largest = afar::largest(asked.encoding);
+    let largest = afar::largest(asked);
     let value = |name| Value {
         name,
         about: "of a function of one direction: the table is the sum over k of layer k for the light times layer views + k for \
@@ -69,5 +69,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
         files.take(&planes.each_ref().map(Vec::as_slice))?;
     }
-    brdf::tell_in_short(lit, table, &|l, v| factors.at(l, v), files)
+    brdf::tell_in_short(lit, table, factors.rows(), (&|l, v| factors.at(l, v), true), files)
 }

@@ -23,7 +23,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         let found = format!("{}x{} with --sh-order {order}", angles.zeniths, angles.azimuths);
         return Err(Error::setting("--angles", found, format!("{terms} angles or more")));
     }
-    let largest = afar::largest(asked.encoding);
+    let largest = afar::largest(asked);
     let value = |name| Value {
         name,
         about: "the table is the sum over texels (j, i) of their values times Y_i of the light and Y_j of the view; real, \
@@ -54,5 +54,6 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let texels = harmonics.coefficients();
     let planes = [0, 1, 2].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
-    brdf::tell_in_short(lit, table, &|l, v| harmonics.at(l, v), files)
+    let rows = harmonics.rows(table.brdf.directions());
+    brdf::tell_in_short(lit, table, rows, (&|l, v| harmonics.at(l, v), false), files)
 }

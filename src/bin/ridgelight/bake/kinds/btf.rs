@@ -26,7 +26,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         values: texel(
             "of what leaves the texel towards the view under a light of irradiance 1 facing it; 0 where the view sees none of it",
             "1/sr",
-            asked.encoding,
+            asked,
         ),
         is_array: true,
         constants: afar::constants("BTF", asked.angles),
@@ -51,5 +51,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         }
         Ok(())
     })?;
-    afar::tell(files, lit, &facets)
+    afar::tell(files, lit, &facets, afar::walked(lit)?.as_ref(), true)
 }

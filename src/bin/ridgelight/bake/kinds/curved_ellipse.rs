@@ -1,5 +1,6 @@
 use ridgelight::bake::{self, CurvedEllipses, Ellipse};
 use ridgelight::cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
+use ridgelight::scene::Curvature;
 use ridgelight::{Error, Result, plan};
 
 use super::super::map::{Format, MapFiles};
@@ -65,6 +66,12 @@ fn begin(asked: &Asked) -> Result<Making> {
 
 fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
     let steps = looked.curvature.expect("looked for by begin");
+    let [outwards, inwards] = steps;
+    let bent = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
+    for (per_m, base) in bent.into_iter().zip(&BASES[1..]) {
+        let changed = Curvature { per_m }.changed(looked.field, looked.border);
+        files.remark(format!("the base bent {}: {changed}", base.replace('_', " ")));
+    }
     let texel = |image: usize, at: usize| {
         <[f32; 4]>::try_from(&looked.outputs[image][4 * at..4 * at + 4]).expect("four")
     };

@@ -4,7 +4,7 @@ use ridgelight::scene::Scatter;
 use ridgelight::{Result, bake, plan};
 
 use super::super::map::{Format, MapFiles};
-use super::afar::{self, texel};
+use super::afar::{self, Walked, texel};
 use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source};
 
 pub static KIND: Kind = Kind {
@@ -26,7 +26,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         values: texel(
             "of what leaves the texel; 0 where the view sees none of it",
             "radiance",
-            asked.encoding,
+            asked,
         ),
         is_array: true,
         constants: afar::constants("LIGHT_FIELD", asked.angles),
@@ -40,22 +40,29 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let field = &lit.scene.field;
     let mut all = vec![afar::direct_plan(lit, &afar::diffuse(lit), limits)?];
     if afar::lobe(lit).is_some() {
-        let views = lit.angles.directions()?;
-        let views = &views.vectors()[..plan::views_at_once(field, views.count(), limits)];
-        all.push(plan::scatter_views(lit.scene, lit.around, &paths(lit), views, limits)?);
+        all.extend(walked(lit, limits)?);
         all.push(plan::visible_points(field, lit.scene.surface.border, lit.around, limits)?);
         all.push(afar::mask_plan(lit, limits)?);
         return Ok(all);
     }
     all.extend(afar::plans(lit, limits)?);
-    if let Some(scatter) = &lit.scatter {
-        all.push(plan::scatter(lit.scene, lit.around, scatter, limits)?);
-    }
+    all.extend(walked(lit, limits)?);
     Ok(all)
 }
 
+/// Of paths, towards as many views as go side by side where they are others towards each.
+fn walked(lit: &Lit, limits: &Limits) -> Result<Option<Plan>> {
+    if afar::lobe(lit).is_none() {
+        let of = |scatter: &Scatter| plan::scatter(lit.scene, lit.around, scatter, limits);
+        return lit.scatter.as_ref().map(of).transpose();
+    }
+    let views = lit.angles.directions()?;
+    let views = &views.vectors()[..plan::views_at_once(&lit.scene.field, views.count(), limits)];
+    plan::scatter_views(lit.scene, lit.around, &paths(lit), views, limits).map(Some)
+}
+
 /// Of lobes, their own direct light in it; without bounces that alone, along each direction once.
-fn paths(lit: &Lit) -> Scatter {
+pub fn paths(lit: &Lit) -> Scatter {
     let alone = Scatter { bounces: 0, paths: lit.around.count() as u32, ..Scatter::default() };
     Scatter { own_lobe: true, ..lit.scatter.unwrap_or(alone) }
 }
@@ -104,5 +111,9 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     } else {
         (0..directions.count()).try_for_each(|view| take(view, &light))?;
     }
-    afar::tell(files, lit, &facets)
+    let lights = &lit.scene.lights;
+    let has_sky = lights.environment.is_some() || lights.sky.is_some_and(|sky| sky != [0.0; 3]);
+    let walked = walked(lit, &lit.limits)?;
+    let walked = walked.map(|plan| Walked { plan, mirrors_sky: has_lobe && has_sky });
+    afar::tell(files, lit, &facets, walked.as_ref(), true)
 }

@@ -21,7 +21,7 @@ pub static KIND: Kind = Kind {
 const PARTS: u32 = 8;
 
 fn begin(asked: &Asked) -> Result<Making> {
-    let range = [0.0, afar::largest(asked.encoding)];
+    let range = [0.0, afar::largest(asked)];
     let value = |name, about| Value { name, about, unit: "radiance", range };
     let light = match asked.has_lobe {
         false => "what leaves diffuse ground: direct light and all bounces",

@@ -7,7 +7,7 @@ use super::whole::Waiting;
 use super::{Format, MapFiles, asked};
 
 impl MapFiles<'_> {
-    /// Lines on what was remarked, and on values beyond their range.
+    /// What was remarked, and of values beyond their range.
     pub fn notes(&self) -> Vec<String> {
         let mut all = self.remarks.clone();
         let (count, most) = self.beyond;
@@ -22,14 +22,14 @@ impl MapFiles<'_> {
             _ => "",
         };
         let cause = match asked::is_light(self.wanted.kind) {
-            true if component == Component::F16 => {
+            true if component == Component::F16 && self.has(Format::Ktx2) => {
                 format!("f16 of .ktx2 holds no more, --encoding {kind}=f32 does")
             }
             true => "more than f32 holds".to_owned(),
             false => "few azimuths for such slopes".to_owned(),
         };
         all.push(format!(
-            "note: {kind}: {count} values lie beyond their range{ends}, by up to {most:.2e}: {cause}"
+            "{count} values lie beyond their range{ends}, by up to {most:.2e}: {cause}"
         ));
         all
     }
