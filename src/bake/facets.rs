@@ -36,7 +36,7 @@ mod samples;
 use std::f64::consts::{PI, TAU};
 
 use crate::cpu::facet_mask::cells;
-use crate::scene::{Albedo, Border, Directions, Phong, Scene};
+use crate::scene::{Albedo, Border, Directions, LOST_RAY, Phong, Scene};
 use crate::{Error, Result};
 
 /// Directions whose bits stand in a word of the device, as in `facets.glsl`.
@@ -121,8 +121,8 @@ impl Facets {
             return Err(Error::setting("triangles seen", found, format!("{wanted} words")));
         }
         if let Some(i) = words.iter().position(|word| word & LOST != 0) {
-            let reason = "a ray took more steps than there can be".to_owned();
-            return Err(Error::Device { doing: format!("triangles seen: word {i}"), reason });
+            let doing = format!("triangles seen: word {i}");
+            return Err(Error::Device { doing, reason: LOST_RAY.to_owned() });
         }
         let [cell_x, cell_y] = field.cell_m();
         let lobe = finer.surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);

@@ -61,6 +61,7 @@ pub use quality::{
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
+pub(crate) use visible::LOST_RAY;
 pub use visible::{VisiblePoint, VisiblePoints};
 
 /// A field, what it is made of, and the light that falls on it.

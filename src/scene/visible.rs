@@ -34,6 +34,9 @@ const SKY: u32 = 0xffff_ffff;
 const GROUND: u32 = 0xffff_fffe;
 const LOST: u32 = 0xffff_fffd;
 
+/// Why the device gave a ray up.
+pub(crate) const LOST_RAY: &str = "a ray took more steps than are followed: the relief is too many cells high; lower heights or larger cells fit";
+
 impl VisiblePoints {
     /// The largest side of a field whose points take a byte an axis; 255 itself marks what is no sample.
     pub const SMALL_SIDE: usize = 255;
@@ -82,8 +85,7 @@ impl VisiblePoints {
                 let [row, col] = [word >> 16, word & 0xffff].map(|n| n as usize);
                 let at = || format!("visible points: direction {direction}, sample {sample}");
                 if word == LOST {
-                    let reason = "a ray took more steps than there can be".to_owned();
-                    return Err(Error::Device { doing: at(), reason });
+                    return Err(Error::Device { doing: at(), reason: LOST_RAY.to_owned() });
                 }
                 if word < LOST && (row >= size[0] || col >= size[1]) {
                     let found = format!("row {row}, column {col}");

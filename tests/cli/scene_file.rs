@@ -154,7 +154,7 @@ fn what_is_wrong_is_told_by_line_and_key() {
     );
     case(
         with("\"azimuths\": 16", "\"azimuths\": 4.5"),
-        &["line 14, quality.azimuths", "4.5", "whole"],
+        &["line 14, quality.azimuths", "found 4.5, expected a whole number"],
     );
     case(
         with("\"lines\": \"1/2\"", "\"lines\": 3"),

@@ -51,11 +51,11 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     if !args.global.quiet {
         let paths = traced.batches * REFERENCE_BATCH;
         crate::say!(
-            "{}: {} × {}, {paths} paths a sample, {:.3} % off, {:.1} ms on {}",
+            "{}: {} × {}, {paths} paths a sample, {}, {:.1} ms on {}",
             args.output.display(),
             scene.field.cols(),
             scene.field.rows(),
-            100.0 * traced.error,
+            off(traced.error),
             traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
             gpu.report().name
         );
@@ -143,10 +143,10 @@ fn trace(
             let unmet = plan::unmet_error(scene, args.bounces, batches * REFERENCE_BATCH);
             let error = relative(error.hypot(root_mean_square(unmet)), mean);
             progress.set_message(format!(
-                "{} of {} paths a sample, {:.3} % off",
+                "{} of {} paths a sample, {}",
                 batches * REFERENCE_BATCH,
                 wanted * REFERENCE_BATCH,
-                100.0 * error
+                off(error)
             ));
             let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
             if batches >= wanted || interrupted || enough {
@@ -176,6 +176,14 @@ fn trace(
 pub fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
     let pixels = gpu.pixels(frame, output)?;
     Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
+}
+
+/// In words: of light that is nearly none, paths that have met more of it than there is in the mean say nothing in percent.
+fn off(error: f64) -> String {
+    match error {
+        _ if error < 10.0 => format!("{:.3} % off", 100.0 * error),
+        _ => "off by far more than its light".to_owned(),
+    }
 }
 
 /// Share of the mean: 0 of nothing, infinite where all is dark but might not be.
@@ -259,6 +267,17 @@ fn write(
 mod tests {
     use super::*;
     use ridgelight::scene::{HeightField, Surface};
+
+    /// Nothing off of nothing; of next to nothing no number of forty digits.
+    #[test]
+    fn errors_are_told_in_words_where_percent_say_nothing() {
+        let of = |error, mean| off(relative(error, mean));
+        assert_eq!(of(0.0, 0.0), "0.000 % off");
+        assert_eq!(of(0.02, 2.0), "1.000 % off");
+        for (error, mean) in [(1.0, 0.0), (1.0, 1e-40), (f64::NAN, 1.0)] {
+            assert_eq!(of(error, mean), "off by far more than its light");
+        }
+    }
 
     #[test]
     fn lost_rays_are_an_error() {
