@@ -358,16 +358,22 @@ fn gpu_trade_takes_lobes() {
     assert!(count > 0 && count % (6 * 6 * 5 * 3 * 4) == 0, "{count}");
 }
 
+/// Peaks and their truth with two bounces; the flags of that scene.
+fn write_bounced(folder: &Folder) -> &'static str {
+    const SCENE: &str = "--sun 100,40 --albedo 0.8 --bounces 2";
+    write_peaks(folder);
+    let truth = format!(
+        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {SCENE}"
+    );
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    SCENE
+}
+
 /// With bounces, those over visible points are told beside them, from few directions and paths on; without bounces none are.
 #[test]
 fn gpu_trade_tells_what_may_be_baked() {
     let folder = Folder::new();
-    write_peaks(&folder);
-    let scene = "--sun 100,40 --albedo 0.8 --bounces 2";
-    let truth = format!(
-        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {scene}"
-    );
-    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let scene = write_bounced(&folder);
     let args =
         format!("trade field.npy -o out --budget 4 --max-error 1 --reference truth.exr {scene}");
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
@@ -401,12 +407,7 @@ fn gpu_trade_tells_what_may_be_baked() {
 #[test]
 fn gpu_trade_tells_what_the_memory_budget_refuses() {
     let folder = Folder::new();
-    write_peaks(&folder);
-    let scene = "--sun 100,40 --albedo 0.8 --bounces 2";
-    let truth = format!(
-        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {scene}"
-    );
-    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let scene = write_bounced(&folder);
     let args = format!(
         "trade field.npy -o out --budget 2 --max-error 1 --reference truth.exr --memory-budget 300000 {scene}"
     );
