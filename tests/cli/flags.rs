@@ -420,6 +420,7 @@ fn help_says_units_and_defaults() {
     ];
     let trade: &[(&str, &[&str])] = &[
         ("--budget", &["Seconds", "[default: 120]"]),
+        ("--evaluations", &["the same work on every machine"]),
         ("--bounces", &["0..64", "only with --reference", "[default: 0]"]),
         ("--max-error", &["0.01 is 1 %"]),
         ("--time-budget", &["<MS>"]),

@@ -15,7 +15,7 @@ fn gpu_light_that_is_no_number_is_refused() {
     for args in [
         "render field.npy -o out.exr",
         "render field.npy -o out.png --json out.json",
-        "trade field.npy -o out --budget 1",
+        "trade field.npy -o out --evaluations 1",
     ] {
         let args = format!("{args}{suns}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());

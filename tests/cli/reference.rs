@@ -136,7 +136,8 @@ fn gpu_trade_takes_the_reference() {
     let folder = Folder::new();
     write_ridge(&folder);
     done(&folder, "reference field.npy -o truth.exr --spp 4096 --quiet");
-    let args = ["trade", "field.npy", "-o", "out", "--budget", "1", "--reference", "truth.exr"];
+    let args =
+        ["trade", "field.npy", "-o", "out", "--evaluations", "1", "--reference", "truth.exr"];
     let run = folder.run(&args);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let report = json(&folder.path("out/trade.json"));

@@ -10,7 +10,7 @@ use crate::needs_vulkan::write_field;
 use crate::{Folder, read};
 
 /// Longer than anything here takes, on a busy machine too.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Waits until `is_so`; false where it never is.
 fn wait_until(mut is_so: impl FnMut() -> bool) -> bool {

@@ -133,7 +133,7 @@ fn gpu_keys_and_the_mouse_are_heard() {
     let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
     // It waits for a window that never comes, too.
     let mut xdotool = Command::new("timeout");
-    xdotool.args(["200", "xdotool"]).args(act.split(' '));
+    xdotool.args(["1200", "xdotool"]).args(act.split(' '));
     let acted = xdotool.env("DISPLAY", &display.name).status();
     let ended = view.wait().unwrap();
     assert!(acted.expect("xdotool: run tools/setup --tests").success() && ended.success());

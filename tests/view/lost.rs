@@ -178,7 +178,7 @@ fn treated(folder: &Folder, display: &Display, how: &str) -> Output {
     let mut xdotool = Command::new("timeout");
     // Its title says so once it has drawn.
     xdotool.args([
-        "200",
+        "1200",
         "xdotool",
         "search",
         "--sync",

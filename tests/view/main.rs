@@ -63,7 +63,7 @@ impl Folder {
     fn command(&self, args: &str) -> Command {
         // Longer than any takes: what hangs ends with 124.
         let mut command = Command::new("timeout");
-        command.current_dir(self.0.path()).args(["200", env!("CARGO_BIN_EXE_ridgelight")]);
+        command.current_dir(self.0.path()).args(["1200", env!("CARGO_BIN_EXE_ridgelight")]);
         command.args(args.split(' '));
         command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
         command

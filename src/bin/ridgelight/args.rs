@@ -254,6 +254,9 @@ pub struct TradeArgs {
     /// Seconds after which no further settings are tried
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0, allow_negative_numbers = true)]
     pub budget: f64,
+    /// Stop after this many measured settings instead of after a time: the same work on every machine
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    pub evaluations: Option<u32>,
     /// Recommend the cheapest settings of at most this relative RMSE (0.01 is 1 %); exit status 1
     /// where none were found
     #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget")]

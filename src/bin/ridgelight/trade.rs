@@ -16,7 +16,6 @@ mod walk;
 mod why;
 
 use std::path::Path;
-use std::time::Duration;
 
 use ridgelight::files;
 use ridgelight::measure::trade::{Place, Rule, knobs, places, refused, start_of};
@@ -28,17 +27,14 @@ use crate::args::TradeArgs;
 use crate::setup::{self, Outcome};
 use picture::Tones;
 use report::Report;
-use rig::Rig;
+use rig::{Budget, Rig};
 use truth::Truth;
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
 pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let rule = rule(args)?;
-    if !(args.budget.is_finite() && (1.0..=1e6).contains(&args.budget)) {
-        let found = args.budget.to_string();
-        return Err(Error::setting("--budget", found, "1 to 1000000 seconds"));
-    }
+    let budget = budget(args)?;
     check_folder(&args.output)?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
@@ -85,7 +81,6 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let (gpu, limits) = setup::device(&args.global)?;
 
     let bar = crate::terminal::progress(args.global.quiet, "drawing the truth");
-    let budget = Duration::from_secs_f64(args.budget);
     let mut rig = Rig::new(gpu, limits, &scene, budget);
     let truth = match given {
         Some(truth) => truth,
@@ -130,7 +125,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         walk: &walk,
         rule: walk.in_baselines(rule),
         recommended,
-        budget_s: args.budget,
+        budget,
         spent_s: rig.spent(),
     };
     write(args, &report)?;
@@ -151,6 +146,17 @@ fn rule(args: &TradeArgs) -> Result<Rule> {
     let most = positive("--max-error", args.max_error)?.map(Rule::MaxError);
     let longest = positive("--time-budget", args.time_budget)?.map(|ms| Rule::MaxCost(ms * 1e6));
     Ok(most.or(longest).unwrap_or(Rule::Knee))
+}
+
+fn budget(args: &TradeArgs) -> Result<Budget> {
+    if let Some(evaluations) = args.evaluations {
+        return Ok(Budget::Evaluations(evaluations as usize));
+    }
+    if !(args.budget.is_finite() && (1.0..=1e6).contains(&args.budget)) {
+        let found = args.budget.to_string();
+        return Err(Error::setting("--budget", found, "1 to 1000000 seconds"));
+    }
+    Ok(Budget::Seconds(args.budget))
 }
 
 /// A folder that is ours to write into: missing, empty, or with an earlier report.

@@ -106,7 +106,7 @@ fn fill(
     tried: &mut Tried,
 ) -> Result<()> {
     let scene = rig.scene;
-    let (begun, most_s) = (Instant::now(), SHARE * rig.budget.as_secs_f64());
+    let (begun, most_s) = (Instant::now(), rig.share(SHARE));
     let fits = |more_s: f64| begun.elapsed().as_secs_f64() + more_s <= most_s;
     rig.gpu.draw(own)?;
     rig.gpu.draw(direct)?;

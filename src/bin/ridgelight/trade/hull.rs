@@ -40,7 +40,7 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
         let one = |(name, hull)| {
             let is_own = home == name;
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
-            if 3.0 * draw_s > rig.left().max(KEPT * rig.budget.as_secs_f64() / 3.0) {
+            if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
                 return none("too dear for what was left of the budget".to_owned());
             }
             let mut frame = match rig.frame(&Quality { hull, ..*quality }) {

@@ -97,7 +97,7 @@ fn fill(
     let planes = rig.radiance(frame)?;
     let distance = truth.distance(&planes)?;
     let begun = Instant::now();
-    let most = TIMING * rig.budget.as_secs_f64();
+    let most = rig.share(TIMING);
     let sum = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
     // The first compiles, up to seconds: only a frame much longer than that, and than what is left,
     // is timed by it.

@@ -8,6 +8,7 @@ use super::hull;
 use super::left_out::LeftOut;
 use super::picture::Tones;
 use super::point::Point;
+use super::rig::Budget;
 use super::truth::Truth;
 use super::walk::Walk;
 use crate::setup;
@@ -28,7 +29,7 @@ pub struct Report<'a> {
     pub rule: Rule,
     /// Its point is a position in the walk's points.
     pub recommended: Recommendation,
-    pub budget_s: f64,
+    pub budget: Budget,
     pub spent_s: f64,
 }
 
@@ -128,13 +129,16 @@ impl Report<'_> {
         let others = self.others();
         let skipped: usize = others.skipped().iter().map(|g| g.places.len()).sum();
         let open = others.not_tried().len();
+        let of = match self.budget {
+            Budget::Seconds(all) => format!(" of {all:.1} s"),
+            Budget::Evaluations(_) => String::new(),
+        };
         let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
         format!(
-            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; {:.1} s \
-             of {:.1} s, {:.1} s of them for the truth.",
+            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; \
+             {:.1} s{of}, {:.1} s of them for the truth.",
             self.walk.points.len(),
             self.spent_s,
-            self.budget_s,
             self.truth_s
         )
     }
@@ -257,13 +261,17 @@ impl Report<'_> {
         let others = self.others();
         let breaks: Vec<String> =
             self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
+        let (budget_s, evaluations) = match self.budget {
+            Budget::Seconds(seconds) => (Some(seconds), None),
+            Budget::Evaluations(most) => (None, Some(most)),
+        };
         json!({
             "ridgelight": env!("CARGO_PKG_VERSION"), "about": setup::typed(&self.about),
             "truth": {
                 "what": self.truth.about, "own_relative_rmse": self.truth.own_error,
                 "how": self.truth.quality_of, "seconds": self.truth_s,
             },
-            "budget_s": self.budget_s, "spent_s": self.spent_s,
+            "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
             "knobs": knobs,
             "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
             "frontier": front,

@@ -1,6 +1,6 @@
 //! The device, the scene and the time that is left.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless};
@@ -10,17 +10,26 @@ use ridgelight::scene::{HeightField, Method, Quality, Scene};
 use crate::bench::verify;
 use crate::setup;
 
+/// What ends a trade.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Budget {
+    /// Wall-clock seconds for the whole trade.
+    Seconds(f64),
+    /// A number of measured settings. Takes as long as it takes, and measures as many on a slow machine as on a fast one.
+    Evaluations(usize),
+}
+
 pub struct Rig<'a> {
     pub gpu: Headless,
     pub limits: Limits,
     pub scene: &'a Scene,
     contents: Vec<Vec<f32>>,
     begun: Instant,
-    pub budget: Duration,
+    pub budget: Budget,
 }
 
 impl<'a> Rig<'a> {
-    pub fn new(gpu: Headless, limits: Limits, scene: &'a Scene, budget: Duration) -> Self {
+    pub fn new(gpu: Headless, limits: Limits, scene: &'a Scene, budget: Budget) -> Self {
         // The baseline's frame stays beside the one that is measured.
         let limits = Limits { memory_budget: limits.memory_budget / 2, ..limits };
         let contents = plan::picture_inputs(scene);
@@ -32,9 +41,25 @@ impl<'a> Rig<'a> {
         self.begun.elapsed().as_secs_f64()
     }
 
-    /// Seconds of the budget that are left, below 0 when it is overdrawn.
+    /// Seconds of the budget that are left: below 0 when it is overdrawn, infinite where evaluations are counted.
     pub fn left(&self) -> f64 {
-        self.budget.as_secs_f64() - self.spent()
+        self.share(1.0) - self.spent()
+    }
+
+    /// A fraction of the budget in seconds, infinite where evaluations are counted.
+    pub fn share(&self, fraction: f64) -> f64 {
+        match self.budget {
+            Budget::Seconds(all) => fraction * all,
+            Budget::Evaluations(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether the search ends after `measured` settings, with a fraction of the seconds kept back.
+    pub fn is_spent(&self, measured: usize, kept: f64) -> bool {
+        match self.budget {
+            Budget::Seconds(_) => self.left() <= self.share(kept),
+            Budget::Evaluations(most) => measured >= most,
+        }
     }
 
     pub fn plan(&self, scene: &Scene, quality: &Quality) -> Result<Plan> {

@@ -9,7 +9,7 @@ use ridgelight::{Error, Result};
 
 use super::picture::{self, Tones};
 use super::point::{self, Point};
-use super::rig::Rig;
+use super::rig::{Budget, Rig};
 use super::truth::Truth;
 use crate::setup;
 
@@ -89,16 +89,18 @@ pub fn walk(
     let mut slow = Vec::new();
     let walked = loop {
         let Some(place) = walk.search.next() else { break Ok(()) };
-        let kept_s = KEPT * rig.budget.as_secs_f64();
-        walk.out_of_time |= frame.is_some() && rig.left() <= kept_s;
+        walk.out_of_time |= frame.is_some() && rig.is_spent(walk.points.len(), KEPT);
         if walk.out_of_time {
             break Ok(());
         }
         bar.set_message(format!(
-            "{} measured, {} on the frontier, {:.0} s left: {}",
+            "{} measured, {} on the frontier, {}: {}",
             walk.points.len(),
             walk.search.frontier().len(),
-            rig.left().max(0.0),
+            match rig.budget {
+                Budget::Seconds(_) => format!("{:.0} s left", rig.left().max(0.0)),
+                Budget::Evaluations(most) => format!("{} left", most - walk.points.len()),
+            },
             places[place].flags(knobs)
         ));
         let truths = (truth, tones);
@@ -181,7 +183,7 @@ fn visit(
     if baseline.is_some() {
         // Two draws at least: one to warm up, one that counts.
         let needs = 2.0 * expected_s(rig, walk, place, quality, plan.azimuths.len(), slow)?;
-        let most = DEAREST * rig.budget.as_secs_f64();
+        let most = rig.share(DEAREST);
         if needs > most {
             let why = format!(
                 "would take about {} s, more than {} s, a tenth of the budget",

@@ -10,8 +10,10 @@ use super::compare::MOST_PATHS;
 use super::drawing::places;
 use super::{App, Shown};
 
-/// How long a window may take to become as large as a script wants it, and to show what it draws.
+/// How long a window of a script may show nothing.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// How long a script waits for the size it asked for: window managers of busy machines take seconds.
+const RESIZE_PATIENCE: Duration = Duration::from_secs(120);
 
 impl App<'_> {
     /// False where it ends.
@@ -44,7 +46,7 @@ impl App<'_> {
                 self.check_shown("frames")?;
                 Some(Step::Frames(left - u32::from(is_drawn)))
             }
-            Step::Size(wanted) => self.resize(wanted, PATIENCE)?,
+            Step::Size(wanted) => self.resize(wanted, RESIZE_PATIENCE)?,
             Step::Resizing(wanted, until) => {
                 let left = until.saturating_duration_since(Instant::now());
                 self.resize(wanted, left)?
