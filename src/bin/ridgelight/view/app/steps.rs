@@ -141,7 +141,7 @@ impl App<'_> {
             return Err(Error::setting("--script: size", found, expected));
         }
         let until = Instant::now() + left;
-        if left == PATIENCE {
+        if left == RESIZE_PATIENCE {
             let _ = shown.window.request_inner_size(PhysicalSize::new(wanted[0], wanted[1]));
         }
         self.draw(false)?;
