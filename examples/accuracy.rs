@@ -9,16 +9,17 @@
 
 use std::path::PathBuf;
 
-use ridgelight::cpu::light;
-use ridgelight::cpu::oracle::{Horizon, ONE_PLACE_CELLS, Oracle, elevation_of};
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions, Timing};
-use ridgelight::measure::error::{HorizonError, ImageError};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Border, Environment, Fuse, HeightField, Levels, Lights, Lines, Method, Quality, Scene, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::{Horizon, ONE_PLACE_CELLS, Oracle, elevation_of};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
+use ridgelight_trade::error::{HorizonError, ImageError};
 
 struct Asked {
     field: HeightField,

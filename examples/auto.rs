@@ -12,10 +12,11 @@
 
 use std::path::{Path, PathBuf};
 
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::{Environment, HeightField, Lights, Scene, Sun, Surface};
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 /// A file without a cell size gets one that makes its relief this share of its side.
 const RELIEF: f64 = 0.1;

@@ -13,15 +13,17 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
 use glam::DVec3;
-use ridgelight::bake::{
-    self, BentNormal, Encoding, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing, VisibleSky,
-};
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan;
+use ridgelight::scene::Tone;
 use ridgelight::scene::{Border, Environment, HeightField, Method, Quality};
 use ridgelight::{Error, Result};
+use ridgelight_bake as bake;
+use ridgelight_bake::{
+    BentNormal, Encoding, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing, VisibleSky,
+};
+use ridgelight_io as files;
 use serde_json::{Value, json};
 
 const SIDE: usize = 256;

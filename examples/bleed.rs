@@ -8,14 +8,15 @@ mod traced;
 
 use std::path::Path;
 
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{
     Albedo, BounceEngine, Bounces, Fuse, HeightField, Lights, Quality, Scene, Sun, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_trade::error::ImageError;
 use traced::traced;
 
 /// Samples a side, a metre apart.

@@ -25,15 +25,15 @@ mod table;
 
 use std::path::PathBuf;
 
-use ridgelight::cpu::bounce_march::bounce_march;
-use ridgelight::cpu::light::sky_of;
-use ridgelight::cpu::oracle::Oracle;
 use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Lights, Method, Quality, Scene, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_cpu::bounce_march::bounce_march;
+use ridgelight_cpu::light::sky_of;
+use ridgelight_cpu::oracle::Oracle;
 
 const ENGINES: [BounceEngine; 3] =
     [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];

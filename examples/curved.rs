@@ -24,11 +24,7 @@ use glam::DVec3;
 use light::{ALBEDO, BOUNCES, Looks, RAYS};
 use mesh::Mesh;
 use report::{Row, Scattered, picture, rmse, table};
-use ridgelight::bake::CurvedEllipses;
 use ridgelight::basis::triangles::Triangles;
-use ridgelight::cpu::ellipse_fit::{Ellipse, fit, seen_bent};
-use ridgelight::cpu::fan_weigh::weight;
-use ridgelight::cpu::points_bend::{Draped, Fans};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan;
 use ridgelight::scene::{
@@ -36,6 +32,10 @@ use ridgelight::scene::{
     VisiblePoint, VisiblePoints,
 };
 use ridgelight::{Error, Result};
+use ridgelight_bake::CurvedEllipses;
+use ridgelight_cpu::ellipse_fit::{Ellipse, fit, seen_bent};
+use ridgelight_cpu::fan_weigh::weight;
+use ridgelight_cpu::points_bend::{Draped, Fans};
 
 const LIGHTS: usize = 200;
 const DIRECTIONS: usize = 1024;
@@ -287,7 +287,7 @@ fn run() -> Result<()> {
         );
     }
     match output {
-        Some(path) => ridgelight::files::write_text(&path, &picture(&rows)),
+        Some(path) => ridgelight_io::write_text(&path, &picture(&rows)),
         None => Ok(()),
     }
 }

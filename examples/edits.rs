@@ -6,8 +6,8 @@
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions, Timing};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Limits, Picture, Plan, Rectangle};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Lights, Quality, Scene, Surface};
 use ridgelight::{Error, Result};
 

@@ -10,8 +10,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use ridgelight::files;
 use ridgelight::gpu::{Headless, HeadlessOptions};
+use ridgelight_io as files;
 use suite::methods::{self, Method};
 use suite::{Case, Outcome, Row, inputs, page};
 

@@ -4,9 +4,9 @@
 
 use std::path::Path;
 
-use ridgelight::files;
-use ridgelight::measure::fractal::fractal;
+use ridgelight::scene::fractal;
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();

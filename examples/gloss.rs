@@ -16,14 +16,15 @@ mod traced;
 use std::path::{Path, PathBuf};
 
 use mountain::{middle, side_of, sky};
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Picture, Plan, REFERENCE_BATCH, Resource};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Lights, Lobe, Phong, Quality, Scene,
     Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
 use traced::traced;
 
 const EXPONENTS: [f32; 4] = [1.0, 5.0, 20.0, 80.0];

@@ -10,8 +10,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::scene::HeightField;
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 #[path = "shared/middle.rs"]
 mod middle;

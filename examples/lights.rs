@@ -12,12 +12,12 @@ mod cones;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ridgelight::cpu::lit::Lit;
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{HeightField, Lights, Quality, Scene, SphereLight, Surface};
 use ridgelight::{Error, Result};
+use ridgelight_cpu::lit::Lit;
 
 const COUNTS: [usize; 3] = [1, 8, 64];
 /// In cells of 1 m.

@@ -8,13 +8,14 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Frame, Headless, HeadlessOptions};
-use ridgelight::measure::error::ImageError;
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, REFERENCE_BATCH};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Albedo, HeightField, Lights, Scene, Surface};
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
+use ridgelight_trade::error::ImageError;
 
 const ERROR: f64 = 0.01;
 /// Of this length at least is the run whose rates are told, seconds.

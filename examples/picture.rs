@@ -10,13 +10,15 @@
 use std::path::Path;
 
 use glam::DVec3;
-use ridgelight::cpu::{env_tables, env_wedges, light};
-use ridgelight::files::{self, HeightOptions, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Picture, azimuths};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{Border, Lights, Method, Quality, Scene, Sun, Surface};
 use ridgelight::{Error, Result};
+use ridgelight_cpu::{env_tables, env_wedges, light};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
+use ridgelight_trade::error::ImageError;
 
 const TRUE_AZIMUTHS: u32 = 360;
 const TRUE_SUN_AZIMUTHS: u32 = 64;

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use figures::{Figures, RESULTS, made, percent, text, wrong};
-use ridgelight::files;
+use ridgelight_io as files;
 use serde_json::Value;
 use splice::{broken, with};
 

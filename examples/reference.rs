@@ -13,10 +13,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_names};
-use ridgelight::cpu::bounce::{self, Truth};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::Scene;
-use ridgelight::{Error, Result, files, plan};
+use ridgelight::{Error, Result, plan};
+use ridgelight_cpu::bounce;
+use ridgelight_cpu::bounce::Truth;
+use ridgelight_io as files;
 use scenes::{Agreement, scenes};
 
 /// Batches of each picture, and a sample's paths in them.

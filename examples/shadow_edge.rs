@@ -14,14 +14,15 @@ mod traced;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use ridgelight::Result;
 use ridgelight::basis::azimuth::Blend;
 use ridgelight::basis::harmonics::turned;
 use ridgelight::basis::zonal::clamped_cosine;
-use ridgelight::cpu::oracle::Oracle;
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{Border, HeightField, KeyLight, Lights, Quality, Scene, Surface};
-use ridgelight::{Result, files};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_io as files;
 use std::f64::consts::PI;
 use traced::traced;
 

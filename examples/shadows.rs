@@ -19,9 +19,6 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use ridgelight::bake;
-use ridgelight::cpu::ellipse_fit::{Ellipse, seen as sky_of, start};
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
@@ -29,6 +26,10 @@ use ridgelight::scene::{
     VisiblePoint,
 };
 use ridgelight::{Error, Result};
+use ridgelight_bake as bake;
+use ridgelight_cpu::ellipse_fit::{Ellipse, seen as sky_of, start};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 use seen::{points, timed};
 
 const LIGHTS: usize = 200;

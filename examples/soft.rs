@@ -31,12 +31,12 @@ mod wedges;
 use std::path::{Path, PathBuf};
 
 use middle::middle;
-use ridgelight::files;
 use ridgelight::gpu::{Headless, HeadlessOptions, Pixels, Timing};
-use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{Environment, HeightField, Lights, Method, Quality, Scene, Surface};
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_trade::error::ImageError;
 
 struct Asked {
     what: String,

@@ -8,13 +8,15 @@
 
 use std::path::Path;
 
-use ridgelight::files::{self, HeightOptions, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{
     Albedo, BounceEngine, Bounces, Camera, HeightField, Lens, Lights, Quality, Scene, Sun, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 const SIZE: [u32; 2] = [1200, 500];
 const EXPOSURE: f32 = 0.95;

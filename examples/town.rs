@@ -8,19 +8,20 @@
 
 use std::path::Path;
 
-use ridgelight::cpu::key::key_on;
-use ridgelight::cpu::light::{Receiver, normal};
-use ridgelight::cpu::lit::Lit;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sphere::sphere_on;
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::{Headless, HeadlessOptions};
-use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{
     Border, Fuse, HeightField, KeyLight, Lights, Quality, Scene, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
+use ridgelight_cpu::key::key_on;
+use ridgelight_cpu::light::{Receiver, normal};
+use ridgelight_cpu::lit::Lit;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_on;
+use ridgelight_io as files;
+use ridgelight_trade::error::ImageError;
 
 /// Samples a side, a metre apart.
 const SIDE: usize = 192;

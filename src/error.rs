@@ -56,7 +56,7 @@ pub enum Error {
 
 impl Error {
     /// A [`Error::File`] from its four parts.
-    pub(crate) fn file(
+    pub fn file(
         path: &Path,
         place: impl Into<String>,
         found: impl Into<String>,
@@ -71,7 +71,7 @@ impl Error {
     }
 
     /// A [`Error::Io`] for `path`.
-    pub(crate) fn io(path: &Path, source: std::io::Error) -> Self {
+    pub fn io(path: &Path, source: std::io::Error) -> Self {
         Error::Io { path: path.to_owned(), source }
     }
 

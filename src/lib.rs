@@ -8,11 +8,11 @@
 //! # From nothing to a lit texture
 //!
 //! A Vulkan 1.3 driver (a software one such as lavapipe does) and, to build, a C++ compiler for the shaders'
-//! compiler. In `Cargo.toml`, without the window of the command line:
+//! compiler. In `Cargo.toml`:
 //!
 //! ```toml
 //! [dependencies]
-//! ridgelight = { path = "../ridgelight", default-features = false }
+//! ridgelight = { path = "../ridgelight" }
 //! ```
 //!
 //! and in `src/main.rs` (`cargo run --example first_light` runs it, as a test does):
@@ -59,19 +59,19 @@
 //! `examples/ash_host.rs` is a whole program by `ash`, `examples/wgpu` one by wgpu, `capi/tests/c/host.c` one in C by
 //! `include/ridgelight.h`.
 //!
-//! # Where what is
+//! # Modules and crates
 //!
 //! | module | what it is for |
 //! |---|---|
-//! | [`scene`] | what is lit and by what: fields, surfaces, lights, cameras, quality |
+//! | [`scene`] | fields, surfaces, lights, cameras, quality: plain data with checked ranges |
+//! | [`basis`] | Legendre polynomials, spherical harmonics, quadrature |
 //! | [`plan`] | scene and quality to passes, images, bytes and reasons, without a device |
-//! | [`gpu`] | a plan into command buffers; a device of its own; pictures before cameras; windows |
-//! | [`files`] | heights, environments, albedo in; EXR, PNG, NPY, JSON out |
-//! | [`measure`] | how far two results are off each other, in numbers and to the eye; tolerances |
-//! | [`golden`] | results that a repository keeps for its tests |
-//! | [`cpu`] | a twin of every pass in f64, and brute force that all are judged by |
-//! | [`bake`] | maps for engines: sums of horizons, and how values become texels |
-//! | [`basis`] | Legendre polynomials and spherical harmonics, from which tables are filled |
+//! | [`gpu`] | plans recorded into command buffers; a device of its own; views from cameras |
+//!
+//! Crates beside this one: `ridgelight-cpu` (a CPU reference of every pass, the f64 oracle, tolerances),
+//! `ridgelight-io` (file formats), `ridgelight-bake` (maps for engines), `ridgelight-trade` (error metrics and the
+//! search for settings), `ridgelight-testing` (golden images), `ridgelight-viewer` (windows), `ridgelight-cli` (the
+//! program) and `ridgelight-capi` (the C ABI).
 //!
 //! # Conventions
 //!
@@ -84,25 +84,19 @@
 //! # Errors and features
 //!
 //! Every fallible call returns [`Result`]; each [`Error`] is one sentence that names the file or field, the place,
-//! what was found and what was expected. No call of [`scene`], [`plan`], [`gpu`] and [`files`] panics on what a caller
-//! hands in; [`basis`] and [`cpu`] are mathematics, for those who hand in what it is about.
+//! what was found and what was expected. No call of [`scene`], [`plan`] and [`gpu`] panics on what a caller
+//! hands in; [`basis`] is mathematics and states its panics.
 //!
-//! `window` (default): `ridgelight view`, by winit. `shaderc`: shaders compiled by shaderc instead of glslang.
+//! `shaderc`: shaders compiled by shaderc instead of glslang.
 
 // Of the library alone: examples and programs tell their readers otherwise.
 #![deny(clippy::missing_errors_doc)]
 
-pub mod bake;
 pub mod basis;
-pub mod cpu;
 mod error;
-pub mod files;
-pub mod golden;
 pub mod gpu;
-pub mod measure;
 mod passes;
 pub mod plan;
-mod random;
 pub mod scene;
 
 pub use error::Error;

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use ridgelight::cpu::env_tables::{EnvTables, bottom_rad, env_tables};
-use ridgelight::cpu::env_wedges::env_wedges;
-use ridgelight::cpu::light::{environment_of, normal};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{even, towards_light};
 use ridgelight::scene::{Border, Environment, HeightField};
+use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
+use ridgelight_cpu::env_wedges::env_wedges;
+use ridgelight_cpu::light::{environment_of, normal};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 /// Elevations of the tables: enough that the azimuths alone err.
 const NODES: usize = 1024;

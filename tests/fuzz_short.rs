@@ -6,7 +6,7 @@ mod common;
 use common::*;
 use exr::prelude::FlatSamples;
 use proptest::prelude::*;
-use ridgelight::files::{HeightOptions, parse_environment, parse_heights, parse_planes};
+use ridgelight_io::{HeightOptions, parse_environment, parse_heights, parse_planes};
 use std::path::Path;
 
 /// Mutations of each file.

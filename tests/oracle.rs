@@ -1,10 +1,10 @@
 //! The oracle against scenes whose horizons are derived in the comment beside them.
 
 use proptest::prelude::*;
-use ridgelight::cpu::oracle::{
+use ridgelight::scene::{Border, HeightField};
+use ridgelight_cpu::oracle::{
     Oracle, PERIOD_CAP, elevation_rad, grid_direction, horizon, horizon_along,
 };
-use ridgelight::scene::{Border, HeightField};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];

@@ -2,9 +2,9 @@
 
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless, Timing};
-use ridgelight::measure::auto::Drawn;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Quality, Scene};
+use ridgelight_trade::auto::Drawn;
 
 /// Draws in turn that a ratio is the median of.
 const DRAWS: usize = 7;

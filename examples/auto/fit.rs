@@ -2,10 +2,10 @@
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
-use ridgelight::measure::auto::{FEATURES, PARTS, Part, Statistics};
-use ridgelight::measure::error::ImageError;
-use ridgelight::measure::trade::start;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
+use ridgelight_trade::auto::{FEATURES, PARTS, Part, Statistics};
+use ridgelight_trade::error::ImageError;
+use ridgelight_trade::trade::start;
 
 use super::device::draw;
 use super::{Asked, scenes};

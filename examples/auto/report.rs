@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use ridgelight::files;
 use ridgelight::gpu::Headless;
-use ridgelight::measure::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight::measure::trade::{Rule, Search, Value as Point, knobs, places, recommend, start};
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_trade::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
+use ridgelight_trade::trade::{Rule, Search, Value as Point, knobs, places, recommend, start};
 use serde_json::{Value, json};
 
 use super::device::{draw, ratio};

@@ -1,13 +1,14 @@
 //! What is baked by looking along directions, and of light.
 
 use ridgelight::Result;
-use ridgelight::bake::{self, Angles, Brdf, BrdfHarmonics, CurvedEllipses, Ellipse, Factors};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Quality, Scatter, Scene, Sun, Surface,
     VisiblePoint,
 };
+use ridgelight_bake as bake;
+use ridgelight_bake::{Angles, Brdf, BrdfHarmonics, CurvedEllipses, Ellipse, Factors};
 
 use crate::Baked;
 
@@ -116,10 +117,11 @@ pub fn lit(gpu: &mut Headless, field: HeightField) -> Result<Vec<Baked>> {
     let scattered = Baked::of("scatter", "radiance, error", "a layer", &bake::RADIANCE, planes);
 
     let directions = ANGLES.directions()?;
-    let facets = gpu.facets(&scene, 1, &directions, &limits)?;
+    let facets = ridgelight_bake::facets(gpu, &scene, 1, &directions, &limits)?;
     facets.check()?;
     let (mut values, mut pictures) = (Vec::new(), Vec::new());
-    gpu.lit_from(
+    ridgelight_bake::lit_from(
+        gpu,
         &scene,
         (&facets, 0..ANGLES.count(), &(|_| 0_usize..0) as &dyn Fn(usize) -> _),
         None,

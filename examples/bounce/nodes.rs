@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::{HeightOptions, read_environment, read_heights};
 use ridgelight::gpu::Headless;
 use ridgelight::scene::{Albedo, Bounces, Lights, Quality, Scene, Surface};
+use ridgelight_io::{HeightOptions, read_environment, read_heights};
 
 use crate::middle::middle;
 use crate::{ENGINES, drawn, off, quality};

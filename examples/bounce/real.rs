@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::{HeightOptions, read_environment, read_heights};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture, REFERENCE_BATCH};
 use ridgelight::scene::{
     Albedo, BounceEngine, Bounces, Environment, HeightField, Lights, Scene, Surface,
 };
+use ridgelight_io::{HeightOptions, read_environment, read_heights};
 
 use crate::middle::middle;
 use crate::plot::{Curve, Panel, svg};

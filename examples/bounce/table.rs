@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::read_environment;
 use ridgelight::gpu::{Frame, Headless, Timing};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Basis, BounceEngine, Bounces, KeyLight, Lights, Quality, Scene, Surface,
 };
+use ridgelight_io::read_environment;
 
 use crate::{Drawn, drawn, median, off};
 

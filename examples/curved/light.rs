@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::cpu::scatter_gather::Samples;
 use ridgelight::scene::{Curvature, Directions, HeightField, Scene, VisiblePoint, VisiblePoints};
+use ridgelight_cpu::scatter_gather::Samples;
 
 use super::mesh::Mesh;
 

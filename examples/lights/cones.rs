@@ -3,16 +3,17 @@
 
 use std::path::Path;
 
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sphere::sphere_of;
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{
     Basis, Border, HeightField, LightBasis, Lights, Method, Quality, Receiver, Scene, SphereLight,
     Surface, Wedges,
 };
 use ridgelight::{Error, Result};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_of;
+use ridgelight_io as files;
 
 use super::typical_ms;
 

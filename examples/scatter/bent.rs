@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::Headless;
+use ridgelight::scene::Tone;
+use ridgelight_io as files;
 
 use crate::brdf::{ANGLES, SCATTER, Seen, groove};
 use crate::geometry::{Geometry, sun};

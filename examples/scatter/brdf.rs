@@ -6,7 +6,6 @@
 //! by an orthographic camera, its mean over one repetition; the field's triangles asked for that pair; the table; factors.
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, Leaving, pairs};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::Limits;
 use ridgelight::scene::{
@@ -14,6 +13,7 @@ use ridgelight::scene::{
     VisiblePoints,
 };
 use ridgelight::{Error, Result};
+use ridgelight_bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, Leaving, pairs};
 
 use crate::geometry::{Geometry, sun};
 use crate::{Asked, bent, moss};
@@ -75,7 +75,7 @@ impl Seen<'_> {
         let scatter = is_scattered.then_some((&self.around, &SCATTER));
         // What is diffuse leaves towards all views alike.
         let of = (facets, 0..lights, &(|_| 0_usize..0) as &dyn Fn(usize) -> _);
-        gpu.lit_from(self.scene, of, scatter, &self.limits, &mut |light, l| {
+        ridgelight_bake::lit_from(gpu, self.scene, of, scatter, &self.limits, &mut |light, l| {
             take(light, &l);
             Ok(())
         })
@@ -83,7 +83,8 @@ impl Seen<'_> {
 
     pub fn table(&self, gpu: &mut Headless, is_scattered: bool) -> Result<(Brdf, Facets)> {
         let directions = ANGLES.directions()?;
-        let facets = gpu.facets(self.scene, self.times, &directions, &self.limits)?;
+        let facets =
+            ridgelight_bake::facets(gpu, self.scene, self.times, &directions, &self.limits)?;
         facets.check()?;
         let mut values = Vec::new();
         self.each(gpu, &facets, directions.count(), is_scattered, |light, radiance| {
@@ -101,7 +102,7 @@ impl Seen<'_> {
         is_scattered: bool,
     ) -> Result<Vec<[f64; 3]>> {
         let count = pairs.count() / 2;
-        let facets = gpu.facets(self.scene, self.times, pairs, &self.limits)?;
+        let facets = ridgelight_bake::facets(gpu, self.scene, self.times, pairs, &self.limits)?;
         let mut all = Vec::new();
         self.each(gpu, &facets, count, is_scattered, |light, radiance| {
             let z = pairs.vectors()[light].z;

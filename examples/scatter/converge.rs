@@ -1,13 +1,14 @@
 //! Scattered light beside light paths, by directions and paths; and pictures.
 
 use ridgelight::Result;
-use ridgelight::cpu::bounce_march::bounce_march;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::scatter_gather::{Samples, expected};
-use ridgelight::files::{self, Tone};
 use ridgelight::gpu::Headless;
 use ridgelight::plan::REFERENCE_BATCH;
+use ridgelight::scene::Tone;
 use ridgelight::scene::{Albedo, Border, Directions, HeightField, Scatter, Scene, Surface};
+use ridgelight_cpu::bounce_march::bounce_march;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::scatter_gather::{Samples, expected};
+use ridgelight_io as files;
 
 use crate::seen::points;
 use crate::table::bumps;

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 /// 80 cells of the file from black to white.
 pub fn read(folder: &Path) -> Result<HeightField> {

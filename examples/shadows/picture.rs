@@ -5,9 +5,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use ridgelight::Result;
-use ridgelight::cpu::ellipse_fit::Ellipse;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::files::{self, Tone};
+use ridgelight::scene::Tone;
+use ridgelight_cpu::ellipse_fit::Ellipse;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_io as files;
 
 use crate::Land;
 

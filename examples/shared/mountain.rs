@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::scene::{Environment, HeightField};
 use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 /// A whole number of samples a side, as it was asked for.
 pub fn side_of(text: Option<String>, default: usize) -> Result<usize> {

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::{HeightOptions, read_environment, read_heights};
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Basis, Fuse, Lines, Method, Quality, Scene, Wedges};
+use ridgelight_io::{HeightOptions, read_environment, read_heights};
 
 use crate::middle::middle;
 use crate::plot::{Curve, Panel, svg};

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use ridgelight::Result;
-use ridgelight::files::read_environment;
 use ridgelight::gpu::{Headless, Timing};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan, Resource};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Levels, Lines, Method, Quality, Scene, Wedges};
+use ridgelight_io::read_environment;
 
 use crate::{median, under};
 

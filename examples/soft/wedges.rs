@@ -6,8 +6,8 @@ use ridgelight::basis::harmonics::rotate_z;
 use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::wedge::WedgeTable;
-use ridgelight::cpu::oracle::Oracle;
 use ridgelight::scene::{Border, HeightField};
+use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// Azimuths of the truth.

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ridgelight::files::parse_environment;
+use ridgelight_io::parse_environment;
 use std::path::Path;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ridgelight::files::{HeightOptions, parse_heights};
+use ridgelight_io::{HeightOptions, parse_heights};
 use std::path::Path;
 
 const NAMES: [&str; 7] = ["a.png", "a.exr", "a.tif", "N44W072.hgt", "a.asc", "a.npy", "a.npz"];

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ridgelight::files::parse_planes;
+use ridgelight_io::parse_planes;
 use std::path::Path;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -157,3 +157,15 @@ fn factor(l: usize, m: isize) -> f64 {
 pub fn receiver([x, y, z]: [f64; 3]) -> [f64; 9] {
     [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
 }
+
+/// ∫ from `low` to `high` of (a cos²ω + b sin ω cos ω) dω, 0 when the interval is empty.
+///
+/// Antiderivative a/2 (ω + sin 2ω / 2) + b/2 sin²ω. With Δ = high - low and Σ = high + low,
+/// sin 2high - sin 2low = 2 cos Σ sin Δ and sin²high - sin²low = sin Σ sin Δ: no cancellation.
+pub fn slice(a: f64, b: f64, low: f64, high: f64) -> f64 {
+    if high <= low {
+        return 0.0;
+    }
+    let (width, sum) = (high - low, high + low);
+    0.5 * (a * (width + sum.cos() * width.sin()) + b * sum.sin() * width.sin())
+}

@@ -18,11 +18,11 @@
 pub mod azimuth;
 pub mod glsl;
 pub mod harmonics;
-pub mod key;
 pub mod legendre;
 pub mod light;
 pub mod product;
 pub mod quadrature;
+pub mod random;
 pub mod slice;
 pub mod triangles;
 pub mod wedge;

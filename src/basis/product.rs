@@ -63,7 +63,7 @@ pub fn triples(order: usize) -> Vec<Triple> {
 }
 
 /// Every order of three places once: 6, 3 or 1 of them.
-pub(crate) fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
+pub fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
     let mut all = vec![[i, j, k], [i, k, j], [j, i, k], [j, k, i], [k, i, j], [k, j, i]];
     all.sort_unstable();
     all.dedup();

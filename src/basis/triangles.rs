@@ -148,6 +148,6 @@ fn edges([a, b, c]: [usize; 3]) -> [[usize; 2]; 3] {
 }
 
 /// Of a spherical triangle, below 0 clockwise (Van Oosterom & Strackee 1983).
-pub(crate) fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
+pub fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }

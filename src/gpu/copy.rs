@@ -129,7 +129,9 @@ impl Headless {
         if to_image { Ok(()) } else { touch(staging) }
     }
 
-    pub(super) fn upload(&mut self, image: &Owned, values: &[f32]) -> Result<()> {
+    /// Fills an image; `values` are its texels, 1 or 4 f32 each.
+    #[doc(hidden)]
+    pub fn upload(&mut self, image: &Owned, values: &[f32]) -> Result<()> {
         let wanted =
             image.format.bytes() / 4 * image.extent.iter().map(|e| u64::from(*e)).product::<u64>();
         if values.len() as u64 != wanted {

@@ -8,7 +8,9 @@ use crate::{Error, Result};
 pub struct Frame {
     pub(super) renderer: Option<Renderer>,
     pub(super) inputs: Vec<Owned>,
-    pub(super) outputs: Vec<Owned>,
+    /// Images of the outputs.
+    #[doc(hidden)]
+    pub outputs: Vec<Owned>,
 }
 
 impl Frame {
@@ -19,15 +21,20 @@ impl Frame {
 }
 
 /// An image of a frame, in GENERAL layout.
-pub(super) struct Owned {
+#[doc(hidden)]
+pub struct Owned {
+    /// The image and its memory.
     pub backed: Backed,
+    /// Its texels.
     pub format: Format,
+    /// Columns, rows, layers.
     pub extent: [u32; 3],
-    pub name: String,
+    pub(super) name: String,
 }
 
 impl Owned {
-    pub(super) fn arg(&self) -> ImageArg {
+    /// As an argument, left in GENERAL.
+    pub fn arg(&self) -> ImageArg {
         ImageArg {
             image: self.backed.image,
             view: self.backed.view,
@@ -52,7 +59,8 @@ pub struct Pixels {
 
 impl Headless {
     /// Makes an image for an input or output of a plan, in GENERAL layout after [`frame`](Self::frame).
-    pub(super) fn image_for(&mut self, resource: &Resource) -> Result<Owned> {
+    #[doc(hidden)]
+    pub fn image_for(&mut self, resource: &Resource) -> Result<Owned> {
         let Kind::Image { format, width, height, layers, layered } = resource.kind else {
             return Err(Error::setting(&resource.name, "a buffer", "an image"));
         };
@@ -71,7 +79,8 @@ impl Headless {
     }
 
     /// The same for several frames in flight, `slots`.
-    pub(super) fn frame_in_flight(
+    #[doc(hidden)]
+    pub fn frame_in_flight(
         &mut self,
         plan: Plan,
         contents: &[&[f32]],

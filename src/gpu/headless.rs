@@ -4,7 +4,7 @@ use super::allocator::Blocks;
 use super::instance::{chosen, instance, load};
 use super::memory::Memory;
 use super::pipelines::Pipelines;
-use super::surface::{Handles, Surface, queue_family};
+use super::surface::{Surface, SurfaceSource, queue_family};
 use super::validation::{self, Listener, Messages};
 use super::{DeviceReport, Host, failed, requirements};
 use crate::Result;
@@ -31,9 +31,9 @@ struct Started {
 }
 
 impl Started {
-    fn new(validation: bool, window: Option<Handles>) -> Result<Self> {
+    fn new(validation: bool, window: Option<SurfaceSource>) -> Result<Self> {
         let entry = load()?;
-        let extensions = match window {
+        let extensions = match &window {
             Some(window) => window.extensions(&entry)?,
             None => &[],
         };
@@ -76,9 +76,11 @@ pub struct Headless {
     queue: vk::Queue,
     pool: vk::CommandPool,
     report: DeviceReport,
-    pub(super) memory: Memory,
+    #[doc(hidden)]
+    pub memory: Memory,
     /// Kept from frame to frame: making them is most of a small frame's time.
-    pub(super) pipelines: Pipelines,
+    #[doc(hidden)]
+    pub pipelines: Pipelines,
     /// Passes of [`draw_counted`](Self::draw_counted): name, runs, nanoseconds.
     pub(super) counted: Vec<(String, u32, f64)>,
 }
@@ -123,7 +125,8 @@ impl Headless {
     }
 
     /// The same, able to show pictures in a window.
-    pub(super) fn showing(options: &HeadlessOptions, window: Option<Handles>) -> Result<Self> {
+    #[doc(hidden)]
+    pub fn showing(options: &HeadlessOptions, window: Option<SurfaceSource>) -> Result<Self> {
         let started = Started::new(options.validation, window)?;
         let (instance, surface) = (started.instance.clone(), started.surface.as_ref());
         let (physical_device, report) = chosen(&instance, options.device.as_deref(), surface)?;
@@ -159,13 +162,15 @@ impl Headless {
     }
 
     /// The surface of its window, and what makes another.
-    pub(super) fn surface(&mut self) -> Option<(&ash::Entry, &ash::Instance, &mut Surface)> {
+    #[doc(hidden)]
+    pub fn surface(&mut self) -> Option<(&ash::Entry, &ash::Instance, &mut Surface)> {
         let Started { entry, instance, surface, .. } = &mut self.started;
         Some((entry, instance, surface.as_mut()?))
     }
 
     /// Where its commands go.
-    pub(super) fn queue(&self) -> vk::Queue {
+    #[doc(hidden)]
+    pub fn queue(&self) -> vk::Queue {
         self.queue
     }
 

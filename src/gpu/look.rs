@@ -142,8 +142,12 @@ impl Headless {
         })
     }
 
-    /// An image of the field's voids.
-    pub(super) fn mask(
+    /// An image of the field's voids, pushed onto `made`.
+    ///
+    /// # Errors
+    /// A device out of memory or lost.
+    #[doc(hidden)]
+    pub fn mask(
         &mut self,
         made: &mut Vec<Backed>,
         view: &View,
@@ -188,7 +192,11 @@ impl Headless {
 }
 
 /// What a view reads of a frame.
-pub(super) fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
+///
+/// # Errors
+/// A frame that holds no light.
+#[doc(hidden)]
+pub fn view_inputs(frame: &Frame, voids: Option<ImageArg>) -> Result<ViewInputs> {
     let plan = frame.plan();
     let found = |name: &str, images: Vec<ImageArg>, names: Vec<&str>| {
         let at = names.iter().position(|n| *n == name);

@@ -10,15 +10,19 @@ use crate::{Error, Result};
 pub(crate) use attachment::{DEPTH, whole_attachment};
 
 /// An image or a buffer with its memory.
-pub(crate) struct Backed {
+#[doc(hidden)]
+pub struct Backed {
+    /// Null of a buffer.
     pub image: vk::Image,
+    /// Null of a buffer.
     pub view: vk::ImageView,
+    /// Null of an image.
     pub buffer: vk::Buffer,
-    pub texels: vk::BufferView,
+    pub(crate) texels: vk::BufferView,
     allocation: Option<Allocation>,
     /// Of the buffer.
     bytes: u64,
-    pub layers: u32,
+    pub(crate) layers: u32,
 }
 
 impl Backed {
@@ -32,7 +36,7 @@ impl Backed {
 }
 
 /// Makes images and buffers on a host's device and frees them again.
-pub(crate) struct Memory {
+pub struct Memory {
     allocator: Option<Box<dyn Allocator>>,
     host: Host,
 }
@@ -273,7 +277,7 @@ impl Memory {
 }
 
 /// All of a colour image.
-pub(crate) fn whole(layers: u32) -> vk::ImageSubresourceRange {
+pub fn whole(layers: u32) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: vk::ImageAspectFlags::COLOR,
         base_mip_level: 0,

@@ -6,7 +6,7 @@
 //!   it has lit, into the engine's command buffers;
 //! - **one of its own**, for tools and tests: [`Headless`] makes images for a plan's inputs and outputs
 //!   ([`Frame`]), fills, draws and reads them, and [`look`](Headless::look)s at them before a camera;
-//! - **a window's**: [`Screen`].
+//! - **a window's**: the crate `ridgelight-viewer`.
 //!
 //! # Before there is a device
 //!
@@ -80,7 +80,6 @@
 //! By [`Blocks`] of 4 MiB, or an engine's own [`Allocator`]; all of it taken when a renderer is made, given back by
 //! `destroy`. A renderer that is dropped leaks and says so: what was recorded may still run.
 
-mod afar;
 mod allocator;
 mod copy;
 mod frame;
@@ -93,7 +92,7 @@ mod pipelines;
 mod read;
 mod renderer;
 mod requirements;
-mod screen;
+mod scattering;
 pub mod shaders;
 mod specialise;
 mod surface;
@@ -101,14 +100,21 @@ mod validation;
 mod view;
 
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
+#[doc(hidden)]
+pub use frame::Owned;
 pub use frame::{Frame, Pixels};
 pub use headless::{Headless, HeadlessOptions};
 pub use instance::{choose, devices};
 pub use lend::{Lent, LentBuffer};
 pub use look::Seen;
-pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing};
+#[doc(hidden)]
+pub use look::view_inputs;
+#[doc(hidden)]
+pub use memory::{Backed, whole};
+pub use renderer::{BufferArg, ImageArg, ImageState, InputArg, Renderer, Timing, Work};
 pub use requirements::{DeviceReport, Requirements, limits, missing, requirements};
-pub use screen::{Pane, PaneTimes, Panel, Screen, Shot, Shown, Sight, Work};
+#[doc(hidden)]
+pub use surface::{Surface, SurfaceSource};
 pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 
 use ash::vk;
@@ -141,7 +147,7 @@ pub struct Host {
 
 impl Host {
     /// Names an object for debuggers.
-    pub(crate) fn name(&self, handle: impl vk::Handle, name: &str) {
+    pub fn name(&self, handle: impl vk::Handle, name: &str) {
         let (Some(debug), Ok(name)) = (&self.debug_utils, std::ffi::CString::new(name)) else {
             return;
         };
@@ -196,7 +202,8 @@ impl Format {
 }
 
 /// A failed Vulkan call as an error.
-pub(crate) fn failed(doing: impl Into<String>) -> impl FnOnce(vk::Result) -> Error {
+#[doc(hidden)]
+pub fn failed(doing: impl Into<String>) -> impl FnOnce(vk::Result) -> Error {
     let doing = doing.into();
     move |result| Error::Device { doing, reason: result.to_string() }
 }

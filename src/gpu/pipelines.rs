@@ -22,7 +22,7 @@ type Key = (&'static str, Vec<(u32, u32)>);
 
 /// Pipelines, one a shader and set of constants: of a renderer, or of all that share a clone of this.
 #[derive(Clone, Default)]
-pub(crate) struct Pipelines(Arc<Mutex<HashMap<Key, Pipeline>>>);
+pub struct Pipelines(Arc<Mutex<HashMap<Key, Pipeline>>>);
 
 pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
@@ -35,7 +35,7 @@ pub(crate) fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 
 impl Pipelines {
     /// The pipeline of each pass; makes those that are not there yet.
-    pub fn of<'a>(
+    pub(crate) fn of<'a>(
         &self,
         host: &Host,
         passes: impl Iterator<Item = &'a Pass>,

@@ -11,7 +11,6 @@ use ash::vk;
 use super::allocator::{Allocator, Blocks};
 use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
-use super::screen::Work;
 use super::shaders::BindingKind;
 use super::{Host, requirements};
 use crate::plan::{Pass, Plan, Rectangle, ResourceId};
@@ -29,6 +28,24 @@ pub struct Timing {
     pub label: String,
     /// Nanoseconds.
     pub ns: f64,
+}
+
+/// What lights a frame before it is shown.
+#[derive(Clone, Copy, Debug)]
+pub enum Work<'a> {
+    /// Passes by position in its plan, as [`Renderer::record_passes`] takes them; none: it
+    /// stays as it was.
+    Passes(&'a [usize]),
+    /// What an edit of a rectangle of its heights needs: [`Renderer::record_edit`].
+    Edit(Rectangle),
+}
+
+impl Work<'_> {
+    /// Whether nothing is done.
+    #[doc(hidden)]
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::Passes([]))
+    }
 }
 
 /// Records a plan into command buffers of a device that it borrows. Makes every resource when it is
@@ -97,7 +114,8 @@ impl Renderer {
     }
 
     /// The same with pipelines that other renderers of the same device share.
-    pub(super) fn sharing(
+    #[doc(hidden)]
+    pub fn sharing(
         host: &Host,
         plan: Plan,
         slots: usize,
@@ -244,7 +262,8 @@ impl Renderer {
 
     /// What [`record_passes`](Self::record_passes) refuses, or of a rectangle [`record_edit`](Self::record_edit), with
     /// nothing recorded.
-    pub(super) fn check_recording(
+    #[doc(hidden)]
+    pub fn check_recording(
         &self,
         slot: usize,
         inputs: &[ImageArg],
@@ -261,7 +280,8 @@ impl Renderer {
     }
 
     /// Of what was recorded last nothing ran: nothing counts as recorded.
-    pub(super) fn forget(&mut self) {
+    #[doc(hidden)]
+    pub fn forget(&mut self) {
         self.begun = 0;
         self.pending.fill(true);
         self.slots.iter_mut().for_each(|slot| slot.recorded.clear());

@@ -2,72 +2,82 @@
 
 use std::ffi::{CStr, c_char};
 
+use ash::prelude::VkResult;
 use ash::{khr, vk};
-use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
 use super::failed;
 use crate::{Error, Result};
 
-/// A window as its system knows it; alive as long as this is used.
-#[derive(Clone, Copy)]
-pub(super) struct Handles {
-    pub display: RawDisplayHandle,
-    pub window: RawWindowHandle,
+/// Makes a surface of a window that is alive.
+#[doc(hidden)]
+pub type CreateSurface = Box<dyn Fn(&ash::Entry, &ash::Instance) -> VkResult<vk::SurfaceKHR>>;
+
+/// How a window gets its surface: from the crate that knows window systems.
+#[doc(hidden)]
+pub struct SurfaceSource {
+    /// Instance extensions that surfaces of its system need.
+    pub extensions: &'static [*const c_char],
+    /// Makes a surface of the window, which outlives it.
+    pub create: CreateSurface,
 }
 
-impl Handles {
-    /// Instance extensions that surfaces of its system need.
-    ///
-    /// # Errors
-    /// A system that Vulkan does not know, or that no driver here shows pictures on.
-    pub fn extensions(self, entry: &ash::Entry) -> Result<&'static [*const c_char]> {
-        let doing = "showing pictures in a window";
-        let needed =
-            ash_window::enumerate_required_extensions(self.display).map_err(failed(doing))?;
+impl SurfaceSource {
+    /// Instance extensions that surfaces of its system need, all of which a driver here has.
+    pub(super) fn extensions(&self, entry: &ash::Entry) -> Result<&'static [*const c_char]> {
         // SAFETY: a query without preconditions.
         let known = unsafe { entry.enumerate_instance_extension_properties(None) };
         let known = known.map_err(failed("listing extensions"))?;
         let is_known = |name: &CStr| known.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
-        // SAFETY: constants of ash, nul-terminated.
-        let mut names = needed.iter().map(|name| unsafe { CStr::from_ptr(*name) });
+        // SAFETY: nul-terminated, as the source promises.
+        let mut names = self.extensions.iter().map(|name| unsafe { CStr::from_ptr(*name) });
         match names.find(|name| !is_known(name)) {
             Some(name) => {
                 let reason = format!("no Vulkan driver here has {}", name.to_string_lossy());
-                Err(Error::Device { doing: doing.into(), reason })
+                let doing = "showing pictures in a window".into();
+                Err(Error::Device { doing, reason })
             }
-            None => Ok(needed),
+            None => Ok(self.extensions),
         }
     }
 }
 
 /// A window's surface; not destroyed but by [`Surface::end`].
-pub(super) struct Surface {
+#[doc(hidden)]
+pub struct Surface {
     pub loader: khr::surface::Instance,
     pub surface: vk::SurfaceKHR,
-    handles: Handles,
+    source: SurfaceSource,
 }
 
 impl Surface {
-    pub fn new(entry: &ash::Entry, instance: &ash::Instance, handles: Handles) -> Result<Self> {
+    pub(super) fn new(
+        entry: &ash::Entry,
+        instance: &ash::Instance,
+        source: SurfaceSource,
+    ) -> Result<Self> {
         let loader = khr::surface::Instance::new(entry, instance);
-        let mut made = Self { loader, surface: vk::SurfaceKHR::null(), handles };
+        let mut made = Self { loader, surface: vk::SurfaceKHR::null(), source };
         made.renew(entry, instance)?;
         Ok(made)
     }
 
     /// Another of the same window, where the first was lost. No swapchain of it may be alive.
+    ///
+    /// # Errors
+    /// A window that is gone, a device that is lost.
     pub fn renew(&mut self, entry: &ash::Entry, instance: &ash::Instance) -> Result<()> {
         self.end();
-        let Handles { display, window } = self.handles;
-        // SAFETY: the instance was made with what the system's surfaces need; the window is alive.
-        self.surface =
-            unsafe { ash_window::create_surface(entry, instance, display, window, None) }
-                .map_err(failed("making the surface of a window"))?;
+        self.surface = (self.source.create)(entry, instance)
+            .map_err(failed("making the surface of a window"))?;
         Ok(())
     }
 
     /// What a device lacks to show pictures on it.
-    pub fn missing(&self, instance: &ash::Instance, device: vk::PhysicalDevice) -> Option<String> {
+    pub(super) fn missing(
+        &self,
+        instance: &ash::Instance,
+        device: vk::PhysicalDevice,
+    ) -> Option<String> {
         // SAFETY: the physical device is the instance's.
         let known = unsafe { instance.enumerate_device_extension_properties(device) };
         let mut known = known.iter().flatten();
@@ -80,7 +90,7 @@ impl Surface {
     }
 
     /// Destroys it: before the instance, after its swapchains. Nothing where there is none.
-    pub fn end(&mut self) {
+    pub(super) fn end(&mut self) {
         // SAFETY: made by this loader's instance, or null; the caller says that no swapchain is left.
         unsafe { self.loader.destroy_surface(std::mem::take(&mut self.surface), None) };
     }

@@ -1,8 +1,8 @@
 use std::ops::Range;
 
-use crate::cpu::ellipse_fit::least_radius;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
+use crate::scene::least_radius;
 use crate::scene::{Directions, HeightField, VisiblePoints};
 
 #[repr(C)]

@@ -56,6 +56,6 @@ pub(crate) fn plan(
             ("facet_mask", image),
         ],
         words * (4 + 16),
-        words * 2 * crate::bake::DIRECTIONS_A_WORD as u64,
+        words * 2 * crate::plan::DIRECTIONS_A_WORD as u64,
     );
 }

@@ -1,8 +1,8 @@
 use std::ops::Range;
 
-use crate::cpu::points_bend::ways::REACH_CELLS;
 use crate::gpu::shaders::{self, same_layout};
 use crate::plan::{Builder, ResourceId};
+use crate::scene::REACH_CELLS;
 use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
 
 #[repr(C)]

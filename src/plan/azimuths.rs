@@ -19,8 +19,10 @@ pub const CELL: i32 = 1 << 15;
 pub const STEEPEST: f32 = 1e9;
 
 pub(crate) const MARCHES_ROWS: u32 = 1;
-pub(crate) const FLIPS_MARCH: u32 = 2;
-pub(crate) const FLIPS_LANES: u32 = 4;
+/// Bit of an azimuth that marches against its axis.
+pub const FLIPS_MARCH: u32 = 2;
+/// Bit of an azimuth whose lanes are in reverse order.
+pub const FLIPS_LANES: u32 = 4;
 
 /// One direction and what it weighs, as the shaders read it: four texels, `Azimuth` and
 /// `azimuth_at` in `conventions.glsl`, in this order.

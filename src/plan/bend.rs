@@ -2,9 +2,9 @@
 
 use super::visible_points::texels;
 use super::{Builder, Format, Limits, Owner, ResourceId};
-use crate::cpu::points_bend::Fans;
+
 use crate::passes::{fan_weigh, points_bend};
-use crate::scene::{Border, Curvature, Directions, HeightField};
+use crate::scene::{Border, Curvature, Directions, Fans, HeightField};
 use crate::{Error, Result};
 
 /// Looks that one dispatch bends, about: tenths of a second on a slow device.

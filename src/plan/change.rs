@@ -74,8 +74,8 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan, Resource};
+    use crate::scene::fractal;
     use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 
     fn scene() -> Scene {

@@ -66,7 +66,7 @@ pub(super) fn choice_density(environment: &Environment, cdf: &[f32]) -> Vec<f64>
 /// most R·L·Ω, from a ball of radiance L at most 2π·R·L, and
 /// from the environment, chosen with density p and weighed by the balance heuristic, at most f·L and
 /// R·L/p; its scattered ray then passes balls on their inside, each at most once, and meets what is far, or the next vertex.
-pub(crate) fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
+pub fn most_light(scene: &Scene, bounces: u32) -> [f64; 3] {
     let Scene { surface, lights, .. } = scene;
     let albedo = match &surface.albedo {
         Albedo::Constant(colour) => *colour,

@@ -11,7 +11,7 @@ use crate::{Error, Result};
 const BAND_LOOKS: u64 = 1 << 26;
 
 /// Passes that find of each sample the ellipse that holds the directions in which it sees the sky
-/// ([`Ellipse`](crate::cpu::ellipse_fit::Ellipse)): six numbers for a shadow test (Heidrich et al. 2000, §4).
+/// (`Ellipse`): six numbers for a shadow test (Heidrich et al. 2000, §4).
 ///
 /// Input: "heights". Outputs: "ellipse_axes", centre (east, north) and axis of length 1 (east, north); "ellipse_radii", one
 /// over the radius along the axis and across it, the lit less the shadowed directions within, and the search's last step, 0
@@ -37,7 +37,7 @@ pub fn ellipses(
 /// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent towards east and then towards north by the
 /// two curvatures, both above 0, outwards and inwards (Heidrich et al. 2000, §5): hollows can be bent less before what is seen
 /// changes. Between them ellipses change linearly:
-/// [`CurvedEllipses`](crate::bake::CurvedEllipses).
+/// `CurvedEllipses`.
 ///
 /// Input: "heights". Outputs: "ellipse_axes.k" and "ellipse_radii.k" of k = 0 to 4: flat, east +, east -, north +, north -.
 ///

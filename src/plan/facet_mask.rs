@@ -2,16 +2,18 @@ use super::batch::bytes_text;
 use super::blocks::Blocks;
 use super::visible_points::{check_field, texels};
 use super::{Builder, Format, Limits, Owner, Plan};
-use crate::bake::DIRECTIONS_A_WORD;
 use crate::passes::facet_mask as pass;
 use crate::scene::{Border, Directions, HeightField};
 use crate::{Error, Result};
+
+/// Directions whose bits stand in a word of the device, as in `facets.glsl`.
+pub const DIRECTIONS_A_WORD: usize = 15;
 
 /// Rays that one dispatch follows, about, as of visible points.
 const BAND_RAYS: u64 = 1 << 24;
 
 /// Passes that find which of a field's flat triangles, two a cell, are seen from each direction:
-/// [`Facets`](crate::bake::Facets).
+/// `Facets`.
 ///
 /// Input: "heights". Output: "facet_mask", one u32 a cell for every fifteen directions.
 ///

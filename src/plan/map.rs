@@ -45,10 +45,10 @@ impl Map {
 
 /// The pass that draws a [`Map`].
 ///
-/// Inputs, in order: "radiance", "tone_steps" ([`Tone::steps`](crate::files::Tone::steps)), "voids" where there are
+/// Inputs, in order: "radiance", "tone_steps" ([`Tone::steps`](crate::scene::Tone)), "voids" where there are
 /// any: 0 where there is ground, 1 where there is none. Output: "picture", the four bytes of each pixel as one word,
 /// the first lowest, the last 255. Without voids and from samples inside the field they are the codes of
-/// [`write_png`](crate::files::write_png).
+/// `write_png`.
 ///
 /// # Errors
 /// What is out of range, or a picture beyond the limits.

@@ -14,7 +14,7 @@ pub const REFERENCE_BATCH: u32 = BATCH_PATHS;
 const MOST_BOUNCES: u32 = 64;
 
 /// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every sample: what
-/// [`cpu::bounce`](crate::cpu::bounce) defines, with all bounces up to `bounces`; and where there is a lobe it
+/// `cpu::bounce` defines, with all bounces up to `bounces`; and where there is a lobe it
 /// reflects at every place that a path meets, about the mirror direction of where the path came from.
 ///
 /// Inputs: those of [`reference_inputs`]. Outputs: "radiance", the mean of all batches so far, and

@@ -147,7 +147,7 @@ impl WedgeTexels {
 }
 
 /// The lowest horizon of a table of wedges: where light comes from below, of the whole sphere.
-pub(crate) fn lowest_rad(border: Border) -> f64 {
+pub fn lowest_rad(border: Border) -> f64 {
     if border == Border::Open { -FRAC_PI_2 } else { 0.0 }
 }
 

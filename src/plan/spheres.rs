@@ -210,8 +210,8 @@ pub(crate) fn samples_within(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::fractal;
     use crate::scene::{Lights, Quality, Surface};
 
     fn ball(x: f64, y: f64, radius_m: f64) -> SphereLight {

@@ -150,7 +150,7 @@ impl View {
     }
 
     /// Whether a renderer of another view can record this one: of what both know, only cameras and light differ.
-    pub(crate) fn is_shaped_like(&self, other: &Self) -> bool {
+    pub fn is_shaped_like(&self, other: &Self) -> bool {
         let shape = |v: &Self| {
             (v.size, v.samples, v.field, v.radiance, v.environment.is_some(), v.has_voids)
         };

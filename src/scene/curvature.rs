@@ -3,10 +3,9 @@ use std::fmt;
 
 use glam::{DVec2, DVec3};
 
+use super::bend::{MOST_TURN, REACH_CELLS, bent_as_far, bent_direction};
+use super::normal;
 use super::{Border, HeightField};
-use crate::cpu::light::normal;
-use crate::cpu::points_bend::ways::REACH_CELLS;
-use crate::cpu::points_bend::{MOST_TURN, bent_as_far, bent_direction};
 use crate::{Error, Result};
 
 /// Curvature of the base that a field lies on, whose principal directions are east and north: that of a surface through

@@ -108,3 +108,9 @@ fn check_lowest(lowest_z: f64) -> Result<()> {
     let expected = "a number from -1, the whole sphere, to 0, the upper hemisphere";
     Err(Error::setting("height of the lowest direction", lowest_z.to_string(), expected))
 }
+
+/// The least radius of an ellipse among so many directions: that of the disc around the zenith that one of them stands for,
+/// π r² = 2π / count.
+pub fn least_radius(count: usize) -> f64 {
+    (2.0 / count.max(1) as f64).sqrt()
+}

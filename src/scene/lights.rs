@@ -55,7 +55,7 @@ impl SphereLight {
     ///
     /// Narrow: the setting, but no more than eight a cell that the ball is wide, as the surface is flat within
     /// a cell; at least 4. Around: eight times the setting, at the default as many as a sky has azimuths.
-    pub(crate) fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
+    pub fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
         let cells_wide = 2.0 * self.radius_m / cell_m[0].min(cell_m[1]);
         let most = (8.0 * cells_wide).ceil().clamp(4.0, 1e4) as u32;
         [setting.min(most), 8 * setting]

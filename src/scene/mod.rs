@@ -30,6 +30,7 @@
 //! What only the device knows is planned as [`HeightField::unknown`], [`Environment::unknown`],
 //! [`Albedo::unknown`].
 
+mod bend;
 mod bounces;
 mod camera;
 mod curvature;
@@ -37,23 +38,30 @@ mod directions;
 mod environment;
 mod field;
 mod finer;
+mod fractal;
 mod hash;
 mod key;
+mod key_harmonics;
 mod lights;
+mod normal;
 mod quality;
 mod scatter;
 mod surface;
+mod tone;
 mod visible;
 
+pub use bend::{Fans, MOST_TURN, REACH_CELLS, bent_as_far, bent_direction};
 pub use bounces::{BounceEngine, BounceGloss, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
 pub use curvature::{Changed, Curvature};
-pub use directions::Directions;
+pub use directions::{Directions, least_radius};
 pub use environment::Environment;
 pub use field::{HeightField, fill_voids};
+pub use fractal::fractal;
 pub use key::KeyLight;
 pub use lights::{Lights, POINT_DIAMETER_RAD, SphereLight, Sun};
+pub use normal::normal;
 pub use quality::{
     Basis, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver, Wedges,
     Window,
@@ -61,8 +69,8 @@ pub use quality::{
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
 pub use surface::{Albedo, Border, Lobe, Phong, Surface};
-pub(crate) use visible::LOST_RAY;
-pub use visible::{VisiblePoint, VisiblePoints};
+pub use tone::{Tone, picture_tone};
+pub use visible::{LOST_RAY, VisiblePoint, VisiblePoints};
 
 /// A field, what it is made of, and the light that falls on it.
 #[derive(Clone, Debug)]

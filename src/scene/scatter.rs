@@ -32,7 +32,7 @@ pub struct Scatter {
     /// Of the base that the field lies on, default flat. What samples see is that of the flat field; where they see it, and what
     /// each direction counts for, follow the base. Of what is diffuse alone. One of the whole field: a map of curvatures over it would
     /// say the same of all its repetitions over an object, which lie on different ones. There, mix linearly what is scattered
-    /// on a few bases, as [`CurvedEllipses`](crate::bake::CurvedEllipses) does with shadows: `examples/curved` tells what that errs by.
+    /// on a few bases, as `CurvedEllipses` does with shadows: `examples/curved` tells what that errs by.
     pub curvature: Curvature,
 }
 

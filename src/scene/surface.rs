@@ -43,7 +43,7 @@ impl Surface {
 
 impl Surface {
     /// The largest share of light that it reflects, diffusely and by its lobe, in any channel anywhere, [0..1].
-    pub(crate) fn most_reflected(&self) -> f64 {
+    pub fn most_reflected(&self) -> f64 {
         let lobe = self.phong.as_ref().map_or(0.0, |lobe| f64::from(lobe.largest().scale));
         (f64::from(self.albedo.largest()) + lobe).min(1.0)
     }
@@ -100,7 +100,7 @@ pub struct Phong {
 
 impl Phong {
     /// What is out of range: its name, its value, what was expected.
-    pub(crate) fn complaint(&self) -> Option<(&'static str, f32, &'static str)> {
+    pub fn complaint(&self) -> Option<(&'static str, f32, &'static str)> {
         if !(0.0..=1e4).contains(&self.exponent) {
             return Some(("exponent", self.exponent, "a number from 0 to 10000"));
         }

@@ -35,7 +35,7 @@ const GROUND: u32 = 0xffff_fffe;
 const LOST: u32 = 0xffff_fffd;
 
 /// Why the device gave a ray up.
-pub(crate) const LOST_RAY: &str = "a ray took more steps than are followed: the relief is too many cells high; lower heights or larger cells fit";
+pub const LOST_RAY: &str = "a ray took more steps than are followed: the relief is too many cells high; lower heights or larger cells fit";
 
 impl VisiblePoints {
     /// The largest side of a field whose points take a byte an axis; 255 itself marks what is no sample.

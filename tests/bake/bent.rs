@@ -1,12 +1,12 @@
 //! What is said of a bent base, held to grooves bent as real geometry: rays and light paths at the mesh.
 
 use glam::DVec3;
-use ridgelight::cpu::fan_weigh::weight;
-use ridgelight::cpu::points_bend::{Draped, Fans};
-use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::scene::{
     Albedo, Border, Curvature, Directions, HeightField, Lights, Scene, Surface, VisiblePoints,
 };
+use ridgelight_cpu::fan_weigh::weight;
+use ridgelight_cpu::points_bend::{Draped, Fans};
+use ridgelight_cpu::visible_points::visible_points;
 
 #[path = "../../examples/curved/light.rs"]
 mod light;

@@ -3,16 +3,16 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-use ridgelight::bake::CurvedEllipses;
-use ridgelight::cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
-use ridgelight::cpu::fan_weigh::weight;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::points_bend::ways::Ways;
-use ridgelight::cpu::points_bend::{Draped, Fans, bent_direction};
-use ridgelight::cpu::visible_points::{visible_point, visible_points};
 use ridgelight::scene::{
     Border, Changed, Curvature, Directions, HeightField, VisiblePoint, VisiblePoints,
 };
+use ridgelight_bake::CurvedEllipses;
+use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
+use ridgelight_cpu::fan_weigh::weight;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::points_bend::ways::Ways;
+use ridgelight_cpu::points_bend::{Draped, Fans, bent_direction};
+use ridgelight_cpu::visible_points::{visible_point, visible_points};
 
 const HALF: usize = 8;
 

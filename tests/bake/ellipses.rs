@@ -1,9 +1,9 @@
 //! Shadows by what samples see: ellipses of sets that are known, and what lies between directions.
 
 use glam::{DVec2, DVec3};
-use ridgelight::cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius, moments, score, start};
-use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoints};
+use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius, moments, score, start};
+use ridgelight_cpu::visible_points::visible_points;
 
 const COUNT: usize = 1000;
 

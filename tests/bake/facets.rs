@@ -3,14 +3,14 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets, Leaving};
-use ridgelight::cpu::facet_mask::facet_mask;
-use ridgelight::cpu::light::normal;
-use ridgelight::cpu::scatter_gather::expected;
-use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Scene, Surface, VisiblePoint, VisiblePoints,
 };
+use ridgelight_bake::{Angles, Brdf, Facets, Leaving};
+use ridgelight_cpu::facet_mask::facet_mask;
+use ridgelight_cpu::light::normal;
+use ridgelight_cpu::scatter_gather::expected;
+use ridgelight_cpu::visible_points::visible_points;
 
 use crate::groove::{groove_bound, groove_brdf};
 

@@ -3,11 +3,11 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
-use ridgelight::bake::{Angles, Brdf, Facets};
-use ridgelight::cpu::facet_mask::facet_mask;
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Lobe, Phong, Scene, Surface,
 };
+use ridgelight_bake::{Angles, Brdf, Facets};
+use ridgelight_cpu::facet_mask::facet_mask;
 
 use crate::groove::{groove_bound, wall};
 

@@ -10,17 +10,17 @@ mod groove;
 mod lobes;
 
 use glam::DVec3;
-use ridgelight::bake::{
+use ridgelight::basis::harmonics::{evaluate, turned};
+use ridgelight::basis::zonal;
+use ridgelight::scene::fractal;
+use ridgelight::scene::{Border, HeightField, Receiver, Wedges};
+use ridgelight_bake::{
     BentNormal, MAX_TRANSFER_ORDER, Ray, ShTransfer, ShVisibility, SkyView, Sum, Summing,
     VisibleSky, normals,
 };
-use ridgelight::basis::harmonics::{evaluate, turned};
-use ridgelight::basis::zonal;
-use ridgelight::cpu::light::{normal, sky};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sh_visibility::{Series, seen_along};
-use ridgelight::measure::fractal::fractal;
-use ridgelight::scene::{Border, HeightField, Receiver, Wedges};
+use ridgelight_cpu::light::{normal, sky};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sh_visibility::{Series, seen_along};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Azimuths of a circle.

@@ -14,8 +14,8 @@ mod scenes;
 mod sources;
 mod table;
 
-use ridgelight::cpu::bounce::{Fineness, Picture, light};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
+use ridgelight_cpu::bounce::{Fineness, Picture, light};
 
 const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
 

@@ -1,8 +1,8 @@
 //! The quadrature against counting paths, whose lobes are seen from above alone, as the quadrature's.
 
-use ridgelight::cpu::bounce::{Fineness, truth};
-use ridgelight::cpu::light::normal;
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Lobe, Phong};
+use ridgelight_cpu::bounce::{Fineness, truth};
+use ridgelight_cpu::light::normal;
 
 use crate::naive::Paths;
 use crate::{rough, under_sky};

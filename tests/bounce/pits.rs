@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use ridgelight::cpu::bounce::Fineness;
-use ridgelight::cpu::light::slice;
 use ridgelight::scene::Border;
+use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::light::slice;
 
 use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};
 use crate::{reds, under_sky};

@@ -1,6 +1,6 @@
 //! What is seen along an azimuth.
 
-use ridgelight::cpu::oracle::Oracle;
+use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::{BORDERS, field, rough};

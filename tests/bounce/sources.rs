@@ -1,10 +1,10 @@
 //! Balls of light and lobes: what the sky's tests do not reach.
 
-use ridgelight::cpu::bounce::{Fineness, light, truth};
-use ridgelight::cpu::light::sun;
 use ridgelight::scene::{
     Border, HeightField, KeyLight, Lights, Lobe, Phong, Scene, SphereLight, Sun,
 };
+use ridgelight_cpu::bounce::{Fineness, light, truth};
+use ridgelight_cpu::light::sun;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::{BORDERS, COARSE, field, red, rough, under_sky};

@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::{absolute, expected, one_sentence, parse};
 use exr::prelude::FlatSamples;
 use ridgelight::Error;
-use ridgelight::files::*;
+use ridgelight_io::*;
 use std::path::Path;
 use tiff::encoder::{Compression, DeflateLevel, colortype};
 use tiff::tags::Predictor;

@@ -2,8 +2,8 @@
 
 use ::ktx2::Reader;
 use ::ktx2::dfd::{Basic, Block};
-use ridgelight::bake::Component;
-use ridgelight::files::{Ktx2Writer, TexelFormat};
+use ridgelight_io::Component;
+use ridgelight_io::{Ktx2Writer, TexelFormat};
 use std::path::Path;
 
 fn write(

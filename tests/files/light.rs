@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::one_sentence;
 use exr::prelude::FlatSamples;
 use ridgelight::Error;
-use ridgelight::files::*;
+use ridgelight_io::*;
 use std::path::Path;
 
 fn environment(name: &str, bytes: &[u8]) -> Result<ridgelight::scene::Environment, Error> {

@@ -12,8 +12,8 @@ mod write;
 
 use common::HEIGHTS;
 use ridgelight::Error;
-use ridgelight::files::{HeightOptions, parse_heights};
 use ridgelight::scene::HeightField;
+use ridgelight_io::{HeightOptions, parse_heights};
 use std::path::Path;
 
 /// Asserts that a message is one sentence about a file: its name, no line break, found and

@@ -3,7 +3,7 @@
 use crate::common::*;
 use crate::{one_sentence, parse};
 use ridgelight::Error;
-use ridgelight::files::*;
+use ridgelight_io::*;
 use std::path::Path;
 
 #[test]

@@ -1,8 +1,8 @@
 //! Real files: the project's own, and more where development data lies beside the clone.
 
 use crate::absolute;
-use ridgelight::files::*;
 use ridgelight::scene::HeightField;
+use ridgelight_io::*;
 use std::path::{Path, PathBuf};
 
 /// A folder of development data beside the clone, if this checkout has one.

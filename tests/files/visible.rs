@@ -1,8 +1,8 @@
 //! What samples see, kept and read back for the same field alone.
 
-use ridgelight::cpu::visible_points::visible_points;
-use ridgelight::files::{read_visible_points, write_visible_points};
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint, VisiblePoints};
+use ridgelight_cpu::visible_points::visible_points;
+use ridgelight_io::{read_visible_points, write_visible_points};
 
 use super::one_sentence;
 

@@ -1,6 +1,7 @@
 //! What is written reads back, and what fails leaves nothing.
 
-use ridgelight::files::*;
+use ridgelight::scene::Tone;
+use ridgelight_io::*;
 use std::path::Path;
 
 /// Names in a folder, to see that nothing temporary stays.

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use ridgelight::files;
+use ridgelight_io as files;
 
 #[expect(dead_code, reason = "its main, which prints")]
 #[path = "../../examples/ash_host.rs"]
@@ -18,7 +18,7 @@ fn by_command_line(folder: &Path) -> Vec<u32> {
     let heights: Vec<f32> =
         (0..48 * 64).map(|i| ((i / 64 * 31 + i % 64 * 17) % 7) as f32 - 3.0).collect();
     files::write_npy_f32(&folder.join("field.npy"), &[48, 64], [&heights[..]]).expect("a field");
-    let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
+    let done = Command::new(crate::program())
         .current_dir(folder)
         .args("render field.npy --sky 0.5 --sun 90,30,0.5,3 --quiet -o lit.exr".split(' '))
         .output()

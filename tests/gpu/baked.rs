@@ -3,11 +3,13 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use ridgelight::bake::{Ray, SkyView, Summing, normals};
-use ridgelight::cpu::{light, oracle::Oracle};
-use ridgelight::files::{self, HeightOptions};
-use ridgelight::measure::tolerance::{ShadeError, twin_march_slope};
 use ridgelight::scene::{Border, Method, Quality};
+use ridgelight_bake::{Ray, SkyView, Summing, normals};
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::{Device, field, random};
 

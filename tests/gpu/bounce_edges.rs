@@ -1,11 +1,11 @@
 //! Bounces where fields end, repeat, have no data or are one sample wide: by every engine.
 
-use ridgelight::measure::tolerance::EPSILON;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, BounceGloss, Bounces, HeightField, Levels, Lights, Quality,
     Scene, Sun,
 };
+use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, field, random, under_sky};
 

@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
-use ridgelight::measure::tolerance::EPSILON;
 use ridgelight::plan::{self, Limits, Nodes, Picture};
 use ridgelight::scene::{Albedo, Border, BounceEngine, Bounces, HeightField, Quality, Scene, Sun};
+use ridgelight_cpu::tolerance::EPSILON;
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::{Device, field, random, under_sky};
 

@@ -2,27 +2,29 @@
 
 use std::path::Path;
 
-use ridgelight::cpu::bounce::{self, Fineness};
-use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::bounce_march::{bounce_march, stretches_along};
-use ridgelight::cpu::height_expand::height_expand;
-use ridgelight::cpu::height_reduce::height_levels;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shade_reduce::shade_levels;
-use ridgelight::cpu::shared::levels::LevelTexels;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::cpu::shared::thrown::{Along, radiance};
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{EPSILON, Gathered, Land, Slices, ThrownError, march_error};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{self, Picture};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Method, Quality, Receiver,
     Scene, Sun, Surface,
 };
+use ridgelight_cpu::bounce;
+use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::bounce_march::{bounce_march, stretches_along};
+use ridgelight_cpu::height_expand::height_expand;
+use ridgelight_cpu::height_reduce::height_levels;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shade_reduce::shade_levels;
+use ridgelight_cpu::shared::levels::LevelTexels;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::shared::thrown::{Along, radiance};
+use ridgelight_cpu::tolerance::{EPSILON, Gathered, Land, Slices, ThrownError, march_error};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::reference_truth::traced;
 use crate::{Device, field, random, under_sky};

@@ -4,8 +4,8 @@ use ash::vk;
 use ridgelight::gpu::{
     BufferArg, Frame, Headless, InputArg, Renderer, ViewInputs, ViewOutputs, ViewRenderer,
 };
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Format, Kind, Owner, Picture, Plan, Rectangle, View, ViewOptions};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Camera, Lens, Quality};
 
 use crate::borrowed::{framed, packed, planned, scene};

@@ -1,8 +1,8 @@
 //! Only the passes that a change needs: the same bits as all of them.
 
 use ridgelight::gpu::{Frame, Headless};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Environment, Lights, Quality, Scene, Sun, Surface};
 
 use crate::{Device, random};

@@ -1,7 +1,7 @@
 //! Colours of lights that are the caller's, on the device: the bits of the same colours in the scene.
 
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Format, Limits, Picture, Plan, Rectangle};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, KeyLight, Lights, Lobe, Phong, Quality, Scene, SphereLight, Sun, Surface,
 };

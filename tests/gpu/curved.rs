@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use ridgelight::bake::{CurvedEllipses, Ellipse};
-use ridgelight::cpu::ellipse_fit::least_radius;
 use ridgelight::plan;
 use ridgelight::scene::{
     Albedo, Border, Curvature, Directions, HeightField, Scatter, VisiblePoints,
 };
+use ridgelight_bake::{CurvedEllipses, Ellipse};
+use ridgelight_cpu::ellipse_fit::least_radius;
 
 use crate::{Device, field, under_sky};
 

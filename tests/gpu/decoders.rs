@@ -9,8 +9,9 @@ mod turns;
 use std::path::Path;
 use std::process::Command;
 
-use ridgelight::bake::{self, Encoding};
-use ridgelight::files::{Planes, read_planes};
+use ridgelight_bake as bake;
+use ridgelight_bake::Encoding;
+use ridgelight_io::{Planes, read_planes};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::Device;
@@ -133,7 +134,7 @@ fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serd
         encodings.push(format!("{}={}", decoder.kind, numbered(decoder, number).name));
     }
     let field = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/mt_washington_256.png");
-    let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
+    let done = Command::new(crate::program())
         .arg("bake")
         .arg(field)
         .args("--cell 66,92.6 --z-scale 3 --method sweep --format ktx2,npy --quiet".split(' '))

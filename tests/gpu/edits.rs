@@ -1,8 +1,8 @@
 //! Edits of a rectangle, drawn from where they begin: the same bits as everything drawn again.
 
 use ridgelight::gpu::{Frame, Headless, ImageArg, Renderer};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan, Rectangle, missing_barriers};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Border, Environment, Fuse, HeightField, KeyLight, Lights, Lines, Method, Precision, Quality,
     Scene, Sun, Surface,

@@ -4,8 +4,8 @@
 use ash::vk;
 use ridgelight::Result;
 use ridgelight::gpu::{Frame, Headless, Host, Renderer};
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Picture, Plan};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Basis, Border, Environment, Quality, Scene, Sun};
 
 use crate::{Device, under_sky};

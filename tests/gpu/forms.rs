@@ -1,7 +1,7 @@
 //! Where a hull lives, and how a plan is cut into batches, never changes a bit of the result.
 
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Fuse, HeightField, Hull, Lines, Precision, Quality};
 
 use crate::{Device, field, random, under_sky};

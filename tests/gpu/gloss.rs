@@ -4,13 +4,14 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
 use ridgelight::basis::zonal::{cap, phong};
-use ridgelight::cpu::bounce::{Fineness, light};
-use ridgelight::files::{self, HeightOptions};
-use ridgelight::measure::tolerance::{ShadeError, twin_march_slope, twin_sun_gloss};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, HeightField, Lights, Lobe, Method, Phong, Quality, Scene, Sun,
 };
+use ridgelight_cpu::bounce::{Fineness, light};
+use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope, twin_sun_gloss};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::reference_truth::traced;
 use crate::{Device, field, random, under_sky};

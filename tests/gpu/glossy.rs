@@ -1,12 +1,12 @@
 //! Light that lobes throw: light paths against counting, what is thrown against what is derived and against paths.
 
 use ridgelight::basis::zonal::clamped_cosine;
-use ridgelight::cpu::light::normal;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Environment, Lights, Lobe, Method,
     Phong, Quality, Scene,
 };
+use ridgelight_cpu::light::normal;
 use std::f64::consts::PI;
 
 use crate::naive::Paths;

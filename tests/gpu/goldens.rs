@@ -7,15 +7,15 @@
 
 use std::path::{Path, PathBuf};
 
-use ridgelight::golden;
 use ridgelight::gpu::Pixels;
-use ridgelight::measure::tolerance::{
-    ShadeError, twin_angle, twin_fused_slope, twin_resolved, two_devices,
-};
 use ridgelight::plan::{self, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Environment, Fuse, HeightField, Lines, Quality, Scene, Sun,
 };
+use ridgelight_cpu::tolerance::{
+    ShadeError, twin_angle, twin_fused_slope, twin_resolved, two_devices,
+};
+use ridgelight_testing as golden;
 
 use crate::{Device, field, random, under_sky};
 

@@ -9,13 +9,13 @@ use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::light::receiver as polynomials;
 use ridgelight::basis::slice::Slices;
 use ridgelight::basis::zonal::clamped_cosine;
-use ridgelight::cpu::env_turns::env_turns;
-use ridgelight::cpu::light_matrix::{light_matrix, series};
 use ridgelight::gpu::Pixels;
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Basis, Border, Environment, HeightField, Quality, Receiver, Scene, Window,
 };
+use ridgelight_cpu::env_turns::env_turns;
+use ridgelight_cpu::light_matrix::{light_matrix, series};
 
 use crate::{Device, field, random, under_sky};
 

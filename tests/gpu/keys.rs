@@ -3,15 +3,16 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
-use ridgelight::cpu::bounce::{Fineness, truth};
-use ridgelight::cpu::key::key_of;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::files::{self, HeightOptions};
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{ShadeError, twin_march_slope};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, HeightField, KeyLight, Lights, Method, Quality, Scene, Surface,
 };
+use ridgelight_cpu::bounce::{Fineness, truth};
+use ridgelight_cpu::key::key_of;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope};
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::reference_truth::traced;
 use crate::scenes::Agreement;

@@ -62,6 +62,15 @@ use ridgelight::gpu::{Headless, HeadlessOptions, Pixels};
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, Surface};
 
+/// The program `ridgelight`, which cargo builds beside the tests of the whole workspace.
+fn program() -> std::path::PathBuf {
+    let tests = std::env::current_exe().expect("a test has a path");
+    let folder = tests.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
+    let program = folder.join(format!("ridgelight{}", std::env::consts::EXE_SUFFIX));
+    assert!(program.exists(), "{} is not built: cargo build --bins", program.display());
+    program
+}
+
 /// One device at a time: two software devices on two cores only slow each other down.
 static ONE: Mutex<()> = Mutex::new(());
 

@@ -1,10 +1,10 @@
 //! More lights than the loops of one invocation may turn on llvmpipe: a batch of paths comes in parts.
 
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sphere::sphere_of;
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan;
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Lights, Scene, SphereLight};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_of;
 
 use crate::reference_truth::{traced, traced_by};
 use crate::scenes::Agreement;

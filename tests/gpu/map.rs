@@ -1,8 +1,8 @@
 //! Maps for screens: to the bit what their twin says, which is what a PNG of the same light holds.
 
-use ridgelight::cpu::map_draw::map_draw;
-use ridgelight::files::Tone;
 use ridgelight::plan::{self, Map};
+use ridgelight::scene::Tone;
+use ridgelight_cpu::map_draw::map_draw;
 
 use crate::{Device, random};
 

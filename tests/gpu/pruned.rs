@@ -1,7 +1,7 @@
 //! What a scene cannot show is not in its plan, and forcing it back changes nothing.
 
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Kind, Limits, Picture, Plan};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, Environment, Lights, Quality, Scene, Sun, Surface};
 
 use crate::{Device, field, random};

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{ARC_TANGENT, pyramid_angle, pyramid_plane_slope};
 use ridgelight::plan::azimuths::even;
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, Levels, Method, Quality};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{ARC_TANGENT, pyramid_angle, pyramid_plane_slope};
 
 use crate::{Device, field};
 

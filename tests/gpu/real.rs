@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use ridgelight::cpu::{light, oracle::Oracle};
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::plan;
 use ridgelight::scene::{Border, Fuse, HeightField, Lines, Quality};
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::{Device, random, under_sky};
 

@@ -3,10 +3,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use ridgelight::cpu::light;
-use ridgelight::cpu::oracle::Oracle;
 use ridgelight::plan;
 use ridgelight::scene::{Albedo, Border, Lights, Lobe, Phong, Sun};
+use ridgelight_cpu::light;
+use ridgelight_cpu::oracle::Oracle;
 
 use crate::reference_truth::{traced, traced_by};
 use crate::{Device, field, under_sky};

@@ -12,13 +12,13 @@ use ridgelight::basis::harmonics::{evaluate, rotate_z};
 use ridgelight::basis::legendre::occlusion;
 use ridgelight::basis::light::receiver as polynomials;
 use ridgelight::basis::{bands, index, zonal};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sh_visibility::{Series, seen_above};
 use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, Environment, HeightField, Lights, Lobe, Method, Phong, Quality,
     Receiver, Scene, SphereLight, Surface, Wedges,
 };
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sh_visibility::{Series, seen_above};
 use serde_json::Value;
 
 use crate::{Device, field, random, under_sky};

@@ -1,8 +1,8 @@
 //! The path tracer against the f64 quadrature, and against what is known without either.
 
-use ridgelight::cpu::bounce::{Fineness, truth};
 use ridgelight::plan::{self, Plan};
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Scene, Sun, Surface};
+use ridgelight_cpu::bounce::{Fineness, truth};
 
 use crate::scenes::{Agreement, scenes};
 use crate::{Device, field, under_sky};
@@ -184,7 +184,7 @@ fn standard_errors_say_how_far_two_seeds_differ() {
     let mut device = Device::new();
     let surface = Surface { albedo: Albedo::Constant([0.5; 3]), ..Surface::default() };
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
-    let field = ridgelight::measure::fractal::fractal(32, 5).expect("a field");
+    let field = ridgelight::scene::fractal(32, 5).expect("a field");
     let scene = Scene { field, surface, lights };
     let first = traced(&mut device, &scene, 1, 1, BATCHES);
     assert!(first == traced(&mut device, &scene, 1, 1, BATCHES), "the same seed, other bits");

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use ridgelight::cpu::scatter_gather::expected;
 use ridgelight::plan;
 use ridgelight::scene::{
     Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
 };
+use ridgelight_cpu::scatter_gather::expected;
 
 use crate::reference_page::{
     HALF, WALL, from_the_other_wall, groove_parts, groove_sky, grooves, pit, pit_bounds,

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use ridgelight::bake::Leaving;
 use ridgelight::plan::{self, Limits};
 use ridgelight::scene::{
     Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
 };
+use ridgelight_bake::Leaving;
 
 use crate::scatter::{points, sphere};
 use crate::{Device, field, random, under_sky};
@@ -110,10 +110,11 @@ fn lights_in_turn_are_each_alone() {
     let above = Directions::fibonacci(8, 0.0, 0).expect("directions");
     let limits = Limits { image_layers: 3, ..device.limits() };
     let gpu = device.gpu.as_mut().expect("alive");
-    let facets = gpu.facets(&scene, 2, &above, &limits).expect("triangles");
+    let facets = ridgelight_bake::facets(gpu, &scene, 2, &above, &limits).expect("triangles");
     let wanted = |light: usize| if light == 4 { 6..7 } else { 0..8 };
     let mut all: Vec<(usize, Leaving)> = Vec::new();
-    gpu.lit_from(
+    ridgelight_bake::lit_from(
+        gpu,
         &scene,
         (&facets, 2..6, &wanted),
         Some((&points, &scatter)),

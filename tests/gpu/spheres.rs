@@ -3,16 +3,17 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
-use ridgelight::cpu::lit::Lit;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::sphere::sphere_of;
-use ridgelight::cpu::sphere_shade::sphere_at;
-use ridgelight::files::{self, HeightOptions};
 use ridgelight::gpu::Pixels;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::BallSeen;
 use ridgelight::plan::{self, Limits, Picture, Plan};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, Lights, Quality, Scene, SphereLight, Surface};
+use ridgelight_cpu::lit::Lit;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_of;
+use ridgelight_cpu::sphere_shade::sphere_at;
+use ridgelight_cpu::tolerance::BallSeen;
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
 
 use crate::{Device, field, random};
 

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use ridgelight::files::{self, HeightOptions};
-use ridgelight::measure::error::ImageError;
 use ridgelight::plan::{self, Limits, Nodes, Picture};
 use ridgelight::scene::{
     Basis, Border, Environment, HeightField, Levels, Method, Quality, Scene, Sun,
 };
+use ridgelight_io as files;
+use ridgelight_io::HeightOptions;
+use ridgelight_trade::error::ImageError;
 
 use crate::{Device, field, random, under_sky};
 

@@ -5,11 +5,11 @@ mod shot;
 use std::f64::consts::FRAC_PI_2;
 
 use ash::vk::{self, Handle};
-use ridgelight::cpu::picture_tone::picture_tone;
-use ridgelight::files::Tone;
 use ridgelight::gpu::{ImageArg, ImageState, ViewInputs, ViewOutputs, ViewRenderer};
 use ridgelight::plan::{self, Picture, View, ViewOptions};
+use ridgelight::scene::Tone;
 use ridgelight::scene::{Border, Camera, Environment, HeightField, Lens, Scene};
+use ridgelight_cpu::picture_tone::picture_tone;
 
 use crate::{Device, field, under_sky};
 use shot::{LENSES, ROUNDING, Shot, around, quality, shoot, uneven};

@@ -1,18 +1,18 @@
 //! Bounces by walks over what sweeps have met: against closed forms, the engine that takes every crossing, and what
 //! must be.
 
-use ridgelight::cpu::bounce_walk::bounce_walk;
-use ridgelight::cpu::horizon_sweep::{SweepOptions, horizon_sweep};
-use ridgelight::cpu::lattice::{Lattices, number_layers};
-use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::EPSILON;
 use ridgelight::plan::azimuths::even;
 use ridgelight::plan::{self, Axis, Limits, Picture};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Lines, Method, Quality, Scene,
 };
+use ridgelight_cpu::bounce_walk::bounce_walk;
+use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
+use ridgelight_cpu::lattice::{Lattices, number_layers};
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::tolerance::EPSILON;
 
 use crate::{Device, field, random, under_sky};
 

@@ -1,9 +1,10 @@
 //! Suns and key lights.
 
 use glam::DVec3;
-use ridgelight::cpu::light::{sky, sun};
-use ridgelight::cpu::{key::key_of, oracle::Oracle};
 use ridgelight::scene::{Border, KeyLight};
+use ridgelight_cpu::key::key_of;
+use ridgelight_cpu::light::{sky, sun};
+use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{BORDERS, field, plane, sun_at};

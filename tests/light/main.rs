@@ -3,8 +3,8 @@
 mod aimed;
 
 use glam::DVec3;
-use ridgelight::cpu::light::{ENVIRONMENT_STRIPS, environment, normal, sky, slice, sun};
 use ridgelight::scene::{Border, Environment, HeightField, Sun};
+use ridgelight_cpu::light::{ENVIRONMENT_STRIPS, environment, normal, sky, slice, sun};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];

@@ -1,7 +1,7 @@
 //! Light that lobes throw: which passes, and what it takes.
 
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::{self, Limits, Picture, Plan, missing_barriers};
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Basis, Border, BounceEngine, BounceGloss, Bounces, Lights, Lobe, Phong, Quality, Scene,
     Surface,

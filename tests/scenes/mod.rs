@@ -1,6 +1,6 @@
 //! Small scenes on which two truths must agree: the f64 quadrature and the path tracer.
 
-use ridgelight::measure::fractal::fractal;
+use ridgelight::scene::fractal;
 use ridgelight::scene::{
     Albedo, Border, Environment, HeightField, Lights, Lobe, Phong, Scene, SphereLight, Sun, Surface,
 };

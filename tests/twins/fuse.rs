@@ -1,17 +1,17 @@
 //! `sweep_fuse`: every mode against the oracle and against marches along the samples' own lines.
 
 use crate::*;
-use ridgelight::cpu::horizon_march::marched as march_of;
-use ridgelight::cpu::lattice::line_position;
-use ridgelight::cpu::shared::fuse::Found;
-use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::{March, NO_SLOPE, on_field};
-use ridgelight::cpu::surface_sweep::surface_sweep;
-use ridgelight::cpu::sweep_fuse::{fused_horizon, sweep_fuse};
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::{aimed_slope, march_slope, sweep_slope};
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::Fuse;
+use ridgelight::scene::fractal;
+use ridgelight_cpu::horizon_march::marched as march_of;
+use ridgelight_cpu::lattice::line_position;
+use ridgelight_cpu::shared::fuse::Found;
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::{March, NO_SLOPE, on_field};
+use ridgelight_cpu::surface_sweep::surface_sweep;
+use ridgelight_cpu::sweep_fuse::{fused_horizon, sweep_fuse};
+use ridgelight_cpu::tolerance::{aimed_slope, march_slope, sweep_slope};
 
 pub(crate) const FUSES: [Fuse; 6] =
     [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];

@@ -2,20 +2,20 @@
 
 use crate::*;
 use glam::DVec3;
-use ridgelight::cpu::env_tables::{EnvTables, bottom_rad, env_tables};
-use ridgelight::cpu::env_wedges::env_wedges;
-use ridgelight::cpu::height_transpose::{heights_by_col, heights_by_row};
-use ridgelight::cpu::key::key_of;
-use ridgelight::cpu::light;
-use ridgelight::cpu::light_resolve::{LightSum, add_to_radiance, light_resolve};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::gather::{Swept, elevation_moments};
-use ridgelight::cpu::sky_shade::{env_shade, sky_shade};
-use ridgelight::cpu::sun_shade::sun_shade;
-use ridgelight::measure::tolerance::{EPSILON, march_slope};
 use ridgelight::plan::azimuths::{Shape, across_key, across_sun, along_grid_vectors, even};
 use ridgelight::scene::{Environment, KeyLight, Sun};
+use ridgelight_cpu::env_tables::{EnvTables, bottom_rad, env_tables};
+use ridgelight_cpu::env_wedges::env_wedges;
+use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
+use ridgelight_cpu::key::key_of;
+use ridgelight_cpu::light;
+use ridgelight_cpu::light_resolve::{LightSum, add_to_radiance, light_resolve};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::gather::{Swept, elevation_moments};
+use ridgelight_cpu::sky_shade::{env_shade, sky_shade};
+use ridgelight_cpu::sun_shade::sun_shade;
+use ridgelight_cpu::tolerance::{EPSILON, march_slope};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Marches the azimuths with all crossings and hands what was found to `of`: exact horizons, so that

@@ -8,14 +8,14 @@ mod surface;
 mod sweep;
 mod walk;
 
-use ridgelight::cpu::horizon_march::{MarchOptions, horizon_march};
-use ridgelight::cpu::horizon_sweep::{SweepOptions, horizon_sweep};
-use ridgelight::cpu::lattice::{Lattices, number_layers};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::plan::Axis;
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 use ridgelight::scene::{Border, HeightField};
+use ridgelight_cpu::horizon_march::{MarchOptions, horizon_march};
+use ridgelight_cpu::horizon_sweep::{SweepOptions, horizon_sweep};
+use ridgelight_cpu::lattice::{Lattices, number_layers};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::shared::sweep::Heights;
 
 pub(crate) const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
 

@@ -2,9 +2,9 @@
 
 use crate::*;
 use proptest::prelude::*;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::march_slope;
 use ridgelight::plan::azimuths::even;
+use ridgelight::scene::fractal;
+use ridgelight_cpu::tolerance::march_slope;
 use std::f64::consts::FRAC_PI_2;
 
 fn check(field: &HeightField, border: Border, count: u32) -> Result<(), String> {
@@ -14,7 +14,7 @@ fn check(field: &HeightField, border: Border, count: u32) -> Result<(), String> 
     let oracle = Oracle::new(field, border);
     let (_, relief) = extent(field);
     for azimuth in &azimuths {
-        let march = ridgelight::cpu::shared::sweep::March::new(Heights::of(field, border), azimuth);
+        let march = ridgelight_cpu::shared::sweep::March::new(Heights::of(field, border), azimuth);
         let lattice = lattices.of(azimuth);
         let tolerance = march_slope(relief, azimuth.step_m.into());
         let reach = (border == Border::Periodic).then(|| warm_up_of(warm_up, azimuth));
@@ -74,7 +74,7 @@ fn a_fractal_field_within_a_ten_thousandth_of_a_degree() {
     let oracle = Oracle::new(&rough, Border::Plane);
     for azimuth in &azimuths {
         let march =
-            ridgelight::cpu::shared::sweep::March::new(Heights::of(&rough, Border::Plane), azimuth);
+            ridgelight_cpu::shared::sweep::March::new(Heights::of(&rough, Border::Plane), azimuth);
         for i in (0..1600).step_by(3) {
             let (row, col) = (i / 40, i % 40);
             let (lane, step) = march.of_sample(col as i32, row as i32);

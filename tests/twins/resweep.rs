@@ -2,10 +2,10 @@
 
 use crate::*;
 use proptest::prelude::*;
-use ridgelight::cpu::dirty_mark::dirty_mark;
-use ridgelight::cpu::horizon_resweep::horizon_resweep;
 use ridgelight::plan::Rectangle;
 use ridgelight::plan::azimuths::even;
+use ridgelight_cpu::dirty_mark::dirty_mark;
+use ridgelight_cpu::horizon_resweep::horizon_resweep;
 
 /// Heights of a field, others in a rectangle; a field of them would have another base.
 fn edited(before: &HeightField, rectangle: Rectangle, by: f64) -> Vec<f32> {

@@ -2,12 +2,12 @@
 
 use crate::*;
 use proptest::prelude::*;
-use ridgelight::cpu::shared::surface::segment_crossings;
-use ridgelight::cpu::shared::sweep::March;
-use ridgelight::cpu::surface_sweep::surface_sweep;
-use ridgelight::measure::fractal::fractal;
-use ridgelight::measure::tolerance::surface_slope;
 use ridgelight::plan::azimuths::along_grid_vectors;
+use ridgelight::scene::fractal;
+use ridgelight_cpu::shared::surface::segment_crossings;
+use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::surface_sweep::surface_sweep;
+use ridgelight_cpu::tolerance::surface_slope;
 
 fn swept_surface(
     field: &HeightField,

@@ -2,11 +2,12 @@
 
 use crate::*;
 use proptest::prelude::*;
-use ridgelight::cpu::horizon_sweep::{height_scale, line_height};
-use ridgelight::cpu::lattice::{self, line_number, line_position};
-use ridgelight::cpu::shared::sweep::{March, NO_SLOPE, on_field};
-use ridgelight::measure::tolerance::{EPSILON, sweep_slope};
 use ridgelight::plan::azimuths::even;
+use ridgelight_cpu::horizon_sweep::{height_scale, line_height};
+use ridgelight_cpu::lattice;
+use ridgelight_cpu::lattice::{line_number, line_position};
+use ridgelight_cpu::shared::sweep::{March, NO_SLOPE, on_field};
+use ridgelight_cpu::tolerance::{EPSILON, sweep_slope};
 
 /// One line's samples from the horizon's side, as (step of the march, height): those up to a sample.
 fn line_samples(march: &March, y: i32, step: i32) -> Vec<(i32, f32)> {

@@ -2,16 +2,16 @@
 
 use crate::*;
 use glam::DVec2;
-use ridgelight::cpu::bounce_march::bounce_march;
-use ridgelight::cpu::bounce_walk::{Walked, bounce_walk};
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::fuse::{split_crossing, surface_on_line};
-use ridgelight::cpu::shared::gather::{Swept, elevation_moments};
-use ridgelight::cpu::shared::sweep::March;
-use ridgelight::cpu::sky_shade::sky_at;
-use ridgelight::measure::fractal::fractal;
 use ridgelight::plan::azimuths::even;
 use ridgelight::scene::Fuse;
+use ridgelight::scene::fractal;
+use ridgelight_cpu::bounce_march::bounce_march;
+use ridgelight_cpu::bounce_walk::{Walked, bounce_walk};
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::fuse::{split_crossing, surface_on_line};
+use ridgelight_cpu::shared::gather::{Swept, elevation_moments};
+use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::sky_shade::sky_at;
 use std::f64::consts::PI;
 
 /// Sweeps a field and hands it to `of`.

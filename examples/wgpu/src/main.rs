@@ -2,7 +2,8 @@
 //! in a wgpu pass. `ridgelight-wgpu-host OUT.exr` writes what the pass has read. `tools/wgpu` runs it.
 
 use ash::vk;
-use ridgelight::files::{self, Channels, Layer};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer};
 use ridgelight::gpu::{self, Host, ImageArg, ImageState};
 use wgpu::hal::api::Vulkan;
 

@@ -46,7 +46,7 @@ fn slope(elevation_rad: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::shared::gather::elevation_moments;
+    use ridgelight_cpu::shared::gather::elevation_moments;
     use std::f64::consts::TAU;
 
     /// Level ground receives L width (sin²high - sin²low) / 2 from any number of slices: wedges are f32,

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Azimuth, grid_direction, swept, with_wedge};
-use crate::cpu::light::slice;
+use crate::basis::light::slice;
 use crate::scene::{Border, Environment};
 
 /// Share of the azimuths that are spread evenly: what is dark now may be bright in the next frame.

@@ -186,8 +186,8 @@ impl Drawing<'_> {
 #[cfg(test)]
 mod tests {
     use crate::Result;
-    use crate::measure::fractal::fractal;
     use crate::plan::{self, Limits, Picture, Plan};
+    use crate::scene::fractal;
     use crate::scene::{
         Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Phong, Quality, Scene,
         SphereLight, Sun, Surface,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::random::{STEP, mixed, unit};
+use crate::basis::random::{STEP, mixed, unit};
 use crate::scene::Scatter;
 
 /// Which direction each path looks along at each of its steps, path after path.

@@ -130,7 +130,7 @@ impl View {
         all
     }
 
-    /// Why [`picture_tone`](crate::cpu::picture_tone) is not among the passes of a file's picture, and what it
+    /// Why `picture_tone` is not among the passes of a file's picture, and what it
     /// would take.
     pub fn tone_note(&self) -> String {
         let bytes = COLOUR_BYTES * self.pixels();

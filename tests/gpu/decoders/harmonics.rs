@@ -1,9 +1,9 @@
 //! The decoder of what is reflected as harmonics, of every order: harmonics of directions, and sums of their products.
 
 use glam::DVec3;
-use ridgelight::bake;
 use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::harmonics::evaluate;
+use ridgelight_bake as bake;
 
 use super::turns::{none, texture, whole};
 use super::{Decoder, decode, decoder};

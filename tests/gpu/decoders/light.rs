@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::process::Command;
 
-use ridgelight::bake::{self, Angles, Encoding};
-use ridgelight::files::{Planes, read_planes};
+use ridgelight_bake as bake;
+use ridgelight_bake::{Angles, Encoding};
+use ridgelight_io::{Planes, read_planes};
 
 use super::{Constant, Decoder, decode, decoder, numbered, promised, worst};
 use crate::Device;
@@ -61,13 +62,13 @@ fn all() -> [Decoder; 6] {
 fn baked(folder: &Path, number: usize) -> serde_json::Value {
     let heights: Vec<f32> = (0..7 * 6).map(|i| (i * 5 % 7) as f32 * 0.4).collect();
     let field = folder.join("field.npy");
-    ridgelight::files::write_npy_f32(&field, &[7, 6], [heights.as_slice()]).expect("a field");
+    ridgelight_io::write_npy_f32(&field, &[7, 6], [heights.as_slice()]).expect("a field");
     let all = all();
     let kinds: Vec<&str> = all.iter().map(|d| d.kind).collect();
     let encodings = all.iter().map(|d| format!("{}={}", d.kind, numbered(d, number).name));
     let words = "--border periodic --format ktx2,exr --quiet --sun 200,50 --sky 0.2 --albedo 0.7,0.5,0.2 \
                  --directions 16 --bounces 2 --paths 16 --azimuths 8 --sh-order 2";
-    let done = Command::new(env!("CARGO_BIN_EXE_ridgelight"))
+    let done = Command::new(crate::program())
         .arg("bake")
         .arg(&field)
         .args(words.split_whitespace())

@@ -1,7 +1,9 @@
 //! Decoders of azimuths whose number is no power of two, where quotients of whole numbers are not exact: whole turns close.
 
-use ridgelight::bake::{self, Component, Encoding};
-use ridgelight::files::{Ktx2Writer, TexelFormat};
+use ridgelight_bake as bake;
+use ridgelight_bake::Encoding;
+use ridgelight_io::Component;
+use ridgelight_io::{Ktx2Writer, TexelFormat};
 
 use super::{Constant, Decoder, decode, decoder};
 use crate::Device;

@@ -1,13 +1,13 @@
 //! What samples see on curved bases.
 
 use glam::DVec3;
-use ridgelight::cpu::fan_weigh::weight;
-use ridgelight::cpu::points_bend::ways::{HALF_SIDE, Way, Ways};
-use ridgelight::cpu::points_bend::{Draped, Fans, bent_direction};
 use ridgelight::gpu::shaders::offsets::{fan_weigh_push, points_bend_push as push};
-use ridgelight::measure::tolerance::{EPSILON, bent as bent_error, fan_weight, over};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
+use ridgelight_cpu::fan_weigh::weight;
+use ridgelight_cpu::points_bend::ways::{HALF_SIDE, Way, Ways};
+use ridgelight_cpu::points_bend::{Draped, Fans, bent_direction};
+use ridgelight_cpu::tolerance::{EPSILON, bent as bent_error, fan_weight, over};
 
 use super::{Pair, Run, pushed};
 

@@ -2,20 +2,20 @@
 
 use std::collections::HashSet;
 
-use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::bounce_march::stretches_along;
-use ridgelight::cpu::bounce_walk::walked_along;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shared::thrown::{radiance, thrown};
-use ridgelight::cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{
-    Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
-};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::bounce_march::stretches_along;
+use ridgelight_cpu::bounce_walk::walked_along;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::thrown::{radiance, thrown};
+use ridgelight_cpu::tolerance::{
+    Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
+};
+use ridgelight_cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 
 use super::nodes::{casts, places};
 use super::pyramid::told;

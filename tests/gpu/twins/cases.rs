@@ -5,12 +5,12 @@ mod paths;
 mod pictures;
 mod points;
 
-use ridgelight::cpu::visible_points::visible_points;
 use ridgelight::plan::{self, Limits, Picture, Plan};
 use ridgelight::scene::{
     Albedo, Border, Directions, Environment, Fuse, HeightField, Hull, KeyLight, Levels, Lights,
     Lines, Lobe, Method, Precision, Quality, Scatter, Scene, Surface, VisiblePoints,
 };
+use ridgelight_cpu::visible_points::visible_points;
 
 pub(super) use bounces::{glosses, nodes, throws, walks};
 pub(super) use paths::{paths, references};

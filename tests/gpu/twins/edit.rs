@@ -1,14 +1,15 @@
 //! The passes that follow an edit up to its horizons. What light they leave is compared with that of
 //! all passes, bit by bit, in `edits`.
 
-use ridgelight::cpu::dirty_list as list_twin;
-use ridgelight::cpu::dirty_mark as mark_twin;
-use ridgelight::cpu::horizon_resweep as resweep_twin;
-use ridgelight::cpu::horizon_sweep::{self as sweep_twin, SweepOptions};
-use ridgelight::cpu::lattice::{Lattice, line_number, line_position, slots};
-use ridgelight::cpu::shared::sweep::{Heights, March, on_field};
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Pass, Rectangle};
+use ridgelight_cpu::dirty_list as list_twin;
+use ridgelight_cpu::dirty_mark as mark_twin;
+use ridgelight_cpu::horizon_resweep as resweep_twin;
+use ridgelight_cpu::horizon_sweep as sweep_twin;
+use ridgelight_cpu::horizon_sweep::SweepOptions;
+use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
+use ridgelight_cpu::shared::sweep::{Heights, March, on_field};
 
 use super::sweep::{Stored, stored};
 use super::{Pair, Run, constant, pushed};

@@ -1,13 +1,13 @@
 //! Ellipses of visible sky: what a search by scores promises, whichever of equal ways it took.
 
 use glam::{DVec2, DVec3};
-use ridgelight::cpu::ellipse_fit::{
-    Ellipse, LAST_STEP, Seen, least_radius, moments, neighbours, score, seen,
-};
 use ridgelight::gpu::shaders::offsets::ellipse_fit_push::{FIRST_ROW, LEAST_RADIUS, ROWS};
-use ridgelight::measure::tolerance::{ellipse_moment, ellipse_reach, ellipse_start};
 use ridgelight::plan::Pass;
 use ridgelight::scene::VisiblePoints;
+use ridgelight_cpu::ellipse_fit::{
+    Ellipse, LAST_STEP, Seen, least_radius, moments, neighbours, score, seen,
+};
+use ridgelight_cpu::tolerance::{ellipse_moment, ellipse_reach, ellipse_start};
 
 use super::{Pair, Run, constant, pushed};
 
@@ -101,8 +101,8 @@ fn of_sample(seen: &[Seen], least: f64, found: Ellipse, (got, step): (f64, f64))
 /// The comparison hears: of a twin's own ellipse, one turned, one shifted, and a score that is another.
 #[test]
 fn another_ellipse_is_seen() {
-    use ridgelight::cpu::ellipse_fit::fit;
     use ridgelight::scene::Directions;
+    use ridgelight_cpu::ellipse_fit::fit;
     let directions = Directions::fibonacci(64, 0.0, 0).expect("directions");
     let lit = |e: &glam::DVec3| e.x > 0.1 && e.y.abs() < 0.7;
     let seen: Vec<Seen> = directions.vectors().iter().map(|e| (*e, lit(e))).collect();
@@ -116,6 +116,6 @@ fn another_ellipse_is_seen() {
     let turned = Ellipse { axis: DVec2::from_angle(0.1).rotate(own.axis), ..own };
     assert!(worst(turned, score as f64) > 1.0, "an axis");
     let shifted = Ellipse { centre: own.centre + 0.2, ..own };
-    let of_shifted = ridgelight::cpu::ellipse_fit::score(&shifted, &seen) as f64;
+    let of_shifted = ridgelight_cpu::ellipse_fit::score(&shifted, &seen) as f64;
     assert!(worst(shifted, of_shifted) > 1.0, "no best");
 }

@@ -1,11 +1,11 @@
 //! Which triangles are seen.
 
-use ridgelight::bake::DIRECTIONS_A_WORD;
-use ridgelight::cpu::facet_mask::{cells, sees_sky};
-use ridgelight::cpu::oracle::Oracle;
 use ridgelight::gpu::shaders::offsets::facet_mask_push as push;
-use ridgelight::measure::tolerance::{Land, facet_elevation};
+use ridgelight::plan::DIRECTIONS_A_WORD;
 use ridgelight::plan::Pass;
+use ridgelight_cpu::facet_mask::{cells, sees_sky};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{Land, facet_elevation};
 
 use super::{Pair, Run, pushed};
 

@@ -1,21 +1,21 @@
 //! The passes that throw light by lobes.
 
 use half::f16;
-use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::gloss_exit::{mirrored, thrown};
-use ridgelight::cpu::gloss_gather::{GlossGather, Series};
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::thrown::Cast;
-use ridgelight::cpu::{gloss_seen as seen_twin, vector_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{
-    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_gloss_exit,
-    twin_gloss_seen, twin_level, twin_sh_gloss,
-};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Format, Kind, Pass};
 use ridgelight::scene::{Levels, Receiver};
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::gloss_exit::{mirrored, thrown};
+use ridgelight_cpu::gloss_gather::{GlossGather, Series};
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::thrown::Cast;
+use ridgelight_cpu::tolerance::{
+    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_gloss_exit,
+    twin_gloss_seen, twin_level, twin_sh_gloss,
+};
+use ridgelight_cpu::{gloss_seen as seen_twin, vector_reduce as reduce_twin};
 
 use super::bounce::{brightest, colours};
 use super::sh::device_series;
@@ -202,7 +202,7 @@ pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let exit = run.exit(pass);
             let texels = match run.floats(pass, "shade_levels") {
                 Some(texels) => colours(&texels),
-                None => ridgelight::cpu::shade_reduce::shade_levels(&exit, &shade),
+                None => ridgelight_cpu::shade_reduce::shade_levels(&exit, &shade),
             };
             (exit, texels)
         }

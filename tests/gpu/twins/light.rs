@@ -1,24 +1,26 @@
 //! The passes that sum light.
 
-use ridgelight::cpu::env_tables::{self as tables_twin, EnvTables, bottom_rad};
-use ridgelight::cpu::env_wedges as wedges_twin;
-use ridgelight::cpu::light_resolve::{self as resolve_twin, LightSum};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::cpu::sky_shade as sky_twin;
-use ridgelight::cpu::sphere_shade as sphere_twin;
-use ridgelight::cpu::sun_gloss as gloss_twin;
-use ridgelight::cpu::sun_shade as sun_twin;
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{
-    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_arriving,
-    twin_sun_gloss, twin_table, twin_wedge_row,
-};
 use ridgelight::plan::Pass;
 use ridgelight::plan::azimuths::{Azimuth, Shape};
 use ridgelight::scene::{Albedo, Border, Environment, Sun};
+use ridgelight_cpu::env_tables as tables_twin;
+use ridgelight_cpu::env_tables::{EnvTables, bottom_rad};
+use ridgelight_cpu::env_wedges as wedges_twin;
+use ridgelight_cpu::light_resolve as resolve_twin;
+use ridgelight_cpu::light_resolve::LightSum;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::sky_shade as sky_twin;
+use ridgelight_cpu::sphere_shade as sphere_twin;
+use ridgelight_cpu::sun_gloss as gloss_twin;
+use ridgelight_cpu::sun_shade as sun_twin;
+use ridgelight_cpu::tolerance::{
+    BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_arriving,
+    twin_sun_gloss, twin_table, twin_wedge_row,
+};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 

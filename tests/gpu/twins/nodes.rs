@@ -4,17 +4,17 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use ridgelight::cpu::bounce_shade::bounce_shade as shade_twin;
-use ridgelight::cpu::bounce_walk::walked_along;
-use ridgelight::cpu::cast_gather::{
-    Cast, RING_ENDS, cast_gather as gather_twin, cast_of, cast_part,
-};
-use ridgelight::cpu::shared::sweep::March;
-use ridgelight::cpu::shared::thrown::thrown;
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{EPSILON, Slices, ThrownError, twin_bounce_shade, walk_error};
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
+use ridgelight_cpu::bounce_shade::bounce_shade as shade_twin;
+use ridgelight_cpu::bounce_walk::walked_along;
+use ridgelight_cpu::cast_gather::{
+    Cast, RING_ENDS, cast_gather as gather_twin, cast_of, cast_part,
+};
+use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::shared::thrown::thrown;
+use ridgelight_cpu::tolerance::{EPSILON, Slices, ThrownError, twin_bounce_shade, walk_error};
 
 use super::bounce::{brightest, colours};
 use super::{Pair, Run, constant, pushed};

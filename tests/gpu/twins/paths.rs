@@ -1,13 +1,13 @@
 //! The passes of the path tracer.
 
-use ridgelight::cpu::bounce::{Fineness, truth};
-use ridgelight::cpu::height_bounds as bounds_twin;
-use ridgelight::cpu::height_cells as cells_twin;
-use ridgelight::cpu::path_trace::{Traced, Tracer};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::EPSILON;
-use ridgelight::measure::tolerance::near::Near;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unmet_error};
+use ridgelight_cpu::bounce::{Fineness, truth};
+use ridgelight_cpu::height_bounds as bounds_twin;
+use ridgelight_cpu::height_cells as cells_twin;
+use ridgelight_cpu::path_trace::{Traced, Tracer};
+use ridgelight_cpu::tolerance::EPSILON;
+use ridgelight_cpu::tolerance::near::Near;
 
 use super::{Pair, Run, pushed};
 

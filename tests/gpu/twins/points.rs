@@ -1,11 +1,11 @@
 //! What samples see.
 
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::visible_points::possible_within;
 use ridgelight::gpu::shaders::offsets::visible_points_push::{END_DIRECTION, FIRST_DIRECTION};
-use ridgelight::measure::tolerance::{MET_SHARE, crossing_elevation};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Directions, VisiblePoint, VisiblePoints};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{MET_SHARE, crossing_elevation};
+use ridgelight_cpu::visible_points::possible_within;
 
 use super::{Pair, Run, pushed};
 

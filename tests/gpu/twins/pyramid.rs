@@ -1,14 +1,14 @@
 //! The passes of a height pyramid.
 
-use ridgelight::cpu::lattice::Lattice;
-use ridgelight::cpu::pyramid_march::{Stored, pyramid_march as march_twin};
-use ridgelight::cpu::shared::levels::LevelTexels;
-use ridgelight::cpu::shared::sweep::March;
-use ridgelight::cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
 use ridgelight::plan::pyramid::{Level, Pyramid};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
+use ridgelight_cpu::lattice::Lattice;
+use ridgelight_cpu::pyramid_march::{Stored, pyramid_march as march_twin};
+use ridgelight_cpu::shared::levels::LevelTexels;
+use ridgelight_cpu::shared::sweep::March;
+use ridgelight_cpu::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
+use ridgelight_cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
 
 use super::sweep::marched;
 use super::{Pair, Run, constant, pushed};

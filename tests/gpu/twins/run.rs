@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use ridgelight::cpu::gloss_gather::Series;
-use ridgelight::cpu::lattice::{Lattice, Lattices, number_layers};
-use ridgelight::cpu::path_trace::Traced;
-use ridgelight::cpu::shared::gather::Swept;
-use ridgelight::cpu::shared::sweep::Heights;
 use ridgelight::gpu::{Frame, Headless};
-use ridgelight::measure::tolerance::ShadeError;
 use ridgelight::plan::{Azimuth, Kind, Pass, Plan, ResourceId};
 use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
+use ridgelight_cpu::gloss_gather::Series;
+use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
+use ridgelight_cpu::path_trace::Traced;
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::tolerance::ShadeError;
 
 use super::cases::Case;
 use super::{Pair, edit, twin_of};

@@ -1,11 +1,11 @@
 //! Steps of scattered light.
 
 use glam::DVec3;
-use ridgelight::cpu::scatter_gather::{Gathered, Samples};
 use ridgelight::gpu::shaders::offsets::scatter_gather_push as push;
-use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
+use ridgelight_cpu::scatter_gather::{Gathered, Samples};
+use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::cases::towards;
 use super::{Pair, Run, constant, pushed};

@@ -4,17 +4,18 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DVec2, DVec3};
 use ridgelight::basis::wedge::WedgeTable;
-use ridgelight::cpu::light_matrix as matrix_twin;
-use ridgelight::cpu::sh_shade::{gloss_on, light_at, nodes_around};
-use ridgelight::cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
-use ridgelight::cpu::sh_wedges::sh_wedges as wedges_twin;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::{env_turns as turns_twin, shared::gather::Swept};
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::harmonics::{Seen, matrix_magnitudes};
-use ridgelight::measure::tolerance::{twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
+use ridgelight_cpu::env_turns as turns_twin;
+use ridgelight_cpu::harmonics::{Seen, matrix_magnitudes};
+use ridgelight_cpu::light_matrix as matrix_twin;
+use ridgelight_cpu::sh_shade::{gloss_on, light_at, nodes_around};
+use ridgelight_cpu::sh_visibility::{Series, sh_visibility as visibility_twin};
+use ridgelight_cpu::sh_wedges::sh_wedges as wedges_twin;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::tolerance::{twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
 
 use super::light::{rgb, so_far};
 use super::{Pair, Run, constant, fuse_of, pushed};

@@ -1,15 +1,15 @@
 //! Balls of light by spherical harmonics.
 
-use ridgelight::cpu::light::normal;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::sphere_sh_shade::SphereSh;
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
-use ridgelight::measure::tolerance::{BallSeen, EPSILON, twin_pyramid_slope};
 use ridgelight::plan::Pass;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::Quality;
+use ridgelight_cpu::light::normal;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::sphere_sh_shade::SphereSh;
+use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope};
 
 use super::{Pair, Run, pushed};
 

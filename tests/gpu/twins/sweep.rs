@@ -1,21 +1,23 @@
 //! The passes that find horizons.
 
 use half::f16;
-use ridgelight::cpu::height_transpose::{heights_by_col, heights_by_row};
-use ridgelight::cpu::horizon_march::{self as march_twin, MarchOptions};
-use ridgelight::cpu::horizon_sweep::{self as sweep_twin, SweepOptions, height_scale, line_height};
-use ridgelight::cpu::lattice::{Lattice, line_number, line_position, slots};
-use ridgelight::cpu::shared::sweep::{LOWEST_MET, March, on_field};
-use ridgelight::cpu::surface_sweep as surface_twin;
-use ridgelight::cpu::sweep_fuse::fused_horizon;
 use ridgelight::gpu::shaders::offsets;
-use ridgelight::measure::tolerance::{
-    EPSILON, twin_angle, twin_distance, twin_fused_slope, twin_march_slope, twin_slope,
-    twin_slope_f16, twin_slope_packed, twin_surface_slope,
-};
 use ridgelight::plan::azimuths::CELL;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
+use ridgelight_cpu::height_transpose::{heights_by_col, heights_by_row};
+use ridgelight_cpu::horizon_march as march_twin;
+use ridgelight_cpu::horizon_march::MarchOptions;
+use ridgelight_cpu::horizon_sweep as sweep_twin;
+use ridgelight_cpu::horizon_sweep::{SweepOptions, height_scale, line_height};
+use ridgelight_cpu::lattice::{Lattice, line_number, line_position, slots};
+use ridgelight_cpu::shared::sweep::{LOWEST_MET, March, on_field};
+use ridgelight_cpu::surface_sweep as surface_twin;
+use ridgelight_cpu::sweep_fuse::fused_horizon;
+use ridgelight_cpu::tolerance::{
+    EPSILON, twin_angle, twin_distance, twin_fused_slope, twin_march_slope, twin_slope,
+    twin_slope_f16, twin_slope_packed, twin_surface_slope,
+};
 
 use super::{Pair, Run, constant, fuse_of, pushed};
 

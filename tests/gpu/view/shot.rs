@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use ridgelight::cpu::sky_draw::sky_draw;
-use ridgelight::cpu::terrain_draw::{Met, colour, ray, terrain_draw};
 use ridgelight::gpu::Seen;
 use ridgelight::plan::{self, Picture, View, ViewOptions};
 use ridgelight::scene::{Border, Camera, HeightField, Lens, Method, Quality, Scene, Sun};
+use ridgelight_cpu::sky_draw::sky_draw;
+use ridgelight_cpu::terrain_draw::{Met, colour, ray, terrain_draw};
 
 use crate::{Device, random, under_sky};
 

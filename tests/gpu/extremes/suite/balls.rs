@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::measure::tolerance::{BallSeen, EPSILON};
 use ridgelight::scene::{Border, HeightField, Lights, SphereLight};
+use ridgelight_cpu::tolerance::{BallSeen, EPSILON};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light};
 use super::{Case, Found, Probe, field};

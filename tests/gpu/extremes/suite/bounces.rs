@@ -7,24 +7,24 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec2;
-use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::bounce_march::stretches_along;
-use ridgelight::cpu::height_expand::height_expand;
-use ridgelight::cpu::height_reduce::height_levels;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shade_reduce::shade_levels;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::gather::elevation_moments;
-use ridgelight::cpu::shared::levels::LevelTexels;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::cpu::shared::thrown::{Along, Cast, radiance};
-use ridgelight::measure::tolerance::{
-    CastError, EPSILON, Gathered, Land, Slices, ThrownError, march_error, walk_error,
-};
 use ridgelight::plan::azimuths::even;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Albedo, Border, BounceEngine, HeightField, Levels, Lights, Sun};
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::bounce_march::stretches_along;
+use ridgelight_cpu::height_expand::height_expand;
+use ridgelight_cpu::height_reduce::height_levels;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shade_reduce::shade_levels;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::gather::elevation_moments;
+use ridgelight_cpu::shared::levels::LevelTexels;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::shared::thrown::{Along, Cast, radiance};
+use ridgelight_cpu::tolerance::{
+    CastError, EPSILON, Gathered, Land, Slices, ThrownError, march_error, walk_error,
+};
 
 use super::lights::light;
 use super::{About, Case, Found, Probe, field, is_pyramid};

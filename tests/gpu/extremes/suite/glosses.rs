@@ -8,22 +8,22 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 use ridgelight::basis::harmonics::evaluate;
-use ridgelight::cpu::bounce_gather::BounceGather;
-use ridgelight::cpu::gloss_exit::{mirrored, thrown};
-use ridgelight::cpu::gloss_gather::{GlossGather, Series};
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shared::field::{field_slope, normal_of};
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::cpu::shared::thrown::Cast;
-use ridgelight::cpu::sun_gloss::gloss_on;
-use ridgelight::cpu::vector_reduce::vector_reduce;
-use ridgelight::measure::tolerance::{
-    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_gloss_exit,
-    twin_sh_gloss, twin_sun_arriving, twin_sun_gloss,
-};
 use ridgelight::scene::{
     Albedo, Border, BounceGloss, HeightField, Levels, Lights, Lobe, Phong, Receiver, Sun,
 };
+use ridgelight_cpu::bounce_gather::BounceGather;
+use ridgelight_cpu::gloss_exit::{mirrored, thrown};
+use ridgelight_cpu::gloss_gather::{GlossGather, Series};
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::shared::thrown::Cast;
+use ridgelight_cpu::sun_gloss::gloss_on;
+use ridgelight_cpu::tolerance::{
+    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_gloss_exit,
+    twin_sh_gloss, twin_sun_arriving, twin_sun_gloss,
+};
+use ridgelight_cpu::vector_reduce::vector_reduce;
 
 use super::bounces::{OfPyramid, rubble};
 use super::lights::light;

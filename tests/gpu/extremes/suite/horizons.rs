@@ -3,8 +3,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use ridgelight::cpu::oracle;
 use ridgelight::scene::{Border, HeightField, Lights};
+use ridgelight_cpu::oracle;
 
 use super::{About, Asks, Case, Found, Method, Probe, field, largest, never, none, white};
 

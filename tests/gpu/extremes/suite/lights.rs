@@ -3,10 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
-use ridgelight::measure::harmonics::{Harmonics, Seen};
-use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
 use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights};
+use ridgelight_cpu::harmonics::{Harmonics, Seen};
+use ridgelight_cpu::tolerance::{ARC_TANGENT, EPSILON, ShadeError};
 
 use super::{About, Asks, Case, Found, Probe, field, never, none, suns, white};
 

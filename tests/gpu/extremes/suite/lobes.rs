@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use ridgelight::basis::zonal::{cap, phong};
-use ridgelight::measure::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_gloss};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Phong, Sun};
+use ridgelight_cpu::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_gloss};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light, probe};
 use super::{About, Case, Found, Probe, field};

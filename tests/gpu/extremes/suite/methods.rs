@@ -1,16 +1,16 @@
 //! The methods that every case is put to, and what each may err by.
 
 use glam::DVec3;
-use ridgelight::measure::tolerance::{
-    ARC_TANGENT, EPSILON, march_slope, pyramid_angle, pyramid_plane_slope, surface_slope,
-    sweep_slope, twin_fused_slope, twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed,
-    twin_surface_slope,
-};
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::azimuths::{along_grid_vectors, even};
 use ridgelight::scene::{
     self, Basis, BounceEngine, BounceGloss, Bounces, Directions, Fuse, Hull, Levels, LightBasis,
     Lines, Precision, Quality, Receiver, Scatter, Wedges,
+};
+use ridgelight_cpu::tolerance::{
+    ARC_TANGENT, EPSILON, march_slope, pyramid_angle, pyramid_plane_slope, surface_slope,
+    sweep_slope, twin_fused_slope, twin_march_slope, twin_slope, twin_slope_f16, twin_slope_packed,
+    twin_surface_slope,
 };
 
 use super::About;

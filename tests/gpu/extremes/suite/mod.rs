@@ -407,7 +407,7 @@ fn is_plane(scene: &Scene) -> bool {
     let by_row = (at(rows - 1, 0) - at(0, 0)) / (rows - 1).max(1) as f64;
     let by_col = (at(0, cols - 1) - at(0, 0)) / (cols - 1).max(1) as f64;
     // Three roundings: of a height and of the two ends that it is held against.
-    let rounding = 3.0 * ridgelight::measure::tolerance::EPSILON * largest(field);
+    let rounding = 3.0 * ridgelight_cpu::tolerance::EPSILON * largest(field);
     let repeats = scene.surface.border == Border::Periodic;
     (!repeats || relief(field) <= rounding)
         && (0..rows * cols).all(|i| {

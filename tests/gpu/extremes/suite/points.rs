@@ -1,11 +1,11 @@
 //! What samples see at the extremes, and the ellipses of the sky that they see: on the ground that throws light at itself.
 
 use glam::DVec3;
-use ridgelight::cpu::ellipse_fit::{Ellipse, Seen, score, start};
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::visible_points::possible_within;
-use ridgelight::measure::tolerance::{MET_SHARE, crossing_elevation, ellipse_reach, ellipse_start};
 use ridgelight::scene::{Border, HeightField, Scene, VisiblePoint};
+use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, score, start};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::tolerance::{MET_SHARE, crossing_elevation, ellipse_reach, ellipse_start};
+use ridgelight_cpu::visible_points::possible_within;
 
 use super::{About, Asks, Case, Found, Probe, bounces, none};
 

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use ridgelight::cpu::scatter_gather::{Gathered, Samples};
 use ridgelight::gpu::shaders::offsets::scatter_gather_push::STEPS;
-use ridgelight::measure::tolerance::{EPSILON, Land, gathered};
 use ridgelight::scene::{Albedo, Border, Lights, Lobe, Phong, Scene, Sun, Surface, VisiblePoint};
+use ridgelight_cpu::scatter_gather::{Gathered, Samples};
+use ridgelight_cpu::tolerance::{EPSILON, Land, gathered};
 
 use super::points::{Sight, places, renamed};
 use super::{About, Asks, Case, Found, Probe, bounces, field, glosses, none};

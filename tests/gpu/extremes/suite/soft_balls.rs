@@ -1,18 +1,18 @@
 //! Balls of light by spherical harmonics at the extremes: the same scenes as exact ones. What harmonics keep of
 //! them is known in f64, from the surface's own horizons or a pyramid's.
 
-use ridgelight::cpu::height_expand::height_expand;
-use ridgelight::cpu::height_reduce::height_levels;
-use ridgelight::cpu::light::normal;
-use ridgelight::cpu::oracle::Oracle;
-use ridgelight::cpu::pyramid_march::Stored;
-use ridgelight::cpu::shared::levels::LevelTexels;
-use ridgelight::cpu::shared::sweep::Heights;
-use ridgelight::cpu::sphere_sh_shade::SphereSh;
-use ridgelight::measure::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
-use ridgelight::measure::tolerance::{BallSeen, EPSILON, twin_pyramid_angle, twin_pyramid_slope};
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Border, Levels};
+use ridgelight_cpu::height_expand::height_expand;
+use ridgelight_cpu::height_reduce::height_levels;
+use ridgelight_cpu::light::normal;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::levels::LevelTexels;
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::sphere_sh_shade::SphereSh;
+use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_angle, twin_pyramid_slope};
 
 use super::{About, Case, Found, Method, Probe, balls};
 

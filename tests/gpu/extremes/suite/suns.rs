@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_6, PI};
 
-use ridgelight::measure::tolerance::{ARC_TANGENT, EPSILON};
 use ridgelight::plan::azimuths::across_sun;
 use ridgelight::scene::{Border, Lights, Sun};
+use ridgelight_cpu::tolerance::{ARC_TANGENT, EPSILON};
 
 use super::lights::{PLACES, SIDE, level, light, probe};
 use super::{Case, Method, field};

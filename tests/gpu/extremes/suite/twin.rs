@@ -3,15 +3,15 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use ridgelight::cpu::height_expand::height_expand;
-use ridgelight::cpu::height_reduce::height_levels;
-use ridgelight::cpu::pyramid_march::{PyramidMarch, Stored};
-use ridgelight::cpu::shared::levels::LevelTexels;
-use ridgelight::cpu::shared::sweep::{Heights, LOWEST_MET, March};
-use ridgelight::measure::tolerance::twin_pyramid_angle;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Axis, Azimuth};
 use ridgelight::scene::{Border, Levels, Quality, Scene};
+use ridgelight_cpu::height_expand::height_expand;
+use ridgelight_cpu::height_reduce::height_levels;
+use ridgelight_cpu::pyramid_march::{PyramidMarch, Stored};
+use ridgelight_cpu::shared::levels::LevelTexels;
+use ridgelight_cpu::shared::sweep::{Heights, LOWEST_MET, March};
+use ridgelight_cpu::tolerance::twin_pyramid_angle;
 
 use super::{largest, relief};
 

@@ -1,0 +1,215 @@
+//! A table of what is reflected as a short sum of products of two functions of one direction each.
+
+use glam::DVec3;
+
+use super::{Angles, Brdf};
+use ridgelight::{Error, Result};
+
+/// f(l, v) ≈ Σ g_k(l) h_k(v), each g_k and h_k over a grid of angles, R, G, B (separable approximation: Kautz & McCool 1999).
+///
+/// Of what is diffuse, g_k and h_k are the same. With w the parts of ∫ cos θ dω, the matrix √w_i f_ij √w_j is symmetric, as light and view can be exchanged, and has no
+/// eigenvalue below 0: direct light is a sum over places of what each receives from l times the same of v, and scattered
+/// light is what these throw to each other and back. Of all sums of so many products that of its largest eigenvalues λ_k and
+/// their vectors q_k leaves the least squares of f, weighted by what a plane receives and sends, g_k = √λ_k q_k / √w.
+///
+/// Lobes mirror: theirs is neither symmetric nor without eigenvalues below 0. Of them the largest singular values σ_k and their
+/// vectors on both sides leave the least, g_k = √σ_k a_k / √w and h_k = √σ_k b_k / √w.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factors {
+    angles: Angles,
+    /// Of each k, all angles in order: g.
+    values: Vec<Vec<[f64; 3]>>,
+    /// The same of h, where it is another.
+    of_views: Option<Vec<Vec<[f64; 3]>>>,
+}
+
+/// Turns of the iteration, each of which brings vectors nearer by the quotient of two neighbouring eigenvalues: those that are
+/// not told apart after so many leave nearly the same squares.
+const TURNS: usize = 60;
+
+impl Factors {
+    /// The first `count` of a table over these angles, with lobes or without: then of what chance has made different with light
+    /// and view exchanged the mean.
+    ///
+    /// # Errors
+    /// None, or more than angles; a table of others.
+    pub fn of(table: &Brdf, angles: Angles, count: usize, has_lobes: bool) -> Result<Self> {
+        let size = angles.count();
+        if table.directions().len() != size {
+            let found = format!("{} directions", table.directions().len());
+            return Err(Error::setting("angles of a table", found, size.to_string()));
+        }
+        if !(1..=size).contains(&count) {
+            return Err(Error::setting("factors", count.to_string(), format!("1 to {size}")));
+        }
+        let roots: Vec<f64> = angles.projected_sr().iter().map(|w| w.sqrt()).collect();
+        let mut values = vec![vec![[0.0; 3]; size]; count];
+        if has_lobes {
+            let mut views = values.clone();
+            for channel in [0, 1, 2] {
+                let of = |i: usize| {
+                    let (a, b) = (i / size, i % size);
+                    table.at(a, b)[channel] * roots[a] * roots[b]
+                };
+                let matrix: Vec<f64> = (0..size * size).map(of).collect();
+                let turned: Vec<f64> =
+                    (0..size * size).map(|i| matrix[i % size * size + i / size]).collect();
+                // Eigenvectors of MᵀM are b, its eigenvalues σ², and M b is σ a.
+                let twice = |v: &[f64]| times(&turned, &times(&matrix, v));
+                for (k, (square, vector)) in largest(&twice, size, count).into_iter().enumerate() {
+                    let scale = square.max(0.0).powf(0.25);
+                    let other = times(&matrix, &vector);
+                    let shrink = if scale > f64::MIN_POSITIVE { 1.0 / scale } else { 0.0 };
+                    for i in 0..size {
+                        values[k][i][channel] = shrink * other[i] / roots[i];
+                        views[k][i][channel] = scale * vector[i] / roots[i];
+                    }
+                }
+            }
+            return Ok(Self { angles, values, of_views: Some(views) });
+        }
+        for channel in [0, 1, 2] {
+            let of = |i: usize| {
+                let (a, b) = (i / size, i % size);
+                let both = table.at(a, b)[channel] + table.at(b, a)[channel];
+                0.5 * both * roots[a] * roots[b]
+            };
+            let matrix: Vec<f64> = (0..size * size).map(of).collect();
+            let once = |v: &[f64]| times(&matrix, v);
+            for (k, (value, vector)) in largest(&once, size, count).into_iter().enumerate() {
+                let scale = value.max(0.0).sqrt();
+                let texels = values[k].iter_mut().zip(vector.iter().zip(&roots));
+                texels.for_each(|(texel, (v, root))| texel[channel] = scale * v / root);
+            }
+        }
+        Ok(Self { angles, values, of_views: None })
+    }
+
+    /// One for each product, R, G, B of all angles: of the light, and of the view where there are no others.
+    pub fn values(&self) -> &[Vec<[f64; 3]>] {
+        &self.values
+    }
+
+    /// Those of the view, where they are others than the light's.
+    pub fn of_views(&self) -> Option<&[Vec<[f64; 3]>]> {
+        self.of_views.as_deref()
+    }
+
+    /// Of a light at each of the angles in turn, towards all of them; 1/sr.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<[f64; 3]>> {
+        let of_views = self.of_views.as_ref().unwrap_or(&self.values);
+        let at = move |light: usize, view: usize, c: usize| -> f64 {
+            self.values.iter().zip(of_views).map(|(g, h)| g[light][c] * h[view][c]).sum()
+        };
+        let count = self.angles.count();
+        (0..count).map(move |l| (0..count).map(|v| [0, 1, 2].map(|c| at(l, v, c))).collect())
+    }
+
+    /// For a light and a view above horizontal, unit vectors; each factor linear between its angles.
+    pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
+        let [light, view] = [light, view].map(|e| self.angles.around(e));
+        let mut sum = [0.0; 3];
+        let of_views = self.of_views.as_ref().unwrap_or(&self.values);
+        for (of_light, of_view) in self.values.iter().zip(of_views) {
+            let at = |of: &[[f64; 3]], around: &[(usize, f64); 4], c: usize| -> f64 {
+                around.iter().map(|(i, share)| share * of[*i][c]).sum()
+            };
+            (0..3).for_each(|c| sum[c] += at(of_light, &light, c) * at(of_view, &view, c));
+        }
+        sum
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A square matrix, row by row, times a vector.
+fn times(matrix: &[f64], v: &[f64]) -> Vec<f64> {
+    matrix.chunks_exact(v.len()).map(|row| dot(row, v)).collect()
+}
+
+/// The largest eigenvalues of what takes vectors of a size as a symmetric matrix does, and their unit vectors, by orthogonal
+/// iteration from fixed beginnings.
+fn largest(times: &dyn Fn(&[f64]) -> Vec<f64>, size: usize, count: usize) -> Vec<(f64, Vec<f64>)> {
+    // Fractions of multiples of an irrational number: no vector is at right angles to them by chance.
+    let begin =
+        |k: usize| (0..size).map(move |i| ((k * size + i + 1) as f64 * 0.618_034).fract() - 0.5);
+    let mut vectors: Vec<Vec<f64>> = (0..count).map(|k| begin(k).collect()).collect();
+    for turn in 0..=TURNS {
+        if turn > 0 {
+            vectors = vectors.iter().map(|v| times(v)).collect();
+        }
+        for k in 0..count {
+            let (before, rest) = vectors.split_at_mut(k);
+            // Twice, as what is left after the first may be mostly rounding.
+            for other in before.iter().chain(before.iter()) {
+                let along = dot(other, &rest[0]);
+                rest[0].iter_mut().zip(other).for_each(|(v, o)| *v -= along * o);
+            }
+            let length = dot(&rest[0], &rest[0]).sqrt();
+            let scale = if length > f64::MIN_POSITIVE { 1.0 / length } else { 0.0 };
+            rest[0].iter_mut().for_each(|v| *v *= scale);
+        }
+    }
+    vectors.into_iter().map(|v| (dot(&v, &times(&v)), v)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2 a aᵀ + b bᵀ of two vectors of length 1 at right angles: their squares' shares, and nothing left of a third.
+    #[test]
+    fn eigenvectors_are_found() {
+        let (a, b) = ([0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]);
+        let matrix: Vec<f64> =
+            (0..9).map(|i| 2.0 * a[i / 3] * a[i % 3] + b[i / 3] * b[i % 3]).collect();
+        let found = largest(&|v| times(&matrix, v), 3, 3);
+        for ((value, vector), (known, axis)) in found.iter().zip([(2.0, a), (1.0, b)]) {
+            let along: f64 = vector.iter().zip(axis).map(|(v, a)| v * a).sum();
+            assert!((value - known).abs() < 1e-9 && (along.abs() - 1.0).abs() < 1e-9, "{value}");
+        }
+        assert!(found[2].0.abs() < 1e-9);
+    }
+
+    /// A table that is a product of two unlike functions, one of them below 0 somewhere, is one such product, which it is not of
+    /// one function; a sum of two squares, which like that of diffuse ground is symmetric and has no eigenvalue below 0, is of
+    /// two: nothing is dropped of it.
+    #[test]
+    fn unlike_sides_are_told_apart() {
+        let angles = Angles { zeniths: 2, azimuths: 4 };
+        let directions = angles.directions().unwrap().vectors().to_vec();
+        let (g, h) = (|e: &DVec3| 2.0 + e.x, |e: &DVec3| e.z - e.y - 0.5);
+        let values = directions.iter().flat_map(|l| directions.iter().map(move |v| (l, v)));
+        let values = values.map(|(l, v)| [g(l) * h(v), 1.0, 0.0]).collect();
+        let table = Brdf::from_values(directions.clone(), values).unwrap();
+        let factors = Factors::of(&table, angles, 1, true).unwrap();
+        assert!(factors.of_views().is_some());
+        let off = |factors: &Factors| {
+            let pairs = directions.iter().flat_map(|l| directions.iter().map(move |v| (l, v)));
+            let off = pairs.map(|(l, v)| {
+                let found = factors.at(*l, *v);
+                (found[0] - g(l) * h(v)).abs() + (found[1] - 1.0).abs() + found[2].abs()
+            });
+            off.fold(0.0, f64::max)
+        };
+        assert!(off(&factors) < 1e-9, "{}", off(&factors));
+        let alike = Factors::of(&table, angles, 1, false).unwrap();
+        assert!(alike.of_views().is_none() && off(&alike) > 0.1, "deaf: {}", off(&alike));
+        let squares = |l: &DVec3, v: &DVec3| g(l) * g(v) + h(l) * h(v);
+        let values = directions.iter().flat_map(|l| directions.iter().map(move |v| (l, v)));
+        let values = values.map(|(l, v)| [0.0, squares(l, v), 1.0]).collect();
+        let table = Brdf::from_values(directions.clone(), values).unwrap();
+        let factors = Factors::of(&table, angles, 2, false).unwrap();
+        let rows = factors.rows().collect::<Vec<_>>();
+        for (i, j) in (0..64).map(|i| (i / 8, i % 8)) {
+            let (l, v) = (&directions[i], &directions[j]);
+            for (found, known) in rows[i][j].into_iter().zip([0.0, squares(l, v), 1.0]) {
+                assert!((found - known).abs() < 1e-9, "{i} {j}: {found} {known}");
+            }
+            let between = factors.at(*l, *v);
+            assert!((0..3).all(|c| (rows[i][j][c] - between[c]).abs() < 1e-9), "{between:?}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Light that a field of triangles reflects, as seen from far away.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use ridgelight::Result;
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::plan::{self, Limits};
+use ridgelight::scene::{Directions, Lights, Scatter, Scene, Sun, VisiblePoints};
+
+use crate::{Facets, Leaving};
+
+/// A point of a sky, of irradiance 1 facing it.
+fn sun(towards: DVec3) -> Sun {
+    Sun {
+        azimuth_rad: towards.y.atan2(towards.x),
+        elevation_rad: towards.z.atan2(towards.truncate().length()),
+        diameter_rad: 0.0,
+        irradiance: [1.0; 3],
+    }
+}
+
+/// A field's triangles, `times` finer, and which of them are seen from each of some directions above horizontal.
+///
+/// # Errors
+/// As [`plan::facet_mask`](ridgelight::plan::facet_mask) and [`Facets::of`].
+pub fn facets(
+    gpu: &mut Headless,
+    scene: &Scene,
+    times: usize,
+    directions: &Directions,
+    limits: &Limits,
+) -> Result<Facets> {
+    let border = scene.surface.border;
+    let finer = scene.field.finer(border, times)?;
+    let plan = plan::facet_mask(&finer, border, directions, limits)?;
+    let words = gpu.words_of_all(plan, &finer)?;
+    Facets::of(scene, times, directions.clone(), words)
+}
+
+/// Radiance of all triangles under a light of irradiance 1 facing it from each of some of their directions in turn, with
+/// what the field scatters of it (`points` are of directions all around) where that is asked for: direct light of triangles, its mean at samples, from there by
+/// the method of dependent tests, and linear between samples.
+///
+/// Lobes scatter otherwise towards each view: towards those that `views` has of a light, by its number. Samples mirror the
+/// light where their own middle sees it, by normals between those of their triangles.
+///
+/// # Errors
+/// As [`plan::scatter_views`]; the first of `take`, which is given each light's number.
+pub fn lit_from(
+    gpu: &mut Headless,
+    scene: &Scene,
+    (facets, lights, views): (&Facets, Range<usize>, &dyn Fn(usize) -> Range<usize>),
+    scatter: Option<(&VisiblePoints, &Scatter)>,
+    limits: &Limits,
+    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
+) -> Result<()> {
+    let mut direct_alone =
+        || lights.clone().try_for_each(|light| take(light, facets.lit_from(light)));
+    let Some((points, scatter)) = scatter else { return direct_alone() };
+    if facets.has_lobes() {
+        let of = (facets, lights, views);
+        return lit_by_lobes(gpu, scene, of, (points, scatter), limits, take);
+    }
+    let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
+    // Level or black ground scatters nothing, and its plan asks for nothing.
+    let Some(direct) = plan.inputs().position(|(_, r)| r.name == "direct") else {
+        return direct_alone();
+    };
+    let none = vec![[0.0; 3]; scene.field.heights_m().len()];
+    let contents = plan::scatter_inputs(&plan, scene, points, &none)?;
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &contents, |gpu, frame| {
+        for light in lights {
+            let mut radiance = facets.lit_from(light);
+            let samples = facets.to_samples(radiance.alike());
+            let texels: Vec<f32> = samples.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+            gpu.refill(frame, direct, &texels)?;
+            gpu.draw_counted(frame)?;
+            facets.add_samples(&gpu.colours(frame)?, &mut radiance);
+            take(light, radiance)?;
+        }
+        Ok(())
+    })
+}
+
+fn lit_by_lobes(
+    gpu: &mut Headless,
+    scene: &Scene,
+    (facets, lights, views): (&Facets, Range<usize>, &dyn Fn(usize) -> Range<usize>),
+    (points, scatter): (&VisiblePoints, &Scatter),
+    limits: &Limits,
+    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
+) -> Result<()> {
+    let directions = facets.directions().vectors();
+    let samples = scene.field.heights_m().len();
+    let none = vec![[0.0; 3]; samples];
+    let mut lit = Scene { lights: Lights::default(), ..scene.clone() };
+    // The frame of as many views is the same under all lights.
+    let mut kept: Option<(usize, Frame)> = None;
+    let mut one = |gpu: &mut Headless, light: usize| {
+        lit.lights.suns = vec![sun(directions[light])];
+        let mut radiance = facets.lit_from(light);
+        let direct = facets.to_samples(radiance.alike());
+        let wanted = views(light);
+        let at_once = plan::views_at_once(&scene.field, wanted.len(), limits);
+        let mut towards = Vec::with_capacity(wanted.len());
+        for first in wanted.clone().step_by(at_once) {
+            let some = &directions[first..wanted.end.min(first + at_once)];
+            let around = points.directions();
+            let plan = plan::scatter_views(&lit, around, scatter, some, limits)?;
+            // Level or black ground scatters nothing, and its plan asks for nothing.
+            let Some(place) = plan.inputs().position(|(_, r)| r.name == "direct") else {
+                return take(light, radiance);
+            };
+            if let Some((_, old)) = kept.take_if(|(count, _)| *count != some.len()) {
+                gpu.end(old);
+            }
+            let frame = match &mut kept {
+                Some((_, frame)) => {
+                    gpu.replace_plan(frame, plan)?;
+                    frame
+                }
+                None => {
+                    let contents = plan::scatter_inputs(&plan, &lit, points, &none)?;
+                    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+                    &mut kept.insert((some.len(), gpu.frame(plan, &contents)?)).1
+                }
+            };
+            let texels: Vec<f32> = direct.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+            gpu.refill(frame, place, &texels)?;
+            gpu.draw_counted(frame)?;
+            let light = gpu.colours(frame)?;
+            towards.extend(light.chunks_exact(samples).map(<[_]>::to_vec));
+        }
+        radiance = radiance.scattering(wanted.start, towards);
+        take(light, radiance)
+    };
+    let done = lights.into_iter().try_for_each(|light| one(gpu, light));
+    if let Some((_, frame)) = kept {
+        gpu.end(frame);
+    }
+    done
+}

@@ -1,0 +1,211 @@
+//! The C ABI as C meets it: its header, its symbols, and a program.
+
+mod abi;
+mod inputs;
+#[path = "../../../../tests/target/mod.rs"]
+mod target;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use ridgelight_io as files;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+/// A library that was built with this test: beside it.
+fn library(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("this test");
+    let found = test.with_file_name(name);
+    assert!(found.exists(), "{} is not there: cargo build -p ridgelight-capi", found.display());
+    found
+}
+
+fn run(command: &mut Command) -> (Output, String) {
+    let done = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let said = [&done.stdout, &done.stderr].map(|s| String::from_utf8_lossy(s).into_owned());
+    (done, said.concat())
+}
+
+/// `RIDGELIGHT_BLESS=1` writes it.
+#[test]
+fn the_header_is_what_the_source_says() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let config =
+        cbindgen::Config::from_file(Path::new(env!("CARGO_MANIFEST_DIR")).join("cbindgen.toml"));
+    let mut builder = cbindgen::Builder::new().with_config(config.expect("cbindgen.toml"));
+    for file in ["errors", "types", "allocator", "scene", "plan", "renderer", "view", "voids"] {
+        builder = builder.with_src(source.join(file).with_extension("rs"));
+    }
+    let mut made = Vec::new();
+    builder.generate().expect("a header").write(&mut made);
+    let made = String::from_utf8(made).expect("text");
+    let path = Path::new(ROOT).join("crates/capi/include/ridgelight.h");
+    if std::env::var_os("RIDGELIGHT_BLESS").is_some() {
+        std::fs::write(&path, &made).expect("written");
+    }
+    let kept = std::fs::read_to_string(&path).expect("crates/capi/include/ridgelight.h");
+    assert!(kept == made, "include/ridgelight.h is another: RIDGELIGHT_BLESS=1 writes it");
+    let mut cpp = Command::new("c++");
+    cpp.args(["-x", "c++", "-std=c++11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]);
+    let (done, said) = run(cpp.args(["-include"]).arg(&path).arg("/dev/null"));
+    assert!(done.status.success(), "{said}");
+}
+
+/// Every function of the header, and no symbol besides.
+#[test]
+fn the_shared_library_exports_the_header_alone() {
+    let header = std::fs::read_to_string(Path::new(ROOT).join("crates/capi/include/ridgelight.h"))
+        .expect("it");
+    let mut declared: Vec<&str> = header
+        .lines()
+        .filter(|line| !line.trim_start().starts_with(['*', '/']))
+        .flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || c == '_')))
+        .filter(|word| word.starts_with("ridgelight_"))
+        .collect();
+    declared.sort_unstable();
+    declared.dedup();
+    let library = library("libridgelight_c.so");
+    let (done, said) = run(Command::new("nm").args(["-D", "--defined-only"]).arg(library));
+    assert!(done.status.success(), "{said}");
+    let mut exported: Vec<&str> = said.lines().filter_map(|l| l.split(' ').nth(2)).collect();
+    exported.sort_unstable();
+    assert_eq!(exported, declared);
+    assert!(declared.len() > 10, "{declared:?}");
+}
+
+/// Each function that can fail says with which codes: names that the header has.
+#[test]
+fn every_function_lists_its_codes() {
+    let header = std::fs::read_to_string(Path::new(ROOT).join("crates/capi/include/ridgelight.h"))
+        .expect("it");
+    let codes = ["OK", "ARGUMENT", "SETTING", "LIMIT", "DEVICE"];
+    let mut functions = 0;
+    for (at, _) in header.match_indices("\nenum RidgelightResult ridgelight_") {
+        let comment: Vec<&str> =
+            header[..at].lines().rev().take_while(|line| line.starts_with("//")).collect();
+        let name = header[at..].lines().nth(1).expect("its line");
+        let returns = comment.iter().find_map(|line| line.strip_prefix("// Returns "));
+        let returns = returns.unwrap_or_else(|| panic!("{name} says nothing of codes"));
+        let named: Vec<&str> = returns
+            .split(|c: char| !c.is_ascii_uppercase())
+            .filter(|word| word.len() > 1)
+            .collect();
+        assert!(named.len() > 1 && named[0] == "OK", "{name}: {returns}");
+        assert!(named.iter().all(|word| codes.contains(word)), "{name}: {returns}");
+        functions += 1;
+    }
+    for code in codes {
+        assert!(header.contains(&format!("RIDGELIGHT_RESULT_{code} =")), "{code}");
+    }
+    assert!(functions >= 12, "{functions}");
+}
+
+/// What a program is linked with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum With {
+    Shared,
+    Static,
+    /// The shared library, and an allocator that hears of what is used after it is freed, or beyond its end.
+    Sanitizer,
+}
+
+/// Compiles a program against the header and a library.
+fn compiled(folder: &Path, name: &str, source: &str, with: With) -> PathBuf {
+    let (file, program) = (folder.join(name).with_extension("c"), folder.join(name));
+    std::fs::write(&file, source).expect("a source");
+    let shared = library("libridgelight_c.so");
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-g", "-I"]);
+    cc.arg(Path::new(ROOT).join("crates/capi/include")).arg(&file).arg("-o").arg(&program);
+    if with == With::Sanitizer {
+        cc.arg("-fsanitize=address");
+    }
+    if with == With::Static {
+        cc.arg(library("libridgelight_c.a")).args(["-lpthread", "-ldl", "-lm", "-lgcc_s"]);
+    } else {
+        let folder = shared.parent().expect("a folder");
+        cc.arg(&shared).arg(format!("-Wl,-rpath,{}", folder.display()));
+    }
+    let (done, said) = run(cc.arg("-lvulkan"));
+    assert!(done.status.success(), "{said}");
+    program
+}
+
+fn is_validated() -> bool {
+    std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
+}
+
+/// Runs a program under the validation layer where tests are; what it and the layer say.
+fn run_validated(program: &Path, out: &Path) -> (Output, String) {
+    let mut command = Command::new(program);
+    // Drivers keep what they take: their leaks are not looked for.
+    command.arg(out).env("ASAN_OPTIONS", "detect_leaks=0");
+    if is_validated() {
+        command.env("VK_INSTANCE_LAYERS", "VK_LAYER_KHRONOS_validation");
+    }
+    run(&mut command)
+}
+
+/// Without a messenger the layer prints what it hears.
+fn is_complaint(said: &str) -> bool {
+    said.contains("VUID") || said.contains("SYNC-HAZARD")
+}
+
+/// What the command line makes of the scene of host.c.
+fn by_command_line(folder: &Path) -> Vec<u8> {
+    let heights: Vec<f32> =
+        (0..48 * 64).map(|i| ((i / 64 * 31 + i % 64 * 17) % 7) as f32 - 3.0).collect();
+    files::write_npy_f32(&folder.join("field.npy"), &[48, 64], [&heights[..]]).expect("a field");
+    let test = std::env::current_exe().expect("this test");
+    let binary = test.parent().and_then(Path::parent).expect("a folder").join("ridgelight");
+    assert!(binary.exists(), "{} is not there: cargo build", binary.display());
+    let arguments = "render field.npy --sky 0.5 --sun 90,30,0.5,3 --quiet -o lit.exr";
+    let (done, said) = run(Command::new(binary).current_dir(folder).args(arguments.split(' ')));
+    assert!(done.status.success(), "{said}");
+    let lit = files::read_planes(&folder.join("lit.exr")).expect("a picture");
+    let red = lit.names.iter().position(|name| name == "R").expect("a channel R");
+    lit.planes[red].iter().flat_map(|v| v.to_ne_bytes()).collect()
+}
+
+#[test]
+fn a_c_program_gives_the_command_lines_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = include_str!("host.c");
+    assert!(source.lines().count() <= 150, "an integrator's program");
+    let right = by_command_line(folder.path());
+    let mut is_different = right.chunks_exact(4).filter(|texel| *texel != &right[..4]);
+    assert!(is_different.next().is_some(), "light that differs");
+    let all = [("shared", With::Shared), ("static", With::Static), ("sane", With::Sanitizer)];
+    for (name, with) in all {
+        let program = compiled(folder.path(), name, source, with);
+        let out = folder.path().join("texels");
+        let (done, said) = run_validated(&program, &out);
+        assert!(done.status.success() && !is_complaint(&said), "{name}: {said}");
+        assert!(std::fs::read(out).expect("texels") == right, "{name}: other light");
+    }
+    // And complaints would have been heard: light that is copied from another layout than it is left in.
+    if is_validated() {
+        let from =
+            "vkCmdCopyImageToBuffer(commands, light.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL";
+        assert!(source.contains(from));
+        let wrong = source.replace(from, &from.replace("TRANSFER_SRC_OPTIMAL", "GENERAL"));
+        let program = compiled(folder.path(), "wrong", &wrong, With::Shared);
+        let (_, said) = run_validated(&program, &folder.path().join("wrong.texels"));
+        assert!(is_complaint(&said), "validation is deaf: {said}");
+    }
+}
+
+/// What the library refuses, by code and by a word of its sentence: from C, so that the header is right.
+#[test]
+fn wrong_arguments_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = include_str!("wrong.c");
+    let (done, said) =
+        run(&mut Command::new(compiled(folder.path(), "wrong", source, With::Sanitizer)));
+    assert!(done.status.success(), "{said}");
+    // And the sanitizer hears of a struct that is shorter than it says.
+    let beyond = format!("#define BEYOND\n{source}");
+    let (done, said) =
+        run(&mut Command::new(compiled(folder.path(), "beyond", &beyond, With::Sanitizer)));
+    assert!(!done.status.success() && said.contains("heap-buffer-overflow"), "{said}");
+}

@@ -1,0 +1,213 @@
+//! Settings chosen for an error or a time.
+
+use std::cell::RefCell;
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Hull, Quality, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_trade::auto;
+use ridgelight_trade::auto::{Bounced, Chosen, Drawn, Goal, Measured, Probes, Traced};
+
+use crate::args::AutoArgs;
+use crate::idle;
+use crate::reference;
+use crate::setup;
+use crate::terminal::{digits, percent};
+
+/// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
+const DRAWS: usize = 3;
+const TIMING: Duration = Duration::from_secs(2);
+/// Of a first draw that takes so long compiling is little, and it counts itself.
+const LONG: Duration = Duration::from_secs(10);
+
+/// What is asked for, if anything.
+pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
+    let positive = |flag: &str, value: Option<f64>| match value {
+        Some(x) if !(x.is_finite() && x > 0.0) => {
+            Err(Error::setting(flag, x.to_string(), "a number above 0"))
+        }
+        other => Ok(other),
+    };
+    let error = positive("--max-error", args.max_error)?.map(Goal::MaxError);
+    let cost = positive("--time-budget", args.time_budget)?.map(|ms| Goal::MaxCost(ms * 1e6));
+    Ok(error.or(cost))
+}
+
+/// Says that a seed without a goal changes nothing.
+pub fn say_idle(args: &AutoArgs, quiet: bool) {
+    let has_goal = args.max_error.is_some() || args.time_budget.is_some();
+    if let Some(seed) = args.seed.filter(|_| !has_goal && !quiet) {
+        idle::note("seed", &seed.to_string(), "without --max-error or --time-budget");
+    }
+}
+
+pub fn choose(
+    gpu: &mut Headless,
+    limits: &Limits,
+    scene: &Scene,
+    (goal, seed): (Goal, u32),
+    (hull, bounces, wanted): (Hull, u32, Picture),
+    bar: &indicatif::ProgressBar,
+) -> Result<Chosen> {
+    let contents = plan::picture_inputs(scene);
+    let mut drawn = 0;
+    let probes = (Probes::affordable(scene), u64::from(seed));
+    let gpu = RefCell::new(gpu);
+    let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+        let paths = batches * plan::REFERENCE_BATCH;
+        bar.set_message(format!("tracing {paths} paths from each of {} samples", samples.len()));
+        trace(&mut gpu.borrow_mut(), limits, (scene, bounces), samples, (batches, seed))
+    };
+    let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
+    let mut chosen = auto::choose(scene, goal, probes, bounced, |quality| {
+        drawn += 1;
+        bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
+        let quality = Quality { hull, ..*quality };
+        draw(&mut gpu.borrow_mut(), limits, (scene, wanted), &quality, &contents)
+    })?;
+    chosen.trial.quality.hull = hull;
+    Ok(chosen)
+}
+
+fn draw(
+    gpu: &mut Headless,
+    limits: &Limits,
+    (scene, wanted): (&Scene, Picture),
+    quality: &Quality,
+    contents: &[Vec<f32>],
+) -> Result<Drawn> {
+    let plan = plan::picture(scene, quality, limits, wanted)?;
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let (times, pixels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        Ok((timed(gpu, frame)?, gpu.pixels(frame, 0)?))
+    })?;
+    let stride = pixels.channels;
+    let mut planes: Vec<Vec<f32>> = (0..stride.min(3))
+        .map(|c| pixels.values.iter().skip(c).step_by(stride).copied().collect())
+        .collect();
+    planes.iter_mut().for_each(|plane| setup::mask_voids(&scene.field, plane, 1));
+    Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
+}
+
+/// Times of the middle one of some draws.
+fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
+    let begun = Instant::now();
+    let mut runs = vec![gpu.draw(frame)?];
+    if begun.elapsed() < LONG {
+        let begun = Instant::now();
+        runs = vec![gpu.draw(frame)?];
+        while runs.len() < DRAWS && begun.elapsed() < TIMING {
+            runs.push(gpu.draw(frame)?);
+        }
+    }
+    let total = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
+    runs.sort_by(|a, b| total(a).total_cmp(&total(b)));
+    let middle = runs.swap_remove(runs.len() / 2);
+    if total(&middle) > 0.0 {
+        return Ok(middle);
+    }
+    Err(Error::Device {
+        doing: "timing a frame".into(),
+        reason: "the device has no timestamps".into(),
+    })
+}
+
+/// Bounced light of some samples by so many batches of paths of a seed.
+fn trace(
+    gpu: &mut Headless,
+    limits: &Limits,
+    (scene, bounces): (&Scene, u32),
+    samples: &[usize],
+    (batches, seed): (u32, u32),
+) -> Result<Vec<Traced>> {
+    let plan = plan::reference_at(scene, bounces, seed, samples.len(), limits)?;
+    let is_traced = |i: &usize| plan.passes[*i].name() == "path_trace";
+    let passes: Vec<usize> = (0..plan.passes.len()).filter(is_traced).collect();
+    let mut contents = plan::reference_inputs(scene);
+    contents.push(plan::listed_places(scene, samples)?);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let [means, errors] = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        for _ in 1..batches {
+            for pass in &passes {
+                gpu.draw_passes(frame, &[*pass])?;
+            }
+        }
+        if let Some(lost) = frame.plan().find("lost_rays") {
+            reference::none_lost(gpu.read(frame, lost)?[0])?;
+        }
+        Ok([reference::picture(gpu, frame, 0)?, reference::picture(gpu, frame, 1)?])
+    })?;
+    let both = means.iter().zip(&errors).take(samples.len());
+    let light = |c: &[f32; 3]| c.map(f64::from);
+    Ok(both.map(|(m, e)| Traced { mean: light(m), standard_error: light(e) }).collect())
+}
+
+/// For metadata and --json.
+pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(String, String)> {
+    let asked = match goal {
+        Goal::MaxError(most) => ("max_error", most.to_string()),
+        Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
+    };
+    let tried = chosen.trials.iter().map(|t| {
+        let holds = if goal.is_reached(t) { "holds" } else { "does not hold" };
+        let Measured { error, at_most } = t.measured;
+        let error = format!("{} (at most {})", percent(error), percent(at_most));
+        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
+    });
+    let measured = &chosen.trial.measured;
+    let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
+    [
+        asked,
+        ("error_expected", chosen.expected.error.to_string()),
+        ("error_expected_deviation_factor", chosen.expected.factor.to_string()),
+        ("error_measured", measured.error.to_string()),
+        ("error_at_most", measured.at_most.to_string()),
+        ("error_confidence", confidence),
+        ("error_probes", chosen.probes.to_string()),
+        ("error_paths", chosen.paths.to_string()),
+        ("seed", seed.to_string()),
+        ("tried", tried.collect::<Vec<_>>().join("; ")),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .to_vec()
+}
+
+/// For people: what was chosen and its error; then, where settings were drawn that do not reach the
+/// goal, that it went on from them.
+pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
+    let Chosen { trial, expected, probes, paths, confidence, trials } = chosen;
+    let by_paths = match paths {
+        0 => String::new(),
+        _ => format!(", {paths} light paths each"),
+    };
+    let confidence = confidence.map_or_else(
+        || "without a confidence".to_owned(),
+        |c| format!("with {:.0} % confidence", 100.0 * c),
+    );
+    let mut all = vec![format!(
+        "{}: guessed {} (give or take a factor of {}, one standard deviation), measured {}, at most {} {confidence} \
+         ({probes} probes{by_paths}); {} settings tried",
+        auto::flags(&trial.quality, scene),
+        percent(expected.error),
+        digits(expected.factor),
+        percent(trial.measured.error),
+        percent(trial.measured.at_most),
+        trials.len()
+    )];
+    let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
+    if let Some(last) = missed.last() {
+        let (went, by) = match goal {
+            Goal::MaxError(_) => ("dearer", format!("at most {}", percent(last.measured.at_most))),
+            Goal::MaxCost(_) => ("cheaper", format!("{} ms", digits(last.ns / 1e6))),
+        };
+        all.push(format!(
+            "went {went}: {} of them did not hold, the last {} ({by})",
+            missed.len(),
+            auto::flags(&last.quality, scene)
+        ));
+    }
+    all
+}

@@ -1,0 +1,251 @@
+//! What of `bake` is asked for.
+
+use ridgelight::scene::{Directions, Lines, Method, Quality, Scatter};
+use ridgelight::{Error, Result};
+use ridgelight_bake::{Angles, encoding_named};
+
+use super::Packing;
+use super::kinds::{KINDS, Kind, Source};
+use super::map::Wanted;
+use crate::args::{BakeArgs, MethodName};
+use crate::bake::Format;
+use crate::{idle, setup};
+
+/// Where none are asked for.
+pub const DIRECTIONS: u32 = 256;
+
+/// What `--what` takes.
+pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
+    KINDS.into_iter().find(|kind| kind.name == name).ok_or_else(|| {
+        let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+        format!("expected one of {}", all.join(", "))
+    })
+}
+
+/// What `--encoding` takes: `KIND=ENCODING`.
+pub fn packing(text: &str) -> std::result::Result<Packing, String> {
+    let (kind, name) = text.split_once('=').ok_or("expected KIND=ENCODING")?;
+    let kind = kind_named(kind)?;
+    let encoding = encoding_named(kind.encodings, name).ok_or_else(|| {
+        let all: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
+        format!("{} is packed as {}", kind.name, all.join(", "))
+    })?;
+    Ok(Packing { kind, encoding })
+}
+
+/// The list below the flags.
+pub fn help() -> String {
+    let mut text = String::from("Kinds, and how each can be packed:\n");
+    for kind in KINDS {
+        let names: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
+        let formats: Vec<&str> = kind.formats.iter().map(|f| f.name()).collect();
+        text += &format!(
+            "  {}: {}\n      {}; as {} by default\n",
+            kind.name,
+            kind.about,
+            names.join(", "),
+            formats.join(" and ")
+        );
+    }
+    text += "\n\
+Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
+in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
+horizons are near. With --phong, brdf, brdf-factors, brdf-harmonics and btf mirror each light as their triangles lie, and scatter towards \
+each view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
+scatter is then seen from straight above, and light-field from each view, the sky along --directions, with --bounces 0 along each \
+once. A lobe is bounded by the view, not by the light, and not the same with both exchanged: the sheet says by how much, where \
+--angles are as close as it is wide. Vulkan does not ask devices to \
+sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
+A .png of scatter has 16 bits, 1 at the largest number of each picture, whose scale the sheet has.
+
+Examples:
+  ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
+  ridgelight bake dem.tif --what horizon --encoding horizon=unorm16-sin -o baked
+  ridgelight bake moss.png --what ellipse --directions 512 -o baked
+  ridgelight bake leather.png --border periodic --cell 0.001 --what curved-ellipse --curvature 20,5 -o baked
+  ridgelight bake moss.png --border periodic --what sh-transfer --sh-order 3 -o baked
+  ridgelight bake dem.tif --what horizon,sky-view,visible-sky --plan -o baked";
+    text
+}
+
+/// What is asked for, each kind once.
+pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
+    let mut all: Vec<Wanted> = Vec::new();
+    for kind in &args.what {
+        if all.iter().any(|w| w.kind.name == kind.name) {
+            return Err(Error::setting("--what", format!("{} twice", kind.name), "each kind once"));
+        }
+        let mut packings = args.encoding.iter().filter(|p| p.kind.name == kind.name);
+        let encoding = packings.next().map_or(&kind.encodings[0], |p| p.encoding);
+        if packings.next().is_some() {
+            let found = format!("two of {}", kind.name);
+            return Err(Error::setting("--encoding", found, "one of each kind"));
+        }
+        let mut formats = if args.format.is_empty() { kind.formats } else { &args.format }.to_vec();
+        let takes = |format: &Format| format.takes(kind, encoding);
+        if args.format.is_empty() {
+            formats.retain(takes);
+        } else if let Some(format) = formats.iter().find(|f| !takes(f)) {
+            return Err(Error::setting(
+                "--format",
+                format!("{} with {} of {}", format.name(), encoding.name, kind.name),
+                "exr, npy or ktx2: a picture holds up to three components of 8 or 16 bits",
+            ));
+        }
+        if let Some(twice) = (1..formats.len()).find(|i| formats[..*i].contains(&formats[*i])) {
+            let found = format!("{} twice", formats[twice].name());
+            return Err(Error::setting("--format", found, "each once"));
+        }
+        all.push(Wanted { kind, encoding, formats });
+    }
+    if let Some(idle) =
+        args.encoding.iter().find(|p| all.iter().all(|w| w.kind.name != p.kind.name))
+    {
+        let found = format!("one of {}", idle.kind.name);
+        return Err(Error::setting("--encoding", found, "only kinds of --what"));
+    }
+    Ok(all)
+}
+
+pub fn quality(args: &BakeArgs) -> Result<Quality> {
+    let mut quality = setup::quality(&args.quality)?;
+    if matches!(args.quality.method, MethodName::Auto) {
+        quality.method = Method::Brute;
+    }
+    if quality.lines == Lines::Exact && quality.method != Method::Brute {
+        return Err(Error::setting(
+            "--lines",
+            "exact",
+            "--method brute, which is exact in every azimuth: grid vectors are not even",
+        ));
+    }
+    Ok(quality)
+}
+
+/// What is seen below horizontal counts, too: it may rise over it on a bent base.
+const LOOKS_BELOW: [&str; 2] = ["visible-points", "curved-ellipse"];
+
+/// Of kinds that look along directions: ellipses of flat bases spend none below horizontal.
+pub fn directions(args: &BakeArgs) -> Result<Directions> {
+    let looks_around =
+        args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
+    let lowest_z = if looks_around { -1.0 } else { 0.0 };
+    Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
+}
+
+/// Those that scatter: the first as samples, the others as triangles seen along --angles.
+const LIGHTS: [&str; 6] =
+    ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"];
+
+/// Those of them that the scene's lights shine on.
+const LIT: [&str; 2] = ["scatter", "light-field"];
+
+/// Those that scatter, in words.
+pub fn lights() -> String {
+    either(&LIGHTS)
+}
+
+/// One of some, in words.
+fn either(names: &[&str]) -> String {
+    let (last, others) = names.split_last().expect("a name");
+    format!("{} or {last}", others.join(", "))
+}
+
+/// Those that scatter.
+pub fn is_light(kind: &Kind) -> bool {
+    LIGHTS.contains(&kind.name)
+}
+
+/// Whose pictures are of floats, each with a scale of its own.
+pub fn is_scaled(kind: &Kind) -> bool {
+    kind.name == "scatter"
+}
+
+/// Whether the scene's lights shine on it.
+pub fn is_lit(kind: &Kind) -> bool {
+    LIT.contains(&kind.name)
+}
+
+/// Says which flags of light were written out and shine on nothing, or are of ground that reflects nothing.
+pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted], scatters: bool) {
+    let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
+    let groups: [(&[&str], bool, &[&str]); 2] = [
+        (&["sky", "env", "env_rotate", "sun", "key", "light"], has(is_lit), &LIT),
+        (&["albedo", "phong"], has(is_light), &LIGHTS),
+    ];
+    for (names, is_used, by) in groups {
+        let is_own = |(name, _): &&(String, String)| !is_used && names.contains(&name.as_str());
+        for (name, value) in args.quality.written.iter().filter(is_own) {
+            idle::note(name, value, &format!("without {}", either(by)));
+        }
+    }
+    if let (Some(paths), false) = (args.paths, scatters) {
+        idle::note("paths", &paths.to_string(), "with --bounces 0");
+    }
+}
+
+/// Scattered light, three bounces unless others are asked for, here or in a scene file; none where 0 are written out.
+pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
+    let default = Scatter::default();
+    let bounces = if args.quality.has_bounces { quality.bounces.count } else { default.bounces };
+    let (paths, seed) = (args.paths.unwrap_or(256), args.seed.unwrap_or(0));
+    let cutoff = quality.bounces.cutoff;
+    (bounces > 0).then_some(Scatter { bounces, paths, cutoff, seed, ..default })
+}
+
+/// Of lights and views: fewer where there is a picture of each pair.
+pub fn angles(args: &BakeArgs) -> Result<Angles> {
+    let has_pairs = args.what.iter().any(|kind| kind.name == "btf");
+    let [zeniths, azimuths] = args.angles.unwrap_or(if has_pairs { [3, 8] } else { [8, 16] });
+    let angles = Angles { zeniths, azimuths };
+    angles.check().map_err(|error| match error {
+        Error::Setting { found, expected, .. } => Error::setting("--angles", found, expected),
+        other => other,
+    })?;
+    let pairs = angles.count().pow(2);
+    if has_pairs && pairs > MOST_PICTURES {
+        let found = format!("{zeniths}x{azimuths}, {pairs} pictures of btf");
+        return Err(Error::setting("--angles", found, format!("at most {MOST_PICTURES}")));
+    }
+    Ok(angles)
+}
+
+/// Of pairs, each with four planes that have a name.
+const MOST_PICTURES: usize = 1 << 16;
+
+/// Refuses flags that no kind of the list has a use for.
+pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>) -> Result<()> {
+    let looks_along = sources.into_iter().any(|s| !matches!(s, Source::Horizons(_)));
+    if let Some(count) = args.directions.filter(|_| !looks_along) {
+        let expected =
+            "--what ellipse, visible-points or what is light, which alone look along directions";
+        return Err(Error::setting("--directions", count.to_string(), expected));
+    }
+    let has_light = args.what.iter().any(|kind| is_light(kind));
+    let has_angles = args.what.iter().any(|kind| is_light(kind) && kind.name != "scatter");
+    let found = |name: &str, value: String, is_used: bool, by: &str| match is_used {
+        true => Ok(()),
+        false => {
+            Err(Error::setting(name, value, format!("--what {by}, which alone have a use for it")))
+        }
+    };
+    if let Some([outwards, inwards]) = args.curvature {
+        let is_used = args.what.iter().any(|kind| kind.name == "curved-ellipse");
+        found("--curvature", format!("{outwards},{inwards}"), is_used, "curved-ellipse")?;
+    }
+    if let Some([zeniths, azimuths]) = args.angles {
+        found("--angles", format!("{zeniths}x{azimuths}"), has_angles, &either(&LIGHTS[1..]))?;
+    }
+    for (name, value) in [("--paths", args.paths), ("--seed", args.seed)] {
+        if let Some(value) = value {
+            found(name, value.to_string(), has_light, &lights())?;
+        }
+    }
+    // Some kinds share them out among parts.
+    if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
+        let expected =
+            format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());
+        return Err(Error::setting("--paths", paths.to_string(), expected));
+    }
+    Ok(())
+}

@@ -1,0 +1,208 @@
+use glam::DVec3;
+use ridgelight::gpu::Headless;
+use ridgelight::scene::Border;
+use ridgelight::{Error, Result};
+use ridgelight_bake as bake;
+use ridgelight_bake::{Brdf, Facets};
+use serde_json::json;
+
+use super::super::map::{Format, MapFiles};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar};
+
+pub static KIND: Kind = Kind {
+    name: "brdf",
+    about: "what ground that repeats reflects as seen from afar, a table over all pairs of --angles lights and views; \
+            --bounces 0 without scattered light",
+    encodings: &bake::REFLECTED,
+    formats: &[Format::Ktx2, Format::Npy],
+    decoder: include_str!("../../../../../shaders_glsl/decode/brdf.glsl"),
+    begin,
+};
+
+/// Pairs of light and view that the table is asked for beside its own.
+pub const PAIRS: usize = 64;
+
+/// From afar a field is a plane where it repeats.
+pub fn check(asked: &Asked, name: &str) -> Result<()> {
+    if asked.border == Border::Periodic {
+        return Ok(());
+    }
+    let found = format!("{:?} with --what {name}", asked.border).to_lowercase();
+    Err(Error::setting("--border", found, "periodic: from afar, a plane without end"))
+}
+
+/// On this side.
+pub fn bytes(lit: &Lit) -> u64 {
+    let count = lit.angles.count();
+    afar::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
+}
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let (angles, count) = (asked.angles, asked.angles.count());
+    check(asked, KIND.name)?;
+    let value = |name| Value {
+        name,
+        about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
+                light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        unit: "1/sr",
+        range: [0.0, afar::largest(asked)],
+    };
+    let map = Map {
+        planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
+        values: ["red", "green", "blue"].map(value).into(),
+        is_array: false,
+        constants: afar::constants("BRDF", angles),
+        size: Some([count, count]),
+        axes: vec![
+            ("channel", 3),
+            ("theta_i", angles.zeniths),
+            ("phi_i", angles.azimuths),
+            ("theta_o", angles.zeniths),
+            ("phi_o", angles.azimuths),
+        ],
+    };
+    let of = OfLight { plans: afar::plans, bytes, make };
+    Ok(Making { map, source: Source::Light(of) })
+}
+
+/// What three kinds keep each its own way.
+pub struct Table {
+    pub brdf: Brdf,
+    pub facets: Facets,
+    /// Seeded pairs of light and view between the angles, each with the field's own.
+    between: Vec<([DVec3; 2], [f64; 3])>,
+}
+
+/// That of this bake, made when it is asked for first.
+pub fn table<'a>(gpu: &mut Headless, lit: &'a Lit, say: Say) -> Result<&'a Table> {
+    if let Some(known) = lit.table.get() {
+        return Ok(known);
+    }
+    let made = make_table(gpu, lit, say)?;
+    Ok(lit.table.get_or_init(|| made))
+}
+
+/// Every light's table row by row.
+fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
+    let directions = lit.angles.directions()?;
+    let count = directions.count();
+    let facets = afar::facets(gpu, lit, &directions, say)?;
+    facets.check().map_err(|error| match error {
+        Error::Setting { name, found, expected } if name.starts_with("direction ") => {
+            let angles = format!("{}x{}", lit.angles.zeniths, lit.angles.azimuths);
+            Error::setting("--angles", format!("{angles} with {name}, {found}"), expected)
+        }
+        other => other,
+    })?;
+    let mut values = Vec::with_capacity(count * count);
+    let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
+    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
+        say(format!("light {} of {count}", light + 1));
+        let z = directions.vectors()[light].z;
+        values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
+        Ok(())
+    })?;
+    let brdf = Brdf::from_values(directions.vectors().to_vec(), values)?;
+    say(format!("{PAIRS} pairs between"));
+    let pairs = bake::pairs(PAIRS, lit.seed)?;
+    let seen = ridgelight_bake::facets(gpu, lit.scene, facets.times(), &pairs, &lit.limits)?;
+    let mut between = Vec::with_capacity(PAIRS);
+    let own = |light| PAIRS + light..PAIRS + light + 1;
+    afar::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
+        let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
+        between.push(([l, v], seen.seen_from(PAIRS + light, &radiance).map(|m| m / l.z)));
+        Ok(())
+    })?;
+    Ok(Table { brdf, facets, between })
+}
+
+fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
+    let table = table(gpu, lit, say)?;
+    let count = lit.angles.count();
+    let planes = [0, 1, 2].map(|c| -> Vec<f32> {
+        (0..count * count).map(|i| table.brdf.at(i / count, i % count)[c] as f32).collect()
+    });
+    files.take(&planes.each_ref().map(Vec::as_slice))?;
+    tell(lit, table, (&|l, v| table.brdf.between(&lit.angles, l, v), true), files)
+}
+
+/// Between all directions what is kept of a table, and whether that is linear between its angles.
+type Kept<'a> = (&'a dyn Fn(DVec3, DVec3) -> [f64; 3], bool);
+
+/// As [`tell`], and what of the table itself is left by what is kept of it, light by light towards all views: weighted by what a
+/// plane receives and sends.
+pub fn tell_in_short(
+    lit: &Lit,
+    table: &Table,
+    rows: impl Iterator<Item = Vec<[f64; 3]>>,
+    kept: Kept,
+    files: &mut MapFiles,
+) -> Result<()> {
+    let (mut apart, mut all) = (0.0, 0.0);
+    let weights = lit.angles.projected_sr();
+    for (l, row) in rows.enumerate() {
+        for (v, found) in row.into_iter().enumerate() {
+            for (own, found) in table.brdf.at(l, v).into_iter().zip(found) {
+                apart += weights[l] * weights[v] * (own - found).powi(2);
+                all += weights[l] * weights[v] * own * own;
+            }
+        }
+    }
+    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
+    tell(lit, table, kept, files)
+}
+
+/// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.
+pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFiles) -> Result<()> {
+    let weights = lit.angles.projected_sr();
+    let reflected = (0..lit.angles.count()).flat_map(|light| table.brdf.reflected(light, &weights));
+    let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+    let is_coarse = afar::is_coarse(lit, &table.facets);
+    let is = if is_coarse {
+        "of a light's irradiance, over all lights and colours, summed over --angles: the sharpest lobe is narrower than they are \
+         apart, and sums say nothing of what it reflects"
+    } else {
+        "of a light's irradiance, over all lights and colours, summed over --angles"
+    };
+    files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
+    files.tell("unreciprocal", table.brdf.unreciprocal().into());
+    if table.facets.has_lobes() {
+        let gathered = (0..lit.angles.count()).flat_map(|view| table.brdf.gathered(view, &weights));
+        let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
+        let is = if is_coarse {
+            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: the sharpest \
+             lobe is narrower than they are apart, and sums may be many times what the surface reflects"
+        } else {
+            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: but for \
+             that and worst_closure at most what the surface reflects; of one light, reflected, more than all may leave at \
+             grazing angles, as lobes have no cosine"
+        };
+        files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
+        if most > 1.0 && !is_coarse {
+            files.remark(format!(
+                "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
+                 light, and are not the same with both exchanged ({:.3} unreciprocal)",
+                table.brdf.unreciprocal()
+            ));
+        }
+    }
+    let (mut apart, mut all) = (0.0, 0.0);
+    for ([l, v], own) in &table.between {
+        for (own, found) in own.iter().zip(kept(*l, *v)) {
+            apart += (own - found).powi(2);
+            all += own * own;
+        }
+    }
+    files.tell(
+        "between",
+        json!({
+            "residual": (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt(), "pairs": PAIRS, "seed": lit.seed,
+            "is": format!(
+                "rms of what is kept, {}, less the field's own, over that: seeded pairs of light and view, each even in what a \
+                 level plane receives",
+                if is_linear { "linear between its angles" } else { "harmonics of all directions" }
+            ),
+        }),
+    );
+    afar::tell(files, lit, &table.facets, afar::walked(lit)?.as_ref(), is_linear)
+}

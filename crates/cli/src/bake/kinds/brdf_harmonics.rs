@@ -1,0 +1,60 @@
+use ridgelight::gpu::Headless;
+use ridgelight::{Error, Result};
+use ridgelight_bake as bake;
+use ridgelight_bake::BrdfHarmonics;
+
+use super::super::map::{Format, MapFiles};
+use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, brdf};
+
+pub static KIND: Kind = Kind {
+    name: "brdf-harmonics",
+    about: "the same, smooth between all directions: weights of the products of harmonics of --sh-order of light and view; what \
+            they leave of it is told",
+    encodings: &bake::HARMONIC_WEIGHTS,
+    formats: &[Format::Ktx2, Format::Npy],
+    decoder: include_str!("../../../../../shaders_glsl/decode/brdf_harmonics.glsl"),
+    begin,
+};
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let (angles, order) = (asked.angles, asked.quality.sh_order as usize);
+    brdf::check(asked, KIND.name)?;
+    let terms = order * order;
+    if angles.count() < terms {
+        let found = format!("{}x{} with --sh-order {order}", angles.zeniths, angles.azimuths);
+        return Err(Error::setting("--angles", found, format!("{terms} angles or more")));
+    }
+    let largest = afar::largest(asked);
+    let value = |name| Value {
+        name,
+        about: "the table is the sum over texels (j, i) of their values times Y_i of the light and Y_j of the view; real, \
+                orthonormal, x east, y north, z up, no sign of Condon and Shortley, index l(l+1) + m; above horizontal alone",
+        unit: "1/sr",
+        range: [-largest, largest],
+    };
+    let map = Map {
+        planes: ["R", "G", "B"].map(|c| format!("brdf_harmonics.{c}")).into(),
+        values: ["red", "green", "blue"].map(value).into(),
+        constants: vec![
+            format!("const int BRDF_ORDER = {order};"),
+            format!("const int BRDF_TERMS = {terms};"),
+        ],
+        size: Some([terms, terms]),
+        axes: vec![("channel", 3), ("light", terms), ("view", terms)],
+        ..Map::default()
+    };
+    let of = OfLight { plans: afar::plans, bytes: brdf::bytes, make };
+    Ok(Making { map, source: Source::Light(of) })
+}
+
+fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
+    let table = brdf::table(gpu, lit, say)?;
+    say("harmonics".into());
+    let (order, has_lobes) = (lit.quality.sh_order as usize, table.facets.has_lobes());
+    let harmonics = BrdfHarmonics::of(&table.brdf, lit.angles, order, has_lobes)?;
+    let texels = harmonics.coefficients();
+    let planes = [0, 1, 2].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() });
+    files.take(&planes.each_ref().map(Vec::as_slice))?;
+    let rows = harmonics.rows(table.brdf.directions());
+    brdf::tell_in_short(lit, table, rows, (&|l, v| harmonics.at(l, v), false), files)
+}

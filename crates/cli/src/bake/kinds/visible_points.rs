@@ -1,0 +1,63 @@
+use ridgelight::scene::{Directions, VisiblePoint, VisiblePoints};
+use ridgelight::{Result, plan};
+use ridgelight_bake as bake;
+
+use super::super::map::{Format, MapFiles};
+use super::{Asked, Kind, Looked, Making, Map, OfDirections, Source, Value};
+
+pub static KIND: Kind = Kind {
+    name: "visible-points",
+    about: "row and column of the sample that each sample sees in each of --directions: a layer each",
+    encodings: &bake::POINTS,
+    formats: &[Format::Ktx2],
+    decoder: include_str!("../../../../../shaders_glsl/decode/visible_points.glsl"),
+    begin,
+};
+
+fn begin(asked: &Asked) -> Result<Making> {
+    let count = asked.directions.count();
+    let value = |name| Value {
+        name,
+        about: "of the sample nearest to what is met, from the north-west; -1 where the sky is seen, -2 the ground beyond; \
+                layer k is of directions[k] of this sheet",
+        unit: "samples",
+        range: [-2.0, VisiblePoints::LARGEST_SIDE as f64 - 1.0],
+    };
+    let name = |k: usize| ["row", "column"].map(|part| format!("visible_points.{k:04}.{part}"));
+    let map = Map {
+        planes: (0..count).flat_map(name).collect(),
+        values: vec![value("row"), value("column")],
+        is_array: true,
+        constants: Vec::new(),
+        ..Map::default()
+    };
+    // Words, and the points made of them.
+    let bytes = |directions: &Directions| 8 * directions.count() as u64;
+    let plan: super::PlanOf = |field, border, directions, _, limits| {
+        plan::visible_points(field, border, directions, limits)
+    };
+    let of = OfDirections { plan, bytes, take };
+    Ok(Making { map, source: Source::Directions(of) })
+}
+
+fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
+    let Looked { field, border, directions, outputs, .. } = looked;
+    let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
+    let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
+    let (samples, cols) = (field.rows() * field.cols(), field.cols());
+    // The net that a light lies in, of three directions: what `visible_share` of the decoder is told. Few directions span none.
+    if let Ok(net) = directions.triangles() {
+        files.tell("triangles", serde_json::json!(net.corners()));
+    }
+    for direction in 0..directions.count() {
+        let seen = |sample| match points.seen(direction, sample) {
+            VisiblePoint::Sample(at) => [at / cols, at % cols].map(|n| n as f32),
+            VisiblePoint::Sky => [-1.0; 2],
+            VisiblePoint::Ground => [-2.0; 2],
+        };
+        let [rows, columns] = [0, 1]
+            .map(|part| -> Vec<f32> { (0..samples).map(|sample| seen(sample)[part]).collect() });
+        files.take(&[&rows, &columns])?;
+    }
+    Ok(())
+}

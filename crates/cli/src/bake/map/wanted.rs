@@ -1,0 +1,109 @@
+//! What is written of a kind: files, what they take, and texts beside.
+
+use clap::ValueEnum;
+use ridgelight_bake::Encoding;
+use ridgelight_io::TexelFormat;
+
+use crate::bake::asked;
+use crate::bake::kinds::{Kind, Map};
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Exr,
+    Png,
+    Npy,
+    Ktx2,
+}
+
+impl Format {
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Exr => "exr",
+            Format::Png => "png",
+            Format::Npy => "npy",
+            Format::Ktx2 => "ktx2",
+        }
+    }
+
+    /// Whether it can hold what the encoding makes of a kind.
+    pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
+        let is_picture = encoding.component.is_normalised() && encoding.components < 4;
+        self != Format::Png || is_picture || asked::is_scaled(kind)
+    }
+}
+
+/// What a kind's files are called, before the dot.
+pub fn stem(kind: &Kind) -> String {
+    kind.name.replace('-', "_")
+}
+
+/// What is written of a kind, and how.
+pub struct Wanted {
+    pub kind: &'static Kind,
+    pub encoding: &'static Encoding,
+    pub formats: Vec<Format>,
+}
+
+impl Wanted {
+    pub fn layers(&self, map: &Map) -> usize {
+        map.planes.len().div_ceil(self.encoding.values)
+    }
+
+    pub(super) fn texels(&self) -> TexelFormat {
+        // Three components have a fourth beside them, as no device must sample textures of three.
+        let count = self.encoding.components;
+        TexelFormat {
+            component: self.encoding.component,
+            count: if count == 3 { 4 } else { count },
+        }
+    }
+
+    /// Of a layer's picture.
+    pub(super) fn picture(&self, map: &Map, layer: usize) -> String {
+        let stem = stem(self.kind);
+        if map.is_array { format!("{stem}_{layer:04}.png") } else { format!("{stem}.png") }
+    }
+
+    /// Every file, and the most bytes that it may take.
+    pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
+        let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
+        let samples = map.texels(samples) as u64;
+        let mut all = Vec::new();
+        for format in &self.formats {
+            let name = format!("{stem}.{}", format.name());
+            let texels = self.texels().bytes() as u64;
+            match format {
+                // ZIP adds little to what it cannot make smaller.
+                Format::Exr => all.push((name, 4 * planes * samples / 100 * 101 + 65_536)),
+                Format::Npy => all.push((name, 4 * planes * samples + 256)),
+                Format::Ktx2 => {
+                    all.push((name, texels * self.layers(map) as u64 * samples + 1024));
+                }
+                Format::Png => {
+                    let most = (texels + 2) * samples / 100 * 101 + 65_536;
+                    all.extend((0..self.layers(map)).map(|k| (self.picture(map, k), most)));
+                }
+            }
+        }
+        all.push((format!("{stem}.glsl"), self.decoder(map).len() as u64));
+        all
+    }
+
+    /// Bytes that its files hold until they are written: the others a layer, on its way.
+    pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
+        let samples = map.texels(samples) as u64;
+        let of = |format: &Format| match format {
+            Format::Exr => 4 * map.planes.len() as u64 * samples,
+            // Its samples, and what is packed of them.
+            Format::Png => 2 * (self.texels().bytes() + 2) as u64 * samples,
+            Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
+        };
+        self.formats.iter().map(of).sum()
+    }
+
+    /// GLSL: constants, then what reads the map by them.
+    pub fn decoder(&self, map: &Map) -> String {
+        let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
+        constants + self.kind.decoder
+    }
+}

@@ -1,0 +1,242 @@
+//! GPU times by timestamps: verified first, then each pass alone and all of them in flow.
+
+mod forms;
+mod rows;
+mod sizes;
+pub mod verify;
+
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Frame, Headless, Timing};
+use ridgelight::plan::{self, Pass, Picture, Plan};
+use ridgelight::scene::fractal;
+use ridgelight::scene::{Quality, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+
+use crate::args::BenchArgs;
+use crate::idle;
+use crate::setup::{self, Outcome};
+use rows::{Row, sums};
+use verify::Verifier;
+
+/// Rows that would take longer have fewer samples, which they say; at least [`FEWEST`].
+const ROW_TIME: Duration = Duration::from_secs(10);
+const FEWEST: usize = 3;
+/// Largest side of a fractal field: 8 GiB of heights on the way.
+const LARGEST_SIZE: usize = 32_768;
+
+pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    for (flag, path) in [("--json", &args.global.json), ("--trace", &args.trace)] {
+        if let Some(path) = path {
+            setup::check_output(flag, path, &["json"])?;
+        }
+    }
+    if !(1..=100_000).contains(&args.samples) {
+        let found = args.samples.to_string();
+        return Err(Error::setting("--samples", found, "a whole number from 1 to 100000"));
+    }
+    for size in args.sizes.iter().chain(args.sizes.is_empty().then_some(&args.size)) {
+        if !(1..=LARGEST_SIZE).contains(size) {
+            let name = if args.sizes.is_empty() { "--size" } else { "--sizes" };
+            let expected = format!("a whole number from 1 to {LARGEST_SIZE}");
+            return Err(Error::setting(name, size.to_string(), expected));
+        }
+    }
+    let quality = setup::quality(&args.quality)?;
+    let field = match &args.input {
+        Some(path) => setup::field(path, &args.surface.field, &args.global)?,
+        None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
+    };
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    check_lobes(&scene, &quality, args)?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
+    // Verifying takes long.
+    if args.sizes.is_empty() {
+        check_names(&args.passes, &plan, args.forms)?;
+    }
+    idle(args, &plan);
+    let (device, driver) = (gpu.report().name.clone(), gpu.report().driver.clone());
+    let bar = crate::terminal::progress(args.global.quiet, "verifying against the oracle");
+    let verifier = Verifier::new(&scene)?;
+    let found = verifier.check(&mut gpu, &quality, &limits)?;
+    let quiet = args.global.quiet;
+    if !quiet {
+        crate::say!("{device}, {driver}");
+        crate::say!("verified: {found}");
+    }
+    let mut all = Vec::new();
+    if !args.sizes.is_empty() {
+        let counts =
+            if args.azimuth_list.is_empty() { &[quality.azimuths][..] } else { &args.azimuth_list };
+        for &azimuths in counts {
+            verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
+        }
+        let lists = (&args.sizes[..], counts);
+        let table = sizes::run(&mut gpu, &scene, &quality, &limits, lists, args.samples, &bar)?;
+        bar.finish_and_clear();
+        if !quiet {
+            sizes::print(&table);
+        }
+        all.extend(table);
+    } else {
+        let contents = plan::picture_inputs(&scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let mut frame = gpu.frame(plan, &contents)?;
+        let timed = time(&gpu, &mut frame, args, quality.azimuths, &bar);
+        let plan = frame.plan().clone();
+        gpu.end(frame);
+        let (table, last) = timed?;
+        if let Some(path) = &args.trace {
+            files::write_json(path, &rows::trace(&device, &driver, &plan, &last))?;
+        }
+        if !quiet {
+            bar.suspend(|| {
+                crate::say!("{}", Row::head());
+                table.iter().for_each(|row| crate::say!("{}", row.text()));
+            });
+        }
+        all.extend(table);
+    }
+    if args.forms {
+        let sky = ridgelight::scene::Lights { sky: Some([1.0; 3]), ..Default::default() };
+        let surface = ridgelight::scene::Surface { phong: None, ..scene.surface };
+        let scene = Scene { lights: sky, surface, ..scene };
+        let verifier = Verifier::new(&scene)?;
+        let wanted = (args.samples, &args.passes[..]);
+        let table = forms::run(&mut gpu, &scene, &quality, &limits, &verifier, wanted, &bar)?;
+        bar.finish_and_clear();
+        if !quiet {
+            forms::print(&table);
+        }
+        all.extend(table.into_iter().flatten());
+    }
+    bar.finish_and_clear();
+    if let Some(path) = &args.global.json {
+        files::write_json(path, &rows::file(&device, &driver, &all))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Refuses lobes where nothing here says what is right.
+fn check_lobes(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<()> {
+    if scene.surface.phong.is_none() {
+        return Ok(());
+    }
+    let (with, expected) = match () {
+        () if quality.bounces.count > 0 => {
+            ("--bounces", "none: what lobes throw on, `reference` and `compare` judge")
+        }
+        () if !args.sizes.is_empty() => ("--sizes", "none: its errors are of diffuse light"),
+        () => return Ok(()),
+    };
+    Err(Error::setting(format!("--phong with bench {with}"), "a lobe", expected))
+}
+
+/// Says what was written out and changes nothing; of fields, too.
+fn idle(args: &BenchArgs, plan: &Plan) {
+    let (quiet, written) = (args.global.quiet, &args.quality.written);
+    idle::say(quiet, written, &plan.settings);
+    let reason = match (&args.input, args.sizes.as_slice()) {
+        (None, []) => return,
+        (Some(_), _) => "with an INPUT",
+        (None, _) => "with --sizes",
+    };
+    if let Some((setting, value)) = written.iter().find(|(s, _)| s == "size").filter(|_| !quiet) {
+        idle::note(setting, value, reason);
+    }
+}
+
+/// Whether a label is asked for: by its first word, the pass, or by all of it.
+fn named(label: &str, wanted: &str) -> bool {
+    label == wanted || label.split(' ').next() == Some(wanted)
+}
+
+fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
+    let mut known: Vec<&str> = plan.passes.iter().map(Pass::name).collect();
+    known.dedup();
+    if forms {
+        known.extend([
+            "horizon_sweep",
+            "sky_shade",
+            "surface_sweep",
+            "pyramid_march",
+            "horizon_march",
+        ]);
+    }
+    known.sort_unstable();
+    known.dedup();
+    match wanted
+        .iter()
+        .find(|w| !known.contains(&w.as_str()) && !plan.passes.iter().any(|p| named(&p.label(), w)))
+    {
+        Some(none) => Err(Error::setting("--passes", none.as_str(), known.join(", "))),
+        None => Ok(()),
+    }
+}
+
+/// Whether a row has had its time.
+fn enough(begun: Instant, samples: usize) -> bool {
+    samples >= FEWEST && begun.elapsed() > ROW_TIME
+}
+
+/// Whole frames, after one to warm up.
+fn flow(gpu: &Headless, frame: &mut Frame, samples: usize) -> Result<Vec<Vec<Timing>>> {
+    gpu.draw(frame)?;
+    let begun = Instant::now();
+    let mut runs = Vec::new();
+    while runs.len() < samples && !enough(begun, runs.len()) {
+        runs.push(gpu.draw(frame)?);
+    }
+    Ok(runs)
+}
+
+/// Rows of a frame in both modes, and its last run.
+fn time(
+    gpu: &Headless,
+    frame: &mut Frame,
+    args: &BenchArgs,
+    azimuths: u32,
+    bar: &indicatif::ProgressBar,
+) -> Result<(Vec<Row>, Vec<Timing>)> {
+    let plan = frame.plan().clone();
+    let wanted: Vec<usize> = (0..plan.passes.len())
+        .filter(|i| {
+            let label = plan.passes[*i].label();
+            args.passes.is_empty() || args.passes.iter().any(|w| named(&label, w))
+        })
+        .collect();
+    let every: Vec<&Pass> = plan.passes.iter().collect();
+    let mut rows = Vec::new();
+    bar.set_message("frames in flow");
+    let runs = flow(gpu, frame, args.samples)?;
+    let row = |pass: String, mode, passes: &[&Pass], runs: usize, times: &[f64]| {
+        Row::of(pass, mode, &plan, passes, azimuths, (runs, times))
+    };
+    for &i in &wanted {
+        let pass = &plan.passes[i];
+        let times = sums(&runs, |p| p == i);
+        rows.push(row(pass.label(), "in_flow", &[pass], runs.len(), &times));
+    }
+    rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
+    let (mut totals, mut fewest) = (vec![0.0; args.samples], args.samples);
+    for &i in &wanted {
+        let pass = &plan.passes[i];
+        bar.set_message(format!("{} alone", pass.label()));
+        let mut alone = Vec::new();
+        let begun = Instant::now();
+        gpu.draw_passes(frame, &[i])?;
+        while alone.len() < args.samples && !enough(begun, alone.len()) {
+            alone.push(gpu.draw_passes(frame, &[i])?);
+        }
+        let times = sums(&alone, |_| true);
+        fewest = fewest.min(times.len());
+        totals.iter_mut().zip(&times).for_each(|(total, ns)| *total += ns);
+        rows.push(row(pass.label(), "isolated", &[pass], alone.len(), &times));
+    }
+    if wanted.len() == plan.passes.len() {
+        rows.push(row("total".into(), "isolated", &every, fewest, &totals[..fewest]));
+    }
+    Ok((rows, runs.into_iter().next_back().unwrap_or_default()))
+}

@@ -1,0 +1,220 @@
+//! Every form of the sweep beside a plain scalar sweep on the processor, in turn.
+
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+use indicatif::ProgressBar;
+use ridgelight::Result;
+use ridgelight::gpu::{Frame, Headless};
+use ridgelight::plan::{self, Limits, Pass, Picture};
+use ridgelight::scene::{Fuse, Hull, Levels, Lines, Method, Precision, Quality, Scene};
+use ridgelight_cpu::scalar_sweep::ScalarSweep;
+use ridgelight_trade::statistics::Summary;
+
+use super::rows::{Row, figure, sums};
+use super::verify::Verifier;
+use super::{enough, named};
+
+/// Azimuths that the scalar sweep runs between two runs of a form.
+const SCALAR_AZIMUTHS: u32 = 8;
+/// Slow forms run some azimuths only, from a number of the circle on; their time is in proportion.
+/// Brute force costs alike in each.
+const BRUTE_AZIMUTHS: u32 = 2;
+/// Exact lines cost by their grid vectors, which repeat from octant to octant.
+const EXACT_CIRCLE_SHARE: u32 = 8;
+/// Runs of forms that take seconds.
+const SLOW_SAMPLES: usize = 3;
+
+struct Form {
+    /// The rows' pass.
+    name: String,
+    quality: Quality,
+    /// Whether the shading is timed; else what comes before it.
+    shades: bool,
+    slow: bool,
+}
+
+fn forms(quality: &Quality) -> Vec<Form> {
+    let base = Quality {
+        method: Method::Sweep,
+        lines: Lines::Cell,
+        precision: Precision::F32,
+        ..*quality
+    };
+    let form = |name: String, quality: Quality, shades: bool, slow: bool| Form {
+        name,
+        quality,
+        shades,
+        slow,
+    };
+    let mut all = Vec::new();
+    for (hull, place) in
+        [(Hull::Private, "private"), (Hull::Shared, "shared"), (Hull::List, "list")]
+    {
+        for precision in [Precision::F32, Precision::Packed] {
+            let name = format!("horizon_sweep {place} {}", precision.name());
+            all.push(form(name, Quality { hull, precision, ..base }, false, false));
+        }
+    }
+    for lines in
+        [Lines::QuarterCell, Lines::HalfCell, Lines::Cell, Lines::TwoCells, Lines::FourCells]
+    {
+        let name = format!("horizon_sweep lines {}", lines.name());
+        all.push(form(name, Quality { lines, ..base }, false, false));
+    }
+    use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
+    for fuse in [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround] {
+        let name = format!("sky_shade {}", fuse.name());
+        all.push(form(name, Quality { fuse, ..base }, true, false));
+    }
+    all.push(form(
+        "surface_sweep exact".into(),
+        Quality { lines: Lines::Exact, ..base },
+        false,
+        true,
+    ));
+    for levels in [Levels::Stack, Levels::Pyramid] {
+        let name = format!("pyramid_march {}", levels.name());
+        let method = Method::Pyramid;
+        all.push(form(name, Quality { method, levels, ..base }, false, false));
+    }
+    all.push(form(
+        "horizon_march brute".into(),
+        Quality { method: Method::Brute, ..base },
+        false,
+        true,
+    ));
+    all
+}
+
+/// Times all forms; rows of each and of the scalar sweep beside it.
+pub fn run(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
+    verifier: &Verifier,
+    (samples, only): (usize, &[String]),
+    bar: &ProgressBar,
+) -> Result<Vec<[Row; 2]>> {
+    let mut all = Vec::new();
+    let mut scalar = ScalarSweep::new(&scene.field);
+    for form in forms(quality) {
+        if !only.is_empty() && !only.iter().any(|wanted| named(&form.name, wanted)) {
+            continue;
+        }
+        bar.set_message(format!("{}: verifying", form.name));
+        verifier.check(gpu, &form.quality, limits)?;
+        let all_azimuths = form.quality.azimuths;
+        let (plan, azimuths) = if form.slow {
+            let some = match form.quality.method {
+                Method::Brute => (all_azimuths / 16, BRUTE_AZIMUTHS),
+                _ => (0, all_azimuths.div_ceil(EXACT_CIRCLE_SHARE)),
+            };
+            let border = scene.surface.border;
+            (plan::horizons(&scene.field, border, &form.quality, limits, some, false)?, some.1)
+        } else {
+            let whole = plan::picture(scene, &form.quality, limits, Picture::default())?;
+            (whole, all_azimuths)
+        };
+        let shade = |p: &Pass| p.name() == "sky_shade";
+        let after = |p: &Pass| ["sky_shade", "sweep_fuse", "light_resolve"].contains(&p.name());
+        let timed: Vec<usize> = (0..plan.passes.len())
+            .filter(|i| {
+                let pass = &plan.passes[*i];
+                if form.shades { shade(pass) } else { !after(pass) }
+            })
+            .collect();
+        let contents = plan::picture_inputs(scene);
+        let inputs = if form.slow { &contents[..1] } else { &contents[..] };
+        let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let mut frame = gpu.frame(plan, &inputs)?;
+        let count = if form.slow { samples.min(SLOW_SAMPLES) } else { samples };
+        let rows = in_turn(gpu, &mut frame, &mut scalar, &timed, (azimuths, count), &form, bar);
+        gpu.end(frame);
+        all.push(rows?);
+    }
+    Ok(all)
+}
+
+/// A form, the scalar sweep, the form again, …: both meet the same machine.
+fn in_turn(
+    gpu: &Headless,
+    frame: &mut Frame,
+    scalar: &mut ScalarSweep<'_>,
+    timed: &[usize],
+    (azimuths, samples): (u32, usize),
+    form: &Form,
+    bar: &ProgressBar,
+) -> Result<[Row; 2]> {
+    let (mut runs, mut scalar_ns) = (Vec::new(), Vec::new());
+    // All passes once: what the timed ones read is there, and pipelines are warm.
+    gpu.draw(frame)?;
+    scalar.sweep(0.0);
+    let begun = Instant::now();
+    for sample in 0..samples {
+        bar.set_message(format!("{}: {} of {samples}", form.name, sample + 1));
+        runs.push(gpu.draw_passes(frame, timed)?);
+        let start = Instant::now();
+        for k in 0..SCALAR_AZIMUTHS {
+            scalar.sweep((f64::from(k) + 0.37) * TAU / f64::from(SCALAR_AZIMUTHS));
+        }
+        scalar_ns.push(start.elapsed().as_secs_f64() * 1e9);
+        if enough(begun, sample + 1) {
+            break;
+        }
+    }
+    let plan = frame.plan();
+    let passes: Vec<&Pass> = timed.iter().map(|i| &plan.passes[*i]).collect();
+    let mut ours = Row::of(
+        &form.name,
+        "isolated",
+        plan,
+        &passes,
+        azimuths,
+        (runs.len(), &sums(&runs, |_| true)),
+    );
+    ours.settings.push(("scalar_beside".into(), format!("scalar_sweep beside {}", form.name)));
+    let rival = Row {
+        pass: format!("scalar_sweep beside {}", form.name),
+        mode: "isolated",
+        size: plan.size,
+        azimuths: SCALAR_AZIMUTHS,
+        settings: vec![("threads".into(), scalar.threads().to_string())],
+        samples: scalar_ns.len(),
+        times: Summary::of(&scalar_ns),
+        bytes: 0,
+        work: scalar.samples() * u64::from(SCALAR_AZIMUTHS),
+    };
+    Ok([ours, rival])
+}
+
+pub fn print(rows: &[[Row; 2]]) {
+    crate::say!(
+        "\n{:<34} {:>8} {:>11} {:>13} {:>9} {:>9} {:>9}",
+        "form, in turn with scalar_sweep",
+        "azimuths",
+        "ms/azimuth",
+        "ms/(az·2^20)",
+        "scalar's",
+        "× scalar",
+        "× of mins"
+    );
+    for [ours, rival] in rows {
+        let mega = [ours.ms_per_azimuth_and_mega(), rival.ms_per_azimuth_and_mega()];
+        let least = |row: &Row| Some(row.times?.min / f64::from(row.azimuths));
+        crate::say!(
+            "{:<34} {:>8} {:>11} {:>13} {:>9} {:>9} {:>9}",
+            ours.pass,
+            ours.azimuths,
+            figure(ours.ms_per_azimuth(), 3),
+            figure(mega[0], 3),
+            figure(mega[1], 3),
+            figure(mega[0].zip(mega[1]).map(|(a, b)| a / b), 3),
+            figure(least(ours).zip(least(rival)).map(|(a, b)| a / b), 3)
+        );
+    }
+    crate::say!(
+        "(× scalar: of medians; where it differs much from × of mins, the machine was not quiet)"
+    );
+}

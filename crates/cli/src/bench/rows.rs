@@ -1,0 +1,239 @@
+//! Samples of times to rows, for people and for machines.
+
+use ridgelight::gpu::Timing;
+use ridgelight::plan::{Pass, Plan};
+use ridgelight_trade::statistics::Summary;
+use serde_json::{Value, json};
+
+use crate::setup;
+
+/// One pass in one mode.
+pub struct Row {
+    pub pass: String,
+    pub mode: &'static str,
+    pub size: [u32; 2],
+    pub azimuths: u32,
+    pub settings: Vec<(String, String)>,
+    /// How many times it was run.
+    pub samples: usize,
+    /// Nanoseconds; none where the device has no timestamps.
+    pub times: Option<Summary>,
+    pub bytes: u64,
+    /// Samples (or texels) worked on, in one run.
+    pub work: u64,
+}
+
+impl Row {
+    /// A row of these passes together, run `times_ns.len()` times.
+    pub fn of(
+        pass: impl Into<String>,
+        mode: &'static str,
+        plan: &Plan,
+        passes: &[&Pass],
+        azimuths: u32,
+        (runs, times_ns): (usize, &[f64]),
+    ) -> Self {
+        Self {
+            pass: pass.into(),
+            mode,
+            size: plan.size,
+            azimuths,
+            settings: plan.settings.clone(),
+            samples: runs,
+            times: Summary::of(times_ns),
+            bytes: passes.iter().map(|p| p.bytes).sum(),
+            work: passes.iter().map(|p| p.samples).sum(),
+        }
+    }
+
+    fn rate(&self, amount: u64) -> Option<f64> {
+        let median = self.times?.median;
+        (amount > 0 && median > 0.0).then(|| amount as f64 / (median * 1e-9))
+    }
+
+    /// Milliseconds an azimuth.
+    pub fn ms_per_azimuth(&self) -> Option<f64> {
+        Some(self.times?.median * 1e-6 / f64::from(self.azimuths.max(1)))
+    }
+
+    /// Milliseconds an azimuth and 2^20 samples of the field.
+    pub fn ms_per_azimuth_and_mega(&self) -> Option<f64> {
+        let mega = f64::from(self.size[0]) * f64::from(self.size[1]) / f64::from(1 << 20);
+        Some(self.ms_per_azimuth()? / mega)
+    }
+
+    pub fn json(&self) -> Value {
+        json!({
+            "pass": self.pass, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
+            "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "samples": self.samples,
+            "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
+            "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
+            "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),
+            "samples_per_s": self.rate(self.work),
+        })
+    }
+
+    pub fn head() -> String {
+        format!(
+            "{:<34} {:<9} {:>10} {:>10} {:>10} {:>10} {:>7} {:>11}",
+            "pass", "mode", "median ms", "p10", "p90", "min", "GB/s", "Gsamples/s"
+        )
+    }
+
+    pub fn text(&self) -> String {
+        let ms = |ns: fn(&Summary) -> f64| figure(self.times.map(|t| ns(&t) * 1e-6), 3);
+        format!(
+            "{:<34} {:<9} {:>10} {:>10} {:>10} {:>10} {:>7} {:>11}",
+            self.pass,
+            self.mode,
+            ms(|t| t.median),
+            ms(|t| t.p10),
+            ms(|t| t.p90),
+            ms(|t| t.min),
+            if self.bytes == 0 {
+                "-".into()
+            } else {
+                figure(self.rate(self.bytes).map(|r| r * 1e-9), 2)
+            },
+            if self.work == 0 {
+                "-".into()
+            } else {
+                figure(self.rate(self.work).map(|r| r * 1e-9), 3)
+            },
+        )
+    }
+}
+
+/// What is not known is not 0.
+pub fn figure(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "unavailable".to_owned(), |v| format!("{v:.digits$}"))
+}
+
+/// Sums of each run over the passes that `wanted` picks by position; nothing where a run has no times.
+pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
+    if runs.iter().any(Vec::is_empty) {
+        return Vec::new();
+    }
+    let sum = |run: &Vec<Timing>| {
+        run.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, t)| t.ns).sum()
+    };
+    runs.iter().map(sum).collect()
+}
+
+/// The whole file: DESIGN §7.
+pub fn file(device: &str, driver: &str, rows: &[Row]) -> Value {
+    json!({
+        "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"),
+        "rows": rows.iter().map(Row::json).collect::<Vec<_>>(),
+    })
+}
+
+/// A frame as Chrome's trace events, which Perfetto reads too: times in microseconds, one after the
+/// other as the device runs them. Nothing but names where the device has no timestamps.
+pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value {
+    let name = |kind: &str, name: &str| json!({ "name": kind, "ph": "M", "pid": 1, "tid": 1, "args": { "name": name } });
+    let mut events = vec![name("process_name", device), name("thread_name", "frame, in flow")];
+    let mut start_us = 0.0;
+    for (timing, pass) in frame.iter().zip(&plan.passes) {
+        let us = timing.ns * 1e-3;
+        events.push(json!({
+            "name": timing.label, "cat": "pass", "ph": "X", "ts": start_us, "dur": us, "pid": 1, "tid": 1,
+            "args": { "why": pass.why, "bytes": pass.bytes, "samples": pass.samples, "groups": pass.groups },
+        }));
+        start_us += us;
+    }
+    json!({
+        "traceEvents": events, "displayTimeUnit": "ms",
+        "otherData": { "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION") },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::plan::{self, Limits, Picture};
+    use ridgelight::scene::{Lights, Quality, Scene, Surface};
+
+    fn plan() -> Plan {
+        let scene = Scene {
+            field: ridgelight::scene::fractal(32, 1).unwrap(),
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+        };
+        plan::picture(&scene, &Quality::default(), &Limits::lavapipe(), Picture::default()).unwrap()
+    }
+
+    /// Runs of 1..=5 ms: median 3, p10 1.4, p90 4.6; 6 MB in 3 ms are 2 GB/s.
+    #[test]
+    fn samples_become_a_row_as_the_design_names_it() {
+        let times: Vec<f64> = (1..=5).map(|ms| f64::from(ms) * 1e6).collect();
+        let plan = plan();
+        let mut row = Row::of("total", "in_flow", &plan, &[], 64, (5, &times));
+        (row.bytes, row.work) = (6_000_000, 3_000_000);
+        let json = row.json();
+        let keys = [
+            "pass",
+            "mode",
+            "cols",
+            "rows",
+            "azimuths",
+            "settings",
+            "samples",
+            "min_ns",
+            "median_ns",
+            "p10_ns",
+            "p90_ns",
+            "bytes",
+            "gb_per_s",
+            "samples_per_s",
+        ];
+        assert_eq!(json.as_object().unwrap().len(), keys.len());
+        assert!(keys.iter().all(|k| !json[k].is_null()), "{json}");
+        let near = |key: &str, x: f64| {
+            let found = json[key].as_f64().unwrap();
+            assert!((found / x - 1.0).abs() < 1e-12, "{key}: {found}, expected {x}");
+        };
+        near("median_ns", 3e6);
+        near("p10_ns", 1.4e6);
+        near("p90_ns", 4.6e6);
+        near("gb_per_s", 2.0);
+        near("samples_per_s", 1e9);
+        let per = row.ms_per_azimuth_and_mega().unwrap();
+        assert!((per - 3.0 / 64.0 * 1024.0).abs() < 1e-9, "32² is a 1024th of 2^20: {per}");
+        let whole = file("d", "v", &[row]);
+        assert_eq!(whole["rows"][0]["pass"], "total");
+        assert_eq!([&whole["device"], &whole["driver"]], ["d", "v"]);
+    }
+
+    #[test]
+    fn no_timestamps_are_unavailable_and_never_zero() {
+        let runs = vec![Vec::new(), Vec::new()];
+        let none = sums(&runs, |_| true);
+        let plan = plan();
+        let row = Row::of("total", "in_flow", &plan, &[&plan.passes[0]], 4, (2, &none));
+        assert!(row.text().contains("unavailable") && !row.text().contains("0.000"));
+        assert!(row.json()["median_ns"].is_null() && row.json()["gb_per_s"].is_null());
+    }
+
+    /// Complete events follow each other, and the text is JSON again.
+    #[test]
+    fn traces_are_trace_events() {
+        let plan = plan();
+        let frame: Vec<Timing> =
+            plan.passes.iter().map(|p| Timing { label: p.label(), ns: 2000.0 }).collect();
+        let text = format!("{:#}", trace("d", "v", &plan, &frame));
+        let trace: Value = serde_json::from_str(&text).unwrap();
+        let events = trace["traceEvents"].as_array().unwrap();
+        let complete: Vec<_> = events.iter().filter(|e| e["ph"] == "X").collect();
+        assert_eq!(complete.len(), plan.passes.len());
+        for (i, event) in complete.iter().enumerate() {
+            assert_eq!(event["name"], plan.passes[i].label());
+            assert_eq!(
+                (event["ts"].as_f64(), event["dur"].as_f64()),
+                (Some(2.0 * i as f64), Some(2.0))
+            );
+            assert!(event["pid"].is_u64() && event["tid"].is_u64());
+        }
+        assert_eq!(events.len(), complete.len() + 2);
+    }
+}

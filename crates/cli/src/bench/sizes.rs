@@ -1,0 +1,83 @@
+//! Cost against the field's size and the number of azimuths.
+
+use indicatif::ProgressBar;
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::fractal;
+use ridgelight::scene::{Quality, Scene};
+
+use super::flow;
+use super::rows::{Row, figure, sums};
+use super::verify::Truth;
+
+/// Whole frames of fixed fractal fields under the scene's lights, each of `sizes` with each of `azimuths`;
+/// with the relative RMSE of the light beside the oracle's.
+pub fn run(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
+    (sizes, azimuths): (&[usize], &[u32]),
+    samples: usize,
+    bar: &ProgressBar,
+) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for &size in sizes {
+        let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
+        let truth = Truth::of(&scene);
+        let contents = plan::picture_inputs(&scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        for &count in azimuths {
+            bar.set_message(format!("{size}², {count} azimuths"));
+            let quality = Quality { azimuths: count, ..*quality };
+            let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
+            let mut frame = gpu.frame(plan, &contents)?;
+            let drawn =
+                flow(gpu, &mut frame, samples).and_then(|runs| Ok((runs, gpu.pixels(&frame, 0)?)));
+            let kept = frame.plan().clone();
+            gpu.end(frame);
+            let (runs, pixels) = drawn?;
+            let passes: Vec<_> = kept.passes.iter().collect();
+            let times = sums(&runs, |_| true);
+            let mut row = Row::of("total", "in_flow", &kept, &passes, count, (runs.len(), &times));
+            row.settings.push(("device_bytes".into(), kept.bytes().to_string()));
+            row.settings.push(("light_error".into(), format!("{:.6}", truth.error(&pixels))));
+            row.settings.push(("passes".into(), kept.passes.len().to_string()));
+            rows.push(row);
+        }
+    }
+    Ok(rows)
+}
+
+pub fn print(rows: &[Row]) {
+    crate::say!(
+        "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>13} {:>8}",
+        "side",
+        "azimuths",
+        "frame ms",
+        "ms/(az·2^20)",
+        "device MB",
+        "MB/2^20",
+        "light error %",
+        "samples"
+    );
+    for row in rows {
+        let setting = |name: &str| -> Option<f64> {
+            row.settings.iter().find(|s| s.0 == name)?.1.parse().ok()
+        };
+        let mb = setting("device_bytes").map(|b| b * 1e-6);
+        let mega = f64::from(row.size[0]) * f64::from(row.size[1]) / f64::from(1 << 20);
+        crate::say!(
+            "{:>6} {:>9} {:>12} {:>15} {:>10} {:>11} {:>13} {:>8}",
+            row.size[0],
+            row.azimuths,
+            figure(row.times.map(|t| t.median * 1e-6), 2),
+            figure(row.ms_per_azimuth_and_mega(), 3),
+            figure(mb, 1),
+            figure(mb.map(|b| b / mega), 1),
+            figure(setting("light_error").map(|e| 100.0 * e), 3),
+            row.samples
+        );
+    }
+}

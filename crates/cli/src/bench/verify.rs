@@ -1,0 +1,401 @@
+//! Before a time is printed, the light is compared with the oracle's.
+
+mod balls;
+mod bounces;
+mod environments;
+mod harmonics;
+mod lobes;
+mod spheres;
+mod sweeps;
+
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Lobe, Method, Precision,
+    Quality, Scene, SphereLight, Surface,
+};
+use ridgelight::{Error, Result};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere::sphere_of;
+use ridgelight_cpu::{key, light};
+
+/// The oracle takes a whole field up to this side; of a larger one, a piece of [`PIECE`]².
+const WHOLE: usize = 128;
+const PIECE: usize = 96;
+/// Samples compared: about this many, all over the field.
+const PLACES: usize = 100;
+/// Azimuths of the oracle's sky.
+const TRUE_AZIMUTHS: usize = 360;
+/// Slices of the oracle's suns and key lights.
+const TRUE_STRIPS: usize = 32;
+/// Slices of the oracle's balls of light.
+const TRUE_SLICES: usize = 64;
+
+/// What the light of a scene should be, at some of its samples.
+#[derive(Clone)]
+pub struct Truth {
+    places: Vec<usize>,
+    /// Of sky, environment, suns and key lights, and balls of light, each alone.
+    expected: Vec<[f64; 4]>,
+    /// The share of a sky's light that arrives.
+    open: Vec<f64>,
+}
+
+impl Truth {
+    pub fn of(scene: &Scene) -> Self {
+        let field = &scene.field;
+        let (cols, count) = (field.cols(), field.rows() * field.cols());
+        // A step without a common factor visits rows and columns alike; the corners on top.
+        let step = (count / PLACES).max(1) | 1;
+        let mut places: Vec<usize> = (0..count).step_by(step).collect();
+        places.extend([cols - 1, count - cols, count - 1]);
+        let oracle = Oracle::new(field, scene.surface.border);
+        let (expected, open) = places.iter().map(|p| light_at(scene, &oracle, *p)).unzip();
+        Self { places, expected, open }
+    }
+
+    /// The same of all light but balls'.
+    fn without_balls(&self) -> Self {
+        let rest = self
+            .expected
+            .iter()
+            .map(|[sky, environment, suns, _]| [*sky, *environment, *suns, 0.0]);
+        Self { places: self.places.clone(), expected: rest.collect(), open: self.open.clone() }
+    }
+
+    /// RMSE of a picture over the root mean square of what is expected.
+    pub fn error(&self, pixels: &Pixels) -> f64 {
+        self.error_of(&self.means(pixels))
+    }
+
+    /// Radiance of a picture at the places, mean of the colours.
+    fn means(&self, pixels: &Pixels) -> Vec<f64> {
+        let mean = |p: &usize| {
+            let texel = &pixels.values[p * pixels.channels..(p + 1) * pixels.channels];
+            let colours = &texel[..texel.len().min(3)];
+            colours.iter().map(|v| f64::from(*v)).sum::<f64>() / colours.len() as f64
+        };
+        self.places.iter().map(mean).collect()
+    }
+
+    /// The same of radiance at the places alone.
+    fn error_of(&self, radiance: &[f64]) -> f64 {
+        let all = self.expected.iter().map(|lights| lights.iter().sum());
+        rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
+    }
+
+    /// Root mean squares of each light alone.
+    fn scales(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
+    }
+
+    fn scale(&self) -> f64 {
+        self.scales().iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+    }
+
+    /// Share of a sky's light that the field keeps out.
+    fn dark(&self) -> f64 {
+        1.0 - self.open.iter().sum::<f64>() / self.open.len() as f64
+    }
+}
+
+/// Root of the mean square.
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|v| v * v).sum::<f64>() / count).sqrt()
+}
+
+/// What sky, environment, suns and key lights, and balls of light give to a sample, mean of the colours; and
+/// the share of a sky's
+/// light that reaches it.
+fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
+    let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
+    let albedo = albedo_of(scene, place);
+    let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * a).sum::<f64>() / 3.0;
+    let Lights { sky, environment, suns, keys, spheres } = &scene.lights;
+    let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
+    let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
+    let environment =
+        environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
+    let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
+    let keys = keys.iter().map(|k| tint(key::key_of(oracle, row, col, k, TRUE_STRIPS)));
+    let ball = |s: &SphereLight| {
+        let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
+        tint(s.radiance.map(|c| f64::from(c) * share))
+    };
+    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(ball).sum()], share)
+}
+
+fn albedo_of(scene: &Scene, place: usize) -> [f64; 3] {
+    match &scene.surface.albedo {
+        Albedo::Constant(c) => c.map(f64::from),
+        Albedo::Map(map) => map[place].map(f64::from),
+    }
+}
+
+/// A scene, or of a large one a piece from its middle, and its light.
+pub struct Verifier {
+    scene: Scene,
+    truth: Truth,
+}
+
+impl Verifier {
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let scene = piece(scene)?;
+        let truth = Truth::of(&scene);
+        Ok(Self { scene, truth })
+    }
+
+    /// Lights the piece on the device with these settings; what was found, in a sentence.
+    ///
+    /// By harmonics the light is not the oracle's: horizons are held against it, and the light against f64.
+    ///
+    /// # Errors
+    /// An error beyond its bound, in a sentence.
+    pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
+        if self.scene.surface.phong.is_some() {
+            let quality = lobes::quality(&self.scene, quality);
+            let lobes = lobes::check(&self.scene, &self.truth.places, gpu, &quality, limits)?;
+            let surface = Surface { phong: None, ..self.scene.surface.clone() };
+            let diffuse = Scene { surface, ..self.scene.clone() };
+            let found = Self { scene: diffuse, truth: self.truth.clone() };
+            return Ok(format!("{}; {lobes}", found.check(gpu, &quality, limits)?));
+        }
+        let direct = Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality };
+        let found = self.check_direct(gpu, &direct, limits)?;
+        match quality.bounces.count {
+            0 => Ok(found),
+            _ => Ok(format!("{found}; {}", bounces::check(&self.scene, gpu, quality, limits)?)),
+        }
+    }
+
+    fn check_direct(
+        &self,
+        gpu: &mut Headless,
+        quality: &Quality,
+        limits: &Limits,
+    ) -> Result<String> {
+        if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
+            let found = balls::check(&self.scene, &self.truth, gpu, quality, limits)?;
+            let Some(scene) = balls::without(&self.scene) else { return Ok(found) };
+            let rest = Self { scene, truth: self.truth.without_balls() };
+            return Ok(format!("{}; {found}", rest.check_direct(gpu, quality, limits)?));
+        }
+        if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {
+            return harmonics::check(self, gpu, quality, limits);
+        }
+        // What is dropped of balls of light the plan itself bounds.
+        let all = Quality { light_cutoff: 0.0, ..*quality };
+        let plan = plan::picture(&self.scene, &all, limits, Picture::default())?;
+        let contents = plan::picture_inputs(&self.scene);
+        let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+        let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
+            gpu.draw(frame)?;
+            gpu.pixels(frame, 0)
+        })?;
+        let (error, bound) = self.judge(self.truth.error(&picture), quality)?;
+        let of_oracle =
+            format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound));
+        let places = &self.truth.places;
+        let swept = sweeps::check(&self.scene, places, gpu, quality, limits)?;
+        let balls = spheres::check(&self.scene, places, gpu, &all, limits)?;
+        let found: Vec<String> = [swept, balls, Some(of_oracle)].into_iter().flatten().collect();
+        Ok(found.join("; "))
+    }
+
+    /// A relative error and its bound, where it is within.
+    fn judge(&self, error: f64, quality: &Quality) -> Result<(f64, f64)> {
+        let shares = bounds(&self.scene, self.truth.dark(), quality);
+        let sum: f64 = self.truth.scales().iter().zip(shares).map(|(s, b)| s * b).sum();
+        within("the light is", "the oracle's", error, sum / self.truth.scale(), quality)
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.3} %", 100.0 * share)
+}
+
+/// An error and its bound, where it is within.
+fn within(
+    what: &str,
+    truth: &str,
+    error: f64,
+    bound: f64,
+    quality: &Quality,
+) -> Result<(f64, f64)> {
+    // NaN is beyond every bound.
+    if error <= bound {
+        return Ok((error, bound));
+    }
+    Err(Error::Device {
+        doing: format!("verifying before timing (fuse {})", quality.fuse.name()),
+        reason: format!(
+            "{what} {:.2} % off {truth}, more than {:.2} %: no time is worth printing",
+            100.0 * error,
+            100.0 * bound
+        ),
+    })
+}
+
+/// Largest relative RMSE of sky, environment, suns and key lights, and balls of light that settings may have.
+///
+/// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
+/// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:
+/// where nothing is hidden nothing can be hidden wrongly. Three elevation models stay below that line,
+/// too. Azimuths: 0.36 % on the moss with 64, in proportion to their spacing; four times that. Packed
+/// heights are within 2^-11 of the highest, a change of slope of at most twice that over the cell, and
+/// light changes by no more than the slope. A periodic field is marched for two periods: what lies
+/// farther is missed, at most relief / (2·side). An environment's bright places and a sun are seen or
+/// hidden whole: mean errors stay small but squares do not, hence the wide bounds there. A ball's horizons
+/// are exact; an upright edge before it is half a slice off, of which the widest has 2/n of the light.
+fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
+    let transfer = match (quality.method, quality.lines.shift()) {
+        (Method::Brute, _) | (_, None) => 0.001,
+        (Method::Pyramid, _) => {
+            // Offsets 0, 1, 2 and more, on the same moss with one level an octave: the least there are.
+            2.0 * [0.46, 0.35, 0.28][quality.level_offset.min(2) as usize]
+        }
+        (_, Some(shift)) => {
+            // 1/4, 1/2, 1, 2, 4 cells between lines.
+            let measured = match quality.fuse {
+                Fuse::Nearest => [0.042, 0.047, 0.056, 0.084, 0.131],
+                Fuse::Slopes => [0.043, 0.048, 0.059, 0.094, 0.160],
+                Fuse::Own => [0.038, 0.038, 0.039, 0.051, 0.082],
+                Fuse::AimedNearest => [0.014, 0.016, 0.024, 0.062, 0.133],
+                // The latter sees all that the former does, and nothing above the horizon.
+                Fuse::Aimed | Fuse::AimedAround => [0.013, 0.014, 0.017, 0.038, 0.095],
+            };
+            2.0 * measured[(shift as usize).saturating_sub(13).min(4)]
+        }
+    };
+    let azimuths = 4.0 * 0.0036 * 64.0 / f64::from(quality.azimuths);
+    let heights = scene.field.heights_m();
+    let highest = f64::from(heights.iter().fold(0.0_f32, |m, h| m.max(h.abs())));
+    let cell = scene.field.cell_m()[0].min(scene.field.cell_m()[1]);
+    let packed = match quality.precision {
+        Precision::Packed => 2.0 * highest / cell / 2048.0,
+        // A stored slope is within 2^-11 of itself.
+        Precision::F16 => 1.0 / 2048.0,
+        Precision::F32 => 0.0,
+    };
+    let side = scene.field.rows().min(scene.field.cols()) as f64 * cell;
+    let periods = match scene.surface.border {
+        Border::Periodic => 2.0 * highest / (2.0 * side),
+        _ => 0.0,
+    };
+    // No field hides so little that f32 sums and normals would not show.
+    let dark = dark.clamp(0.01, 0.5) / 0.5;
+    let sky = dark * (transfer + azimuths) + packed + periods;
+    let ball = 0.001 + 1.0 / f64::from(quality.sun_azimuths);
+    [sky, 2.0 * sky + 0.05, sky + 0.4, ball]
+}
+
+/// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
+pub fn piece(scene: &Scene) -> Result<Scene> {
+    let field = &scene.field;
+    let (rows, cols) = (field.rows(), field.cols());
+    if rows <= WHOLE && cols <= WHOLE {
+        return Ok(scene.clone());
+    }
+    let range = |side: usize| {
+        let kept = side.min(PIECE);
+        (side - kept) / 2..(side - kept) / 2 + kept
+    };
+    let of: Vec<usize> = range(rows).flat_map(|r| range(cols).map(move |c| r * cols + c)).collect();
+    let heights: Vec<f64> =
+        of.iter().map(|i| field.base_m() + f64::from(field.heights_m()[*i])).collect();
+    let albedo = match &scene.surface.albedo {
+        Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
+        constant => constant.clone(),
+    };
+    let phong = scene.surface.phong.as_ref().map(|lobe| match lobe {
+        Lobe::Map(map) => Lobe::Map(of.iter().map(|i| map[*i]).collect()),
+        constant => constant.clone(),
+    });
+    // The piece's western column and southern row are where its lights are counted from.
+    let west = range(cols).start as f64 * field.cell_m()[0];
+    let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
+    let mut lights = scene.lights.clone();
+    for ball in &mut lights.spheres {
+        ball.position_m[0] -= west;
+        ball.position_m[1] -= south;
+    }
+    Ok(Scene {
+        field: HeightField::new(
+            range(rows).len(),
+            range(cols).len(),
+            &heights,
+            field.cell_m(),
+            None,
+        )?,
+        surface: Surface { albedo, border: scene.surface.border, phong },
+        lights,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::fractal;
+
+    fn scene(size: usize) -> Scene {
+        Scene {
+            field: fractal(size, 1).unwrap(),
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), ..Lights::default() },
+        }
+    }
+
+    /// What a broken pass would give: no shadows, black, a mirrored field, horizons all too high, NaN.
+    /// Each is refused at the bound of the settings that a bench starts with; the oracle itself, at the
+    /// settings' number of azimuths, is not.
+    #[test]
+    fn wrong_light_is_refused() {
+        let verifier = Verifier::new(&scene(300)).unwrap();
+        let quality = Quality::default();
+        let field = &verifier.scene.field;
+        assert_eq!((field.rows(), field.cols()), (PIECE, PIECE));
+        let cols = field.cols();
+        let oracle = Oracle::new(field, Border::Plane);
+        let right: Vec<f64> = verifier
+            .truth
+            .places
+            .iter()
+            .map(|p| light::sky_of(&oracle, p / cols, p % cols, 64))
+            .collect();
+        let (error, _) = verifier.judge(verifier.truth.error_of(&right), &quality).unwrap();
+        assert!(error < 0.01, "{error}");
+        let mirrored: Vec<f64> = verifier
+            .truth
+            .places
+            .iter()
+            .map(|p| light::sky_of(&oracle, p / cols, cols - 1 - p % cols, 64))
+            .collect();
+        let flat = vec![0.0; field.heights_m().len()];
+        let flat = HeightField::new(field.rows(), cols, &flat, field.cell_m(), None).unwrap();
+        let free = Oracle::new(&flat, Border::Plane);
+        let unshadowed: Vec<f64> = verifier
+            .truth
+            .places
+            .iter()
+            .map(|p| light::sky_of(&free, p / cols, p % cols, 64))
+            .collect();
+        let dim: Vec<f64> = right.iter().map(|v| 0.9 * v).collect();
+        let black = vec![0.0; right.len()];
+        let mut holed = right.clone();
+        holed[7] = f64::NAN;
+        let wrong = [mirrored, unshadowed, dim, black, holed];
+        for (i, light) in wrong.iter().enumerate() {
+            let error = verifier.judge(verifier.truth.error_of(light), &quality);
+            let error = error.expect_err(&format!("wrong light {i}"));
+            assert!(error.to_string().contains("verifying"), "{error}");
+        }
+    }
+
+    #[test]
+    fn small_fields_are_verified_whole() {
+        let verifier = Verifier::new(&scene(33)).unwrap();
+        assert_eq!(verifier.scene.field.rows(), 33);
+        assert!(verifier.truth.expected.len() >= PLACES);
+    }
+}

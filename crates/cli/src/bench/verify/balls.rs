@@ -1,0 +1,216 @@
+//! Balls of light by harmonics beside the same series in f64, within what f32 may do. What harmonics themselves
+//! miss is told, not judged.
+
+use ridgelight::Result;
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::pyramid::Pyramid;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Levels, Lights, Method, Quality, Scene, SphereLight};
+use ridgelight_cpu::light::normal;
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::sphere_sh_shade::SphereSh;
+use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope, twin_resolved};
+
+use super::{Truth, albedo_of, percent, rms, within};
+
+/// A scene's balls of light, alone, at some of its samples.
+pub(super) fn check(
+    scene: &Scene,
+    truth: &Truth,
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<String> {
+    let lights = Lights { spheres: scene.lights.spheres.clone(), ..Lights::default() };
+    let scene = &Scene { lights, ..scene.clone() };
+    // What is dropped of balls of light the plan itself bounds.
+    let all = Quality { light_cutoff: 0.0, ..*quality };
+    let plan = plan::picture(scene, &all, limits, Picture::default())?;
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let (picture, levels) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        // A pyramid's levels are the device's own: what is made of them is judged.
+        let names = ["height_stack", "height_levels"];
+        let id = names.into_iter().find_map(|name| frame.plan().find(name));
+        let words = id.map(|id| gpu.read(frame, id)).transpose()?.unwrap_or_default();
+        let levels: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
+        Ok((gpu.pixels(frame, 0)?, levels))
+    })?;
+    let wanted = Wanted::of(scene, quality, &levels, &truth.places);
+    let (error, bound) = wanted.judge(&texels(&picture, &truth.places), quality)?;
+    let means = truth.means(&picture);
+    let balls = truth.expected.iter().map(|[.., balls]| *balls);
+    let missed = rms(means.iter().zip(balls.clone()).map(|(a, b)| a - b));
+    let scale = rms(balls).max(f64::MIN_POSITIVE);
+    Ok(format!(
+        "harmonics of balls {} off f64 (RMSE; bound {}), below 0 at {} of {} places; with what order {} misses, their \
+         light is {} off the oracle's",
+        percent(error),
+        percent(bound),
+        wanted.negative,
+        truth.places.len(),
+        quality.sh_order,
+        percent(missed / scale),
+    ))
+}
+
+/// R, G, B at some places.
+fn texels(pixels: &Pixels, places: &[usize]) -> Vec<[f64; 3]> {
+    let channel =
+        |p: &usize, c: usize| pixels.values[p * pixels.channels + c.min(pixels.channels - 1)];
+    places.iter().map(|p| [0, 1, 2].map(|c| f64::from(channel(p, c)))).collect()
+}
+
+/// The light of all balls at each place by the same series in f64, and how far a device may be from it.
+struct Wanted {
+    light: Vec<[[f64; 2]; 3]>,
+    /// Places where a ball's series rings below 0, and is 0.
+    negative: usize,
+}
+
+impl Wanted {
+    fn of(scene: &Scene, quality: &Quality, levels: &[f32], places: &[usize]) -> Self {
+        let (field, border) = (&scene.field, scene.surface.border);
+        let levels = (quality.method == Method::Pyramid).then(|| {
+            let pyramid = Pyramid::new(quality, [field.cols() as u32, field.rows() as u32], border);
+            let stored = match quality.levels {
+                Levels::Stack => Stored::Stack(levels),
+                Levels::Pyramid => Stored::Levels(levels),
+            };
+            (pyramid, stored)
+        });
+        let twin = SphereSh::new(Oracle::new(field, border), levels, *quality);
+        let (errors, mut negative) = (SoftBall::new(quality), 0);
+        let largest = field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m));
+        let mut at = |place: &usize| {
+            let (row, col) = (place / field.cols(), place % field.cols());
+            let normal = normal(field, border, row, col);
+            let albedo = albedo_of(scene, *place);
+            let mut all = [[0.0; 2]; 3];
+            let mut rings = false;
+            for ball in &scene.lights.spheres {
+                let soft = twin.at(ball, row, col);
+                rings |= soft.light < 0.0;
+                let seen = BallSeen::of(field, ball, *place);
+                let off =
+                    errors.twin(&seen, slope_error(&seen, quality, largest), normal, &soft.seen);
+                let light = soft.light.max(0.0);
+                for (c, [want, bound]) in all.iter_mut().enumerate() {
+                    let radiance = f64::from(ball.radiance[c]) * albedo[c];
+                    *want += radiance * light;
+                    *bound += radiance * (off + 4.0 * EPSILON * light);
+                }
+            }
+            negative += usize::from(rings);
+            let balls = scene.lights.spheres.len();
+            all.map(|[want, bound]| [want, bound + twin_resolved(want, balls)])
+        };
+        let light = places.iter().map(&mut at).collect();
+        Self { light, negative }
+    }
+
+    /// A device's light: RMSE over the root mean square, and that of what it may be off, where it is within that
+    /// at every place.
+    fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
+        let of = |i: usize| -> Vec<f64> {
+            self.light.as_flattened().iter().map(|pair| pair[i]).collect()
+        };
+        let scale = rms(of(0).into_iter()).max(f64::MIN_POSITIVE);
+        let what = format!("light of balls by order {} at one place is", quality.sh_order);
+        for (found, [want, off]) in found.as_flattened().iter().zip(self.light.as_flattened()) {
+            let error = (found - want).abs() / scale;
+            within(&what, "the same series in f64", error, off / scale, quality)?;
+        }
+        let off: Vec<f64> = found.as_flattened().iter().zip(of(0)).map(|(a, b)| a - b).collect();
+        Ok((rms(off.into_iter()) / scale, rms(of(1).into_iter()) / scale))
+    }
+}
+
+/// What slopes towards a ball err by: of the surface, or of a pyramid's levels.
+fn slope_error(seen: &BallSeen, quality: &Quality, largest: f64) -> f64 {
+    if quality.method != Method::Pyramid {
+        return twin_surface_within(seen);
+    }
+    let (relief, step) = (seen.relief_m, seen.cell_m);
+    let steepest = relief / step;
+    let march = twin_pyramid_slope(steepest, largest, relief, step);
+    twin_pyramid_within(seen, march, steepest, quality.level_step)
+}
+
+/// A scene without its balls; none where nothing else shines.
+pub(super) fn without(scene: &Scene) -> Option<Scene> {
+    let lights = Lights { spheres: Vec::<SphereLight>::new(), ..scene.lights.clone() };
+    let Lights { sky, environment, suns, keys, .. } = &lights;
+    let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
+    shines.then(|| Scene { lights, ..scene.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::fractal;
+    use ridgelight::scene::{LightBasis, Receiver, Surface, Wedges};
+
+    /// What broken passes would give is refused whatever the order and the form: light a little dim, of a ball beside
+    /// it, of another order, of the exact form, of a neighbour, of swapped colours, and NaN.
+    #[test]
+    fn wrong_harmonics_of_balls_are_refused() {
+        let field = fractal(32, 1).unwrap();
+        let up = field.base_m() + 9.0;
+        let ball =
+            SphereLight { position_m: [13.0, 17.0, up], radius_m: 2.0, radiance: [3.0, 1.0, 0.5] };
+        let lights = Lights { spheres: vec![ball], ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let places: Vec<usize> = (5..32 * 32).step_by(97).collect();
+        let base = Quality { light_basis: LightBasis::Sh, sun_azimuths: 8, ..Quality::default() };
+        for (sh_order, wedges, receiver) in [
+            (2, Wedges::Slices, Receiver::Plane),
+            (4, Wedges::Nlp, Receiver::Plane),
+            (4, Wedges::Table, Receiver::Lobe),
+            (6, Wedges::Slices, Receiver::Plane),
+        ] {
+            let quality = Quality { sh_order, wedges, receiver, ..base };
+            let light = |scene: &Scene, quality: &Quality| -> Vec<[f64; 3]> {
+                let wanted = Wanted::of(scene, quality, &[], &places);
+                wanted.light.iter().map(|all| all.map(|[want, _]| want)).collect()
+            };
+            let wanted = Wanted::of(&scene, &quality, &[], &places);
+            let right = light(&scene, &quality);
+            let (error, bound) = wanted.judge(&right, &quality).unwrap();
+            println!("order {sh_order} {wedges:?} {receiver:?}: bound {bound:e}");
+            // What f32 loses to the fits' weights grows with the order.
+            let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.97] };
+            assert!(error == 0.0 && bound < most, "{error} {bound}");
+            let mut moved = scene.clone();
+            moved.lights.spheres[0].position_m[0] += 0.5;
+            let oracle = Oracle::new(&scene.field, scene.surface.border);
+            let exact = |p: &usize| {
+                let share = ridgelight_cpu::sphere::sphere_of(&oracle, p / 32, p % 32, &ball, 32);
+                ball.radiance.map(|r| f64::from(r) * share)
+            };
+            let mut turned = right.clone();
+            turned.rotate_left(1);
+            let mut holed = right.clone();
+            holed[3][1] = f64::NAN;
+            let other =
+                Quality { sh_order: if sh_order == 6 { 5 } else { sh_order + 1 }, ..quality };
+            let wrong = [
+                ("dim", right.iter().map(|v| v.map(|c| dim * c)).collect()),
+                ("black", vec![[0.0; 3]; right.len()]),
+                ("of another order", light(&scene, &other)),
+                ("of a ball beside it", light(&moved, &quality)),
+                ("of the exact form", places.iter().map(exact).collect()),
+                ("of a neighbour", turned),
+                ("of other colours", right.iter().map(|[r, g, b]| [*b, *g, *r]).collect()),
+                ("NaN", holed),
+            ];
+            for (name, light) in wrong {
+                let refused = wanted.judge(&light, &quality);
+                assert!(refused.is_err(), "{name} passes: {quality:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! An environment by tables through horizons of sweeps along lines, beside the same tables and sweeps in f64 on the processor:
+//! what f32 may do is all that may lie between.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Azimuth, Limits, Picture, Plan};
+use ridgelight::scene::{Border, Environment, Lights, Quality, Scene};
+use ridgelight_cpu::env_tables::{bottom_rad, env_tables};
+use ridgelight_cpu::env_wedges::env_wedges;
+use ridgelight_cpu::shared::gather::Swept;
+use ridgelight_cpu::tolerance::{ShadeError, twin_resolved, twin_table, twin_wedge_row};
+
+use super::sweeps::{lit, white};
+use super::{percent, rms, within};
+
+/// The scene's environment on its ground, white, at some of its samples; nothing where there is none.
+pub(super) fn check(
+    scene: &Scene,
+    places: &[usize],
+    gpu: &mut Headless,
+    (quality, lines): (&Quality, u32),
+    limits: &Limits,
+) -> Result<Option<String>> {
+    let is_lit = |e: &&Environment| e.texels().iter().flatten().any(|v| *v > 0.0);
+    let Some(environment) = scene.lights.environment.as_ref().filter(is_lit) else {
+        return Ok(None);
+    };
+    let lights = Lights { environment: Some(environment.clone()), ..Lights::default() };
+    let scene = Scene { lights, ..white(scene) };
+    let plan = plan::picture(&scene, quality, limits, Picture::default())?;
+    let wanted = Wanted::of(&scene, &plan, places, quality, lines);
+    let contents = plan::picture_inputs(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let picture = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        gpu.pixels(frame, 0)
+    })?;
+    let texel = |p: &usize| {
+        let t = &picture.values[p * picture.channels..];
+        let last = picture.channels.min(3) - 1;
+        DVec3::from_array([0, 1, 2].map(|c: usize| t[c.min(last)].into()))
+    };
+    let found: Vec<DVec3> = places.iter().map(texel).collect();
+    let (error, bound) = wanted.judge(&found, quality)?;
+    Ok(Some(format!(
+        "an environment {} off the same sweeps' (RMSE; bound {})",
+        percent(error),
+        percent(bound)
+    )))
+}
+
+/// Light of the twin at each place, and what a device's may be off by there.
+struct Wanted(Vec<[DVec3; 2]>);
+
+impl Wanted {
+    /// In the azimuths of a plan, which lie closer where the environment is bright.
+    fn of(
+        scene: &Scene,
+        plan: &Plan,
+        places: &[usize],
+        quality: &Quality,
+        line_shift: u32,
+    ) -> Self {
+        let environment = scene.lights.environment.as_ref().expect("an environment");
+        let azimuths = plan.azimuths[..quality.azimuths as usize].to_vec();
+        let nodes = quality.table_elevations as usize;
+        let (cols, border) = (scene.field.cols(), scene.surface.border);
+        let all = lit(scene, azimuths, quality, line_shift, |swept, error| {
+            let rows = env_wedges(environment, border, swept.azimuths);
+            let counts = (environment.height(), swept.azimuths.len());
+            let tables = env_tables(&rows, counts, nodes, bottom_rad(border));
+            let off: Vec<[DVec3; 3]> = (0..swept.azimuths.len())
+                .map(|k| tables_off(environment, border, swept, &rows, (k, nodes)))
+                .collect();
+            let at = |p: &usize| {
+                let (mut light, mut bound) = (DVec3::ZERO, DVec3::ZERO);
+                swept.add_all((p % cols) as i32, (p / cols) as i32, |k, _, lowest, normal| {
+                    light += tables.light(k, lowest, normal);
+                    bound +=
+                        ShadeError::wedge_looked_up(error, &tables, (k, lowest, normal), &off[k]);
+                });
+                [light, bound + light.map(|v| twin_resolved(v, 1))]
+            };
+            places.iter().map(at).collect()
+        });
+        Self(all)
+    }
+
+    /// RMSE over the root mean square and that of the bounds, where every place is within its own.
+    fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
+        let flat = |of: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
+            (0..self.0.len()).flat_map(|i| of(i).to_array()).collect()
+        };
+        let scale = rms(flat(&|i| self.0[i][0]).into_iter()).max(f64::MIN_POSITIVE);
+        let off = flat(&|i| (found[i] - self.0[i][0]) / scale);
+        let bounds = flat(&|i| self.0[i][1] / scale);
+        for (off, bound) in off.iter().zip(&bounds) {
+            within("an environment at one place is", "the twin's", off.abs(), *bound, quality)?;
+        }
+        Ok((rms(off.into_iter()), rms(bounds.into_iter())))
+    }
+}
+
+/// What the tables of one azimuth are off by, moment by moment: themselves ([`twin_table`]), and by rows of the wedge, each by
+/// what the brightest of its own texels makes it ([`twin_wedge_row`]), of which a table has elevations' moments: no more than a
+/// row's height of each, over π.
+fn tables_off(
+    environment: &Environment,
+    border: Border,
+    swept: &Swept,
+    rows: &[[DVec3; 3]],
+    (k, nodes): (usize, usize),
+) -> [DVec3; 3] {
+    let azimuth = &swept.azimuths[k];
+    let (width, height) = (environment.width(), environment.height());
+    let kept = environment.rows_above_ground(border);
+    let columns = f64::from(azimuth.wedge_rad) / TAU * width as f64 + 2.0;
+    let brightest = |row: usize| {
+        let texels = columns_of(environment, azimuth);
+        let brightest = texels.map(|x| environment.texels()[row * width + x].map(f64::from));
+        brightest.fold(DVec3::ZERO, |m, t| m.max(DVec3::from_array(t)))
+    };
+    let of_rows = (0..kept).fold(DVec3::ZERO, |sum, row| {
+        sum + brightest(row).map(|b| twin_wedge_row(b, azimuth.wedge_rad.into(), columns))
+    });
+    let own = &rows[k * kept..(k + 1) * kept];
+    [0, 1, 2].map(|moment| {
+        let all = own.iter().map(|row| row[moment].abs());
+        let largest = all.clone().fold(DVec3::ZERO, DVec3::max);
+        let sum: DVec3 = all.sum();
+        let table = |c| twin_table(sum[c], largest[c], (kept + nodes) as f64);
+        DVec3::new(table(0), table(1), table(2)) + of_rows / height as f64
+    })
+}
+
+/// Columns of texels that a wedge has a part of, and one more on either side.
+fn columns_of(environment: &Environment, azimuth: &Azimuth) -> impl Iterator<Item = usize> {
+    let width = environment.width() as f64;
+    let middle = (PI + environment.rotation_rad() - f64::from(azimuth.centre_rad)) / TAU * width;
+    let half = 0.5 * f64::from(azimuth.wedge_rad) / TAU * width + 1.0;
+    let (first, last) = ((middle - half).floor() as i64, (middle + half).ceil() as i64);
+    let width = environment.width() as i64;
+    (first..last).map(move |x| x.rem_euclid(width) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::fractal;
+    use ridgelight::scene::{Fuse, Surface};
+
+    /// What broken passes would give is refused, of an even environment with a peak in it as of one without: light a hundredth
+    /// dim, twice what the bound allows, of another fuse, of half the elevations, turned by a column, of a neighbour, of other colours, and NaN.
+    #[test]
+    fn wrong_environments_are_refused() {
+        for peak in [0.0, 3000.0] {
+            let texel = |i: usize| {
+                let peak = if i == 700 { peak } else { 0.0 };
+                [1.0 + (i % 64) as f32 / 64.0 + peak, 0.5 + (i / 64) as f32 / 8.0, 0.25]
+            };
+            let of = |turn: f64, quality: &Quality| {
+                let texels = (0..64 * 32).map(texel).collect();
+                let environment = Environment::new(64, 32, texels, turn).unwrap();
+                let lights = Lights { environment: Some(environment), ..Lights::default() };
+                let field = fractal(48, 1).unwrap();
+                let scene = Scene { field, surface: Surface::default(), lights };
+                let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
+                let limits = Limits::lavapipe();
+                let plan = plan::picture(&scene, quality, &limits, Picture::default()).unwrap();
+                Wanted::of(&scene, &plan, &places, quality, quality.lines.shift().unwrap())
+            };
+            let quality = Quality { azimuths: 16, ..Quality::default() };
+            let wanted = of(0.0, &quality);
+            let values = |wanted: &Wanted| wanted.0.iter().map(|w| w[0]).collect::<Vec<DVec3>>();
+            let right = values(&wanted);
+            let (error, bound) = wanted.judge(&right, &quality).unwrap();
+            println!("peak {peak}: bound {bound:e}");
+            assert!(error == 0.0 && bound < 0.005, "{bound}");
+            let mut turned = right.clone();
+            turned.rotate_left(1);
+            let mut holed = right.clone();
+            holed[3].y = f64::NAN;
+            let wrong = [
+                ("dim", right.iter().map(|v| 0.99 * *v).collect()),
+                ("of another fuse", values(&of(0.0, &Quality { fuse: Fuse::Nearest, ..quality }))),
+                ("coarse", values(&of(0.0, &Quality { table_elevations: 32, ..quality }))),
+                ("turned", values(&of(TAU / 64.0, &quality))),
+                ("of a neighbour", turned),
+                ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
+                ("NaN", holed),
+            ];
+            for (name, light) in wrong {
+                assert!(wanted.judge(&light, &quality).is_err(), "{name} passes: {peak}");
+            }
+        }
+    }
+}

@@ -1,0 +1,353 @@
+//! Light by harmonics: the device's horizons are held against the oracle, and what it makes of them against
+//! the same series in f64, within what f32 may do. What harmonics miss is told, not judged.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::FRAC_PI_2;
+
+use glam::{DVec2, DVec3};
+use ridgelight::Result;
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Azimuth, Limits, Nodes, Picture};
+use ridgelight::scene::{Border, Quality, Receiver, Scene};
+use ridgelight_cpu::harmonics::{Harmonics, Seen};
+use ridgelight_cpu::sh_shade::nodes_around;
+use ridgelight_cpu::shared::field::{field_slope, normal_of};
+use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::sky_shade::wedge_of_sky;
+use ridgelight_cpu::tolerance::{
+    ARC_TANGENT, ShadeError, twin_fused_slope, twin_resolved, two_devices,
+};
+
+use super::{Verifier, albedo_of, bounds, percent, rms, within};
+
+/// What is known of a sample before it is lit.
+pub(super) struct Place {
+    pub index: usize,
+    pub normal: DVec3,
+    /// Slopes towards east and north.
+    gradient: DVec2,
+    /// Slopes of the horizons along azimuths.
+    horizons: Vec<(Azimuth, f64)>,
+}
+
+impl Place {
+    pub fn of(scene: &Scene, index: usize) -> Self {
+        let cols = scene.field.cols();
+        let heights = Heights::of(&scene.field, scene.surface.border);
+        let gradient = field_slope(&heights, (index % cols) as i32, (index / cols) as i32);
+        Self { index, normal: normal_of(gradient), gradient, horizons: Vec::new() }
+    }
+
+    /// Slopes of the lowest directions that horizon, ground and where asked the own plane leave free.
+    fn lowest(&self, border: Border, own_plane_hides: bool) -> Vec<(Azimuth, f64)> {
+        let ground = if border == Border::Open { f64::NEG_INFINITY } else { 0.0 };
+        let free = |(azimuth, horizon): &(Azimuth, f64)| {
+            let towards = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
+            let own = if own_plane_hides { self.gradient.dot(towards) } else { *horizon };
+            (*azimuth, horizon.max(own).max(ground))
+        };
+        self.horizons.iter().map(free).collect()
+    }
+
+    /// Exit radiance under a sky of radiance 1.
+    fn sky(&self, border: Border) -> f64 {
+        let lowest = self.lowest(border, true);
+        lowest.iter().map(|(azimuth, slope)| wedge_of_sky(azimuth, *slope, self.normal)).sum()
+    }
+}
+
+/// Lights the piece of a verifier by harmonics; what was found, in a sentence.
+pub(super) fn check(
+    verifier: &Verifier,
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<String> {
+    let Verifier { scene, truth } = verifier;
+    let border = scene.surface.border;
+    let all = with_nodes(scene, &truth.places, gpu, quality, limits)?;
+    let (places, nodes) = all.split_at(truth.places.len());
+    let sky = rms(places.iter().zip(&truth.open).map(|(place, open)| place.sky(border) - open));
+    let open = rms(truth.open.iter().copied());
+    let [of_sky, _, of_suns, of_balls] = bounds(scene, truth.dark(), quality);
+    let what = "a uniform sky through the horizons is";
+    let (sky, sky_bound) = within(what, "the oracle's", sky / open, of_sky, quality)?;
+
+    let [whole, own] = draw(scene, gpu, quality, limits)?;
+    let wanted = Wanted::of(scene, quality, places, nodes);
+    let what = format!("light of order {} at one place is", quality.sh_order);
+    let (series, series_bound) = wanted.judge(&what, &texels(&own, &truth.places), quality)?;
+
+    let [whole_means, own_means] = [&whole, &own].map(|p| truth.means(p));
+    let rest = whole_means.iter().zip(&own_means).zip(&truth.expected);
+    let rest =
+        rms(rest.map(|((whole, own), [sky, _, suns, balls])| whole - own - sky - suns - balls));
+    let scales = truth.scales();
+    let aimed = scales[2] * of_suns + scales[3] * of_balls;
+    let bound = (scales[0] * of_sky + aimed) / truth.scale();
+    within("all other light is", "the oracle's", rest / truth.scale(), bound, quality)?;
+    Ok(format!(
+        "the sky through its horizons {} off the oracle's (RMSE; bound {}), harmonics of them {} off f64 \
+         (bound {}); with what order {} misses, the light is {} off the oracle's",
+        percent(sky),
+        percent(sky_bound),
+        percent(series),
+        percent(series_bound),
+        quality.sh_order,
+        percent(truth.error(&whole)),
+    ))
+}
+
+/// A sample's nodes as samples, and what each counts.
+fn around(heights: &Heights, quality: &Quality, index: usize) -> [(usize, f64); 4] {
+    let nodes = Nodes { stride: quality.subsample };
+    let at = [(index % heights.cols) as i32, (index / heights.cols) as i32];
+    nodes_around(heights, nodes, at).map(|(node, weight)| {
+        let col = nodes.place(node[0], heights.cols as u32) as usize;
+        let row = nodes.place(node[1], heights.rows as u32) as usize;
+        (row * heights.cols + col, weight)
+    })
+}
+
+/// The nodes of some samples, in order.
+fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize> {
+    if quality.subsample == 1 {
+        return places.to_vec();
+    }
+    let all = places.iter().flat_map(|p| around(heights, quality, *p).map(|(node, _)| node));
+    all.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Places, and behind them their nodes, with the device's horizons.
+pub(super) fn with_nodes(
+    scene: &Scene,
+    of: &[usize],
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Vec<Place>> {
+    let heights = Heights::of(&scene.field, scene.surface.border);
+    let all = of.iter().copied().chain(nodes_of(&heights, quality, of));
+    places(scene, all.collect(), gpu, quality, limits)
+}
+
+/// Samples with the device's horizons.
+fn places(
+    scene: &Scene,
+    places: Vec<usize>,
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Vec<Place>> {
+    let (field, border) = (&scene.field, scene.surface.border);
+    let mut all: Vec<Place> = places.iter().map(|p| Place::of(scene, *p)).collect();
+    let mut take = |k: u32, angles: &[f32], _: &[f32]| {
+        let azimuth = plan::horizons(field, border, quality, limits, (k, 1), false)?.azimuths[0];
+        for place in &mut all {
+            // π/2 as f32 is more than π/2.
+            let angle = f64::from(angles[place.index]).clamp(-FRAC_PI_2, FRAC_PI_2);
+            place.horizons.push((azimuth, angle.tan()));
+        }
+        Ok(())
+    };
+    crate::horizon::for_each(gpu, field, border, quality, limits, false, &mut take)?;
+    Ok(all)
+}
+
+/// The picture, and the environment's layer of it.
+fn draw(
+    scene: &Scene,
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<[Pixels; 2]> {
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    let plan = plan::picture(scene, quality, limits, wanted)?;
+    let own = plan.outputs().position(|(_, r)| r.name == "direct.env").expect("an environment");
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        Ok([gpu.pixels(frame, 0)?, gpu.pixels(frame, own)?])
+    })
+}
+
+/// A picture of three channels or more at some places.
+fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
+    let texel = |p: &usize| {
+        let t = &pixels.values[p * pixels.channels..];
+        DVec3::new(t[0].into(), t[1].into(), t[2].into())
+    };
+    places.iter().map(texel).collect()
+}
+
+/// Light at each place by the same series in f64, and how far a device may be from it.
+pub(super) struct Wanted(pub Vec<[DVec3; 2]>);
+
+impl Wanted {
+    /// The environment's, of places, by what their nodes see.
+    fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
+        let environment = scene.lights.environment.as_ref().expect("an environment");
+        let harmonics = Harmonics::new(environment, scene.surface.border, quality);
+        Self::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
+            let albedo = DVec3::from_array(albedo_of(scene, place.index));
+            let [light, off] = harmonics.light(place.normal, seen, error);
+            let light = albedo * light;
+            [light, albedo * off + light.map(|v| twin_resolved(v, 1))]
+        })
+    }
+
+    /// What `light` makes of what places see, by nodes whose horizons a device has found: it finds them again, from the same
+    /// lattice.
+    pub fn lit(
+        scene: &Scene,
+        quality: &Quality,
+        [places, nodes]: [&[Place]; 2],
+        harmonics: &Harmonics,
+        light: impl Fn(&Place, &Seen, &ShadeError) -> [DVec3; 2],
+    ) -> Self {
+        let (field, border) = (&scene.field, scene.surface.border);
+        let heights = || field.heights_m().iter().map(|h| f64::from(*h));
+        let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
+        let cell = field.cell_m()[0].min(field.cell_m()[1]);
+        // A march step is a cell or longer.
+        let slope = two_devices(twin_fused_slope(low.abs().max(high.abs()), cell)) + ARC_TANGENT;
+        let error = ShadeError::new(slope, high - low, cell, quality.azimuths as usize);
+        let own_plane_hides = quality.receiver == Receiver::Plane;
+        let seen: BTreeMap<usize, Seen> = nodes
+            .iter()
+            .map(|n| (n.index, harmonics.seen(&n.lowest(border, own_plane_hides), &error)))
+            .collect();
+        let shader_heights = Heights::of(field, border);
+        let of = |place: &Place| {
+            let seen = if quality.subsample == 1 {
+                seen[&place.index].clone()
+            } else {
+                let around = around(&shader_heights, quality, place.index);
+                Seen::between(around.iter().map(|(node, weight)| (&seen[node], *weight)), &error)
+            };
+            light(place, &seen, &error)
+        };
+        Self(places.iter().map(of).collect())
+    }
+
+    /// A device's light at the places: RMSE over the root mean square, and that of what it may be off, where
+    /// it is within that at every place.
+    pub fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
+        let of = |i: usize| self.0.iter().map(move |w| w[i]);
+        let all = |values: Vec<DVec3>| {
+            rms(values.iter().flat_map(|v| v.to_array()).collect::<Vec<_>>().into_iter())
+        };
+        let scale = all(of(0).collect()).max(f64::MIN_POSITIVE);
+        for (found, [want, off]) in found.iter().zip(&self.0) {
+            for c in 0..3 {
+                let error = (found[c] - want[c]).abs() / scale;
+                within(what, "the same series in f64", error, off[c] / scale, quality)?;
+            }
+        }
+        let off = found.iter().zip(of(0)).map(|(found, want)| *found - want).collect();
+        Ok((all(off) / scale, all(of(1).collect()) / scale))
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use ridgelight::scene::fractal;
+    use ridgelight::scene::{Basis, Environment, Lights, Surface, Wedges, Window};
+
+    /// A sunlit sky: 60 times brighter in the sun's texels.
+    pub fn scene() -> Scene {
+        let texel = |i: usize| {
+            let sun =
+                if (5..7).contains(&(i / 32)) && (9..11).contains(&(i % 32)) { 60.0 } else { 0.0 };
+            [1.0 + sun, 0.8 + 0.9 * sun, 0.5 + (i % 7) as f32 / 10.0 + 0.7 * sun]
+        };
+        let environment = Environment::new(32, 16, (0..32 * 16).map(texel).collect(), 0.4).unwrap();
+        Scene {
+            field: fractal(64, 1).unwrap(),
+            surface: Surface::default(),
+            lights: Lights { environment: Some(environment), ..Lights::default() },
+        }
+    }
+
+    /// Some places with the oracle's horizons.
+    pub fn places(scene: &Scene, quality: &Quality) -> Vec<Place> {
+        let (field, border) = (&scene.field, scene.surface.border);
+        let oracle = ridgelight_cpu::oracle::Oracle::new(field, border);
+        let limits = Limits::lavapipe();
+        let all = (0, quality.azimuths);
+        let azimuths =
+            plan::horizons(field, border, quality, &limits, all, false).unwrap().azimuths;
+        let towards = |index: usize, a: &Azimuth| {
+            let phi = f64::from(a.sin_phi).atan2(a.cos_phi.into());
+            (*a, oracle.elevation_rad(index / 64, index % 64, phi).tan())
+        };
+        let of = |index: usize| {
+            let horizons = azimuths.iter().map(|a| towards(index, a)).collect();
+            Place { horizons, ..Place::of(scene, index) }
+        };
+        (7..64 * 64).step_by(397).map(of).collect()
+    }
+
+    /// What broken passes would give is refused whatever the order and the form: light a little dim, of the
+    /// next order, of the other receiver, without shadows, of a neighbour, of swapped colours, and NaN.
+    #[test]
+    fn wrong_harmonics_are_refused() {
+        let scene = scene();
+        let base = Quality { basis: Basis::Sh, azimuths: 16, ..Quality::default() };
+        let known = places(&scene, &base);
+        for sh_order in 2..=6 {
+            for (wedges, receiver, window) in [
+                (Wedges::Slices, Receiver::Plane, Window::None),
+                (Wedges::Nlp, Receiver::Plane, Window::Lanczos),
+                (Wedges::Slices, Receiver::Lobe, Window::Hann),
+                (Wedges::Nlp, Receiver::Lobe, Window::Nonnegative),
+                (Wedges::Table, Receiver::Plane, Window::None),
+            ] {
+                let quality = Quality { sh_order, wedges, receiver, window, ..base };
+                let wanted = Wanted::of(&scene, &quality, &known, &known);
+                let light = |quality: &Quality, places: &[Place]| -> Vec<DVec3> {
+                    Wanted::of(&scene, quality, places, places).0.iter().map(|w| w[0]).collect()
+                };
+                let right = light(&quality, &known);
+                let (error, bound) = wanted.judge("light is", &right, &quality).unwrap();
+                println!("order {sh_order} {wedges:?} {receiver:?} {window:?}: bound {bound:e}");
+                // What f32 loses to the fits' weights, 60 and 100 times their light.
+                let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.98] };
+                assert!(error == 0.0 && bound < most, "{error} {bound}");
+                let free = |p: &Place| {
+                    let horizons = p.horizons.iter().map(|(a, _)| (*a, -1e9)).collect();
+                    Place { horizons, ..Place::of(&scene, p.index) }
+                };
+                let free: Vec<Place> = known.iter().map(free).collect();
+                let other = match receiver {
+                    Receiver::Plane => Receiver::Lobe,
+                    Receiver::Lobe => Receiver::Plane,
+                };
+                let next = if sh_order == 6 { 5 } else { sh_order + 1 };
+                let mut turned = right.clone();
+                turned.rotate_left(1);
+                let mut holed = right.clone();
+                holed[3].y = f64::NAN;
+                let wrong = [
+                    ("dim", right.iter().map(|v| dim * *v).collect()),
+                    ("black", vec![DVec3::ZERO; right.len()]),
+                    ("of the next order", light(&Quality { sh_order: next, ..quality }, &known)),
+                    (
+                        "of the other receiver",
+                        light(&Quality { receiver: other, ..quality }, &known),
+                    ),
+                    ("without shadows", light(&quality, &free)),
+                    ("of a neighbour", turned),
+                    ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
+                    ("NaN", holed),
+                ];
+                for (name, light) in wrong {
+                    let refused = wanted.judge("light is", &light, &quality);
+                    assert!(refused.is_err(), "{name} passes: {quality:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! What lobes mirror, beside the same sums in f64, within what f32 may do: of sky and environment what their series make of
+//! the device's horizons, of a sun what the device's own diffuse light says of it.
+
+use glam::DVec3;
+use ridgelight::Result;
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Albedo, Basis, Lights, Lobe, Phong, Quality, Scene, Sun, Surface};
+use ridgelight_cpu::harmonics::Harmonics;
+use ridgelight_cpu::sun_gloss::gloss_on;
+use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_gloss};
+
+use super::harmonics::{Place, Wanted, with_nodes};
+use super::percent;
+
+/// What sky and environment are lit by beside a lobe, diffuse ground too.
+pub(super) fn quality(scene: &Scene, quality: &Quality) -> Quality {
+    match quality.basis {
+        Basis::Auto if shines_around(&scene.lights) => Quality { basis: Basis::Sh, ..*quality },
+        _ => *quality,
+    }
+}
+
+fn shines_around(lights: &Lights) -> bool {
+    lights.sky.is_some_and(|c| c.iter().any(|v| *v > 0.0)) || lights.environment.is_some()
+}
+
+/// The lobes of a scene, at some of its samples.
+pub(super) fn check(
+    scene: &Scene,
+    places: &[usize],
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<String> {
+    let scene = &half(scene);
+    let wanted = Picture { light_layers: true, ..Picture::default() };
+    let plan = plan::picture(scene, quality, limits, wanted)?;
+    let number = |name: &str| plan.outputs().position(|(_, r)| r.name == name);
+    let Some(glossy) = number("direct.glossy") else {
+        return Ok("no lobe reflects anything".to_owned());
+    };
+    let suns: Vec<Option<usize>> =
+        (1..=scene.lights.suns.len()).map(|n| number(&format!("direct.sun{n}"))).collect();
+    let contents = plan::picture_inputs(scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let (found, suns) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        gpu.draw(frame)?;
+        let mut of = |number: usize| Ok(colours(&gpu.pixels(frame, number)?, places));
+        let suns: Result<Vec<_>> = suns.into_iter().map(|n| n.map(&mut of).transpose()).collect();
+        Ok((of(glossy)?, suns?))
+    })?;
+    let all = match shines_around(&scene.lights) {
+        true => with_nodes(scene, places, gpu, quality, limits)?,
+        false => places.iter().map(|p| Place::of(scene, *p)).collect(),
+    };
+    let (seeing, nodes) = all.split_at(places.len());
+    let wanted = wanted_of(scene, quality, [seeing, nodes], &suns);
+    let (error, bound) = wanted.judge("what lobes mirror at one place is", &found, quality)?;
+    Ok(format!("lobes {} off f64 (RMSE; bound {})", percent(error), percent(bound)))
+}
+
+/// Half the lobe on grey ground, whose diffuse light tells of each sun how much of it is seen: lobes are linear in their
+/// scale, and reflect no more than there is beside any albedo then.
+fn half(scene: &Scene) -> Scene {
+    let halved = |phong: &Phong| Phong { scale: 0.5 * phong.scale, ..*phong };
+    let phong = scene.surface.phong.as_ref().map(|lobe| match lobe {
+        Lobe::Constant(phong) => Lobe::Constant(halved(phong)),
+        Lobe::Map(map) => Lobe::Map(map.iter().map(halved).collect()),
+    });
+    let surface = Surface { albedo: Albedo::Constant([0.5; 3]), phong, ..scene.surface };
+    Scene { surface, ..scene.clone() }
+}
+
+/// R, G, B at some places.
+fn colours(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
+    let channel =
+        |p: &usize, c: usize| pixels.values[p * pixels.channels + c.min(pixels.channels - 1)];
+    places.iter().map(|p| DVec3::from_array([0, 1, 2].map(|c| channel(p, c).into()))).collect()
+}
+
+/// What the lobes of a [`half`] scene mirror at some places, of suns by their diffuse light there.
+fn wanted_of(
+    scene: &Scene,
+    quality: &Quality,
+    [places, nodes]: [&[Place]; 2],
+    suns: &[Option<Vec<DVec3>>],
+) -> Wanted {
+    let lobe = scene.surface.phong.as_ref().expect("a lobe");
+    let Lights { sky, environment, .. } = &scene.lights;
+    let mut all = match shines_around(&scene.lights) {
+        true => {
+            let border = scene.surface.border;
+            let sky = sky.unwrap_or_default();
+            let harmonics = Harmonics::of_lobes(environment.as_ref(), sky, border, quality);
+            Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
+                harmonics.mirrored(place.normal, lobe.at(place.index), seen, error)
+            })
+        }
+        false => Wanted(vec![[DVec3::ZERO; 2]; places.len()]),
+    };
+    for (sun, light) in scene.lights.suns.iter().zip(suns) {
+        let Some(light) = light else { continue };
+        for (i, place) in places.iter().enumerate() {
+            let [mirrored, off] = of_sun(scene, sun, place, lobe.at(place.index), light[i]);
+            all.0[i][0] += mirrored;
+            all.0[i][1] += off;
+        }
+    }
+    let lights = 1 + suns.len();
+    all.0.iter_mut().for_each(|[light, off]| *off += light.map(|v| twin_resolved(v, lights)));
+    all
+}
+
+/// What a lobe mirrors of a sun that gives `light` to ground of albedo ½, and what a device's may be off by. That light is
+/// rounded thrice, which what is mirrored follows in proportion.
+fn of_sun(scene: &Scene, sun: &Sun, place: &Place, phong: Phong, light: DVec3) -> [DVec3; 2] {
+    let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
+    let brightest = irradiance.max_position();
+    let sum = light[brightest] / (0.5 * irradiance[brightest]);
+    let mirrored = irradiance * gloss_on(place.normal, sun, phong, sum);
+    let (field, border) = (&scene.field, scene.surface.border);
+    let at = [place.index / field.cols(), place.index % field.cols()];
+    let (sin, cos) = sun.elevation_rad.sin_cos();
+    let towards = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
+    let turned = Land::normal_at(field, border, at);
+    let facing = place.normal.dot(towards);
+    let off = twin_sun_gloss(phong.exponent.into(), turned, facing);
+    // No sun is seen, and none is mirrored.
+    let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
+    [mirrored, irradiance * off + 6.0 * EPSILON * mirrored]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::harmonics::tests::{places, scene as sunlit};
+    use super::*;
+
+    /// What broken passes would give is refused: lobes a little dim, sharper, without the sun, of the sun alone, of a
+    /// neighbour, of swapped colours, and NaN.
+    #[test]
+    fn wrong_lobes_are_refused() {
+        let sun = Sun {
+            azimuth_rad: 1.0,
+            elevation_rad: 1.2,
+            diameter_rad: 0.0,
+            irradiance: [3.0, 2.0, 1.0],
+        };
+        let mut scene = sunlit();
+        scene.lights.suns = vec![sun];
+        let base = Quality { basis: Basis::Sh, azimuths: 16, ..Quality::default() };
+        for (exponent, sh_order) in [(5.0, 3), (40.0, 4), (9.0, 2)] {
+            let lobed = |scale: f32, exponent: f32| {
+                let phong = Some(Lobe::Constant(Phong { exponent, scale }));
+                let surface = Surface { phong, ..scene.surface.clone() };
+                half(&Scene { surface, ..scene.clone() })
+            };
+            let quality = Quality { sh_order, ..base };
+            let known = places(&scene, &quality);
+            // All of the sun is seen.
+            let facing = |p: &Place| {
+                let (sin, cos) = sun.elevation_rad.sin_cos();
+                let e = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
+                let share = 0.5 * p.normal.dot(e).max(0.0) / std::f64::consts::PI;
+                share * DVec3::from_array(sun.irradiance.map(f64::from))
+            };
+            let light: Vec<DVec3> = known.iter().map(facing).collect();
+            let of = |scene: &Scene, light: Option<Vec<DVec3>>| {
+                wanted_of(scene, &quality, [&known, &known], &[light])
+            };
+            let values = |wanted: &Wanted| wanted.0.iter().map(|w| w[0]).collect::<Vec<DVec3>>();
+            let wanted = of(&lobed(0.5, exponent), Some(light.clone()));
+            let right = values(&wanted);
+            let (error, bound) = wanted.judge("light is", &right, &quality).unwrap();
+            println!("{exponent}, order {sh_order}: bound {bound:e}");
+            // Sums of n⁴ products of what is seen and what shines, each of which may be off.
+            assert!(error == 0.0 && bound < 0.05, "{error} {bound}");
+            let mut turned = right.clone();
+            turned.rotate_left(1);
+            let mut holed = right.clone();
+            holed[3].y = f64::NAN;
+            let mut dark = lobed(0.5, exponent);
+            dark.lights.environment = None;
+            let wrong = [
+                ("dim", right.iter().map(|v| 0.9 * *v).collect()),
+                ("sharper", values(&of(&lobed(0.5, 1.5 * exponent), Some(light.clone())))),
+                ("without the sun", values(&of(&lobed(0.5, exponent), None))),
+                ("of the sun alone", values(&of(&dark, Some(light)))),
+                ("of a neighbour", turned),
+                ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
+                ("NaN", holed),
+            ];
+            for (name, light) in wrong {
+                let refused = wanted.judge("light is", &light, &quality);
+                assert!(refused.is_err(), "{name} passes: {exponent}, order {sh_order}");
+            }
+        }
+    }
+}

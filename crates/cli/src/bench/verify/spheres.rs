@@ -1,0 +1,143 @@
+//! Balls of light slice by slice beside the same slices in f64 on the processor: what f32 may do is all that may lie between.
+
+use ridgelight::Result;
+use ridgelight::gpu::Headless;
+use ridgelight::plan::{self, Limits, Picture};
+use ridgelight::scene::{Lights, Quality, Scene};
+use ridgelight_cpu::oracle::Oracle;
+use ridgelight_cpu::sphere_shade::sphere_at;
+use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_resolved};
+
+use super::sweeps::white;
+use super::{percent, rms, within};
+
+/// The scene's balls on its ground, white, at some of its samples; nothing where none shines.
+pub(super) fn check(
+    scene: &Scene,
+    places: &[usize],
+    gpu: &mut Headless,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Option<String>> {
+    let mut spheres = scene.lights.spheres.clone();
+    spheres.retain(|ball| ball.radiance.iter().any(|v| *v > 0.0));
+    if spheres.is_empty() {
+        return Ok(None);
+    }
+    let scene = Scene { lights: Lights { spheres, ..Lights::default() }, ..white(scene) };
+    let plan = plan::picture(&scene, quality, limits, Picture::default())?;
+    let picture = gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
+        gpu.draw(frame)?;
+        gpu.pixels(frame, 0)
+    })?;
+    let texel = |p: &usize| {
+        let t = &picture.values[p * picture.channels..];
+        let last = picture.channels.min(3) - 1;
+        [0, 1, 2].map(|c: usize| f64::from(t[c.min(last)]))
+    };
+    let found: Vec<[f64; 3]> = places.iter().map(texel).collect();
+    let wanted = Wanted::of(&scene, places, quality);
+    let (error, bound) = wanted.judge(&found, quality)?;
+    Ok(Some(format!(
+        "balls of light {} off the same slices' in f64 (RMSE; bound {})",
+        percent(error),
+        percent(bound)
+    )))
+}
+
+/// Light of the twin at each place, R, G, B, and what a device's may be off by there.
+struct Wanted(Vec<[[f64; 2]; 3]>);
+
+impl Wanted {
+    fn of(scene: &Scene, places: &[usize], quality: &Quality) -> Self {
+        let oracle = Oracle::new(&scene.field, scene.surface.border);
+        let (cols, balls) = (scene.field.cols(), &scene.lights.spheres);
+        let at = |p: &usize| {
+            let mut all = [[0.0; 2]; 3];
+            for ball in balls {
+                let light = sphere_at(&oracle, ball, quality.sun_azimuths, p / cols, p % cols);
+                let off = BallSeen::of(&scene.field, ball, *p).twin() + 4.0 * EPSILON;
+                for ([want, bound], radiance) in all.iter_mut().zip(ball.radiance) {
+                    *want += f64::from(radiance) * light;
+                    *bound += f64::from(radiance) * off;
+                }
+            }
+            all.map(|[want, bound]| [want, bound + twin_resolved(want, balls.len())])
+        };
+        Self(places.iter().map(at).collect())
+    }
+
+    /// RMSE over the root mean square and that of the bounds, where every place is within its own.
+    fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
+        let all = self.0.as_flattened();
+        let scale = rms(all.iter().map(|w| w[0])).max(f64::MIN_POSITIVE);
+        let pairs = found.as_flattened().iter().zip(all);
+        let off: Vec<f64> = pairs.map(|(found, [want, _])| (found - want) / scale).collect();
+        for (off, [_, bound]) in off.iter().zip(all) {
+            let bound = bound / scale;
+            within("light of balls at one place is", "the twin's", off.abs(), bound, quality)?;
+        }
+        Ok((rms(off.into_iter()), rms(all.iter().map(|w| w[1] / scale))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::fractal;
+    use ridgelight::scene::{SphereLight, Surface};
+
+    /// What broken passes would give is refused: light a hundredth dim, of fewer slices, of a ball a tenth of a cell beside or
+    /// a tenth wider, as if nothing hid it, of a neighbour, of other colours, and NaN.
+    #[test]
+    fn wrong_balls_are_refused() {
+        let field = fractal(48, 1).unwrap();
+        let cell = field.cell_m()[0];
+        let highest = f64::from(field.heights_m().iter().fold(0.0_f32, |m, h| m.max(*h)));
+        let places: Vec<usize> = (3..48 * 48).step_by(61).collect();
+        let of = |aside: f64, wider: f64, quality: &Quality, is_flat: bool| {
+            let z = field.base_m() + highest + 2.0 * cell;
+            let radiance = [4.0, 2.0, 1.0];
+            let position_m = [(20.0 + aside) * cell, 30.0 * cell, z];
+            let ball = SphereLight { position_m, radius_m: wider * cell, radiance };
+            let lights = Lights { spheres: vec![ball], ..Lights::default() };
+            let mut field = field.clone();
+            if is_flat {
+                let level = vec![field.base_m(); 48 * 48];
+                field =
+                    ridgelight::scene::HeightField::new(48, 48, &level, [cell; 2], None).unwrap();
+            }
+            let scene = Scene { field, surface: Surface::default(), lights };
+            Wanted::of(&scene, &places, quality)
+        };
+        let quality = Quality { sun_azimuths: 8, ..Quality::default() };
+        let wanted = of(0.0, 1.0, &quality, false);
+        let values = |wanted: &Wanted| -> Vec<[f64; 3]> {
+            wanted.0.iter().map(|all| all.map(|w| w[0])).collect()
+        };
+        let right = values(&wanted);
+        let (error, bound) = wanted.judge(&right, &quality).unwrap();
+        println!("bound {bound:e}");
+        assert!(error == 0.0 && bound < 0.005, "{bound}");
+        let mut turned = right.clone();
+        turned.rotate_left(1);
+        let mut holed = right.clone();
+        holed[3][1] = f64::NAN;
+        let wrong = [
+            ("dim", right.iter().map(|v| v.map(|v| 0.99 * v)).collect()),
+            (
+                "of fewer slices",
+                values(&of(0.0, 1.0, &Quality { sun_azimuths: 4, ..quality }, false)),
+            ),
+            ("from beside", values(&of(0.1, 1.0, &quality, false))),
+            ("wider", values(&of(0.0, 1.1, &quality, false))),
+            ("on level ground", values(&of(0.0, 1.0, &quality, true))),
+            ("of a neighbour", turned),
+            ("of other colours", right.iter().map(|[r, g, b]| [*b, *g, *r]).collect()),
+            ("NaN", holed),
+        ];
+        for (name, light) in wrong {
+            assert!(wanted.judge(&light, &quality).is_err(), "{name} passes");
+        }
+    }
+}

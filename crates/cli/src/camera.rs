@@ -1,0 +1,133 @@
+//! `render --camera`: the field from a place, instead of its map.
+
+use ridgelight::gpu::{DeviceReport, Seen, Timing};
+use ridgelight::plan::{Limits, Plan, View, ViewOptions, surface_error_m};
+use ridgelight::scene::Tone;
+use ridgelight::scene::{Camera, HeightField, Lens, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer as FileLayer};
+
+use crate::args::{CameraArgs, Layer, RenderArgs};
+use crate::setup;
+
+/// From where, and how.
+pub struct Shot {
+    pub camera: Camera,
+    pub options: ViewOptions,
+}
+
+/// Refuses layers that the picture does not have.
+pub fn check_layers(args: &RenderArgs) -> Result<()> {
+    let is_depth = |layer: &Layer| *layer == Layer::Depth;
+    match &args.camera.camera {
+        None if args.layers.iter().any(is_depth) => {
+            Err(Error::setting("--layers", "depth without --camera", "a camera"))
+        }
+        Some(_) if !args.layers.iter().all(is_depth) => Err(Error::setting(
+            "--layers",
+            "layers of the map with --camera",
+            "depth alone, or a run without --camera",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What is asked for, checked as far as it can be without a device.
+pub fn asked(args: &CameraArgs, scene: &Scene) -> Result<Option<Shot>> {
+    let Some(at) = args.camera else { return Ok(None) };
+    let field = &scene.field;
+    let options = ViewOptions {
+        size: args.size,
+        samples: args.samples,
+        mesh_step: args.mesh_step,
+        background: args.background,
+    };
+    options.check()?;
+    let azimuth_rad = (90.0 - at.azimuth).to_radians();
+    let lens = if args.ortho {
+        Lens::Orthographic { height_m: at.distance_m.unwrap_or(1.0) }
+    } else {
+        Lens::Perspective { fov_rad: args.fov.to_radians() }
+    };
+    let target = args.look_at.map(|p| {
+        let height = p.height_m.unwrap_or_else(|| nearest_m(field, [p.east_m, p.north_m]));
+        [p.east_m, p.north_m, height]
+    });
+    let angles = [azimuth_rad, at.elevation.to_radians()];
+    let mut camera = Camera::around(field, target, angles, lens, options.aspect());
+    if let Some(distance_m) = at.distance_m {
+        match &mut camera.lens {
+            Lens::Perspective { .. } => camera.distance_m = distance_m,
+            Lens::Orthographic { height_m } => *height_m = distance_m,
+        }
+    }
+    camera.check()?;
+    Ok(Some(Shot { camera, options }))
+}
+
+/// Height of the sample nearest to a place.
+fn nearest_m(field: &HeightField, [east_m, north_m]: [f64; 2]) -> f64 {
+    let [cell_x, cell_y] = field.cell_m();
+    let nearest = |v: f64, count: usize| (v.round().max(0.0) as usize).min(count - 1);
+    let col = nearest(east_m / cell_x, field.cols());
+    let row = field.rows() - 1 - nearest(north_m / cell_y, field.rows());
+    field.base_m() + f64::from(field.heights_m()[row * field.cols() + col])
+}
+
+impl Shot {
+    /// What is recorded.
+    pub fn view(&self, scene: &Scene, lit: &Plan, limits: &Limits) -> Result<View> {
+        View::new(scene, lit, &self.camera, &self.options, limits)
+    }
+
+    /// What was used, for the file's metadata.
+    pub fn told(&self, view: &View, field: &HeightField) -> Vec<(String, String)> {
+        let mut all = view.settings.clone();
+        if self.options.mesh_step > 1 {
+            let error = surface_error_m(field, self.options.mesh_step);
+            all.push(("mesh_error_m".to_owned(), error.to_string()));
+        }
+        all
+    }
+
+    /// A line for the user.
+    pub fn say(
+        &self,
+        args: &RenderArgs,
+        field: &HeightField,
+        times: &[Timing],
+        report: &DeviceReport,
+    ) {
+        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        let [width, height] = self.options.size;
+        crate::say!("{}: {width} × {height}, {ms:.1} ms on {}", args.output.display(), report.name);
+        let step = self.options.mesh_step;
+        if step > 1 {
+            let error = surface_error_m(field, step);
+            crate::say!(
+                "every {step}th sample of the ground: heights are off by at most {error:.3}"
+            );
+        }
+    }
+}
+
+/// Writes the picture.
+pub fn write(
+    args: &RenderArgs,
+    shot: &Shot,
+    seen: &Seen,
+    metadata: &[(String, String)],
+) -> Result<()> {
+    let [cols, rows] = shot.options.size.map(|n| n as usize);
+    if setup::extension(&args.output) != "exr" {
+        let tone = Tone { exposure: args.exposure };
+        return files::write_png(&args.output, rows, cols, &seen.radiance, None, tone, metadata);
+    }
+    let main = |channels| FileLayer { name: String::new(), channels };
+    let mut layers = vec![main(Channels::Rgb(&seen.radiance))];
+    if !args.layers.is_empty() {
+        layers.push(main(Channels::Scalar("Z", &seen.distances_m)));
+    }
+    files::write_exr(&args.output, rows, cols, &layers, metadata)
+}

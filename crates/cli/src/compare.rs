@@ -1,0 +1,134 @@
+mod pairs;
+mod rows;
+
+use std::path::Path;
+
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer};
+
+use crate::args::CompareArgs;
+use crate::setup::{self, Outcome};
+use pairs::{Pairs, difference};
+use rows::{Excess, Row};
+
+pub fn run(args: &CompareArgs) -> Result<Outcome> {
+    check(args)?;
+    let (a, b) = (pairs::read(&args.result)?, pairs::read(&args.reference)?);
+    if args.horizons {
+        pairs::check_horizons(&args.result, &a)?;
+        pairs::check_horizons(&args.reference, &b)?;
+    }
+    let pairs = Pairs::of(args, &a, &b)?;
+    let bar = crate::terminal::progress(args.quiet, "comparing");
+    let mut maps = Vec::new();
+    let (channels, pictures) = if args.horizons {
+        (vec![rows::horizons(args, &pairs)?], Vec::new())
+    } else {
+        let channels = pairs
+            .channels
+            .iter()
+            .map(|pair| rows::channel(args, &pairs, pair))
+            .collect::<Result<_>>()?;
+        let mut pictures = Vec::new();
+        for picture in pairs.pictures() {
+            let map = picture.flip(args, &pairs)?;
+            pictures.push(rows::picture(args, &pairs, &picture.layer, &map)?);
+            maps.push((picture.layer, map));
+        }
+        (channels, pictures)
+    };
+    bar.finish_and_clear();
+    let rows = || channels.iter().chain(&pictures);
+    let mut beyond: Vec<Excess> = pairs.lost.iter().map(|name| Excess::lost(name)).collect();
+    beyond.extend(rows::beyond(&args.bounds.all(), rows()));
+    if !args.quiet {
+        for (path, names) in [(&args.result, &pairs.only_a), (&args.reference, &pairs.only_b)] {
+            if !names.is_empty() {
+                crate::say!("not compared, only in {}: {}", path.display(), names.join(" "));
+            }
+        }
+        rows().for_each(|row| crate::say!("{}: {}", row.name, row.text));
+        beyond.iter().for_each(|excess| crate::say!("beyond {excess}"));
+    }
+    if let Some(path) = &args.diff {
+        write_difference(path, &pairs, &maps)?;
+    }
+    if let Some(path) = &args.json {
+        files::write_json(path, &figures(args, &pairs, &channels, &pictures, &beyond))?;
+    }
+    Ok(if beyond.is_empty() { Outcome::Done } else { Outcome::Beyond })
+}
+
+/// What can be known to be wrong before a file is read.
+fn check(args: &CompareArgs) -> Result<()> {
+    if let Some(path) = &args.diff {
+        setup::check_output("--diff", path, &["exr", "npy"])?;
+    }
+    if let Some(path) = &args.json {
+        setup::check_output("--json", path, &["json"])?;
+    }
+    setup::check_distinct(
+        &[("--diff", args.diff.as_deref()), ("--json", args.json.as_deref())],
+        &[&args.result, &args.reference],
+    )?;
+    for (flag, bound) in args.bounds.all() {
+        if let Some(bound) = bound.filter(|x| x.is_nan() || *x < 0.0) {
+            return Err(Error::setting(flag, bound.to_string(), "0 or more"));
+        }
+    }
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
+    }
+    if args.exposure != 1.0
+        && [&args.result, &args.reference].iter().all(|path| setup::extension(path) == "png")
+    {
+        let expected = "at least one .exr or .hdr: a .png is shown as it is";
+        return Err(Error::setting("--exposure", "two .png files", expected));
+    }
+    Ok(())
+}
+
+fn figures(
+    args: &CompareArgs,
+    pairs: &Pairs,
+    channels: &[Row],
+    pictures: &[Row],
+    beyond: &[Excess],
+) -> serde_json::Value {
+    let of = |rows: &[Row]| rows.iter().map(|row| row.json.clone()).collect::<Vec<_>>();
+    let excesses: Vec<_> = beyond.iter().map(Excess::json).collect();
+    serde_json::json!({
+        "rows": of(channels),
+        "flip": of(pictures),
+        "exposure": args.exposure,
+        "pixels_per_degree": pairs::pixels_per_degree(args),
+        "only_in_a": pairs.only_a,
+        "only_in_b": pairs.only_b,
+        "beyond": !beyond.is_empty(),
+        "excesses": excesses,
+    })
+}
+
+/// Maps are ꟻLIP of a layer each, by its name.
+fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> Result<()> {
+    let differences: Vec<Vec<f32>> = pairs
+        .channels
+        .iter()
+        .map(|pair| pair.a.iter().zip(pair.b).map(|(a, b)| difference(*a, *b)).collect())
+        .collect();
+    let (rows, cols) = (pairs.rows, pairs.cols);
+    if setup::extension(path) == "npy" {
+        let shape = [differences.len(), rows, cols];
+        return files::write_npy_f32(path, &shape, differences.iter().map(Vec::as_slice));
+    }
+    let layer = |name: &str, channels| Layer { name: name.to_owned(), channels };
+    let mut layers: Vec<Layer> = pairs
+        .channels
+        .iter()
+        .zip(&differences)
+        .map(|(pair, plane)| layer("difference", Channels::Scalar(pair.name, plane)))
+        .collect();
+    layers.extend(maps.iter().map(|(name, map)| layer("flip", Channels::Scalar(name, map))));
+    files::write_exr(path, rows, cols, &layers, &[])
+}

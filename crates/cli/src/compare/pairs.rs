@@ -1,0 +1,198 @@
+//! What two files have in common.
+
+use std::path::Path;
+
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::Planes;
+use ridgelight_trade::flip;
+
+use crate::args::CompareArgs;
+use crate::setup::extension;
+
+/// A channel of both.
+pub struct Pair<'a> {
+    pub name: &'a str,
+    pub a: &'a [f32],
+    pub b: &'a [f32],
+}
+
+pub struct Pairs<'a> {
+    pub rows: usize,
+    pub cols: usize,
+    pub channels: Vec<Pair<'a>>,
+    /// Names of channels that the other file lacks.
+    pub only_a: Vec<&'a str>,
+    pub only_b: Vec<&'a str>,
+    /// Those of `only_b` that the result should have: all but an alpha that is 1 everywhere, as of a picture
+    /// without.
+    pub lost: Vec<&'a str>,
+}
+
+/// Every plane of a file; a transparent pixel is NaN in all of them.
+pub fn read(path: &Path) -> Result<Planes> {
+    let mut file = files::read_planes(path)?;
+    if let Some(alpha) = file.names.iter().position(|name| name == "A") {
+        let alpha = file.planes[alpha].clone();
+        for plane in &mut file.planes {
+            let transparent = |(_, a): &(_, &f32)| **a == 0.0;
+            plane.iter_mut().zip(&alpha).filter(transparent).for_each(|(v, _)| *v = f32::NAN);
+        }
+    }
+    Ok(file)
+}
+
+/// Whether a file's planes can be elevations, radians: as `horizon` names its channels where there are
+/// names, and from straight down to straight up.
+pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
+    let wrong = |place: String, found: String, expected: &str| {
+        Err(Error::File { path: path.to_owned(), place, found, expected: expected.to_owned() })
+    };
+    let is_azimuth = |name: &&String| {
+        let degrees = name.strip_prefix("horizon.").and_then(|d| d.parse::<f64>().ok());
+        degrees.is_some_and(|d| (0.0..=360.0).contains(&d))
+    };
+    let expected = "horizons: horizon.000.000 and so on, an azimuth in degrees each";
+    match extension(path).as_str() {
+        "npy" => {}
+        "exr" => {
+            if let Some(other) = file.names.iter().find(|name| !is_azimuth(name)) {
+                return wrong("channels".into(), other.clone(), expected);
+            }
+        }
+        other => return wrong("name".into(), format!("the extension .{other}"), "an .exr or .npy"),
+    }
+    for (name, plane) in file.names.iter().zip(&file.planes) {
+        // Vulkan lets atan be off by 4096 units in the last place.
+        let most = std::f32::consts::FRAC_PI_2 * (1.0 + 4096.0 * f32::EPSILON);
+        let steep = |v: &f32| v.abs() > most;
+        if let Some(i) = plane.iter().position(steep) {
+            let (row, col) = (i / file.cols, i % file.cols);
+            let place = format!("channel {name} at row {row}, column {col}");
+            return wrong(place, plane[i].to_string(), "an elevation, -π/2 to π/2 radians");
+        }
+    }
+    Ok(())
+}
+
+/// The result's difference from the reference; equal infinities have none.
+pub fn difference(a: f32, b: f32) -> f32 {
+    if a == b { 0.0 } else { a - b }
+}
+
+pub fn pixels_per_degree(args: &CompareArgs) -> f64 {
+    args.pixels_per_degree.unwrap_or(flip::PIXELS_PER_DEGREE)
+}
+
+/// The result is not like the reference.
+pub fn unlike(args: &CompareArgs, place: &str, found: String, expected: String) -> Error {
+    Error::File {
+        path: args.result.clone(),
+        place: place.to_owned(),
+        found,
+        expected: format!("{expected} as in {}", args.reference.display()),
+    }
+}
+
+impl<'a> Pairs<'a> {
+    pub fn of(args: &CompareArgs, a: &'a Planes, b: &'a Planes) -> Result<Self> {
+        let size = |p: &Planes| format!("{} × {}", p.cols, p.rows);
+        if (a.rows, a.cols) != (b.rows, b.cols) {
+            return Err(unlike(args, "size", size(a), size(b)));
+        }
+        // Numbers are no names: a plane more or less shifts what the others stand for.
+        let numbered = [&args.result, &args.reference].iter().any(|path| extension(path) == "npy");
+        if args.horizons || numbered {
+            let count = |p: &Planes| p.names.len().to_string();
+            if a.names.len() != b.names.len() {
+                return Err(unlike(args, "number of channels", count(a), count(b)));
+            }
+            if let Some((a, b)) = a.names.iter().zip(&b.names).find(|(a, b)| a != b) {
+                return Err(unlike(args, "channels", a.clone(), b.clone()));
+            }
+        }
+        let place = |p: &Planes, name: &str| p.names.iter().position(|n| n == name);
+        let only = |p: &'a Planes, other: &Planes| -> Vec<&'a str> {
+            p.names.iter().filter(|n| place(other, n).is_none()).map(String::as_str).collect()
+        };
+        let channels: Vec<_> = a
+            .names
+            .iter()
+            .zip(&a.planes)
+            .filter_map(|(name, plane)| {
+                Some(Pair { name, a: plane, b: &b.planes[place(b, name)?] })
+            })
+            .collect();
+        if channels.is_empty() {
+            let expected = format!("at least one of {}", b.names.join(" "));
+            return Err(unlike(args, "channels", a.names.join(" "), expected));
+        }
+        let (rows, cols) = (a.rows, a.cols);
+        let (only_a, only_b) = (only(a, b), only(b, a));
+        let is_opaque = |name: &str| {
+            name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0))
+        };
+        // What a reference says of itself is no light that a result could lack.
+        let is_own = |name: &str| name.split('.').next() == Some("standard_error");
+        let lost =
+            only_b.iter().copied().filter(|name| !is_opaque(name) && !is_own(name)).collect();
+        let pairs = Self { rows, cols, channels, only_a, only_b, lost };
+        let of_pictures = [
+            ("--max-flip", args.bounds.max_flip.is_some()),
+            ("--pixels-per-degree", args.pixels_per_degree.is_some()),
+            ("--exposure", args.exposure != 1.0),
+        ];
+        if let Some((flag, _)) = of_pictures.iter().find(|(_, given)| *given)
+            && pairs.pictures().is_empty()
+        {
+            let names: Vec<_> = pairs.channels.iter().map(|pair| pair.name).collect();
+            let found = format!("only {} in both files", names.join(" "));
+            return Err(Error::setting(*flag, found, "a picture: R, G and B, or Y"));
+        }
+        Ok(pairs)
+    }
+
+    /// Layers with R, G and B, or with Y.
+    pub fn pictures(&self) -> Vec<PicturePair<'_>> {
+        let find = |layer: &str, channel: &str| {
+            self.channels.iter().find(|p| p.name.strip_prefix(layer) == Some(channel))
+        };
+        let picture = |pair: &Pair| {
+            let layer = pair.name.strip_suffix(['R', 'Y'])?;
+            if !(layer.is_empty() || layer.ends_with('.')) {
+                return None;
+            }
+            let colours = ["R", "G", "B"].map(|channel| find(layer, channel));
+            let channels = match (colours, pair.name.ends_with('R')) {
+                ([Some(r), Some(g), Some(b)], true) => [r, g, b],
+                ([None, ..] | [_, None, _] | [.., None], false) => [find(layer, "Y")?; 3],
+                _ => return None,
+            };
+            Some(PicturePair { layer: layer.trim_end_matches('.').to_owned(), channels })
+        };
+        self.channels.iter().filter_map(picture).collect()
+    }
+}
+
+/// A picture of both.
+pub struct PicturePair<'a> {
+    /// Empty for the main one.
+    pub layer: String,
+    channels: [&'a Pair<'a>; 3],
+}
+
+impl PicturePair<'_> {
+    /// ꟻLIP of every pixel; radiance is shown as a .png of this exposure would show it.
+    pub fn flip(&self, args: &CompareArgs, pairs: &Pairs) -> Result<Vec<f32>> {
+        let shown = |path: &Path, planes: [&[f32]; 3]| -> Vec<[f32; 3]> {
+            let exposure = if extension(path) == "png" { 1.0 } else { args.exposure };
+            (0..pairs.rows * pairs.cols).map(|i| planes.map(|p| p[i] * exposure)).collect()
+        };
+        flip::map(
+            &shown(&args.result, self.channels.map(|pair| pair.a)),
+            &shown(&args.reference, self.channels.map(|pair| pair.b)),
+            pairs.cols,
+            pixels_per_degree(args),
+        )
+    }
+}

@@ -1,0 +1,177 @@
+//! What is said of a channel, a picture or horizons, and held against bounds.
+
+use std::fmt;
+
+use ridgelight::{Error, Result};
+use ridgelight_trade::error::{HorizonError, ImageError};
+use ridgelight_trade::flip::FlipError;
+use serde_json::{Value, json};
+
+use super::pairs::{Pair, Pairs, unlike};
+use crate::args::CompareArgs;
+
+pub struct Row {
+    pub name: String,
+    pub text: String,
+    pub json: Value,
+    /// By the bound that they are held against, each with its unit and perhaps its place.
+    figures: Vec<(&'static str, f64, String)>,
+    /// Voids in one file only; a picture's are those of its channels.
+    mismatched: usize,
+}
+
+/// How a row lies beyond a bound.
+pub struct Excess {
+    /// None for what is beyond any: voids in one file only, a channel that the result lacks.
+    bound: Option<(&'static str, f64)>,
+    row: String,
+    /// None of a channel that the result lacks.
+    found: Option<f64>,
+    unit: String,
+}
+
+impl Excess {
+    /// Of a channel of the reference that the result lacks.
+    pub fn lost(channel: &str) -> Self {
+        Self { bound: None, row: channel.to_owned(), found: None, unit: String::new() }
+    }
+
+    pub fn json(&self) -> Value {
+        json!({
+            "bound": self.bound.map(|b| b.0), "limit": self.bound.map(|b| b.1), "of": self.row, "found": self.found,
+        })
+    }
+}
+
+impl fmt::Display for Excess {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.bound {
+            Some((flag, limit)) => write!(f, "{flag} {limit}")?,
+            None => write!(f, "any bound")?,
+        }
+        match self.found {
+            Some(found) => write!(f, ": {} has {found}{}", self.row, self.unit),
+            None => write!(f, ": {} is not in A", self.row),
+        }
+    }
+}
+
+pub fn beyond<'a>(
+    bounds: &[(&'static str, Option<f64>)],
+    rows: impl Iterator<Item = &'a Row>,
+) -> Vec<Excess> {
+    let mut all = Vec::new();
+    for row in rows {
+        let mut excess = |bound, found, unit: &str| {
+            let (row, found) = (row.name.clone(), Some(found));
+            all.push(Excess { bound, row, found, unit: unit.to_owned() });
+        };
+        if row.mismatched > 0 {
+            excess(None, row.mismatched as f64, " masked in one only");
+        }
+        for (flag, found, unit) in &row.figures {
+            let limit = bounds.iter().find(|bound| bound.0 == *flag).and_then(|bound| bound.1);
+            // What is no number is beyond every bound.
+            if let Some(limit) = limit.filter(|limit| found.is_nan() || found > limit) {
+                excess(Some((*flag, limit)), *found, unit);
+            }
+        }
+    }
+    all
+}
+
+pub fn channel(args: &CompareArgs, pairs: &Pairs, pair: &Pair) -> Result<Row> {
+    let name = pair.name;
+    let e = ImageError::of(pair.a, pair.b, pairs.cols)
+        .map_err(|e| nothing(args, &format!("channel {name}"), e))?;
+    let percent = |x: f64| format!("{} %", number(100.0 * x));
+    let text = format!(
+        "RMSE {} ({} of the mean)  mean shift {} ({})  99 % {} ({})  worst {} ({}) at row {}, column {}; {} compared, {} masked, {} masked in one only",
+        number(e.rmse),
+        percent(e.relative_rmse),
+        number(e.mean_shift),
+        percent(e.relative_mean_shift),
+        number(e.p99),
+        percent(e.relative_p99),
+        number(e.worst),
+        percent(e.relative_worst),
+        e.worst_row,
+        e.worst_col,
+        e.count,
+        e.masked,
+        e.mismatched
+    );
+    let json = json!({
+        "channel": name, "mean_reference": e.mean_reference,
+        "rmse": e.rmse, "relative_rmse": e.relative_rmse,
+        "mean_shift": e.mean_shift, "relative_mean_shift": e.relative_mean_shift,
+        "p99": e.p99, "relative_p99": e.relative_p99,
+        "worst": e.worst, "relative_worst": e.relative_worst,
+        "worst_row": e.worst_row, "worst_col": e.worst_col,
+        "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
+    });
+    let unit = " of the mean of B";
+    let place = format!("{unit}, at row {}, column {}", e.worst_row, e.worst_col);
+    let figures = vec![
+        ("--max-rmse", e.relative_rmse, unit.to_owned()),
+        ("--max-mean-shift", e.relative_mean_shift.abs(), unit.to_owned()),
+        ("--max-p99", e.relative_p99, unit.to_owned()),
+        ("--max-worst", e.relative_worst, place),
+    ];
+    Ok(Row { name: name.to_owned(), text, json, figures, mismatched: e.mismatched })
+}
+
+pub fn picture(args: &CompareArgs, pairs: &Pairs, layer: &str, map: &[f32]) -> Result<Row> {
+    let name = if layer.is_empty() { "FLIP".to_owned() } else { format!("FLIP of {layer}") };
+    let e = FlipError::of(map, pairs.cols).map_err(|e| nothing(args, &name, e))?;
+    let [q1, q2, q3] = e.weighted_quartiles;
+    let text = format!(
+        "mean {:.6}  weighted quartiles {q1:.4} {q2:.4} {q3:.4}  99 % {:.4}  worst {:.4} at row {}, column {}; {} compared, {} masked",
+        e.mean, e.p99, e.worst, e.worst_row, e.worst_col, e.count, e.masked
+    );
+    let json = json!({
+        "layer": layer, "mean": e.mean, "weighted_quartiles": e.weighted_quartiles, "p99": e.p99, "worst": e.worst,
+        "worst_row": e.worst_row, "worst_col": e.worst_col, "count": e.count, "masked": e.masked,
+    });
+    let figures = vec![("--max-flip", e.mean, String::new())];
+    Ok(Row { name, text, json, figures, mismatched: 0 })
+}
+
+pub fn horizons(args: &CompareArgs, pairs: &Pairs) -> Result<Row> {
+    let all = |side: fn(&Pair) -> Vec<f32>| -> Vec<f32> {
+        pairs.channels.iter().flat_map(side).collect()
+    };
+    let (a, b) = (all(|pair| pair.a.to_vec()), all(|pair| pair.b.to_vec()));
+    let e = HorizonError::of(&a, &b, pairs.rows, pairs.cols)
+        .map_err(|e| nothing(args, "horizons", e))?;
+    let [azimuth, row, col] = e.worst_at;
+    let text = format!(
+        "mean {:.5}°  median {:.5}°  99 % {:.4}°  99.9 % {:.4}°  worst {:.4}° at azimuth {azimuth}, row {row}, column {col}; {} compared, {} masked, {} masked in one only",
+        e.mean, e.median, e.p99, e.p999, e.worst, e.count, e.masked, e.mismatched
+    );
+    let json = json!({
+        "mean_deg": e.mean, "median_deg": e.median, "p99_deg": e.p99, "p999_deg": e.p999, "worst_deg": e.worst,
+        "worst_at": e.worst_at, "count": e.count, "masked": e.masked, "mismatched": e.mismatched,
+    });
+    let place = format!("°, at azimuth {azimuth}, row {row}, column {col}");
+    let figures = vec![
+        ("--max-median-deg", e.median, "°".to_owned()),
+        ("--max-p999-deg", e.p999, "°".to_owned()),
+        ("--max-worst-deg", e.worst, place),
+    ];
+    Ok(Row { name: "horizons".to_owned(), text, json, figures, mismatched: e.mismatched })
+}
+
+/// No sample that both hold is the files' fault, not a setting's.
+fn nothing(args: &CompareArgs, place: &str, error: Error) -> Error {
+    match error {
+        Error::Setting { found, expected, .. } => unlike(args, place, found, expected),
+        other => other,
+    }
+}
+
+/// Six decimals, or four and an exponent.
+fn number(x: f64) -> String {
+    let plain = x == 0.0 || (1e-3..1e6).contains(&x.abs());
+    if plain { format!("{x:.6}") } else { format!("{x:.4e}") }
+}

@@ -1,0 +1,205 @@
+use ridgelight::gpu::{Headless, Timing};
+use ridgelight::plan::{self, Limits, Plan};
+use ridgelight::scene::{Border, HeightField, Lines, Method, Quality};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer, NpyWriter};
+
+use crate::args::HorizonArgs;
+use crate::idle;
+use crate::setup::{self, Outcome};
+
+/// Azimuths computed and read back at a time: their angles stay within this many bytes.
+const OUTPUT_BYTES: u64 = 256 << 20;
+
+/// Takes an azimuth's number, its elevations, and its distances or nothing.
+pub type Each<'a> = dyn FnMut(u32, &[f32], &[f32]) -> Result<()> + 'a;
+
+/// Azimuths whose outputs take at most [`OUTPUT_BYTES`] and a quarter of the budget.
+pub fn at_once(field: &HeightField, limits: &Limits) -> u32 {
+    let plane = 4 * (field.rows() * field.cols()) as u64;
+    (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
+}
+
+/// Horizons from azimuth `first` on: of `most`, or of as many fewer as the limits ask for.
+pub fn plan_from(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    (first, most): (u32, u32),
+    distances: bool,
+) -> Result<Plan> {
+    let mut count = most.min(quality.azimuths - first);
+    loop {
+        match plan::horizons(field, border, quality, limits, (first, count), distances) {
+            Err(Error::Limit { .. }) if count > 1 => count /= 2,
+            planned => return planned,
+        }
+    }
+}
+
+/// The settings really used.
+pub fn used(
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    distances: bool,
+) -> Result<Vec<(String, String)>> {
+    let mut used = plan_from(field, border, quality, limits, (0, 1), distances)?.settings;
+    used.push(("azimuths".into(), quality.azimuths.to_string()));
+    Ok(used)
+}
+
+/// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
+/// of all passes and the last plan.
+pub fn for_each(
+    gpu: &mut Headless,
+    field: &HeightField,
+    border: Border,
+    quality: &Quality,
+    limits: &Limits,
+    distances: bool,
+    each: &mut Each<'_>,
+) -> Result<(Vec<Timing>, Plan)> {
+    let plane = field.rows() * field.cols();
+    let mut at_once = at_once(field, limits);
+    let mut times = Vec::new();
+    let mut first = 0;
+    loop {
+        let plan = plan_from(field, border, quality, limits, (first, at_once), distances)?;
+        let order = plan.layer_azimuths.clone();
+        let count = order.len() as u32;
+        at_once = count;
+        let kept = plan.clone();
+        let (angles, far) = gpu.with_frame(plan, &[field.heights_m()], |gpu, frame| {
+            times.extend(gpu.draw(frame)?);
+            let angles = gpu.pixels(frame, 0)?.values;
+            let far = if distances { gpu.pixels(frame, 1)?.values } else { Vec::new() };
+            Ok((angles, far))
+        })?;
+        for k in first..first + count {
+            let layer = order.iter().position(|o| *o == k).expect("every azimuth has its layer");
+            let range = layer * plane..(layer + 1) * plane;
+            each(k, &angles[range.clone()], far.get(range).unwrap_or_default())?;
+        }
+        first += count;
+        if first == quality.azimuths {
+            return Ok((times, kept));
+        }
+    }
+}
+
+pub fn run(args: &HorizonArgs) -> Result<Outcome> {
+    setup::check_output("-o", &args.output, &["npy", "exr"])?;
+    if let Some(path) = &args.distances {
+        setup::check_output("--distances", path, &["npy"])?;
+    }
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let outputs = [
+        ("-o", Some(args.output.as_path())),
+        ("--distances", args.distances.as_deref()),
+        ("--json", args.global.json.as_deref()),
+    ];
+    setup::check_distinct(&outputs, &[&args.input.path])?;
+    let quality = setup::quality(&args.quality)?;
+    let is_npy = setup::extension(&args.output) == "npy";
+    let is_exact = quality.lines == Lines::Exact && quality.method != Method::Brute;
+    if is_exact && is_npy && args.global.json.is_none() {
+        return Err(Error::setting(
+            "--lines exact",
+            "an .npy output alone",
+            "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
+        ));
+    }
+    let field = setup::field(&args.input.path, &args.surface, &args.global)?;
+    let border = setup::border(&args.surface);
+    let distances = args.distances.is_some();
+    setup::check_plan(&args.global, |limits| {
+        let most = at_once(&field, limits);
+        plan_from(&field, border, &quality, limits, (0, most), distances)
+    })?;
+    let shape = [quality.azimuths as usize, field.rows(), field.cols()];
+    if is_npy {
+        let bytes = 4 * shape.iter().product::<usize>() as u64;
+        let outputs = [Some(args.output.as_path()), args.distances.as_deref()];
+        let outputs: Vec<_> = outputs.into_iter().flatten().map(|path| (path, bytes)).collect();
+        files::check_room(&outputs)?;
+    }
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let used = used(&field, border, &quality, &limits, distances)?;
+    idle::say(args.global.quiet, &args.quality.written, &used);
+    let mut angles_file =
+        if is_npy { Some(NpyWriter::create(&args.output, &shape)?) } else { None };
+    let mut distances_file =
+        args.distances.as_ref().map(|p| NpyWriter::create(p, &shape)).transpose()?;
+    let mut planes: Vec<Vec<f32>> = Vec::new();
+    let bar = crate::terminal::progress(args.global.quiet, "horizons");
+    let (times, plan) = for_each(
+        &mut gpu,
+        &field,
+        border,
+        &quality,
+        &limits,
+        distances,
+        &mut |k, angles, distances| {
+            bar.set_message(format!("horizons: azimuth {} of {}", k + 1, shape[0]));
+            let mut angles = angles.to_vec();
+            setup::mask_voids(&field, &mut angles, 1);
+            match &mut angles_file {
+                Some(file) => file.write(&angles)?,
+                None => planes.push(angles),
+            }
+            if let Some(file) = &mut distances_file {
+                let mut distances = distances.to_vec();
+                setup::mask_voids(&field, &mut distances, 1);
+                file.write(&distances)?;
+            }
+            Ok(())
+        },
+    )?;
+    bar.finish_and_clear();
+    let azimuths = plan::circle_rad(&quality, field.cell_m())?;
+    let mut metadata = setup::metadata(&gpu, &field, &plan, &times);
+    metadata.push(("azimuths".into(), quality.azimuths.to_string()));
+    metadata.extend(setup::asked(&args.input.path, &args.surface, None));
+    if let Some(file) = angles_file {
+        file.finish()?;
+    } else {
+        let names: Vec<String> = (0..planes.len())
+            .map(|k| format!("horizon.{:07.3}", azimuths[k].to_degrees()))
+            .collect();
+        let layers: Vec<Layer> = planes
+            .iter()
+            .zip(&names)
+            .map(|(plane, name)| Layer {
+                name: String::new(),
+                channels: Channels::Scalar(name, plane),
+            })
+            .collect();
+        files::write_exr(&args.output, field.rows(), field.cols(), &layers, &metadata)?;
+    }
+    if let Some(file) = distances_file {
+        file.finish()?;
+    }
+    if let Some(json) = &args.global.json {
+        let mut value = setup::as_json(&metadata, &times);
+        value["azimuths_rad"] = azimuths.clone().into();
+        files::write_json(json, &value)?;
+    }
+    if !args.global.quiet {
+        let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+        crate::say!(
+            "{}: {} azimuths of {} × {}, {ms:.1} ms on {}",
+            args.output.display(),
+            quality.azimuths,
+            field.cols(),
+            field.rows(),
+            gpu.report().name
+        );
+    }
+    Ok(Outcome::Done)
+}

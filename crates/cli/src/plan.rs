@@ -1,0 +1,149 @@
+use ridgelight::Result;
+use ridgelight::gpu;
+use ridgelight::plan::{self, Limits, Plan, View};
+
+use crate::args::{GlobalArgs, PlanArgs, PlanFormat};
+use crate::camera;
+use crate::idle;
+use crate::setup::{self, Outcome};
+
+pub fn run(args: &PlanArgs) -> Result<Outcome> {
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+        let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+        setup::check_distinct(&[("--json", Some(json))], &inputs)?;
+    }
+    let quality = setup::quality(&args.quality)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    let shot = camera::asked(&args.camera, &scene)?;
+    let (name, limits) = limits(&args.global)?;
+    let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
+    let seen = match &shot {
+        Some(shot) => {
+            let mut view = shot.view(&scene, &plan, &limits)?;
+            view.settings = shot.told(&view, &scene.field);
+            Some(view)
+        }
+        None => None,
+    };
+    idle::say(args.global.quiet, &args.quality.written, &plan.settings);
+    match args.format {
+        _ if args.global.quiet => {}
+        PlanFormat::Text => {
+            crate::say!("for {name}");
+            crate::say!("{}", plan.to_string().trim_end());
+            if let Some(view) = &seen {
+                crate::say!("\n{}", view.to_string().trim_end());
+            }
+        }
+        PlanFormat::Json => crate::say!("{:#}", json(&plan, seen.as_ref())),
+        PlanFormat::Dot => crate::say!("{}", dot(&plan, seen.as_ref()).trim_end()),
+    }
+    if let Some(path) = &args.global.json {
+        ridgelight_io::write_json(path, &json(&plan, seen.as_ref()))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The device that would run it and its limits; without one, those of the software driver everyone has.
+pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
+    let devices = gpu::devices();
+    let report = match &global.device {
+        Some(wanted) => {
+            let devices = devices?;
+            let index = gpu::choose(&devices, Some(wanted))?;
+            devices.into_iter().nth(index)
+        }
+        None => {
+            let devices = devices.unwrap_or_default();
+            let index = gpu::choose(&devices, None).ok();
+            index.and_then(|index| devices.into_iter().nth(index))
+        }
+    };
+    let mut limits = report.as_ref().map_or_else(Limits::lavapipe, |r| r.limits);
+    if let Some(budget) = global.memory_budget {
+        limits.memory_budget = budget;
+    }
+    let name = report.map_or("lavapipe (no device here)".into(), |r| r.name);
+    Ok((name, limits))
+}
+
+fn json(plan: &Plan, seen: Option<&View>) -> serde_json::Value {
+    let name = |id: &plan::ResourceId| plan.resources[id.0].name.clone();
+    let mut passes: Vec<_> = plan
+        .passes
+        .iter()
+        .map(|p| {
+            serde_json::json!({
+                "pass": p.name(), "part": p.part, "why": p.why, "groups": p.groups, "bytes": p.bytes,
+                "samples": p.samples, "barrier_before": p.barrier_before,
+                "reads": p.reads().map(|r| name(&r)).collect::<Vec<_>>(),
+                "writes": p.writes().map(|r| name(&r)).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let whose = |owner: plan::Owner| format!("{owner:?}").to_lowercase();
+    let mut resources: Vec<_> = plan
+        .resources
+        .iter()
+        .map(|r| serde_json::json!({ "name": r.name, "owner": whose(r.owner), "bytes": r.bytes() }))
+        .collect();
+    let (mut settings, mut notes) = (plan.settings.clone(), plan.notes.clone());
+    let mut bytes = plan.bytes();
+    if let Some(view) = seen {
+        // Each waits for the one before: they draw into the same images.
+        passes.extend(view.passes(false).into_iter().map(|d| {
+            serde_json::json!({
+                "pass": d.pass, "part": "", "why": d.why, "vertices": d.vertices, "bytes": d.bytes,
+                "samples": u64::from(view.size[0]) * u64::from(view.size[1]), "barrier_before": true,
+                "reads": d.reads, "writes": d.writes,
+            })
+        }));
+        let memory = view.memory(false);
+        bytes += memory.iter().map(|d| d.bytes).sum::<u64>();
+        resources.extend(memory.into_iter().map(
+            |d| serde_json::json!({ "name": d.name, "owner": whose(d.owner), "bytes": d.bytes }),
+        ));
+        settings.extend(view.settings.clone());
+        notes.push(view.tone_note());
+    }
+    serde_json::json!({
+        "size": plan.size, "settings": setup::typed(&settings), "passes": passes,
+        "resources": resources, "bytes": bytes, "notes": notes,
+    })
+}
+
+fn dot(plan: &Plan, seen: Option<&View>) -> String {
+    let mut text =
+        String::from("digraph plan {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
+    for (i, resource) in plan.resources.iter().enumerate() {
+        text += &format!("  r{i} [label=\"{}\", shape=box];\n", resource.name);
+    }
+    for (i, pass) in plan.passes.iter().enumerate() {
+        text += &format!("  p{i} [label=\"{}\", shape=ellipse, style=filled];\n", pass.label());
+        for r in pass.reads() {
+            text += &format!("  r{} -> p{i};\n", r.0);
+        }
+        for w in pass.writes() {
+            text += &format!("  p{i} -> r{};\n", w.0);
+        }
+    }
+    let Some(view) = seen else { return text + "}\n" };
+    let mut names: Vec<&str> = plan.resources.iter().map(|r| r.name.as_str()).collect();
+    for drawn in view.memory(false) {
+        text += &format!("  r{} [label=\"{}\", shape=box];\n", names.len(), drawn.name);
+        names.push(drawn.name);
+    }
+    let node = |name: &str| names.iter().position(|n| *n == name);
+    for (i, draw) in (plan.passes.len()..).zip(view.passes(false)) {
+        text += &format!("  p{i} [label=\"{}\", shape=ellipse, style=filled];\n", draw.pass);
+        for r in draw.reads.iter().filter_map(|name| node(name)) {
+            text += &format!("  r{r} -> p{i};\n");
+        }
+        for w in draw.writes.iter().filter_map(|name| node(name)) {
+            text += &format!("  p{i} -> r{w};\n");
+        }
+    }
+    text + "}\n"
+}

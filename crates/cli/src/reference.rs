@@ -1,0 +1,308 @@
+//! Light paths in batches until there are enough, the error is small enough, or the user has enough.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ridgelight::gpu::{Frame, Headless, Timing};
+use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
+use ridgelight::scene::Scene;
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer};
+
+use crate::args::ReferenceArgs;
+use crate::setup::{self, Outcome};
+
+/// Batches before the error of the error is small: 1/√(2·7) of it.
+const LEAST_BATCHES: u32 = 8;
+
+/// Batches between two looks at the error.
+const BATCHES_A_LOOK: u32 = 4;
+
+/// Whether a signal is to end the tracing, not the program.
+static IS_TRACING: AtomicBool = AtomicBool::new(false);
+static WAS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Told of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
+/// second one is not.
+pub fn hears_signal() -> bool {
+    IS_TRACING.load(Ordering::SeqCst) && !WAS_INTERRUPTED.swap(true, Ordering::SeqCst)
+}
+
+pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
+    check(args)?;
+    let scene = scene(args)?;
+    let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
+    setup::check_plan(&args.global, plan)?;
+    // From here on a signal is the end of the tracing, however little there is.
+    IS_TRACING.store(true, Ordering::SeqCst);
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let contents = plan::reference_inputs(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let mut frame = gpu.frame(plan(&limits)?, &contents)?;
+    let traced = trace(args, &scene, &mut gpu, &mut frame);
+    let traced =
+        traced.and_then(|traced| write(args, &scene, &gpu, &frame, &traced).map(|()| traced));
+    IS_TRACING.store(false, Ordering::SeqCst);
+    gpu.end(frame);
+    let traced = traced?;
+    let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
+    // What is no number is within nothing.
+    let is_within = |wanted: &f64| traced.error < *wanted;
+    let missed = args.until_error.filter(|wanted| !interrupted && !is_within(wanted));
+    if !args.global.quiet {
+        let paths = traced.batches * REFERENCE_BATCH;
+        crate::say!(
+            "{}: {} × {}, {paths} paths a sample, {}, {:.1} ms on {}",
+            args.output.display(),
+            scene.field.cols(),
+            scene.field.rows(),
+            off(traced.error),
+            traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
+            gpu.report().name
+        );
+        if let Some(wanted) = missed {
+            let least = 2 * REFERENCE_BATCH;
+            let whole = match paths == args.spp {
+                true => String::new(),
+                false => format!(", whole batches of {REFERENCE_BATCH} and at least {least}"),
+            };
+            crate::say!(
+                "stopped by --spp {} at {paths} paths{whole}, wanted --until-error {wanted}",
+                args.spp
+            );
+        }
+    }
+    Ok(match (interrupted, missed) {
+        (true, _) => Outcome::Interrupted,
+        (false, Some(_)) => Outcome::Beyond,
+        (false, None) => Outcome::Done,
+    })
+}
+
+fn check(args: &ReferenceArgs) -> Result<()> {
+    setup::check_output("-o", &args.output, &["exr"])?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
+    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
+    if args.spp == 0 {
+        return Err(Error::setting("--spp", "0", "a whole number, 1 or more"));
+    }
+    // Whole batches are counted as paths.
+    let most = u32::MAX / REFERENCE_BATCH * REFERENCE_BATCH;
+    if args.spp > most {
+        return Err(Error::setting("--spp", args.spp.to_string(), format!("at most {most}")));
+    }
+    match args.until_error {
+        Some(e) if !(e.is_finite() && e > 0.0) => {
+            Err(Error::setting("--until-error", e.to_string(), "a number above 0"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn scene(args: &ReferenceArgs) -> Result<Scene> {
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    setup::scene(field, &args.surface, &args.lights)
+}
+
+/// What the paths have come to.
+struct Traced {
+    /// Of every sample; an interrupted one may have reached some rows more.
+    batches: u32,
+    radiance: Vec<[f32; 3]>,
+    /// From the spread between batches.
+    standard_error: Vec<[f32; 3]>,
+    /// Root of the mean squared standard error, that of unmet light too, over the mean radiance.
+    error: f64,
+    /// Of light that no path has met, by channel: [`plan::unmet_error`].
+    unmet: [f64; 3],
+    /// Sums, by pass.
+    times: Vec<Timing>,
+}
+
+fn trace(
+    args: &ReferenceArgs,
+    scene: &Scene,
+    gpu: &mut Headless,
+    frame: &mut Frame,
+) -> Result<Traced> {
+    let passes = frame.plan().passes.iter().enumerate();
+    let bands: Vec<usize> = passes.filter(|(_, p)| p.name() == "path_trace").map(|b| b.0).collect();
+    let wanted = args.spp.div_ceil(REFERENCE_BATCH).max(2);
+    let progress = crate::terminal::progress(args.global.quiet, "tracing");
+    let mut times = gpu.draw(frame)?;
+    let mut batches = 1;
+    loop {
+        let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
+        let looks = batches % BATCHES_A_LOOK == 0 && batches >= LEAST_BATCHES;
+        // Two batches at least: of one, no error is known.
+        if batches >= 2 && (batches >= wanted || interrupted || looks) {
+            let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
+            let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
+            let unmet = plan::unmet_error(scene, args.bounces, batches * REFERENCE_BATCH);
+            let error = relative(error.hypot(root_mean_square(unmet)), mean);
+            progress.set_message(format!(
+                "{} of {} paths a sample, {}",
+                batches * REFERENCE_BATCH,
+                wanted * REFERENCE_BATCH,
+                off(error)
+            ));
+            let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
+            if batches >= wanted || interrupted || enough {
+                progress.finish_and_clear();
+                if let Some(lost) = frame.plan().find("lost_rays") {
+                    none_lost(gpu.read(frame, lost)?[0])?;
+                }
+                return Ok(Traced { batches, radiance, standard_error, error, unmet, times });
+            }
+        }
+        for &band in &bands {
+            let more = gpu.draw_passes(frame, &[band])?;
+            if let (Some(sum), Some(one)) = (times.get_mut(band), more.first()) {
+                sum.ns += one.ns;
+            }
+            if batches >= 2 && WAS_INTERRUPTED.load(Ordering::SeqCst) {
+                break;
+            }
+        }
+        if batches < 2 || !WAS_INTERRUPTED.load(Ordering::SeqCst) {
+            batches += 1;
+        }
+    }
+}
+
+/// Texels of an output.
+pub fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[f32; 3]>> {
+    let pixels = gpu.pixels(frame, output)?;
+    Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
+}
+
+/// In words: of light that is nearly none, paths that have met more of it than there is in the mean say nothing in percent.
+fn off(error: f64) -> String {
+    match error {
+        _ if error < 10.0 => format!("{:.3} % off", 100.0 * error),
+        _ => "off by far more than its light".to_owned(),
+    }
+}
+
+/// Share of the mean: 0 of nothing, infinite where all is dark but might not be.
+fn relative(error: f64, mean: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / mean }
+}
+
+fn root_mean_square(v: [f64; 3]) -> f64 {
+    (v.iter().map(|v| v * v).sum::<f64>() / 3.0).sqrt()
+}
+
+/// Mean radiance, and the root of the mean squared standard error, over all channels of the samples that
+/// are no voids.
+fn mean_and_error(
+    scene: &Scene,
+    radiance: &[[f32; 3]],
+    standard_error: &[[f32; 3]],
+) -> Result<(f64, f64)> {
+    let is_void = |i: usize| scene.field.voids().is_some_and(|v| v[i]);
+    let (mut light, mut squares, mut count) = (0.0, 0.0, 0.0_f64);
+    for i in (0..radiance.len()).filter(|i| !is_void(*i)) {
+        for c in 0..3 {
+            light += f64::from(radiance[i][c]);
+            squares += f64::from(standard_error[i][c]).powi(2);
+            count += 1.0;
+        }
+    }
+    if !(light + squares).is_finite() {
+        let most = "radiances whose sum over 64 paths is within 32-bit numbers: below 1e36";
+        return Err(Error::setting("lights", "light beyond them", most));
+    }
+    let count = count.max(1.0);
+    Ok((light / count, (squares / count).sqrt()))
+}
+
+/// Rays that were given up would be missing from the light.
+pub fn none_lost(count: u32) -> Result<()> {
+    match count {
+        0 => Ok(()),
+        _ => Err(Error::Device {
+            doing: "tracing paths".into(),
+            reason: format!("{count} rays took more steps than a field can ask for"),
+        }),
+    }
+}
+
+fn write(
+    args: &ReferenceArgs,
+    scene: &Scene,
+    gpu: &Headless,
+    frame: &Frame,
+    traced: &Traced,
+) -> Result<()> {
+    let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &traced.times);
+    let lit = Some((&args.lights, &args.surface, scene));
+    metadata.extend(setup::asked(&args.input.path, &args.surface.field, lit));
+    let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
+    add("spp", (traced.batches * REFERENCE_BATCH).to_string());
+    add("relative_standard_error", traced.error.to_string());
+    if let Some(wanted) = args.until_error {
+        add("until_error", wanted.to_string());
+    }
+    add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
+    let mut layers =
+        [("", traced.radiance.clone()), ("standard_error", traced.standard_error.clone())];
+    for (_, texels) in &mut layers {
+        setup::mask_voids(&scene.field, texels.as_flattened_mut(), 3);
+    }
+    let layers = layers
+        .iter()
+        .map(|(name, texels)| Layer { name: (*name).into(), channels: Channels::Rgb(texels) });
+    let (rows, cols) = (scene.field.rows(), scene.field.cols());
+    files::write_exr(&args.output, rows, cols, &layers.collect::<Vec<_>>(), &metadata)?;
+    match &args.global.json {
+        Some(json) => files::write_json(json, &setup::as_json(&metadata, &traced.times)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::{HeightField, Surface};
+
+    /// Nothing off of nothing; of next to nothing no number of forty digits.
+    #[test]
+    fn errors_are_told_in_words_where_percent_say_nothing() {
+        let of = |error, mean| off(relative(error, mean));
+        assert_eq!(of(0.0, 0.0), "0.000 % off");
+        assert_eq!(of(0.02, 2.0), "1.000 % off");
+        for (error, mean) in [(1.0, 0.0), (1.0, 1e-40), (f64::NAN, 1.0)] {
+            assert_eq!(of(error, mean), "off by far more than its light");
+        }
+    }
+
+    #[test]
+    fn lost_rays_are_an_error() {
+        assert!(none_lost(0).is_ok());
+        let said = none_lost(3).unwrap_err().to_string();
+        assert!(said.contains("3 rays took more steps"), "{said}");
+    }
+
+    /// 1 and 3 with errors 3 and 4: mean 2, root of the mean square √12.5. Dark samples with an error are
+    /// no 0 % off; sums beyond f32 are no number.
+    #[test]
+    fn errors_are_shares_of_the_mean() {
+        let field = HeightField::new(1, 2, &[0.0; 2], [1.0; 2], None).unwrap();
+        let scene = Scene {
+            field,
+            surface: Surface::default(),
+            lights: ridgelight::scene::Lights::default(),
+        };
+        let both = [[1.0; 3], [3.0; 3]];
+        let (mean, error) = mean_and_error(&scene, &both, &[[3.0; 3], [4.0; 3]]).unwrap();
+        assert!((mean - 2.0).abs() < 1e-12 && (error - 12.5_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(relative(0.0, 0.0), 0.0);
+        assert_eq!(relative(1e-9, 0.0), f64::INFINITY);
+        let said = mean_and_error(&scene, &both, &[[0.0; 3], [f32::NAN; 3]]).unwrap_err();
+        assert!(said.to_string().contains("below 1e36"), "{said}");
+    }
+}

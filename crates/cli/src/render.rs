@@ -1,0 +1,243 @@
+use ridgelight::gpu::{Headless, Pixels};
+use ridgelight::plan::{self, Limits};
+use ridgelight::scene::Tone;
+use ridgelight::scene::{HeightField, Quality, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer as FileLayer};
+
+use crate::args::{Layer, RenderArgs};
+use crate::auto;
+use crate::camera;
+use crate::idle;
+use crate::setup::{self, Outcome};
+
+/// Linear; sRGB makes 240 of 255 of it.
+const NEARLY_WHITE: f32 = 0.87;
+
+pub fn run(args: &RenderArgs) -> Result<Outcome> {
+    setup::check_output("-o", &args.output, &["exr", "png"])?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
+    setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
+    }
+    let is_exr = setup::extension(&args.output) == "exr";
+    if !is_exr && !args.layers.is_empty() {
+        return Err(Error::setting(
+            "--layers",
+            "a .png output",
+            "an .exr output: a .png has no layers",
+        ));
+    }
+    if is_exr && args.exposure != 1.0 {
+        return Err(Error::setting(
+            "--exposure",
+            "an .exr output",
+            "a .png output: an .exr keeps linear radiance",
+        ));
+    }
+    camera::check_layers(args)?;
+    let goal = auto::goal(&args.auto)?;
+    auto::say_idle(&args.auto, args.global.quiet);
+    let mut quality = setup::quality(&args.quality)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    if goal.is_some() {
+        setup::check_diffuse(&scene, "--max-error or --time-budget")?;
+    }
+    let shot = camera::asked(&args.camera, &scene)?;
+    let wanted = setup::wanted(&args.layers);
+    let picture =
+        |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
+    setup::check_plan(&args.global, |limits| {
+        let plan = picture(&quality, limits)?;
+        shot.as_ref().map_or(Ok(()), |shot| shot.view(&scene, &plan, limits).map(drop))?;
+        Ok(plan)
+    })?;
+    let (mut gpu, limits) = setup::device(&args.global)?;
+    let progress = crate::terminal::progress(args.global.quiet, "lighting");
+    let mut chosen = None;
+    if let Some(goal) = goal {
+        let found = auto::choose(
+            &mut gpu,
+            &limits,
+            &scene,
+            (goal, args.auto.seed.unwrap_or(0)),
+            (quality.hull, quality.bounces.count, wanted),
+            &progress,
+        )?;
+        quality = found.trial.quality;
+        chosen = Some((goal, found));
+        progress.set_message("lighting");
+    }
+    let plan = picture(&quality, &limits)?;
+    let horizon = args.layers.contains(&Layer::Horizon);
+    let mut used = plan.settings.clone();
+    if horizon {
+        let border = setup::border(&args.surface.field);
+        used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
+    }
+    idle::say(args.global.quiet, &args.quality.written, &used);
+    let view = shot.as_ref().map(|shot| shot.view(&scene, &plan, &limits)).transpose()?;
+    let contents = plan::picture_inputs(&scene);
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let outputs = plan.outputs().count();
+    let (times, pixels, seen, mut metadata) = gpu.with_frame(plan, &contents, |gpu, frame| {
+        let mut times = gpu.draw(frame)?;
+        let pixels: Vec<Pixels> =
+            (0..outputs).map(|output| gpu.pixels(frame, output)).collect::<Result<_>>()?;
+        pixels.iter().try_for_each(|p| check_finite(p, &scene.field))?;
+        let look = |view| gpu.look(frame, view, scene.field.voids());
+        let seen = view.as_ref().map(look).transpose()?;
+        times.extend(seen.iter().flat_map(|seen| seen.timings.iter().cloned()));
+        let mut metadata = setup::metadata(gpu, &scene.field, frame.plan(), &times);
+        if let Some(share) = gpu.negative_share(frame)? {
+            metadata.push(("negative_share".to_owned(), share.to_string()));
+        }
+        Ok((times, pixels, seen, metadata))
+    })?;
+    metadata.extend(setup::asked(
+        &args.input.path,
+        &args.surface.field,
+        Some((&args.lights, &args.surface, &scene)),
+    ));
+    if let Some((goal, chosen)) = &chosen {
+        metadata.extend(auto::told((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
+    }
+    if let (Some(shot), Some(view)) = (&shot, &view) {
+        metadata.extend(shot.told(view, &scene.field));
+    }
+    let mean_horizon =
+        if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
+    progress.finish_and_clear();
+    let (rows, cols) = (scene.field.rows(), scene.field.cols());
+    if let (Some(shot), Some(seen)) = (&shot, &seen) {
+        camera::write(args, shot, seen, &metadata)?;
+    } else if is_exr {
+        write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
+    } else {
+        let picture = rgb(&pixels[0]);
+        let tone = Tone { exposure: args.exposure };
+        let voids = scene.field.voids();
+        files::write_png(&args.output, rows, cols, &picture, voids, tone, &metadata)?;
+        let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
+        if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
+            crate::say!(
+                "nearly all of the picture is white: --sun 315,30 --sky 0.3 or a lower --exposure shows relief"
+            );
+        }
+    }
+    if let Some(json) = &args.global.json {
+        files::write_json(json, &setup::as_json(&metadata, &times))?;
+    }
+    if !args.global.quiet {
+        if let Some(shot) = &shot {
+            shot.say(args, &scene.field, &times, gpu.report());
+        } else {
+            let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
+            crate::say!(
+                "{}: {cols} × {rows}, {ms:.1} ms on {}",
+                args.output.display(),
+                gpu.report().name
+            );
+        }
+        for sentence in chosen.iter().flat_map(|(goal, c)| auto::sentences(*goal, c, &scene)) {
+            crate::say!("{sentence}");
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Lights that are numbers each may be none together.
+pub fn check_finite(pixels: &Pixels, field: &HeightField) -> Result<()> {
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    let texels = pixels.values.chunks_exact(pixels.channels).enumerate();
+    for (i, texel) in texels.filter(|(i, _)| !is_void(*i)) {
+        if let Some(value) = texel.iter().take(3).find(|v| !v.is_finite()) {
+            let (row, col) = (i / field.cols(), i % field.cols());
+            let found = format!("light of {value} at row {row}, column {col} of {}", pixels.name);
+            return Err(Error::setting("lights", found, "radiances whose sum is below 3e38"));
+        }
+    }
+    Ok(())
+}
+
+pub fn rgb(pixels: &Pixels) -> Vec<[f32; 3]> {
+    match pixels.channels {
+        1 => pixels.values.iter().map(|v| [*v; 3]).collect(),
+        _ => pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect(),
+    }
+}
+
+/// Mean elevation of the horizon over the azimuths, radians.
+fn mean_horizon(
+    gpu: &mut Headless,
+    scene: &Scene,
+    quality: &Quality,
+    limits: &Limits,
+) -> Result<Vec<f32>> {
+    let field = &scene.field;
+    let mut sum = vec![0.0_f64; field.rows() * field.cols()];
+    crate::horizon::for_each(
+        gpu,
+        field,
+        scene.surface.border,
+        quality,
+        limits,
+        false,
+        &mut |_, angles, _| {
+            for (s, a) in sum.iter_mut().zip(angles) {
+                *s += f64::from(*a);
+            }
+            Ok(())
+        },
+    )?;
+    Ok(sum.iter().map(|s| (s / f64::from(quality.azimuths)) as f32).collect())
+}
+
+fn write_exr(
+    args: &RenderArgs,
+    field: &HeightField,
+    pixels: &[Pixels],
+    horizon: Option<&[f32]>,
+    metadata: &[(String, String)],
+) -> Result<()> {
+    let masked: Vec<(String, Vec<[f32; 3]>, bool)> = pixels
+        .iter()
+        .map(|p| {
+            let mut texels = rgb(p);
+            if let Some(voids) = field.voids() {
+                for (texel, _) in texels.iter_mut().zip(voids).filter(|(_, v)| **v) {
+                    *texel = [f32::NAN; 3];
+                }
+            }
+            (p.name.clone(), texels, p.name == "sky_view")
+        })
+        .collect();
+    let scalars: Vec<Option<Vec<f32>>> =
+        masked.iter().map(|m| m.2.then(|| m.1.iter().map(|t| t[0]).collect())).collect();
+    let mut layers: Vec<FileLayer> = masked
+        .iter()
+        .zip(&scalars)
+        .map(|((name, texels, _), scalar)| FileLayer {
+            name: if name == "radiance" || scalar.is_some() { String::new() } else { name.clone() },
+            channels: match scalar {
+                Some(values) => Channels::Scalar("sky_view", values),
+                None => Channels::Rgb(texels),
+            },
+        })
+        .collect();
+    let mut masked_horizon = horizon.map(<[f32]>::to_vec).unwrap_or_default();
+    setup::mask_voids(field, &mut masked_horizon, 1);
+    if horizon.is_some() {
+        layers.push(FileLayer {
+            name: String::new(),
+            channels: Channels::Scalar("horizon_mean", &masked_horizon),
+        });
+    }
+    files::write_exr(&args.output, field.rows(), field.cols(), &layers, metadata)
+}

@@ -1,0 +1,202 @@
+//! Speed against accuracy: settings timed on the device and held against the truth, the frontier of
+//! both, and a recommendation.
+
+mod baked;
+mod html;
+mod hull;
+mod left_out;
+mod picture;
+mod plot;
+mod point;
+mod report;
+mod rig;
+mod same;
+mod truth;
+mod walk;
+mod why;
+
+use std::path::Path;
+
+use ridgelight::plan::{self, Picture};
+use ridgelight::scene::{Bounces, Quality};
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_trade::trade::{Place, Rule, knobs, places, refused, start_of};
+
+use crate::args::TradeArgs;
+use crate::setup::{self, Outcome};
+use picture::Tones;
+use report::Report;
+use rig::{Budget, Rig};
+use truth::Truth;
+
+const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
+
+pub fn run(args: &TradeArgs) -> Result<Outcome> {
+    let rule = rule(args)?;
+    let budget = budget(args)?;
+    check_folder(&args.output)?;
+    if let Some(json) = &args.global.json {
+        setup::check_output("--json", json, &["json"])?;
+    }
+    let mut inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
+    inputs.extend(args.reference.as_deref());
+    let written = FILES.map(|name| args.output.join(name));
+    let mut outputs: Vec<(&str, Option<&Path>)> =
+        written.iter().map(|path| ("-o", Some(path.as_path()))).collect();
+    outputs.push(("--json", args.global.json.as_deref()));
+    setup::check_distinct(&outputs, &inputs)?;
+    let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
+    let scene = setup::scene(field, &args.surface, &args.lights)?;
+    if args.reference.is_none() && scene.surface.phong.is_some() {
+        let expected = "--reference: no other truth here has lobes";
+        return Err(Error::setting("--phong with trade", "a lobe", expected));
+    }
+    if args.bounces > 0 && args.reference.is_none() {
+        let expected = "--reference, made with as many: no other truth here has bounces";
+        return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
+    }
+    let bounces = Bounces { count: args.bounces, ..Bounces::default() };
+    bounces.check()?;
+    let start = Quality { bounces, ..start_of(&scene) };
+    let planned = |limits: &plan::Limits| plan::picture(&scene, &start, limits, Picture::default());
+    setup::check_plan(&args.global, planned)?;
+    if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
+        let found = path.display().to_string();
+        return Err(Error::setting("--reference", found, "an .exr: others clip what is bright"));
+    }
+    let mut asked = setup::asked(
+        &args.input.path,
+        &args.surface.field,
+        Some((&args.lights, &args.surface, &scene)),
+    );
+    if args.bounces > 0 {
+        asked.push(("bounces".to_owned(), args.bounces.to_string()));
+    }
+    let read = |path: &Path| {
+        let truth = Truth::read(path, &scene.field)?;
+        same::check(path, &scene, &asked).map(|()| truth)
+    };
+    let given = args.reference.as_deref().map(read).transpose()?;
+    let (gpu, limits) = setup::device(&args.global)?;
+
+    let bar = crate::terminal::progress(args.global.quiet, "drawing the truth");
+    let mut rig = Rig::new(gpu, limits, &scene, budget);
+    let truth = match given {
+        Some(truth) => truth,
+        None => Truth::draw(&mut rig)?,
+    };
+    let truth_s = rig.spent();
+    let tones = Tones::of(&truth);
+    bar.set_message("scattering over visible points");
+    let baked = baked::measure(&mut rig, &truth, &start)?;
+    let knobs = knobs(&scene, args.bounces);
+    let places = places(&knobs, &start);
+    let why = |place: &Place| match rig.plan(&scene, &place.quality) {
+        Err(error @ Error::Setting { .. }) => Some(setup::in_flags(error).to_string()),
+        _ => None,
+    };
+    let refused = refused(&knobs, &places, why);
+    let (walk, recommended) =
+        walk::walk(&mut rig, (&truth, &tones), (&knobs, &places, refused), (&start, rule), &bar)?;
+    bar.set_message("moving the hull of the recommended settings");
+    let best = &walk.points[recommended.point];
+    let draw_s = best.ratio * walk.baseline_ns() * 1e-9;
+    let hulls = hull::places(&mut rig, &places[best.place].quality, draw_s)?;
+    bar.finish_and_clear();
+    let mut about = vec![
+        ("device".to_owned(), rig.gpu.report().name.clone()),
+        ("driver".to_owned(), rig.gpu.report().driver.clone()),
+        ("rows".to_owned(), scene.field.rows().to_string()),
+        ("cols".to_owned(), scene.field.cols().to_string()),
+        ("cell_m".to_owned(), format!("{},{}", scene.field.cell_m()[0], scene.field.cell_m()[1])),
+    ];
+    about.extend(asked);
+    let report = Report {
+        about,
+        truth: &truth,
+        truth_s,
+        truth_png: picture::light_png(&scene.field, &truth.planes, &tones)?,
+        tones: &tones,
+        hulls: &hulls,
+        baked: &baked,
+        knobs: &knobs,
+        places: &places,
+        walk: &walk,
+        rule: walk.in_baselines(rule),
+        recommended,
+        budget,
+        spent_s: rig.spent(),
+    };
+    write(args, &report)?;
+    if !args.global.quiet {
+        report.print();
+        crate::say!("{}", args.output.join(FILES[0]).display());
+    }
+    Ok(if recommended.holds { Outcome::Done } else { Outcome::Beyond })
+}
+
+fn rule(args: &TradeArgs) -> Result<Rule> {
+    let positive = |flag: &str, value: Option<f64>| match value {
+        Some(x) if !(x.is_finite() && x > 0.0) => {
+            Err(Error::setting(flag, x.to_string(), "a number above 0"))
+        }
+        other => Ok(other),
+    };
+    let most = positive("--max-error", args.max_error)?.map(Rule::MaxError);
+    let longest = positive("--time-budget", args.time_budget)?.map(|ms| Rule::MaxCost(ms * 1e6));
+    Ok(most.or(longest).unwrap_or(Rule::Knee))
+}
+
+fn budget(args: &TradeArgs) -> Result<Budget> {
+    if let Some(evaluations) = args.evaluations {
+        return Ok(Budget::Evaluations(evaluations as usize));
+    }
+    if !(args.budget.is_finite() && (1.0..=1e6).contains(&args.budget)) {
+        let found = args.budget.to_string();
+        return Err(Error::setting("--budget", found, "1 to 1000000 seconds"));
+    }
+    Ok(Budget::Seconds(args.budget))
+}
+
+/// A folder that is ours to write into: missing, empty, or with an earlier report.
+fn check_folder(path: &Path) -> Result<()> {
+    let shown = || path.display().to_string();
+    if !path.is_dir() {
+        if path.exists() {
+            return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
+        }
+        let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !parent.is_dir() {
+            let expected = format!("a folder {} that exists", parent.display());
+            return Err(Error::setting("-o", shown(), expected));
+        }
+        return files::check_writable(path);
+    }
+    let wrong = |source| Error::Io { path: path.to_owned(), source };
+    for entry in std::fs::read_dir(path).map_err(wrong)? {
+        let name = entry.map_err(wrong)?.file_name();
+        if !FILES.iter().any(|f| name == *f) {
+            let found = format!("{} with {} in it", shown(), name.to_string_lossy());
+            let expected = "a folder that is missing, empty, or holds an earlier report";
+            return Err(Error::setting("-o", found, expected));
+        }
+    }
+    files::check_writable(&path.join(FILES[0]))
+}
+
+fn write(args: &TradeArgs, report: &Report) -> Result<()> {
+    let (json, csv, page) = (report.json(), report.csv(), html::page(report));
+    if let Err(source) = std::fs::create_dir(&args.output)
+        && source.kind() != std::io::ErrorKind::AlreadyExists
+    {
+        return Err(Error::Io { path: args.output.clone(), source });
+    }
+    files::write_text(&args.output.join(FILES[2]), &csv)?;
+    files::write_json(&args.output.join(FILES[1]), &json)?;
+    files::write_text(&args.output.join(FILES[0]), &page)?;
+    match &args.global.json {
+        Some(path) => files::write_json(path, &json),
+        None => Ok(()),
+    }
+}

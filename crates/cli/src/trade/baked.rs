@@ -1,0 +1,300 @@
+//! Bounces over what samples see of each other, found once: what a field that does not move may take instead of bounces that
+//! are found in every frame.
+
+use std::time::Instant;
+
+use ridgelight::gpu::{Frame, Timing};
+use ridgelight::plan;
+use ridgelight::scene::{Bounces, Directions, Quality, Scatter, VisiblePoints};
+use ridgelight::{Error, Result};
+use ridgelight_trade::statistics::Summary;
+use serde_json::{Value, json};
+
+use super::point::Point;
+use super::report::{Report, ms};
+use super::rig::Rig;
+use super::truth::{Distance, Truth};
+use crate::setup;
+use crate::terminal::{digits, percent};
+
+const DIRECTIONS: [usize; 3] = [64, 256, 1024];
+const PATHS: [u32; 3] = [40, 100, 400];
+/// Draws of each, beside the baseline's, after one that warms up.
+const DRAWS: usize = 5;
+/// Share of the budget that all of them may take; what would take more is left out.
+const SHARE: f64 = 0.2;
+
+/// Direct light by the baseline's settings, bounces over so many directions by so many paths.
+pub struct Baked {
+    pub directions: usize,
+    pub paths: u32,
+    /// Seconds of finding what samples see, once, all told.
+    pub found_s: f64,
+    /// What that is kept in.
+    pub bytes: u64,
+    /// Median of a frame's time over that of the baseline drawn beside it.
+    pub ratio: f64,
+    pub distance: Distance,
+}
+
+/// What the device or the memory budget refused.
+pub struct Refused {
+    pub what: String,
+    pub why: String,
+}
+
+/// What was measured, from few directions and paths on, and what was refused.
+#[derive(Default)]
+pub struct Tried {
+    pub measured: Vec<Baked>,
+    pub refused: Vec<Refused>,
+}
+
+impl Tried {
+    /// What was made; none, and a note of it, where it was refused. Other errors end the trade.
+    fn made<T>(&mut self, what: String, of: Result<T>) -> Result<Option<T>> {
+        match of {
+            Ok(made) => Ok(Some(made)),
+            Err(error) if is_refusal(&error) => {
+                self.refused.push(Refused { what, why: setup::in_flags(error).to_string() });
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Whether more than there is was asked for, of a device that goes on: not where one is lost or a driver fails.
+fn is_refusal(error: &Error) -> bool {
+    use ash::vk::Result as Answer;
+    match error {
+        Error::Setting { .. } | Error::Limit { .. } => true,
+        Error::Device { reason, .. } => {
+            let full = [Answer::ERROR_OUT_OF_DEVICE_MEMORY, Answer::ERROR_OUT_OF_HOST_MEMORY];
+            *reason == gpu_allocator::AllocationError::OutOfMemory.to_string()
+                || full.iter().any(|answer| *reason == answer.to_string())
+        }
+        _ => false,
+    }
+}
+
+/// From few directions and paths on, as many as the share of the budget holds, of which the first takes what it takes: nothing
+/// tells before; none without bounces, and none of lobes, whose direct light is no colour a sample. What is refused is noted, and what would need more of the same is left.
+pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
+    let mut tried = Tried::default();
+    if start.bounces.count == 0 || rig.scene.surface.phong.is_some() {
+        return Ok(tried);
+    }
+    let bounces = Bounces { count: 0, ..start.bounces };
+    let mut own = rig.frame(start)?;
+    let direct = rig.frame(&Quality { bounces, ..*start });
+    let measured = tried.made("direct light".to_owned(), direct).and_then(|direct| {
+        let Some(mut direct) = direct else { return Ok(()) };
+        let measured = fill(rig, truth, start.bounces, [&mut own, &mut direct], &mut tried);
+        rig.gpu.end(direct);
+        measured
+    });
+    rig.gpu.end(own);
+    measured.map(|()| tried)
+}
+
+fn fill(
+    rig: &mut Rig,
+    truth: &Truth,
+    bounces: Bounces,
+    [own, direct]: [&mut Frame; 2],
+    tried: &mut Tried,
+) -> Result<()> {
+    let scene = rig.scene;
+    let (begun, most_s) = (Instant::now(), rig.share(SHARE));
+    let fits = |more_s: f64| begun.elapsed().as_secs_f64() + more_s <= most_s;
+    rig.gpu.draw(own)?;
+    rig.gpu.draw(direct)?;
+    let light = colours(rig, direct)?;
+    let mut found_s = 0.0;
+    for count in DIRECTIONS {
+        // Time goes with the number of directions.
+        if !fits(4.0 * found_s) {
+            break;
+        }
+        let since = Instant::now();
+        let directions = Directions::fibonacci(count, -1.0, 0)?;
+        let land = (&scene.field, scene.surface.border);
+        let points = rig.gpu.visible_points(land, &directions, &rig.limits);
+        let Some(points) = tried.made(format!("{count} directions"), points)? else { break };
+        found_s = since.elapsed().as_secs_f64();
+        let mut frame_s = 0.0;
+        for paths in PATHS {
+            if !fits(4.0 * frame_s) {
+                break;
+            }
+            let since = Instant::now();
+            let scatter = Scatter {
+                bounces: bounces.count,
+                cutoff: bounces.cutoff,
+                paths,
+                ..Scatter::default()
+            };
+            let drawn = scattered(rig, &scatter, &points, [own, direct], &light);
+            let what = format!("{count} directions, {paths} paths");
+            let Some((ratio, planes)) = tried.made(what, drawn)? else { break };
+            tried.measured.push(Baked {
+                directions: count,
+                paths,
+                found_s,
+                bytes: 4 * points.words().len() as u64,
+                ratio,
+                distance: truth.distance(&planes)?,
+            });
+            frame_s = since.elapsed().as_secs_f64();
+        }
+    }
+    Ok(())
+}
+
+/// What a frame of scattered light and one of direct light take in the baseline's time, and their radiance.
+fn scattered(
+    rig: &mut Rig,
+    scatter: &Scatter,
+    points: &VisiblePoints,
+    others: [&mut Frame; 2],
+    light: &[[f32; 3]],
+) -> Result<(f64, Vec<Vec<f32>>)> {
+    let plan = plan::scatter(rig.scene, points.directions(), scatter, &rig.limits)?;
+    let contents = plan::scatter_inputs(&plan, rig.scene, points, light)?;
+    let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+    let mut frame = rig.gpu.frame(plan, &contents)?;
+    let drawn = timed(rig, &mut frame, others, light);
+    rig.gpu.end(frame);
+    drawn
+}
+
+fn sum(times: &[Timing]) -> f64 {
+    times.iter().map(|t| t.ns).sum()
+}
+
+/// The first output of a frame, filled voids and all.
+fn colours(rig: &mut Rig, frame: &Frame) -> Result<Vec<[f32; 3]>> {
+    let pixels = rig.gpu.pixels(frame, 0)?;
+    let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
+    Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
+}
+
+/// What a frame of both takes in the baseline's, and its radiance.
+fn timed(
+    rig: &mut Rig,
+    frame: &mut Frame,
+    [own, direct]: [&mut Frame; 2],
+    light: &[[f32; 3]],
+) -> Result<(f64, Vec<Vec<f32>>)> {
+    rig.gpu.draw(frame)?;
+    let scattered = colours(rig, frame)?;
+    let mut ratios = Vec::new();
+    for _ in 0..DRAWS {
+        let beside = sum(&rig.gpu.draw(own)?);
+        let both = sum(&rig.gpu.draw(direct)?) + sum(&rig.gpu.draw(frame)?);
+        ratios.push(both / beside);
+    }
+    let plane = |c: usize| light.iter().zip(&scattered).map(|(a, b)| a[c] + b[c]).collect();
+    let mut planes: Vec<Vec<f32>> = (0..3).map(plane).collect();
+    planes.iter_mut().for_each(|plane| setup::mask_voids(&rig.scene.field, plane, 1));
+    Ok((Summary::of(&ratios).map_or(1.0, |s| s.median), planes))
+}
+
+impl Report<'_> {
+    /// What may be baked, beside what is recommended; nothing where nothing was.
+    pub fn baked_text(&self, recommended: &Point) -> Vec<String> {
+        let refused = self.baked.refused.iter().map(|r| format!("{}: refused: {}", r.what, r.why));
+        if self.baked.measured.is_empty() {
+            return refused.collect();
+        }
+        // The truth's own error at least, as of all others.
+        let off = |baked: &Baked| baked.distance.rmse.max(self.truth.floor());
+        let row = |baked: &Baked| {
+            format!(
+                "{} directions, {} paths: {} a frame, {} off, found once in {}, {} MB",
+                baked.directions,
+                baked.paths,
+                ms(baked.ratio * self.walk.baseline_ns()),
+                percent(off(baked)),
+                ms(1e9 * baked.found_s),
+                digits(baked.bytes as f64 * 1e-6)
+            )
+        };
+        let error = self.error(recommended);
+        let as_near = self.baked.measured.iter().filter(|b| off(b) <= error);
+        let cheapest = as_near.min_by(|a, b| a.ratio.total_cmp(&b.ratio));
+        let verdict = match cheapest {
+            Some(b) => format!(
+                "as near as what is recommended are {} directions with {} paths, in {} × its time",
+                b.directions,
+                b.paths,
+                digits(b.ratio / recommended.ratio)
+            ),
+            None => {
+                let nearest = self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min);
+                format!(
+                    "none is as near as what is recommended; the nearest is {} off",
+                    percent(nearest)
+                )
+            }
+        };
+        let about = format!(
+            "Of a field that does not move, bounces may be scattered over visible points that are found once \
+             (`plan::scatter`), beside direct light by the defaults: {verdict}."
+        );
+        let rows = self.baked.measured.iter().map(row);
+        std::iter::once(about).chain(rows).chain(refused).collect()
+    }
+
+    pub fn baked_json(&self) -> Vec<Value> {
+        let of = |baked: &Baked| {
+            json!({
+                "directions": baked.directions, "paths": baked.paths, "found_once_ns": 1e9 * baked.found_s, "bytes": baked.bytes,
+                "time_ns": baked.ratio * self.walk.baseline_ns(),
+                "relative_rmse": baked.distance.rmse.max(self.truth.floor()),
+                "mean_shift": baked.distance.mean_shift,
+            })
+        };
+        self.baked.measured.iter().map(of).collect()
+    }
+
+    pub fn baked_refused_json(&self) -> Vec<Value> {
+        let of = |refused: &Refused| json!({ "what": refused.what, "why": refused.why });
+        self.baked.refused.iter().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ash::vk::Result as Answer;
+
+    use super::*;
+
+    /// What is too large is left out; a device that is lost, a driver that fails and a file that is not there end the trade.
+    #[test]
+    fn only_what_is_too_large_is_refused() {
+        let device = |reason: String| Error::Device { doing: "making it".into(), reason };
+        let [what, needs, limit] = ["it", "2 bytes", "1 byte"].map(String::from);
+        for error in [
+            device(Answer::ERROR_OUT_OF_DEVICE_MEMORY.to_string()),
+            device(Answer::ERROR_OUT_OF_HOST_MEMORY.to_string()),
+            device(gpu_allocator::AllocationError::OutOfMemory.to_string()),
+            Error::Limit { what, needs, limit },
+        ] {
+            let mut tried = Tried::default();
+            let made = tried.made::<()>("it".to_owned(), Err(error));
+            assert!(matches!(made, Ok(None)) && tried.refused.len() == 1);
+        }
+        let source = std::io::ErrorKind::NotFound.into();
+        for error in [
+            device(Answer::ERROR_DEVICE_LOST.to_string()),
+            device(Answer::ERROR_INITIALIZATION_FAILED.to_string()),
+            Error::Io { path: "it".into(), source },
+        ] {
+            let mut tried = Tried::default();
+            let made = tried.made::<()>("it".to_owned(), Err(error));
+            assert!(made.is_err() && tried.refused.is_empty());
+        }
+    }
+}

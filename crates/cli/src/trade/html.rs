@@ -1,0 +1,275 @@
+//! One page that needs nothing else: the template with its places filled.
+
+use super::left_out::{EXAMPLES, GROUPS};
+use super::point::Point;
+use super::report::{Report, ms};
+use crate::terminal::{digits, percent};
+
+const TEMPLATE: &str = include_str!("page.html");
+
+pub fn page(report: &Report) -> String {
+    let of = |name: &str| report.about.iter().find(|(k, _)| k == name).map_or("", |(_, v)| v);
+    let input = of("input").rsplit(['/', '\\']).next().unwrap_or_default();
+    let about = report
+        .about
+        .iter()
+        .map(|(k, v)| format!("<tr><th>{}<td>{}\n", escaped(k), escaped(v)))
+        .collect::<String>();
+    let lines =
+        |all: Vec<String>| all.iter().map(|l| format!("<li>{}\n", escaped(l))).collect::<String>();
+    let breaks: Vec<String> =
+        report.walk.search.breaks().iter().map(|b| report.break_text(b)).collect();
+    let broken = if breaks.is_empty() {
+        "<p>No ladder was found the wrong way round.".to_owned()
+    } else {
+        let held = "<p>Ladders found the wrong way round, which ruled nothing out from then on:";
+        format!("{held}<ul>{}</ul>", lines(breaks))
+    };
+    let recommended = report.recommended();
+    let headline = format!(
+        "{} a frame, {} off (RMSE over the mean)",
+        report.time_text(recommended),
+        report.error_text(recommended)
+    );
+    let why = report.why().iter().map(|l| format!("<p>{}\n", escaped(l))).collect::<String>();
+    let text = |text: String| escaped(&text);
+    filled(
+        TEMPLATE,
+        &[
+            ("title", text(format!("{input}: speed against accuracy"))),
+            ("flags", code(&report.flags(recommended.place))),
+            ("headline", text(headline)),
+            ("why", why),
+            ("plot", super::plot::svg(report)),
+            ("truth", text(report.truth_text())),
+            ("drift", text(report.drift_text())),
+            ("summary", text(report.summary())),
+            ("tones", text(report.tones.text())),
+            ("cards", cards(report)),
+            ("rows", rows(report)),
+            ("assumption", text(Report::assumption())),
+            ("broken", broken),
+            ("ruled_out", ruled_out(report)),
+            ("not_tried", not_tried(report)),
+            ("knobs", knobs(report)),
+            ("about", about),
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ],
+    )
+}
+
+/// Replaces each {{name}}; what is filled in is not looked at again.
+fn filled(template: &str, values: &[(&str, String)]) -> String {
+    let mut parts = template.split("{{");
+    let mut page = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, rest) = part.split_once("}}").expect("every {{ has its }}");
+        let value = values.iter().find(|(n, _)| *n == name);
+        page += &value.unwrap_or_else(|| panic!("{name} is filled")).1;
+        page += rest;
+    }
+    page
+}
+
+/// A picture and its difference for each point of the frontier, after the truth's.
+fn cards(report: &Report) -> String {
+    let picture = |png: &[u8], alt: &str| {
+        format!("<img src=\"data:image/png;base64,{}\" alt=\"{}\">", base64(png), escaped(alt))
+    };
+    let mut all = format!(
+        "<figure>{}<figcaption><b>the truth</b><br>{}</figcaption></figure>\n",
+        picture(&report.truth_png, "the truth"),
+        escaped(&report.truth.about)
+    );
+    for point in report.frontier() {
+        let Some(pictures) = &point.pictures else { continue };
+        let flags = report.flags(point.place);
+        let is_it = point.place == report.recommended().place;
+        all += &format!(
+            "<figure{}>{}{}<figcaption><b>{}, {}</b>{}<br>{}<br>ꟻLIP {} in the mean, {} at the 99th \
+             percentile<br>difference: <span class=scale>−{scale} too dark <i></i> {scale} too \
+             bright</span></figcaption></figure>\n",
+            if is_it { " class=best" } else { "" },
+            picture(&pictures.light, &flags),
+            picture(&pictures.difference, &format!("difference of {flags}")),
+            escaped(&report.time_text(point)),
+            escaped(&report.error_text(point)),
+            if is_it { ", recommended" } else { "" },
+            code(&flags),
+            digits(pictures.flip.mean),
+            digits(pictures.flip.p99),
+            scale = short_percent(pictures.scale),
+        );
+    }
+    all
+}
+
+fn rows(report: &Report) -> String {
+    let front = report.walk.search.frontier();
+    let mut points: Vec<&Point> = report.walk.points.iter().collect();
+    points.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let row = |p: &&Point| {
+        let kind = match (p.place == report.recommended().place, front.contains(&p.place)) {
+            (true, _) => "best",
+            (_, true) => "on",
+            _ => "",
+        };
+        let (t, d) = (&p.total_ns, &p.distance);
+        let drawn = format!(
+            "{} draws: {} in the middle, {} – {}; the baseline beside them {}. ",
+            p.totals_ns.len(),
+            ms(t.median),
+            ms(t.p10),
+            ms(t.p90),
+            ms(p.baseline_median())
+        );
+        let passes: Vec<String> =
+            p.passes.iter().map(|(name, ns)| format!("{name}: {}", ms(*ns))).collect();
+        let cells = [
+            report.time_text(p),
+            report.error_text(p),
+            percent(d.mean_shift),
+            percent(d.p99),
+            percent(d.worst),
+            format!("{}, {}", d.worst_row, d.worst_col),
+            p.pictures.as_ref().map_or_else(String::new, |p| digits(p.flip.mean)),
+            format!("{:.1} MiB", p.bytes as f64 / 1_048_576.0),
+        ];
+        let cells: String = cells.iter().map(|c| format!("<td>{}", escaped(c))).collect();
+        format!(
+            "<tr class=\"{kind}\"><td><details><summary>{}</summary>{}{}</details>{cells}\n",
+            code(&report.flags(p.place)),
+            escaped(&drawn),
+            escaped(&passes.join("; "))
+        )
+    };
+    points.iter().map(row).collect()
+}
+
+fn ruled_out(report: &Report) -> String {
+    let groups = report.others().skipped();
+    let mut all: String = groups
+        .iter()
+        .take(GROUPS)
+        .map(|g| {
+            let some: Vec<String> =
+                g.places.iter().take(EXAMPLES).map(|i| code(&report.flags(*i))).collect();
+            let more = g.places.len().saturating_sub(EXAMPLES);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            format!("<li>{} ({}): {}{more}\n", escaped(&g.why), g.places.len(), some.join(", "))
+        })
+        .collect();
+    let rest = groups.len().saturating_sub(GROUPS);
+    if rest > 0 {
+        let count: usize = groups[GROUPS..].iter().map(|g| g.places.len()).sum();
+        all += &format!("<li>{rest} more reasons, for {count} settings\n");
+    }
+    if all.is_empty() { "<li>nothing\n".to_owned() } else { all }
+}
+
+fn not_tried(report: &Report) -> String {
+    let others = report.others();
+    let open = others.not_tried();
+    let mut all: String = open
+        .iter()
+        .take(GROUPS)
+        .map(|i| {
+            let flags = code(&report.flags(*i));
+            format!("<li>{flags}: expected {}\n", escaped(&others.expected_text(*i)))
+        })
+        .collect();
+    let rest = open.len().saturating_sub(GROUPS);
+    if rest > 0 {
+        all += &format!("<li>{rest} more, which trade.json counts by the values of each setting\n");
+    }
+    if all.is_empty() {
+        "<li>nothing: every setting was measured, ruled out or given up\n".to_owned()
+    } else {
+        all
+    }
+}
+
+fn knobs(report: &Report) -> String {
+    let row = |knob: &ridgelight_trade::trade::Knob| {
+        let range = knob.range.as_ref();
+        format!(
+            "<tr><th>{}<td>{}<td>{}<td>{}<td>{}\n",
+            escaped(knob.name),
+            knob.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
+            code(&knob.steps[knob.default]),
+            range.map_or_else(|| "these".to_owned(), |r| format!("{} to {}", r.start(), r.end())),
+            escaped(knob.dearer)
+        )
+    };
+    report.knobs.iter().map(row).collect()
+}
+
+/// Flags that lines break between, not within.
+fn code(flags: &str) -> String {
+    let each: Vec<String> =
+        flags.split(" --").map(|f| escaped(f.trim_start_matches("--"))).collect();
+    format!("<code><span>--{}</span></code>", each.join("</span> <span>--"))
+}
+
+/// Of a round number: no zeros at its end.
+fn short_percent(share: f64) -> String {
+    let text = digits(100.0 * share);
+    let is_plain = text.contains('.') && !text.contains('e');
+    let text = if is_plain { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
+}
+
+/// Text that stands for itself in HTML, in quoted attributes too.
+pub fn escaped(text: &str) -> String {
+    text.chars()
+        .map(|c| match c {
+            '&' => "&amp;".to_owned(),
+            '<' => "&lt;".to_owned(),
+            '>' => "&gt;".to_owned(),
+            '"' => "&quot;".to_owned(),
+            c => c.to_string(),
+        })
+        .collect()
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(three.get(i).copied().unwrap_or(0));
+        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for digit in 0..4 {
+            let is_there = digit <= three.len();
+            let value = (bits >> (18 - 6 * digit)) & 63;
+            text.push(if is_there { DIGITS[value as usize] as char } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_is_the_standards() {
+        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"];
+        let expected = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
+        assert_eq!(texts.map(|t| base64(t.as_bytes())), expected);
+        assert_eq!(base64(&[0xFB, 0xFF]), "+/8=");
+    }
+
+    #[test]
+    fn values_are_filled_in_once() {
+        let values = [("a", "{{b}}".to_owned()), ("b", "2".to_owned())];
+        assert_eq!(filled("1 {{a}} {{b}} 3", &values), "1 {{b}} 2 3");
+        assert_eq!(code("--a 1 --b"), "<code><span>--a 1</span> <span>--b</span></code>");
+        assert_eq!(
+            [0.02, 0.1, 2.0, 1e-12].map(short_percent),
+            ["2 %", "10 %", "200 %", "1.00e-10 %"]
+        );
+        assert_eq!(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
+    }
+}

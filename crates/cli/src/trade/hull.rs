@@ -1,0 +1,173 @@
+//! Where the hull lives: the one knob without an error. It is turned for the recommended settings
+//! alone.
+
+use ridgelight::plan::Plan;
+use ridgelight::scene::{Hull, Quality};
+use ridgelight::{Error, Result};
+use ridgelight_trade::statistics::Summary;
+
+use super::rig::Rig;
+use super::walk::KEPT;
+use crate::terminal::digits;
+
+/// Draws in each place, each beside one in the planner's, after one that warms up.
+const DRAWS: usize = 5;
+/// A place is worth a flag where it is faster than this, by more than times waver.
+const WORTH: f64 = 0.95;
+
+/// The recommended settings with the hull in one place.
+pub struct Place {
+    pub name: &'static str,
+    /// Whether it is the planner's own choice, whose ratio says how far times waver.
+    pub is_own: bool,
+    /// Median ratio to draws with the planner's own choice; or why there is none.
+    pub ratio: std::result::Result<f64, String>,
+}
+
+/// Settings without a hull have no places. A draw is expected to take `draw_s`; three of them are drawn where
+/// they fit into a place's share of the time kept, even if that is spent.
+///
+/// # Errors
+/// A place that changes the picture.
+pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place>> {
+    let planned = rig.plan(rig.scene, quality)?;
+    let Some(home) = home(&planned) else { return Ok(Vec::new()) };
+    let mut own = rig.frame(quality)?;
+    let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
+    let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
+        let right = drawn?;
+        let all = [("private", Hull::Private), ("shared", Hull::Shared), ("list", Hull::List)];
+        let one = |(name, hull)| {
+            let is_own = home == name;
+            let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
+            if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
+                return none("too dear for what was left of the budget".to_owned());
+            }
+            let mut frame = match rig.frame(&Quality { hull, ..*quality }) {
+                Ok(frame) => frame,
+                Err(error) => return none(error.to_string()),
+            };
+            let ratio = ratio(rig, &mut frame, &mut own, &right);
+            rig.gpu.end(frame);
+            ratio.map(|ratio| Place { name, is_own, ratio: Ok(ratio) })
+        };
+        all.into_iter().map(one).collect()
+    };
+    let all = measured(rig);
+    rig.gpu.end(own);
+    all
+}
+
+/// Where a plan keeps its hull: brute force, exact sweeps and pyramids have none.
+fn home(plan: &Plan) -> Option<&str> {
+    plan.settings.iter().find(|(name, _)| name == "hull").map(|(_, place)| place.as_str())
+}
+
+fn ratio(
+    rig: &mut Rig,
+    frame: &mut ridgelight::gpu::Frame,
+    own: &mut ridgelight::gpu::Frame,
+    right: &[Vec<f32>],
+) -> Result<f64> {
+    rig.gpu.draw(frame)?;
+    let bits =
+        |planes: &[Vec<f32>]| planes.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
+    if bits(&rig.radiance(frame)?) != bits(right) {
+        return Err(Error::Device {
+            doing: "moving the hull".into(),
+            reason: "the picture changed, which it never should".into(),
+        });
+    }
+    let mut ratios = Vec::new();
+    while ratios.len() < DRAWS && (ratios.is_empty() || rig.left() > 0.0) {
+        let [ns, beside] = [rig.gpu.draw(frame)?, rig.gpu.draw(own)?]
+            .map(|times| times.iter().map(|t| t.ns).sum::<f64>());
+        ratios.push(ns / beside);
+    }
+    Ok(Summary::of(&ratios).map_or(1.0, |s| s.median))
+}
+
+/// In a sentence; none where there is no hull or no time was left.
+pub fn text(places: &[Place]) -> Option<String> {
+    let timed: Vec<(&Place, f64)> =
+        places.iter().filter_map(|p| Some((p, *p.ratio.as_ref().ok()?))).collect();
+    let wavers = timed.iter().find(|(p, _)| p.is_own).map_or(1.0, |(_, r)| r.max(r.recip()));
+    let (best, ratio) = timed.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let advice = if !best.is_own && ratio * wavers < WORTH {
+        format!("add --hull {}", best.name)
+    } else {
+        "leave it to the planner".to_owned()
+    };
+    let each: Vec<String> = timed
+        .iter()
+        .map(|(p, ratio)| {
+            let own = if p.is_own { " (the same, drawn again)" } else { "" };
+            format!("{} {} ×{own}", p.name, digits(*ratio))
+        })
+        .collect();
+    let untimed = places.iter().filter_map(|p| {
+        Some(format!("; --hull {} was not timed: {}", p.name, p.ratio.as_ref().err()?))
+    });
+    Some(format!(
+        "Where the hull lives never changes the picture (the same bits here), only the time; beside the \
+         planner's choice: {}{}. So {advice}.",
+        each.join(", "),
+        untimed.collect::<String>()
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::plan::{self, Limits, Picture};
+    use ridgelight::scene::{HeightField, Lights, Lines, Method, Scene, SphereLight, Surface};
+
+    #[test]
+    fn sweeps_along_lines_alone_have_a_hull() {
+        let field = HeightField::new(9, 9, &[0.0; 81], [1.0; 2], None).unwrap();
+        let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+        let scene = Scene { field, surface: Surface::default(), lights };
+        let base = Quality { method: Method::Sweep, ..Quality::default() };
+        for (quality, has_hull) in [
+            (base, true),
+            (Quality { hull: Hull::List, ..base }, true),
+            (Quality { lines: Lines::Exact, ..base }, false),
+            (Quality { method: Method::Brute, ..base }, false),
+            (Quality { method: Method::Pyramid, ..base }, false),
+        ] {
+            let limits = Limits::boundless(true, 1 << 30);
+            let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
+            assert_eq!(home(&plan).is_some(), has_hull, "{quality:?}");
+        }
+        // Balls of light look themselves for what hides them: no sweep, whatever the method.
+        let ball = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
+        let lights = Lights { spheres: vec![ball], ..Lights::default() };
+        let scene = Scene { lights, ..scene };
+        let limits = Limits::boundless(true, 1 << 30);
+        let plan = plan::picture(&scene, &base, &limits, Picture::default()).unwrap();
+        assert!(home(&plan).is_none(), "{:?}", plan.settings);
+    }
+
+    /// 0.97 of the time is not worth a flag, 0.8 is, but not where the same place took 1.3 × or the
+    /// 1.3th of its own.
+    #[test]
+    fn a_place_is_advised_where_it_is_faster_than_times_waver() {
+        let said = |own: f64, other: f64| {
+            let places = [
+                Place { name: "private", is_own: true, ratio: Ok(own) },
+                Place { name: "shared", is_own: false, ratio: Ok(other) },
+                Place { name: "list", is_own: false, ratio: Err("late".to_owned()) },
+            ];
+            text(&places).unwrap()
+        };
+        assert!(said(1.0, 0.97).ends_with("So leave it to the planner."), "{}", said(1.0, 0.97));
+        assert!(said(1.0, 0.8).ends_with("So add --hull shared."));
+        assert!(
+            said(1.3, 0.8).ends_with("planner.") && said(1.0 / 1.3, 0.75).ends_with("planner.")
+        );
+        let all = said(1.0, 0.8);
+        assert!(all.contains("private 1.00 × (the same, drawn again), shared 0.800 ×;"), "{all}");
+        assert!(all.contains("--hull list was not timed: late."), "{all}");
+        assert!(text(&[]).is_none());
+    }
+}

@@ -1,0 +1,202 @@
+//! What a walk has not measured, and why: a few settings of each kind spelt out, all of them counted.
+
+use std::collections::BTreeMap;
+
+use ridgelight_trade::trade::{Knob, Place, Skip};
+use serde_json::{Value, json};
+
+use super::report::ms;
+use super::walk::Walk;
+use crate::terminal::percent;
+
+/// Reasons, and settings that were not tried, that a report spells out; settings of each reason.
+pub const GROUPS: usize = 40;
+pub const EXAMPLES: usize = 6;
+
+/// Settings, and what is known of them.
+#[derive(Clone, Copy)]
+pub struct LeftOut<'a> {
+    pub knobs: &'a [Knob],
+    pub places: &'a [Place],
+    pub walk: &'a Walk,
+}
+
+/// Places without a measurement that share a reason.
+pub struct Group {
+    pub why: String,
+    pub places: Vec<usize>,
+}
+
+impl LeftOut<'_> {
+    pub fn flags(&self, place: usize) -> String {
+        self.places[place].flags(self.knobs)
+    }
+
+    fn skip_text(&self, skip: &Skip) -> String {
+        match skip {
+            Skip::Covered { by, dearer_than, worse_than } => {
+                let error = match worse_than {
+                    Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
+                    None => "no more accurate than the truth can tell".to_owned(),
+                };
+                let dearer = self.flags(*dearer_than);
+                format!("no cheaper than {dearer} and {error}: {} is both", self.flags(*by))
+            }
+            Skip::TooDear { than } => {
+                format!("dearer than {}, which was too dear", self.flags(*than))
+            }
+        }
+    }
+
+    /// Places ruled out, by reason, the largest groups first.
+    pub fn skipped(&self) -> Vec<Group> {
+        let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for place in 0..self.places.len() {
+            if let Some(skip) = self.walk.search.skip(place) {
+                groups.entry(self.skip_text(&skip)).or_default().push(place);
+            }
+        }
+        for (place, why) in &self.walk.given_up {
+            groups.entry(why.clone()).or_default().push(*place);
+        }
+        let mut all: Vec<Group> =
+            groups.into_iter().map(|(why, places)| Group { why, places }).collect();
+        all.sort_by_key(|g| std::cmp::Reverse(g.places.len()));
+        all
+    }
+
+    /// Places that the budget left open, the most promising first.
+    pub fn not_tried(&self) -> Vec<usize> {
+        let search = &self.walk.search;
+        let open = (0..self.places.len()).filter(|i| search.is_open(*i));
+        let mut open: Vec<(f64, usize)> = open.map(|i| (search.merit(i), i)).collect();
+        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        open.into_iter().map(|(_, i)| i).collect()
+    }
+
+    pub fn expected_text(&self, place: usize) -> String {
+        let value = self.walk.search.predicted(place);
+        let time = ms(value.cost * self.walk.baseline_ns());
+        format!("{time}, {}", percent(value.error))
+    }
+
+    /// The largest groups of what was ruled out, some settings of each.
+    pub fn ruled_out_json(&self) -> Vec<Value> {
+        let of = |group: &Group| {
+            let some: Vec<String> =
+                group.places.iter().take(EXAMPLES).map(|i| self.flags(*i)).collect();
+            json!({ "why": group.why, "count": group.places.len(), "settings": some })
+        };
+        self.skipped().iter().take(GROUPS).map(of).collect()
+    }
+
+    /// The most promising of what was not tried.
+    pub fn not_tried_json(&self) -> Vec<Value> {
+        let of = |place: &usize| {
+            let expected = self.walk.search.predicted(*place);
+            json!({
+                "flags": self.flags(*place), "expected_ns": expected.cost * self.walk.baseline_ns(),
+                "expected_relative_rmse": expected.error,
+            })
+        };
+        self.not_tried().iter().take(GROUPS).map(of).collect()
+    }
+
+    /// How many settings there are of each kind: in all, and with each step of each knob where that is not idle.
+    pub fn counts_json(&self) -> Value {
+        #[derive(Clone, Copy, PartialEq)]
+        enum Kind {
+            Measured,
+            RuledOut,
+            NotTried,
+        }
+        let search = &self.walk.search;
+        let kind = |place: usize| match search.value(place) {
+            Some(_) => Kind::Measured,
+            None if search.is_open(place) => Kind::NotTried,
+            None => Kind::RuledOut,
+        };
+        let kinds: Vec<Kind> = (0..self.places.len()).map(kind).collect();
+        let counted = |has: &dyn Fn(&Place) -> bool| {
+            let count = |of: Kind| {
+                let all = self.places.iter().zip(&kinds);
+                all.filter(|(place, kind)| **kind == of && has(place)).count()
+            };
+            json!({
+                "measured": count(Kind::Measured), "ruled_out": count(Kind::RuledOut),
+                "not_tried": count(Kind::NotTried),
+            })
+        };
+        let by_step = |(k, knob): (usize, &Knob)| {
+            let steps = knob.steps.iter().enumerate().map(|(s, spelt)| {
+                let mut of = counted(&|place| place.steps[k] == Some(s));
+                of["step"] = json!(spelt);
+                of
+            });
+            json!({ "name": knob.name, "steps": steps.collect::<Vec<_>>() })
+        };
+        let mut all = counted(&|_| true);
+        all["settings"] = json!(self.places.len());
+        all["reasons"] = json!(self.skipped().len());
+        all["by_knob"] = self.knobs.iter().enumerate().map(by_step).collect();
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::{Bounces, HeightField, Lights, Quality, Scene, Sun, Surface};
+    use ridgelight_trade::trade::{Search, Value as Measured, knobs, places, start_of};
+
+    /// Under a sky and a sun with bounces there are over a hundred thousand settings. With four measured, nearly all are either
+    /// ruled out or open: the report stays below 64 KiB, 40 settings and 40 reasons with 6 each of 250 letters and 12 KiB of
+    /// counts, and says of every setting what became of it, once.
+    #[test]
+    fn what_is_left_out_is_counted_and_not_listed() {
+        let sun =
+            Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.01, irradiance: [1.0; 3] };
+        let scene = Scene {
+            field: HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap(),
+            surface: Surface::default(),
+            lights: Lights { sky: Some([1.0; 3]), suns: vec![sun], ..Lights::default() },
+        };
+        let knobs = knobs(&scene, 3);
+        let bounces = Bounces { count: 3, ..Bounces::default() };
+        let start = Quality { bounces, ..start_of(&scene) };
+        let places = places(&knobs, &start);
+        assert!(places.len() > 100_000, "{}", places.len());
+        let baseline = places.iter().position(|p| p.quality == start).unwrap();
+        let steps = places.iter().map(|p| p.steps.clone()).collect();
+        let mut walk = Walk {
+            search: Search::new(steps, baseline, 1e-4),
+            points: Vec::new(),
+            given_up: Vec::new(),
+            baseline,
+            out_of_time: true,
+        };
+        for (i, place) in [baseline, 0, places.len() / 2, 7].into_iter().enumerate() {
+            let (cost, error) = (1.0 + i as f64, 0.1 / (1.0 + i as f64));
+            walk.search.measured(place, Measured { cost, error });
+        }
+        walk.search.give_up(9, false);
+        walk.given_up.push((9, "refused".to_owned()));
+        let left = LeftOut { knobs: &knobs, places: &places, walk: &walk };
+        let counts = left.counts_json();
+        let number = |of: &Value, name: &str| of[name].as_u64().unwrap() as usize;
+        let kinds = ["measured", "ruled_out", "not_tried"];
+        let sum = |of: &Value| kinds.iter().map(|kind| number(of, kind)).sum::<usize>();
+        assert_eq!((sum(&counts), number(&counts, "measured")), (places.len(), 4));
+        for (k, knob) in counts["by_knob"].as_array().unwrap().iter().enumerate() {
+            let busy = places.iter().filter(|p| p.steps[k].is_some()).count();
+            let steps = knob["steps"].as_array().unwrap();
+            assert_eq!(steps.iter().map(sum).sum::<usize>(), busy, "{}", knob["name"]);
+        }
+        let (out, open) = (left.ruled_out_json(), left.not_tried_json());
+        assert_eq!(open.len(), GROUPS);
+        let given_up = out.iter().find(|g| g["why"] == "refused").unwrap();
+        assert_eq!(number(given_up, "count"), 1);
+        let text = json!({ "left_out": counts, "ruled_out": out, "not_tried": open }).to_string();
+        assert!(text.len() < 1 << 16, "{} bytes", text.len());
+    }
+}

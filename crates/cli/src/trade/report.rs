@@ -1,0 +1,286 @@
+//! What a walk found, for people, for spreadsheets and for machines.
+
+use ridgelight_trade::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side};
+use serde_json::{Value, json};
+
+use super::baked::Tried;
+use super::hull;
+use super::left_out::LeftOut;
+use super::picture::Tones;
+use super::point::Point;
+use super::rig::Budget;
+use super::truth::Truth;
+use super::walk::Walk;
+use crate::setup;
+use crate::terminal::{digits, percent};
+
+pub struct Report<'a> {
+    /// Device, driver, field and lights, as (name, value).
+    pub about: Vec<(String, String)>,
+    pub truth: &'a Truth,
+    pub truth_s: f64,
+    pub truth_png: Vec<u8>,
+    pub tones: &'a Tones,
+    pub hulls: &'a [hull::Place],
+    pub baked: &'a Tried,
+    pub knobs: &'a [Knob],
+    pub places: &'a [Place],
+    pub walk: &'a Walk,
+    pub rule: Rule,
+    /// Its point is a position in the walk's points.
+    pub recommended: Recommendation,
+    pub budget: Budget,
+    pub spent_s: f64,
+}
+
+pub fn ms(ns: f64) -> String {
+    format!("{} ms", digits(ns * 1e-6))
+}
+
+impl Report<'_> {
+    pub fn flags(&self, place: usize) -> String {
+        self.others().flags(place)
+    }
+
+    pub fn others(&self) -> LeftOut<'_> {
+        LeftOut { knobs: self.knobs, places: self.places, walk: self.walk }
+    }
+
+    /// Points that no other covers, from cheap to dear.
+    pub fn frontier(&self) -> Vec<&Point> {
+        let front = self.walk.search.frontier().iter();
+        front.filter_map(|f| self.walk.points.iter().find(|p| p.place == *f)).collect()
+    }
+
+    pub fn recommended(&self) -> &Point {
+        &self.walk.points[self.recommended.point]
+    }
+
+    /// Whether the truth cannot tell a point's error from none.
+    pub fn is_at_most(&self, point: &Point) -> bool {
+        point.distance.rmse <= self.truth.floor()
+    }
+
+    /// Nanoseconds of a frame, had the machine been throughout as it was in the middle of the run.
+    pub fn time_ns(&self, point: &Point) -> f64 {
+        point.ratio * self.walk.baseline_ns()
+    }
+
+    pub fn time_text(&self, point: &Point) -> String {
+        ms(self.time_ns(point))
+    }
+
+    /// A point's error, the truth's own at least.
+    pub fn error(&self, point: &Point) -> f64 {
+        point.distance.rmse.max(self.truth.floor())
+    }
+
+    pub fn error_text(&self, point: &Point) -> String {
+        let sign = if self.is_at_most(point) && self.truth.floor() > 0.0 { "≤ " } else { "" };
+        format!("{sign}{}", percent(self.error(point)))
+    }
+
+    /// What the drift means, in a sentence.
+    pub fn drift_text(&self) -> String {
+        let Some(s) = self.walk.drift() else { return String::new() };
+        let spread = s.p90 / s.p10.max(f64::MIN_POSITIVE) - 1.0;
+        let meaning = if spread > 0.1 {
+            "the machine was busy or changed its clock, so times were taken as ratios to draws of the \
+             baseline beside them"
+        } else {
+            "the machine was steady"
+        };
+        format!(
+            "The baseline ({}), drawn in turn with every point: {} in the middle, {} to {} four \
+             fifths of the time, {} to {} in all; {meaning}.",
+            self.flags(self.walk.baseline),
+            ms(s.median),
+            ms(s.p10),
+            ms(s.p90),
+            ms(s.min),
+            ms(s.max)
+        )
+    }
+
+    pub fn break_text(&self, found: &Break) -> String {
+        let names: Vec<&str> = found.knobs.iter().map(|k| self.knobs[*k].name).collect();
+        let value = |i: usize| {
+            let value = self.walk.search.value(i);
+            value.map_or_else(String::new, |v| match found.side {
+                Side::Cost => ms(v.cost * self.walk.baseline_ns()),
+                Side::Error => percent(v.error),
+            })
+        };
+        let what = match found.side {
+            Side::Cost => "dearer steps were faster",
+            Side::Error => "dearer steps were less accurate",
+        };
+        format!(
+            "{}: {what}: {} ({}) against {} ({})",
+            names.join(", "),
+            self.flags(found.lower),
+            value(found.lower),
+            self.flags(found.higher),
+            value(found.higher)
+        )
+    }
+
+    pub fn summary(&self) -> String {
+        let others = self.others();
+        let skipped: usize = others.skipped().iter().map(|g| g.places.len()).sum();
+        let open = others.not_tried().len();
+        let of = match self.budget {
+            Budget::Seconds(all) => format!(" of {all:.1} s"),
+            Budget::Evaluations(_) => String::new(),
+        };
+        let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
+        format!(
+            "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; \
+             {:.1} s{of}, {:.1} s of them for the truth.",
+            self.walk.points.len(),
+            self.spent_s,
+            self.truth_s
+        )
+    }
+
+    pub fn truth_text(&self) -> String {
+        format!(
+            "Truth: {}. Its own error (relative RMSE): {}: {}.",
+            self.truth.about,
+            self.truth.own_text(),
+            self.truth.quality_of
+        )
+    }
+
+    pub fn assumption() -> String {
+        format!(
+            "Ruled out: what costs at least as much as one measured point and errs at least as much \
+             as another, where a third is better than both, if a dearer step never costs less and is \
+             never less accurate. Every measured pair is held against that; a ladder that broke it by \
+             more than {} rules nothing out.",
+            percent(SLACK)
+        )
+    }
+
+    pub fn print(&self) {
+        crate::say!("{}", self.truth_text());
+        crate::say!("{:>12}  {:>12}  settings", "time", "error");
+        for point in self.frontier() {
+            let mark = if point.place == self.recommended().place { " <- recommended" } else { "" };
+            crate::say!(
+                "{:>12}  {:>12}  {}{mark}",
+                self.time_text(point),
+                self.error_text(point),
+                self.flags(point.place)
+            );
+        }
+        self.why().iter().for_each(|line| crate::say!("{line}"));
+        crate::say!("{}", self.drift_text());
+        crate::say!("{}", self.summary());
+    }
+
+    pub fn csv(&self) -> String {
+        let names = self.knobs.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
+        let mut text = format!(
+            "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
+             worst,worst_row,worst_col,flip_mean,flip_p99,bytes,baseline_ms,frontier,recommended\n",
+            names.join(",")
+        );
+        let front = self.walk.search.frontier();
+        for point in &self.walk.points {
+            let (t, d) = (&point.total_ns, &point.distance);
+            let place = &self.places[point.place];
+            let steps = self.knobs.iter().zip(&place.steps).map(|(knob, step)| {
+                let spelt = step.map_or("", |s| knob.steps[s].as_str());
+                spelt.split(' ').next_back().unwrap_or_default()
+            });
+            let mut row = vec![self.flags(point.place)];
+            row.extend(steps.map(str::to_owned));
+            row.extend(
+                [self.time_ns(point), t.median, t.p10, t.p90, t.min]
+                    .map(|ns| format!("{:.6}", ns * 1e-6)),
+            );
+            row.push(point.totals_ns.len().to_string());
+            row.push(format!("{:e}", self.error(point)));
+            row.push(self.is_at_most(point).to_string());
+            row.extend([d.mean_shift, d.p99, d.worst].map(|x| format!("{x:e}")));
+            row.extend([d.worst_row, d.worst_col].map(|x| x.to_string()));
+            let flip = point.pictures.as_ref().map(|p| [p.flip.mean, p.flip.p99]);
+            row.extend(flip.map_or([const { String::new() }; 2], |f| f.map(|x| format!("{x:e}"))));
+            row.push(point.bytes.to_string());
+            row.push(format!("{:.6}", point.baseline_median() * 1e-6));
+            row.push(front.contains(&point.place).to_string());
+            row.push((point.place == self.recommended().place).to_string());
+            text += &row.join(",");
+            text.push('\n');
+        }
+        text
+    }
+
+    fn point_json(&self, point: &Point) -> Value {
+        let (t, d) = (&point.total_ns, &point.distance);
+        let passes: Vec<Value> = point
+            .passes
+            .iter()
+            .map(|(pass, ns)| json!({ "pass": pass, "median_ns": ns }))
+            .collect();
+        json!({
+            "flags": self.flags(point.place), "settings": setup::typed(&point.settings),
+            "time_ns": self.time_ns(point), "median_ns": t.median, "p10_ns": t.p10, "p90_ns": t.p90, "min_ns": t.min,
+            "draws": point.totals_ns.len(), "passes": passes, "bytes": point.bytes,
+            "relative_rmse": self.error(point), "at_most": self.is_at_most(point),
+            "mean_shift": d.mean_shift, "p99": d.p99, "worst": d.worst,
+            "worst_row": d.worst_row, "worst_col": d.worst_col,
+            "flip": point.pictures.as_ref().map(|p| json!({
+                "mean": p.flip.mean, "weighted_quartiles": p.flip.weighted_quartiles, "p99": p.flip.p99,
+                "worst": p.flip.worst, "worst_row": p.flip.worst_row, "worst_col": p.flip.worst_col,
+            })),
+            "begun_s": point.at_s[0], "done_s": point.at_s[1], "baseline_ns": point.baseline_median(),
+        })
+    }
+
+    pub fn json(&self) -> Value {
+        let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
+        let front: Vec<usize> =
+            self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
+        let knobs: Vec<Value> = self
+            .knobs
+            .iter()
+            .map(|k| {
+                json!({
+                    "name": k.name, "cheap_to_dear": k.steps, "default": k.steps[k.default],
+                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "dearer": k.dearer,
+                })
+            })
+            .collect();
+        let hulls: Vec<Value> = self
+            .hulls
+            .iter()
+            .map(|h| json!({ "hull": h.name, "time_ratio": h.ratio.as_ref().ok(), "why_none": h.ratio.as_ref().err() }))
+            .collect();
+        let others = self.others();
+        let breaks: Vec<String> =
+            self.walk.search.breaks().iter().map(|b| self.break_text(b)).collect();
+        let (budget_s, evaluations) = match self.budget {
+            Budget::Seconds(seconds) => (Some(seconds), None),
+            Budget::Evaluations(most) => (None, Some(most)),
+        };
+        json!({
+            "ridgelight": env!("CARGO_PKG_VERSION"), "about": setup::typed(&self.about),
+            "truth": {
+                "what": self.truth.about, "own_relative_rmse": self.truth.own_error,
+                "how": self.truth.quality_of, "seconds": self.truth_s,
+            },
+            "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
+            "knobs": knobs,
+            "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
+            "frontier": front,
+            "recommendation": {
+                "point": self.recommended.point, "flags": self.flags(self.recommended().place),
+                "holds": self.recommended.holds, "why": self.why(),
+            },
+            "hulls": hulls, "baked": self.baked_json(), "baked_refused": self.baked_refused_json(), "drift": self.drift_text(), "ladders_broken": breaks,
+            "left_out": others.counts_json(), "ruled_out": others.ruled_out_json(), "not_tried": others.not_tried_json(),
+        })
+    }
+}

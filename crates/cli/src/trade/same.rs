@@ -1,0 +1,140 @@
+//! Whether a truth from a file is of this scene, by what `render` and `reference` write of theirs.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use ridgelight::scene::Scene;
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+
+use crate::args::albedo_colour;
+
+/// Numbers that were written and read back as text are as near.
+const NEAR: f64 = 1e-6;
+
+/// Refuses a file that says that it is of another scene: surface, borders, lights, or light that no settings
+/// give. `asked` is this scene's, as in a picture's header. What says nothing is taken.
+pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<()> {
+    let told: BTreeMap<String, String> = files::read_metadata(path)?.into_iter().collect();
+    if !told.contains_key("ridgelight") {
+        return Ok(());
+    }
+    let field = &scene.field;
+    let mut ours: BTreeMap<String, String> = asked.iter().cloned().collect();
+    ours.insert("cell_m".to_owned(), format!("{},{}", field.cell_m()[0], field.cell_m()[1]));
+    ours.insert("base_m".to_owned(), field.base_m().to_string());
+    ours.insert("border".to_owned(), format!("{:?}", scene.surface.border).to_lowercase());
+    let names: BTreeSet<&String> = told.keys().chain(ours.keys()).filter(|n| is_scene(n)).collect();
+    for name in names {
+        let [found, expected] = [&told, &ours].map(|all| all.get(name).map(String::as_str));
+        if !is_same(name, found, expected) {
+            let expected = match name.as_str() {
+                "bounces" => format!("{}, as --bounces here", expected.unwrap_or("0")),
+                name if gives_none(name) => format!("none: {NO_SETTINGS}"),
+                _ => format!("{}, as in this scene", expected.unwrap_or("none")),
+            };
+            return Err(Error::File {
+                path: path.to_owned(),
+                place: format!("header: {name}"),
+                found: found.unwrap_or("none").to_owned(),
+                expected,
+            });
+        }
+    }
+    Ok(())
+}
+
+const NO_SETTINGS: &str = "no settings that are walked give such light";
+
+/// Light that no settings that are walked give where the scene has none.
+fn gives_none(name: &str) -> bool {
+    matches!(name, "bounces" | "phong") || is_numbered(name, "light")
+}
+
+fn is_scene(name: &str) -> bool {
+    const NAMES: [&str; 8] =
+        ["cell_m", "base_m", "z_scale", "border", "albedo", "sky", "env", "env_rotate_deg"];
+    NAMES.contains(&name) || is_aimed(name) || gives_none(name)
+}
+
+/// Lights whose first number is their azimuth.
+fn is_aimed(name: &str) -> bool {
+    is_numbered(name, "sun") || is_numbered(name, "key")
+}
+
+fn is_numbered(name: &str, word: &str) -> bool {
+    name.strip_prefix(word).is_some_and(|rest| rest.parse::<u32>().is_ok())
+}
+
+/// Whether two values are of one thing, however they are spelt; a file by its name alone, wherever it lies.
+fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
+    let numbers = |text: &str| -> Option<Vec<f64>> {
+        if name == "albedo" {
+            return albedo_colour(text).map(|c| c.map(f64::from).to_vec());
+        }
+        text.split(',').map(|t| t.parse().ok()).collect()
+    };
+    let (a, b) = match (found, expected) {
+        (None, None) => return true,
+        (Some(text), None) if gives_none(name) => {
+            return name == "bounces" && text == "0";
+        }
+        (Some(a), Some(b)) => (a, b),
+        _ => return false,
+    };
+    match (numbers(a), numbers(b)) {
+        (Some(a), Some(b)) => {
+            // Whole turns are none.
+            let turns = is_aimed(name) || name == "env_rotate_deg";
+            a.len() == b.len()
+                && (0..a.len()).all(|i| {
+                    let off = a[i] - b[i];
+                    let off =
+                        if turns && i == 0 { off - 360.0 * (off / 360.0).round() } else { off };
+                    off.abs() <= NEAR * a[i].abs().max(b[i].abs())
+                })
+        }
+        (None, None) => Path::new(a).file_name() == Path::new(b).file_name(),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spellings_of_one_value_are_the_same() {
+        for (name, a, b) in [
+            ("albedo", Some("0.5"), Some("0.50,0.5,0.5")),
+            ("albedo", Some("maps/moss.png"), Some("/else/moss.png")),
+            ("sun1", Some("-90,30,0.53,1,1,1"), Some("270,30,0.53,1,1,1")),
+            ("key1", Some("0,30,20,10,1,1,1"), Some("360,30,20,10,1,1,1")),
+            ("cell_m", Some("30,30"), Some("30,30.000001")),
+            ("env", Some("a/sky.hdr"), Some("sky.hdr")),
+            ("bounces", Some("0"), None),
+            ("phong", None, None),
+        ] {
+            assert!(is_same(name, a, b) && is_same(name, a, a), "{name}: {a:?} {b:?}");
+        }
+        for (name, a, b) in [
+            ("albedo", Some("0.5"), Some("0.6")),
+            ("albedo", Some("0.5"), Some("moss.png")),
+            ("sun1", Some("90,30,0.53,1,1,1"), Some("270,30,0.53,1,1,1")),
+            ("sun2", Some("90,30,0.53,1,1,1"), None),
+            ("key1", None, Some("0,30,20,10,1,1,1")),
+            ("sky", None, Some("1,1,1")),
+            ("cell_m", Some("30,30"), Some("30,30.001")),
+            ("env", Some("sky.hdr"), Some("lab.hdr")),
+            ("bounces", Some("2"), None),
+            ("phong", Some("9,0.25"), None),
+            ("light1", Some("4,4,9,1,2,3,4"), None),
+            ("border", Some("open"), Some("plane")),
+        ] {
+            assert!(!is_same(name, a, b), "{name}: {a:?} {b:?}");
+        }
+        assert!(["key1", "sun12", "light3", "bounces"].iter().all(|name| is_scene(name)));
+        // Settings of one method are no scene.
+        assert!(!["sun_azimuths", "lights", "spp", "seed"].iter().any(|name| is_scene(name)));
+    }
+}

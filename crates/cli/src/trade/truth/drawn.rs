@@ -1,0 +1,210 @@
+//! A truth of our own, as dense as a budget of time lets it be.
+
+use std::time::Instant;
+
+use ridgelight::scene::{Fuse, Lights, Lines, Method, Quality, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_trade::auto::{Probes, apart};
+
+use super::super::rig::Rig;
+use super::Truth;
+use crate::terminal::percent;
+
+/// Share of the budget that drawing the truth may take, and probing it.
+const DRAWING: f64 = 0.4;
+const PROBING: f64 = 0.1;
+/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, a key light or a
+/// ball, elevations.
+const MOST: [u32; 3] = [512, 64, 4096];
+/// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
+const BRUTE_HALVINGS: u32 = 1;
+const HALVINGS: u32 = 3;
+/// Probes at least, for which the bound's normal approximation is good.
+const FEWEST_PROBES: usize = 64;
+/// The same probes for the same scene and number.
+const SEED: u64 = 0;
+impl Truth {
+    /// Our own: the suns and key lights, the balls of light, then all else; all but balls by brute force where
+    /// that fits into their share of the budget, else by the densest sweep, balls in as many slices as fit.
+    /// Light adds up.
+    pub fn draw(rig: &mut Rig) -> Result<Self> {
+        let scene = rig.scene;
+        let all = &scene.lights;
+        let has_sky = all.sky.is_some() || all.environment.is_some();
+        let under = |lights: Lights| Scene { lights, ..scene.clone() };
+        let mut parts = Vec::new();
+        if !(all.suns.is_empty() && all.keys.is_empty()) {
+            let name = match (all.suns.is_empty(), all.keys.is_empty()) {
+                (_, true) => "suns",
+                (true, false) => "key lights",
+                (false, false) => "suns and key lights",
+            };
+            let (suns, keys) = (all.suns.clone(), all.keys.clone());
+            parts.push((name, under(Lights { suns, keys, ..Lights::default() })));
+        }
+        if !all.spheres.is_empty() {
+            let spheres = all.spheres.clone();
+            parts.push(("balls", under(Lights { spheres, ..Lights::default() })));
+        }
+        if has_sky {
+            let (sky, environment) = (all.sky, all.environment.clone());
+            parts.push(("sky", under(Lights { sky, environment, ..Lights::default() })));
+        }
+        let mut share = rig.share(DRAWING);
+        let (mut whole, mut halved, mut about) = (Vec::new(), Vec::new(), Vec::new());
+        let last = parts.len() - 1;
+        for (i, (name, part)) in parts.iter().enumerate() {
+            let begun = Instant::now();
+            let seconds = if i < last { 0.5 * share } else { share };
+            let [quality, half] = match part.lights.spheres.is_empty() {
+                true => affordable(rig, part, seconds)?,
+                false => affordable_slices(rig, part, seconds)?,
+            };
+            add(&mut whole, rig.draw_once(part, &quality)?);
+            add(&mut halved, rig.draw_once(part, &half)?);
+            about.push(format!("{name} by {}", used(rig, part, &quality)?));
+            share -= begun.elapsed().as_secs_f64();
+        }
+        let field = &scene.field;
+        let mut truth = Self {
+            planes: whole,
+            cols: field.cols(),
+            rows: field.rows(),
+            about: about.join("; "),
+            quality_of: String::new(),
+            own_error: None,
+            noise: 0.0,
+        };
+        let steps = truth.distance(&halved)?.rmse;
+        let unsure = apart(&truth.planes, &halved, truth.cols);
+        let probes = probes(scene, &unsure, rig.share(PROBING))?;
+        let off = probes.error(&truth.planes, None, Probes::ONE_LOOK);
+        truth.own_error = Some(steps.max(off.at_most));
+        truth.quality_of = format!(
+            "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
+             halves as counts double; by {} samples, most of them where the two differ, it is {} off \
+             the oracle in f64, {}; the larger of the two is taken",
+            percent(steps),
+            probes.len(),
+            percent(off.error),
+            if probes.is_whole() {
+                "all that there are".to_owned()
+            } else {
+                let confidence = 100.0 * Probes::CONFIDENCE;
+                format!("with {confidence:.0} % confidence at most {}", percent(off.at_most))
+            }
+        );
+        Ok(truth)
+    }
+}
+
+/// As many samples with their exact light as fit into a time, the fewest at least; half of them by how far
+/// two pictures lie apart at each.
+fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
+    let begun = Instant::now();
+    let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
+    let each = begun.elapsed().as_secs_f64() / few.len() as f64;
+    let left = (most_s - begun.elapsed().as_secs_f64()).max(0.0);
+    let fit = ((left / each) as usize).min(Probes::affordable(scene));
+    if few.is_whole() || fit <= few.len() { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
+}
+
+/// All counts of the truth, halved so many times.
+fn counts(quality: &Quality, halvings: u32) -> Quality {
+    let [azimuths, sun_azimuths, table_elevations] = MOST.map(|m| m >> halvings);
+    Quality { azimuths, sun_azimuths, table_elevations, ..*quality }
+}
+
+/// Settings for the truth, and the same with half the counts, that can be drawn in so many seconds;
+/// the least there are, where none can.
+fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
+    let dense = Quality {
+        method: Method::Sweep,
+        lines: Lines::QuarterCell,
+        fuse: Fuse::Aimed,
+        ..Quality::default()
+    };
+    let brute = Quality { method: Method::Brute, ..dense };
+    for (quality, most) in [(brute, BRUTE_HALVINGS), (dense, HALVINGS)] {
+        // A device that cannot do this at all says so here.
+        if rig.plan(scene, &counts(&quality, most)).is_err() {
+            continue;
+        }
+        let each = rig.seconds_per_azimuth(scene, &quality)?;
+        for halvings in 0..=most {
+            let two = [halvings, halvings + 1].map(|h| counts(&quality, h));
+            let azimuths = |q: &Quality| Ok::<_, Error>(rig.plan(scene, q)?.azimuths.len() as f64);
+            if each * (azimuths(&two[0])? + azimuths(&two[1])?) <= seconds {
+                return Ok(two);
+            }
+        }
+    }
+    Ok([HALVINGS, HALVINGS + 1].map(|h| counts(&dense, h)))
+}
+
+/// The same for balls of light alone, none of which is dropped anywhere.
+fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
+    let all = Quality { light_cutoff: 0.0, ..Quality::default() };
+    let two = |halvings: u32| [halvings, halvings + 1].map(|h| counts(&all, h));
+    let few = counts(&all, HALVINGS + 1);
+    rig.draw_once(scene, &few)?;
+    let begun = Instant::now();
+    rig.draw_once(scene, &few)?;
+    let each = begun.elapsed().as_secs_f64() / f64::from(few.sun_azimuths);
+    let fits = |two: &[Quality; 2]| {
+        each * two.iter().map(|q| f64::from(q.sun_azimuths)).sum::<f64>() <= seconds
+    };
+    Ok((0..HALVINGS).map(two).find(fits).unwrap_or_else(|| two(HALVINGS)))
+}
+
+/// Adds planes to a sum that may have none, one or three.
+fn add(sum: &mut Vec<Vec<f32>>, planes: Vec<Vec<f32>>) {
+    if sum.is_empty() {
+        *sum = planes;
+        return;
+    }
+    while sum.len() < planes.len() {
+        sum.push(sum[0].clone());
+    }
+    let last = planes.len() - 1;
+    for (c, plane) in sum.iter_mut().enumerate() {
+        plane.iter_mut().zip(&planes[c.min(last)]).for_each(|(s, v)| *s += v);
+    }
+}
+
+/// What a plan makes of settings of the truth.
+fn used(rig: &Rig, scene: &Scene, quality: &Quality) -> Result<String> {
+    const TOLD: [&str; 6] =
+        ["method", "lines", "fuse", "azimuths", "sun_azimuths", "table_elevations"];
+    let all = rig.plan(scene, quality)?.settings;
+    let told = all.iter().filter(|(name, _)| TOLD.contains(&name.as_str()));
+    Ok(told.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ridgelight::scene::{HeightField, Surface};
+
+    /// No time is 64 probes, much is all there are.
+    #[test]
+    fn probes_fit_their_time() {
+        let of = |side: usize, most_s: f64| {
+            let field = HeightField::new(side, side, &vec![0.0; side * side], [1.0; 2], None);
+            let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
+            let scene = Scene { field: field.unwrap(), surface: Surface::default(), lights };
+            probes(&scene, &vec![0.0; side * side], most_s).unwrap()
+        };
+        assert_eq!(of(16, 0.0).len(), FEWEST_PROBES);
+        assert!(of(12, f64::INFINITY).is_whole() && of(5, 0.0).is_whole());
+    }
+
+    #[test]
+    fn grey_light_and_colour_add_up() {
+        let mut sum = Vec::new();
+        add(&mut sum, vec![vec![1.0, 2.0]]);
+        add(&mut sum, vec![vec![0.5, 0.0], vec![0.0, 1.0], vec![2.0, 2.0]]);
+        add(&mut sum, vec![vec![10.0, 10.0]]);
+        assert_eq!(sum, [[11.5, 12.0], [11.0, 13.0], [13.0, 14.0]]);
+    }
+}

@@ -1,0 +1,343 @@
+//! The window's events, and its frames.
+
+mod compare;
+mod drawing;
+mod saving;
+mod steps;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Frame, HeadlessOptions};
+use ridgelight::plan::{Limits, Rectangle};
+use ridgelight::{Error, Result};
+use ridgelight_viewer::Screen;
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::keyboard::{Key, ModifiersState, NamedKey};
+use winit::window::{Window, WindowId};
+
+use super::script::{Button, Step};
+use super::state::{Figures, Light, State, Wish};
+use crate::args::ViewArgs;
+use compare::Compare;
+
+/// How soon a window that shows nothing is looked at again.
+const PAUSE: Duration = Duration::from_millis(50);
+
+pub struct App<'a> {
+    args: &'a ViewArgs,
+    state: State,
+    shown: Option<Shown>,
+    /// None without a script; what is left of it.
+    steps: Option<VecDeque<Step>>,
+    /// Why it ended.
+    error: Option<Error>,
+    keys: ModifiersState,
+    cursor: [f64; 2],
+    held: Option<Button>,
+    /// Whether nobody can see the window, as far as its system tells.
+    is_hidden: bool,
+    /// Frames that are still to be drawn; the figures of one are known two frames later.
+    due: u32,
+    frames: u64,
+    /// Milliseconds of the frames since the last report.
+    spent: Vec<f64>,
+    last: Option<Instant>,
+    /// Since when the window shows nothing, and why, where it should.
+    blank: Option<(Instant, &'static str)>,
+}
+
+/// A window and what is drawn in it.
+struct Shown {
+    lit: Option<Frame>,
+    /// Whether the light has to be found anew.
+    is_stale: bool,
+    /// Light that could be drawn.
+    good: Option<Light>,
+    /// What is shown beside, where anything is.
+    compare: Option<Compare>,
+    figures: Figures,
+    last_edit: Option<Rectangle>,
+    limits: Limits,
+    screen: Screen,
+    window: Arc<Window>,
+    /// What its system last said it is, for those where surfaces have no size of their own.
+    inner: [u32; 2],
+    /// Of its pictures.
+    size: [u32; 2],
+}
+
+impl<'a> App<'a> {
+    pub fn new(args: &'a ViewArgs, state: State, steps: Option<VecDeque<Step>>) -> Self {
+        Self {
+            args,
+            state,
+            shown: None,
+            steps,
+            error: None,
+            keys: ModifiersState::empty(),
+            cursor: [0.0; 2],
+            held: None,
+            is_hidden: false,
+            due: 0,
+            frames: 0,
+            spent: Vec::new(),
+            last: None,
+            blank: None,
+        }
+    }
+
+    /// What it ended with.
+    pub fn end(mut self) -> Result<()> {
+        self.close();
+        self.error.map_or(Ok(()), Err)
+    }
+
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
+        let [width, height] = self.args.size;
+        let name = self.args.input.path.file_name().unwrap_or_default().to_string_lossy();
+        let attributes = Window::default_attributes()
+            .with_title(format!("{name} - ridgelight"))
+            .with_inner_size(PhysicalSize::new(width, height));
+        let refused = |e: winit::error::OsError| Error::Device {
+            doing: "opening a window".into(),
+            reason: e.to_string(),
+        };
+        let window = Arc::new(events.create_window(attributes).map_err(refused)?);
+        let options = HeadlessOptions {
+            device: self.args.global.device.clone(),
+            validation: self.args.validate,
+        };
+        let inner = window.inner_size();
+        let mut screen = Screen::new(Arc::clone(&window), &options)?;
+        let mut limits = screen.gpu().report().limits;
+        if let Some(budget) = self.args.global.memory_budget {
+            limits.memory_budget = budget;
+        }
+        self.shown = Some(Shown {
+            lit: None,
+            is_stale: true,
+            good: None,
+            compare: None,
+            figures: Figures::default(),
+            last_edit: None,
+            limits,
+            screen,
+            window,
+            inner: [inner.width, inner.height],
+            size: self.args.size,
+        });
+        self.due = 3;
+        Ok(())
+    }
+
+    /// Frees what is on the device; tells what validation said.
+    fn close(&mut self) {
+        let Some(mut shown) = self.shown.take() else { return };
+        let beside = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
+        let freed = shown.lit.take().map_or(Ok(()), |lit| shown.screen.end(lit)).and(beside);
+        let said = shown.screen.gpu().take_messages();
+        if self.args.validate {
+            crate::say!("{} validation messages", said.len());
+        }
+        if let (Err(error), None) = (freed, &self.error) {
+            self.error = Some(error);
+        }
+        if let (Some(first), None) = (said.first(), &self.error) {
+            let doing = format!("{} validation messages", said.len());
+            self.error = Some(Error::Device { doing, reason: first.clone() });
+        }
+    }
+
+    /// Whether there is something to be drawn that nobody has seen.
+    fn is_due(&self) -> bool {
+        let gathers = |compare: &Compare| compare.is_busy(&self.state);
+        let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
+        self.due > 0 || !self.is_hidden && (self.state.is_moving() || compare.is_some_and(gathers))
+    }
+
+    fn failed(&mut self, events: &ActiveEventLoop, error: Error) {
+        self.error.get_or_insert(error);
+        events.exit();
+    }
+
+    /// The window's.
+    fn size(&self) -> [u32; 2] {
+        self.shown.as_ref().map_or(self.args.size, |shown| shown.size)
+    }
+
+    /// That of one of the pictures side by side, or of the only one; and a place of the window in the one that it is in.
+    fn within(&self, [x, y]: [f64; 2]) -> ([u32; 2], [f64; 2]) {
+        let (lefts, size) = drawing::places(self.size(), self.state.is_split);
+        let left = lefts.iter().map(|l| f64::from(*l)).rev().find(|l| *l <= x).unwrap_or(0.0);
+        (size, [x - left, y])
+    }
+
+    fn key(&mut self, name: &str) -> Result<bool> {
+        let (size, _) = self.within(self.cursor);
+        let before = self.state.light();
+        let wish = self.state.key(name, size);
+        self.grant(wish, before)
+    }
+}
+
+fn name(key: &Key, keys: ModifiersState) -> Option<String> {
+    let name = match key {
+        Key::Named(NamedKey::ArrowLeft) => "left",
+        Key::Named(NamedKey::ArrowRight) => "right",
+        Key::Named(NamedKey::ArrowUp) => "up",
+        Key::Named(NamedKey::ArrowDown) => "down",
+        Key::Named(NamedKey::Home) => "home",
+        Key::Named(NamedKey::Tab) => "tab",
+        Key::Named(NamedKey::Delete) => "delete",
+        Key::Named(NamedKey::PageUp) => "pageup",
+        Key::Named(NamedKey::PageDown) => "pagedown",
+        Key::Named(NamedKey::Escape) => "escape",
+        Key::Character(text) => return Some(text.to_lowercase()),
+        _ => return None,
+    };
+    Some(if keys.shift_key() { format!("shift+{name}") } else { name.to_owned() })
+}
+
+impl ApplicationHandler for App<'_> {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.shown.is_none()
+            && let Err(error) = self.open(events)
+        {
+            self.failed(events, error);
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match self.heard(event) {
+            Ok(true) => {}
+            Ok(false) => events.exit(),
+            Err(error) => self.failed(events, error),
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        match self.turn() {
+            Ok(true) => {}
+            Ok(false) => return events.exit(),
+            Err(error) => return self.failed(events, error),
+        }
+        let is_busy = self.is_due() || self.steps.is_some();
+        events.set_control_flow(match (is_busy, self.blank) {
+            (true, Some(_)) => ControlFlow::wait_duration(PAUSE),
+            (true, None) => ControlFlow::Poll,
+            (false, _) => ControlFlow::Wait,
+        });
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.close();
+    }
+}
+
+impl App<'_> {
+    /// Whether to go on.
+    fn heard(&mut self, event: WindowEvent) -> Result<bool> {
+        match event {
+            WindowEvent::CloseRequested => return Ok(false),
+            WindowEvent::Destroyed => {
+                let reason = "another program has destroyed it".into();
+                return Err(Error::Device { doing: "showing pictures in a window".into(), reason });
+            }
+            WindowEvent::Resized(PhysicalSize { width, height }) => {
+                if let Some(shown) = &mut self.shown {
+                    shown.inner = [width, height];
+                }
+                self.due = self.due.max(1);
+            }
+            WindowEvent::RedrawRequested | WindowEvent::ScaleFactorChanged { .. } => {
+                self.due = self.due.max(1);
+            }
+            WindowEvent::Occluded(is_hidden) => {
+                self.is_hidden = is_hidden;
+                self.due = self.due.max(1);
+            }
+            WindowEvent::ModifiersChanged(keys) => self.keys = keys.state(),
+            // Keys that are down as the window gets the keyboard were pressed for another, or are told again.
+            WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
+                if event.state == ElementState::Pressed =>
+            {
+                if let Some(name) = name(&event.logical_key, self.keys) {
+                    return self.key(&name);
+                }
+            }
+            WindowEvent::MouseInput { state, button, .. } => {
+                let is_sun = button == MouseButton::Right || self.keys.shift_key();
+                let held = match button {
+                    MouseButton::Left | MouseButton::Right if is_sun => Some(Button::Right),
+                    MouseButton::Left => Some(Button::Left),
+                    MouseButton::Middle => Some(Button::Middle),
+                    _ => return Ok(true),
+                };
+                self.held = held.filter(|_| state == ElementState::Pressed);
+                return match self.held {
+                    Some(button) => self.press(button),
+                    None => self.release(),
+                };
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                let way = [position.x - self.cursor[0], position.y - self.cursor[1]];
+                let dragged = self.held.map(|button| self.drag(button, way));
+                self.cursor = [position.x, position.y];
+                if let Some(dragged) = dragged {
+                    return dragged;
+                }
+                let wish = self.state.point(self.within(self.cursor).1);
+                return self.do_plainly(wish);
+            }
+            WindowEvent::MouseWheel { delta, .. } => {
+                let notches = match delta {
+                    MouseScrollDelta::LineDelta(_, up) => f64::from(up),
+                    // A touchpad's pixels, about as many as a line of text is high.
+                    MouseScrollDelta::PixelDelta(way) => way.y / 20.0,
+                };
+                return self.wheel(notches, self.cursor);
+            }
+            _ => {}
+        }
+        Ok(true)
+    }
+
+    fn press(&mut self, button: Button) -> Result<bool> {
+        let (size, at) = self.within(self.cursor);
+        let before = self.state.light();
+        let wish = self.state.press(button, at, size);
+        self.grant(wish, before)
+    }
+
+    fn release(&mut self) -> Result<bool> {
+        let wish = self.state.release();
+        self.do_plainly(wish)
+    }
+
+    /// From the cursor on.
+    fn drag(&mut self, button: Button, way: [f64; 2]) -> Result<bool> {
+        let (size, from) = self.within(self.cursor);
+        let before = self.state.light();
+        let wish = self.state.drag(button, from, way, size);
+        self.grant(wish, before)
+    }
+
+    fn wheel(&mut self, notches: f64, at: [f64; 2]) -> Result<bool> {
+        let (size, at) = self.within(at);
+        let wish = self.state.wheel(notches, at, size);
+        self.do_plainly(wish)
+    }
+
+    /// What changes no light.
+    fn do_plainly(&mut self, wish: Wish) -> Result<bool> {
+        if wish != Wish::Nothing {
+            self.due = self.due.max(1);
+        }
+        Ok(true)
+    }
+}

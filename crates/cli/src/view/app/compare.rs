@@ -1,0 +1,296 @@
+//! The light between that without shadows and the reference: two more frames, and how far ours is from the truth.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::gpu::{Frame, Timing};
+use ridgelight::plan::{self, Limits, REFERENCE_BATCH};
+use ridgelight::{Error, Result};
+use ridgelight_viewer::Screen;
+
+use super::super::state::State;
+use super::drawing::replan;
+use crate::render;
+
+/// Paths begin anew when nothing has changed for so long.
+const REST: Duration = Duration::from_millis(250);
+
+/// Rows that one dispatch traces: the least that frames wait for.
+const BAND_ROWS: u32 = 8;
+
+/// Of a frame, spent on paths.
+const BUDGET_MS: f64 = 12.0;
+
+/// Batches after which the reference is good enough: 4096 paths.
+const MOST_BATCHES: u32 = 64;
+
+/// A sample of the best reference.
+pub(super) const MOST_PATHS: u32 = MOST_BATCHES * REFERENCE_BATCH;
+
+/// Two pictures beside ours.
+pub struct Compare {
+    off: Option<Frame>,
+    is_off_stale: bool,
+    truth: Option<Truth>,
+    is_truth_stale: bool,
+    /// When the scene changed last.
+    changed: Instant,
+    /// How far ours is, once it has been asked for.
+    error: Option<String>,
+}
+
+/// Light paths, a few more every frame.
+struct Truth {
+    frame: Frame,
+    /// The first pass that traces, and the next.
+    first_band: usize,
+    next: usize,
+    /// Bands of a frame.
+    bands: usize,
+    /// Whole ones.
+    batches: u32,
+}
+
+impl Compare {
+    pub fn new() -> Self {
+        Self {
+            off: None,
+            is_off_stale: true,
+            truth: None,
+            is_truth_stale: true,
+            changed: Instant::now(),
+            error: None,
+        }
+    }
+
+    /// After a change of light or field.
+    pub fn scene_changed(&mut self) {
+        (self.is_off_stale, self.is_truth_stale) = (true, true);
+        self.changed = Instant::now();
+        self.error = None;
+    }
+
+    /// Makes the frames that are to be shown.
+    pub fn prepare(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
+        if self.is_off_stale {
+            replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
+        }
+        if self.is_truth_stale && !state.is_moving() && self.changed.elapsed() > REST {
+            if let Some(old) = self.truth.take() {
+                screen.end(old.frame)?;
+            }
+            let (scene, bounces) = (&state.scene, state.quality.bounces.count);
+            let plan = plan::reference_in_bands(scene, bounces, 0, limits, BAND_ROWS)?;
+            let is_band = |pass: &plan::Pass| pass.name() == "path_trace";
+            let first_band = plan.passes.iter().position(is_band).unwrap_or(0);
+            let contents = plan::reference_inputs(scene);
+            let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
+            let frame = screen.frame(plan, &contents)?;
+            self.truth = Some(Truth { frame, first_band, next: 0, bands: 1, batches: 0 });
+            self.is_truth_stale = false;
+        }
+        Ok(())
+    }
+
+    /// The frames, without shadows and the reference, and which of their passes run next.
+    pub fn frames(&mut self) -> [Option<(&mut Frame, Vec<usize>)>; 2] {
+        let is_off_stale = self.is_off_stale;
+        let off = self.off.as_mut().map(|frame| {
+            let count = if is_off_stale { frame.plan().passes.len() } else { 0 };
+            (frame, (0..count).collect())
+        });
+        let truth = self.truth.as_mut().map(|truth| {
+            let passes = (truth.next..truth.end()).collect();
+            (&mut truth.frame, passes)
+        });
+        [off, truth]
+    }
+
+    /// What [`frames`](Self::frames) said has been recorded; times of earlier passes of paths.
+    pub fn drawn(&mut self, times: &[Timing]) {
+        self.is_off_stale = false;
+        let Some(truth) = &mut self.truth else { return };
+        let end = truth.end();
+        if end == truth.frame.plan().passes.len() {
+            truth.batches += u32::from(truth.next < end);
+            truth.next = truth.first_band;
+        } else {
+            truth.next = end;
+        }
+        let traced = || times.iter().filter(|t| t.label.starts_with("path_trace"));
+        let ms = traced().map(|t| t.ns).sum::<f64>() / 1e6 / traced().count().max(1) as f64;
+        if ms > 0.0 {
+            truth.bands = (BUDGET_MS / ms).clamp(1.0, 1e4) as usize;
+        }
+    }
+
+    /// Whether paths are still to be traced.
+    pub fn is_busy(&self, state: &State) -> bool {
+        let has_all = self.truth.as_ref().is_some_and(|t| t.batches >= MOST_BATCHES);
+        !state.is_moving() && (self.is_truth_stale || !has_all)
+    }
+
+    /// Paths a sample, of the scene as it is.
+    pub fn paths(&self) -> u32 {
+        let fresh = self.truth.as_ref().filter(|_| !self.is_truth_stale);
+        fresh.map_or(0, |truth| truth.batches * REFERENCE_BATCH)
+    }
+
+    /// Below each of the three pictures.
+    pub fn labels(&self) -> [String; 3] {
+        let reference = match self.paths() {
+            _ if self.is_truth_stale => "reference: waits".to_owned(),
+            paths => format!("reference: {paths} paths"),
+        };
+        ["no shadows".to_owned(), "ours".to_owned(), reference]
+    }
+
+    /// For the panel.
+    pub fn lines(&self) -> Vec<String> {
+        self.error.iter().cloned().collect()
+    }
+
+    /// Finds how far ours is from the reference so far.
+    pub fn find_error(&mut self, screen: &mut Screen, lit: &Frame, state: &State) -> Result<()> {
+        let Some(truth) = self.truth.as_ref().filter(|t| !self.is_truth_stale && t.batches >= 2)
+        else {
+            let found = format!("{} paths", self.paths());
+            let expected = format!("{} or more: a moment later", 2 * REFERENCE_BATCH);
+            return Err(Error::setting("reference", found, expected));
+        };
+        screen.wait()?;
+        let gpu = screen.gpu();
+        let ours = render::rgb(&gpu.pixels(lit, 0)?);
+        let [light, spread] = [0, 1].map(|output| gpu.pixels(&truth.frame, output));
+        let [light, spread] = [render::rgb(&light?), render::rgb(&spread?)];
+        let is_void = |i: &usize| state.scene.field.voids().is_some_and(|v| v[*i]);
+        let samples: Vec<[[f64; 3]; 3]> = (0..ours.len())
+            .filter(|i| !is_void(i))
+            .map(|i| [0, 1, 2].map(|c| [ours[i][c], light[i][c], spread[i][c]].map(f64::from)))
+            .collect();
+        let unmet = plan::unmet_error(&state.scene, state.quality.bounces.count, self.paths());
+        let found = distance(&samples, f64::from(truth.batches), unmet);
+        let [rmse, error] = found.map(|share| 100.0 * share);
+        self.error = Some(format!("ours is {rmse:.3} % RMSE +- {error:.3} % off the reference"));
+        Ok(())
+    }
+
+    pub fn end(self, screen: &mut Screen) -> Result<()> {
+        let frames = self.off.into_iter().chain(self.truth.map(|t| t.frame));
+        frames.map(|frame| screen.end(frame)).fold(Ok(()), Result::and)
+    }
+}
+
+impl Truth {
+    /// Behind the last pass of this frame.
+    fn end(&self) -> usize {
+        let all = self.frame.plan().passes.len();
+        match self.next {
+            next if self.batches >= MOST_BATCHES => next,
+            next if next < self.first_band => (self.first_band + 1).min(all),
+            next => (next + self.bands).min(all),
+        }
+    }
+}
+
+/// Root of the mean squared difference, over the mean of the reference, and its standard error; of the channels of
+/// samples, each a light, its reference and the standard error of that, which is of so many batches.
+///
+/// With d = light - truth + noise of deviation s, d² - s² has the mean (light - truth)² and the variance 4 (light -
+/// truth)² s² + 2 s⁴, and 2 s⁴ / (B - 1) more as s² itself is found from B batches. Channels of a sample come of the same
+/// paths and waver together: their sums stand for d² and s². Noise of different samples is independent. With k = 1 / (B -
+/// 1), s² as found squares to s⁴ (1 + 2 k), and d² - s² times it has the mean (light - truth)² s² - 2 k s⁴ (normal noise).
+/// The root's error is that of its square over twice it, or the square's own root where that is less than its error; what
+/// light no path has met, R, G, B, can change the root by its own root mean square.
+fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unmet: [f64; 3]) -> [f64; 2] {
+    let count = 3.0 * samples.len().max(1) as f64;
+    let (mut square, mut mean, mut crossed, mut fourth) = (0.0, 0.0, 0.0, 0.0);
+    let own = 1.0 / (batches - 1.0);
+    for channels in samples {
+        let difference: f64 = channels.iter().map(|[l, r, _]| (l - r).powi(2)).sum();
+        let noise: f64 = channels.iter().map(|[.., s]| s * s).sum();
+        let noise_squared = noise * noise / (1.0 + 2.0 * own);
+        square += (difference - noise) / count;
+        crossed += 4.0 * ((difference - noise) * noise + 2.0 * own * noise_squared);
+        fourth += 2.0 * (1.0 + own) * noise_squared;
+        mean += channels.iter().map(|[_, r, _]| r / count).sum::<f64>();
+    }
+    let error = (crossed.max(0.0) + fourth).sqrt() / count;
+    let root = square.max(0.0).sqrt();
+    let error = if square > error { error / (2.0 * root) } else { error.sqrt() };
+    let unmet = (unmet.iter().map(|u| u * u).sum::<f64>() / 3.0).sqrt();
+    let error = error.hypot(unmet);
+    match mean > 0.0 {
+        true => [root / mean, error / mean],
+        false => [if root > 0.0 { f64::INFINITY } else { 0.0 }, 0.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of variance 1: a sum of twelve even numbers.
+    fn noises() -> impl FnMut() -> f64 {
+        let mut state = 1_u64;
+        move || {
+            let mut even = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            };
+            (0..12).map(|_| even()).sum()
+        }
+    }
+
+    /// Without noise it is the RMSE, and light that was not met is all of its error. With noise of ± 0.5, which squares to
+    /// what is taken off, a light that is 0.2 off stays so: to within four of its standard errors, which is then
+    /// 0.5² · √(2 + 4 · 0.04 / 0.25) / √n / (2 · 0.2).
+    #[test]
+    fn noise_of_the_reference_is_no_distance() {
+        let exact = [[[1.5, 1.0, 0.0]; 3], [[2.5, 3.0, 0.0]; 3]];
+        let [rmse, error] = distance(&exact, 2.0, [0.0; 3]);
+        assert!((rmse - 0.25).abs() < 1e-12 && error == 0.0);
+        let [rmse, error] = distance(&exact, 2.0, [0.3, 0.0, 0.0]);
+        assert!((rmse - 0.25).abs() < 1e-12, "{rmse}");
+        // √(0.3² / 3) over a mean of 2.
+        assert!((error - 0.3 / 3.0_f64.sqrt() / 2.0).abs() < 1e-12, "{error}");
+        let mut noise = noises();
+        let samples: Vec<[[f64; 3]; 3]> =
+            (0..40_000).map(|_| [[1.2, 1.0 + 0.5 * noise(), 0.5]; 3]).collect();
+        let [rmse, error] = distance(&samples, f64::INFINITY, [0.0; 3]);
+        let known = 0.25 * (2.0 + 4.0 * 0.04 / 0.25_f64).sqrt() / 200.0 / 0.4;
+        assert!((error / known - 1.0).abs() < 0.1, "{error}, {known}");
+        assert!((rmse - 0.2).abs() < 4.0 * error, "{rmse} +- {error}");
+        // Without the spread, the noise counts.
+        let silent: Vec<_> = samples.iter().map(|s| s.map(|[l, r, _]| [l, r, 0.0])).collect();
+        assert!(distance(&silent, f64::INFINITY, [0.0; 3])[0] > 0.5);
+    }
+
+    /// Gray light of two batches, each of deviation √½, so that their mean has s = ½ and half their difference is what is
+    /// found of it. The square 0.2² of a whole picture then wavers by √((4 · 0.04 s² + 2 s⁴ + 2 s⁴ / 1) / n), and so does
+    /// that of many pictures: to 15 %, three times 1 / √(2 · 400) = 3.5 % and the skew of s⁴. Channels taken for
+    /// independent, and s² for known, would say √(0.165 / 3 / 0.29) = 0.44 of it.
+    #[test]
+    fn channels_waver_together_and_so_does_the_spread() {
+        let mut noise = noises();
+        let count = 400;
+        let known = ((4.0 * 0.04 * 0.25 + 4.0 * 0.0625) / f64::from(count)).sqrt();
+        let (mut squares, mut told) = (Vec::new(), 0.0);
+        for _ in 0..400 {
+            let mut sample = || {
+                let [a, b] = [0; 2].map(|_| 1.0 + 0.5_f64.sqrt() * noise());
+                [[1.2, 0.5 * (a + b), 0.5 * (a - b).abs()]; 3]
+            };
+            let samples: Vec<_> = (0..count).map(|_| sample()).collect();
+            let [root, error] = distance(&samples, 2.0, [0.0; 3]);
+            let mean = samples.iter().map(|s| s[0][1]).sum::<f64>() / f64::from(count);
+            let [root, error] = [root * mean, error * mean];
+            let of_square = if root * root > known { error * 2.0 * root } else { error * error };
+            told += of_square.powi(2) / 400.0;
+            let raw = samples.iter().map(|s| (1.2 - s[0][1]).powi(2) - s[0][2].powi(2));
+            squares.push(raw.sum::<f64>() / f64::from(count));
+        }
+        let wavers = (squares.iter().map(|s| (s - 0.04).powi(2)).sum::<f64>() / 400.0).sqrt();
+        assert!((wavers / known - 1.0).abs() < 0.15, "{wavers}, {known}");
+        assert!((told.sqrt() / known - 1.0).abs() < 0.15, "{}, {known}", told.sqrt());
+    }
+}

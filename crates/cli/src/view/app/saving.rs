@@ -1,0 +1,86 @@
+//! Pictures and scenes as files.
+
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory as _;
+use ridgelight::Result;
+use ridgelight::scene::Tone;
+use ridgelight_io as files;
+
+use super::App;
+use crate::args::Cli;
+use crate::{render, setup};
+
+impl App<'_> {
+    /// The lit field, a pixel a sample, or what the camera sees, into a file or one of a name that is free.
+    pub(super) fn save_picture(&mut self, path: Option<&Path>) -> Result<()> {
+        let path = path.map_or_else(|| self.free_name("png"), Path::to_owned);
+        let Some(shown) = &mut self.shown else { return Ok(()) };
+        let Some(lit) = &shown.lit else { return Ok(()) };
+        shown.screen.wait()?;
+        let field = &self.state.scene.field;
+        let tone = self.state.tone();
+        let view = self.state.view(lit.plan(), shown.size, &shown.limits)?;
+        let gpu = shown.screen.gpu();
+        let pixels = gpu.pixels(lit, 0)?;
+        if let Some(view) = view {
+            let seen = gpu.look(lit, &view, field.voids())?.radiance;
+            let (rows, cols) = (view.size[1] as usize, view.size[0] as usize);
+            let saved = files::write_png(&path, rows, cols, &seen, None, tone, &view.settings);
+            return self.say(saved, &path);
+        }
+        let saved = render::check_finite(&pixels, field).and_then(|()| {
+            let metadata = setup::metadata(gpu, field, lit.plan(), &shown.figures.light);
+            let (rows, cols) = (field.rows(), field.cols());
+            let picture = render::rgb(&pixels);
+            files::write_png(&path, rows, cols, &picture, field.voids(), tone, &metadata)
+        });
+        self.say(saved, &path)
+    }
+
+    /// What `render --scene` takes, and beside it the heights where they are not those that were read.
+    pub(super) fn save_scene(&mut self, path: Option<&Path>) -> Result<()> {
+        let path = path.map_or_else(|| self.free_name("json"), Path::to_owned);
+        let Some(shown) = &self.shown else { return Ok(()) };
+        let heights = self.state.has_other_heights().then(|| path.with_extension("npy"));
+        let name = heights.as_ref().and_then(|h| h.file_name()).map(|n| n.to_string_lossy());
+        let asked = self.state.asked(shown.size, &shown.limits, name.as_deref());
+        let scene = asked.to_json(&Cli::command());
+        let field = &self.state.scene.field;
+        let saved = heights.iter().try_for_each(|h| files::write_npy_heights(h, field));
+        self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)
+    }
+
+    /// The window's pixels.
+    pub(super) fn save_pixels(&mut self, path: &Path, pixels: &[[u8; 4]]) -> Result<()> {
+        let [width, height] = self.size();
+        let steps = Tone::default().steps();
+        let light: Vec<[f32; 3]> =
+            pixels.iter().map(|p| [p[0], p[1], p[2]].map(|c| steps[usize::from(c)])).collect();
+        let (rows, cols) = (height as usize, width as usize);
+        files::write_png(path, rows, cols, &light, None, Tone::default(), &[])
+    }
+
+    /// That a file was written, or why not: on the screen, and on standard output. With a script it ends there.
+    fn say(&mut self, saved: Result<()>, path: &Path) -> Result<()> {
+        let line = match saved {
+            Ok(()) => format!("saved {}", path.display()),
+            Err(error) if self.steps.is_some() => return Err(error),
+            Err(error) => format!("not saved: {error}"),
+        };
+        if !self.args.global.quiet {
+            crate::say!("{line}");
+        }
+        self.state.message = Some(line);
+        self.due = self.due.max(1);
+        Ok(())
+    }
+
+    /// In this folder, by the field's name.
+    fn free_name(&self, extension: &str) -> PathBuf {
+        let stem = self.args.input.path.file_stem().unwrap_or_default().to_string_lossy();
+        let name = |n: u32| PathBuf::from(format!("{stem}-view-{n}.{extension}"));
+        let is_free = |path: &PathBuf| !path.exists() && !path.with_extension("npy").exists();
+        (1..).map(name).find(is_free).expect("some number is free")
+    }
+}

@@ -1,0 +1,180 @@
+//! A turn of the loop: frames that are due, and the steps of a script.
+
+use std::time::{Duration, Instant};
+
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use winit::dpi::PhysicalSize;
+
+use super::super::script::Step;
+use super::compare::MOST_PATHS;
+use super::drawing::places;
+use super::{App, Shown};
+
+/// How long a window of a script may show nothing.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How long a script waits for the size it asked for: window managers of busy machines take seconds.
+const RESIZE_PATIENCE: Duration = Duration::from_secs(120);
+
+impl App<'_> {
+    /// False where it ends.
+    pub(super) fn turn(&mut self) -> Result<bool> {
+        if self.shown.is_none() {
+            return Ok(true);
+        }
+        if self.steps.is_none() {
+            if self.is_due() {
+                self.draw(false)?;
+            }
+            return Ok(true);
+        }
+        let Some(step) = self.steps.as_mut().and_then(|steps| steps.pop_front()) else {
+            return Ok(false);
+        };
+        let again = match step {
+            Step::Key(name) => return self.key(&name),
+            Step::Drag(button, from, way) => {
+                self.cursor = from;
+                self.press(button)?;
+                self.drag(button, way)?;
+                self.cursor = [from[0] + way[0], from[1] + way[1]];
+                return self.release();
+            }
+            Step::Wheel(notches, at) => return self.wheel(notches, at),
+            Step::Frames(0) => None,
+            Step::Frames(left) => {
+                let is_drawn = self.draw(false)?.is_some();
+                self.check_shown("frames")?;
+                Some(Step::Frames(left - u32::from(is_drawn)))
+            }
+            Step::Size(wanted) => self.resize(wanted, RESIZE_PATIENCE)?,
+            Step::Resizing(wanted, until) => {
+                let left = until.saturating_duration_since(Instant::now());
+                self.resize(wanted, left)?
+            }
+            Step::Lose => {
+                if let Some(shown) = &mut self.shown {
+                    shown.screen.renew()?;
+                }
+                None
+            }
+            Step::Picture(path) => self.save_picture(Some(&path)).map(|()| None)?,
+            Step::Scene(path) => self.save_scene(Some(&path)).map(|()| None)?,
+            Step::Screenshot(path) => match self.draw(true)? {
+                Some(pixels) => self.save_pixels(&path, &pixels).map(|()| None)?,
+                None => {
+                    self.check_shown("screenshot")?;
+                    Some(Step::Screenshot(path))
+                }
+            },
+            Step::Text(path) => {
+                let text = self.text();
+                files::write_text(&path, &text).map(|()| None)?
+            }
+            Step::Paths(count) => {
+                self.check_paths(count)?;
+                let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
+                let has_all = compare.is_some_and(|c| c.paths() >= count);
+                if !has_all {
+                    self.draw(false)?;
+                    self.check_shown("paths")?;
+                }
+                (!has_all).then_some(Step::Paths(count))
+            }
+            Step::Report(what) => {
+                self.report(&what);
+                None
+            }
+            Step::Wait(seconds) => {
+                let until = Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 600.0));
+                Some(Step::Waiting(until))
+            }
+            Step::Waiting(until) => {
+                if self.is_due() {
+                    self.draw(false)?;
+                } else {
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+                (Instant::now() < until).then_some(Step::Waiting(until))
+            }
+        };
+        if let (Some(again), Some(steps)) = (again, &mut self.steps) {
+            steps.push_front(again);
+        }
+        Ok(true)
+    }
+
+    /// Whether the window shows something, or has not failed to for long.
+    fn check_shown(&self, step: &str) -> Result<()> {
+        let Some((_, why)) = self.blank.filter(|(since, _)| since.elapsed() > PATIENCE) else {
+            return Ok(());
+        };
+        let reason = format!("the window has shown nothing for {} s: {why}", PATIENCE.as_secs());
+        Err(Error::Device { doing: format!("--script: {step}"), reason })
+    }
+
+    /// Whether so many paths a sample will ever have been traced.
+    fn check_paths(&self, count: u32) -> Result<()> {
+        let width = self.shown.as_ref().map_or(0, |shown| shown.size[0]);
+        let (found, expected) = if count > MOST_PATHS {
+            (format!("{count}"), format!("{MOST_PATHS} or less"))
+        } else if !self.state.is_split {
+            ("no reference beside the light".to_owned(), "key c before".to_owned())
+        } else if self.state.is_moving() {
+            ("a field that moves".to_owned(), "key w or key g before, which stops it".to_owned())
+        } else if width > 0 && places([width, 1], true).0.len() < 3 {
+            (format!("a window {width} pixels wide"), "place for three pictures".to_owned())
+        } else {
+            return Ok(());
+        };
+        Err(Error::setting("--script: paths", found, expected))
+    }
+
+    /// Asks for a size until pictures have it.
+    fn resize(&mut self, wanted: [u32; 2], left: Duration) -> Result<Option<Step>> {
+        let Some(shown) = &self.shown else { return Ok(None) };
+        if shown.size == wanted {
+            return Ok(None);
+        }
+        if left.is_zero() {
+            let found = format!("{} × {}", shown.size[0], shown.size[1]);
+            let expected = format!("{} × {}", wanted[0], wanted[1]);
+            return Err(Error::setting("--script: size", found, expected));
+        }
+        let until = Instant::now() + left;
+        if left == RESIZE_PATIENCE {
+            let _ = shown.window.request_inner_size(PhysicalSize::new(wanted[0], wanted[1]));
+        }
+        self.draw(false)?;
+        Ok(Some(Step::Resizing(wanted, until)))
+    }
+
+    /// What stands over the picture, a line a line.
+    fn text(&self) -> String {
+        let Some(Shown { lit: Some(lit), figures, .. }) = &self.shown else { return String::new() };
+        let lines = self.state.lines(lit.plan(), figures, usize::MAX);
+        lines.iter().map(|line| format!("{line}\n")).collect()
+    }
+
+    fn report(&mut self, what: &str) {
+        let what = if what.is_empty() { String::new() } else { format!("{what}: ") };
+        let spent = std::mem::take(&mut self.spent);
+        let mut sorted = spent.clone();
+        sorted.sort_by(f64::total_cmp);
+        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let passes = self.shown.as_ref().map_or(0.0, |shown| shown.figures.ms());
+        let resident = resident_kib().map_or_else(|| "unknown".into(), |kib| kib.to_string());
+        crate::say!(
+            "{what}frames {}, median of {} {middle:.3} ms, passes {passes:.3} ms, resident KiB {resident}",
+            self.frames,
+            spent.len()
+        );
+    }
+}
+
+/// Memory of this process, where the system tells it as Linux does.
+fn resident_kib() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    line.trim().trim_end_matches("kB").trim().parse().ok()
+}

@@ -1,0 +1,397 @@
+//! What is shown and by what it is lit, and what keys and drags change of it.
+
+mod figures;
+mod lights;
+mod painting;
+mod settings;
+mod sight;
+
+use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
+use ridgelight::scene::Tone;
+use ridgelight::scene::{Camera, Lights, Quality, Scene};
+use ridgelight::{Error, Result};
+
+use super::brush::{Action, Brush};
+use super::moving::{Kind, Moving};
+use super::script::Button;
+use super::strokes::Strokes;
+use crate::args::ViewArgs;
+use crate::scene_file::Asked;
+use settings::{Refused, Settings};
+use sight::{FOV_DEG, Sight};
+
+pub use figures::Figures;
+pub use settings::said;
+
+/// What a key asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    Nothing,
+    /// The same light, shown otherwise.
+    Show,
+    /// Other light or another field.
+    Light,
+    /// Other heights in a rectangle: [`State::take_edited`].
+    Heights,
+    /// How far from the reference the light is.
+    Error,
+    Picture,
+    Scene,
+    End,
+}
+
+/// Settings, lights, and the words that they were given by.
+pub type Light = (Quality, Lights, Asked);
+
+/// How much text is shown.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Text {
+    Keys,
+    Settings,
+    Figures,
+    Nothing,
+}
+
+/// What the left button does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tool {
+    Look,
+    Brush(Action),
+    Lights,
+}
+
+pub struct State {
+    pub scene: Scene,
+    pub quality: Quality,
+    asked: Asked,
+    moving: Option<Moving>,
+    exposure: f32,
+    sight: Sight,
+    text: Text,
+    settings: Settings,
+    tool: Tool,
+    brush: Brush,
+    strokes: Strokes,
+    /// Where heights have changed since they were last taken.
+    edited: Option<Rectangle>,
+    /// Where the stroke that is being drawn has come to, absolute.
+    stroke_m: [f64; 2],
+    /// The ball of light that is chosen.
+    ball: Option<usize>,
+    cursor: [f64; 2],
+    /// Whether the light is shown between that without shadows and the reference.
+    pub is_split: bool,
+    /// Said until the next key.
+    pub message: Option<String>,
+}
+
+impl State {
+    pub fn new(args: &ViewArgs, scene: Scene, quality: Quality) -> Self {
+        let mut state = Self {
+            scene,
+            quality,
+            asked: args.asked.clone(),
+            moving: None,
+            exposure: args.exposure,
+            sight: Sight::default(),
+            text: Text::Keys,
+            settings: Settings::new(),
+            tool: Tool::Look,
+            brush: Brush { radius_m: 0.0, strength: 0.1 },
+            strokes: Strokes::default(),
+            edited: None,
+            stroke_m: [0.0; 2],
+            ball: None,
+            cursor: [0.0; 2],
+            is_split: false,
+            message: None,
+        };
+        state.brush.radius_m = (state.side_m() / 16.0).max(state.brush_radii_m()[0]);
+        state
+    }
+
+    /// What a key or a drag may change of the light.
+    pub fn light(&self) -> Light {
+        (self.quality, self.scene.lights.clone(), self.asked.clone())
+    }
+
+    /// Goes back to light that could be drawn, and says why.
+    pub fn go_back(&mut self, light: Light, why: Error) {
+        (self.quality, self.scene.lights, self.asked) = light;
+        if let Err(Refused(why)) = said::<()>(Err(why)) {
+            self.message = Some(why);
+        }
+    }
+
+    pub fn tone(&self) -> Tone {
+        Tone { exposure: self.exposure }
+    }
+
+    pub fn is_moving(&self) -> bool {
+        self.moving.is_some()
+    }
+
+    /// Whether heights are other than they were read.
+    pub fn has_other_heights(&self) -> bool {
+        self.is_moving() || self.strokes.have_changed()
+    }
+
+    fn say(&mut self, message: &str) -> Wish {
+        self.message = Some(message.to_owned());
+        Wish::Show
+    }
+
+    /// What was given and what has been changed since, for a scene file; of a picture of this size. `heights` is the file
+    /// of other heights.
+    pub fn asked(
+        &self,
+        [width, height]: [u32; 2],
+        limits: &Limits,
+        heights: Option<&str>,
+    ) -> Asked {
+        let mut asked = self.asked.clone();
+        if let Some(heights) = heights {
+            let field = &self.scene.field;
+            let [x, y] = field.cell_m();
+            asked.set("path", vec![heights.to_owned()]);
+            asked.set("cell", vec![format!("{x},{y}")]);
+            asked.clear("z_scale");
+            asked.clear("nodata");
+            if field.voids().is_some() {
+                asked.set("nodata", vec!["nan".to_owned()]);
+            }
+        }
+        // The window's, where there is no camera.
+        asked.clear("size");
+        let Some(camera) = &self.sight.camera else { return asked };
+        let Camera { target_m: [x, y, z], azimuth_rad, elevation_rad, distance_m, .. } = camera;
+        let compass = hundredths(90.0 - azimuth_rad.to_degrees());
+        let elevation = hundredths(elevation_rad.to_degrees());
+        asked.set("camera", vec![format!("{compass},{elevation},{distance_m}")]);
+        asked.set("look_at", vec![format!("{x},{y},{z}")]);
+        let options = Sight::options(&self.scene.field, [width, height], limits);
+        asked.set("fov", vec![FOV_DEG.to_string()]);
+        asked.set("size", vec![format!("{width}x{height}")]);
+        asked.set("samples", vec![options.samples.to_string()]);
+        asked.set("mesh_step", vec![options.mesh_step.to_string()]);
+        asked
+    }
+
+    /// As `render` would, while nothing moves and no brush is at hand, which needs what edits go on from.
+    pub fn plan(&self, limits: &Limits) -> Result<Plan> {
+        let has_brush = matches!(self.tool, Tool::Brush(_));
+        let wanted = Picture { still: !self.is_moving() && !has_brush, ..Picture::default() };
+        let plan = |wanted| plan::picture(&self.scene, &self.quality, limits, wanted);
+        if has_brush && !self.is_moving() {
+            let kept = plan(Picture { keeps_horizons: true, ..wanted });
+            if let Ok(kept) = kept.map(|kept| (!kept.edit_passes.is_empty()).then_some(kept))
+                && let Some(kept) = kept
+            {
+                return Ok(kept);
+            }
+        }
+        plan(wanted)
+    }
+
+    /// The same light without shadows and bounces.
+    pub fn plan_off(&self, limits: &Limits) -> Result<Plan> {
+        let wanted = Picture { unshadowed: true, ..Picture::default() };
+        plan::picture(&self.scene, &self.quality, limits, wanted)
+    }
+
+    /// The field of the next frame, where it moves.
+    pub fn step(&mut self) -> Result<()> {
+        if let Some(moving) = &mut self.moving {
+            self.scene.field = moving.next()?;
+        }
+        Ok(())
+    }
+
+    /// What is seen from above in a picture of a size.
+    pub fn map(&self, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
+        self.sight.map(&self.scene.field, size, swaps, has_colour)
+    }
+
+    /// What a camera sees of what a plan draws, where there is one.
+    pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
+        self.sight.view(&self.scene, lit, size, limits)
+    }
+
+    /// A key by its name: a letter, `left`, `shift+left`, `escape`.
+    pub fn key(&mut self, name: &str, size: [u32; 2]) -> Wish {
+        self.message = None;
+        let middle = size.map(|n| f64::from(n) / 2.0);
+        let step = f64::from(size[0].min(size[1])) / 16.0;
+        let field = &self.scene.field;
+        match name {
+            "left" => self.sight.turn(field, size, [step, 0.0]),
+            "right" => self.sight.turn(field, size, [-step, 0.0]),
+            "up" => self.sight.turn(field, size, [0.0, step]),
+            "down" => self.sight.turn(field, size, [0.0, -step]),
+            "j" => self.sight.pan(field, size, [step, 0.0]),
+            "l" => self.sight.pan(field, size, [-step, 0.0]),
+            "i" => self.sight.pan(field, size, [0.0, step]),
+            "k" => self.sight.pan(field, size, [0.0, -step]),
+            "+" | "=" => self.sight.near(field, size, 1.25, middle),
+            "-" => self.sight.near(field, size, 0.8, middle),
+            "home" => self.sight.all(field, size),
+            "v" if self.sight.camera.is_some() => self.sight.camera = None,
+            "v" if field.rows().min(field.cols()) < 2 => {
+                return self.say("a camera needs two rows and two columns");
+            }
+            "v" => self.sight.begin_camera(field, size),
+            "e" => self.exposure = (self.exposure * 1.25).clamp(1e-30, 1e30),
+            "d" => self.exposure = (self.exposure * 0.8).clamp(1e-30, 1e30),
+            "h" => {
+                self.text = match self.text {
+                    Text::Keys | Text::Settings => Text::Figures,
+                    Text::Figures => Text::Nothing,
+                    Text::Nothing => Text::Keys,
+                };
+            }
+            "c" if size[0] < 24 && !self.is_split => {
+                return self.say("the window is too narrow for three pictures");
+            }
+            "c" => self.is_split = !self.is_split,
+            _ => return self.key_of_light(name, size),
+        }
+        Wish::Show
+    }
+
+    /// Keys that change more than what is seen.
+    fn key_of_light(&mut self, name: &str, size: [u32; 2]) -> Wish {
+        match name {
+            "shift+left" => self.turn_sun(-5.0, 0.0),
+            "shift+right" => self.turn_sun(5.0, 0.0),
+            "shift+up" => self.turn_sun(0.0, 2.0),
+            "shift+down" => self.turn_sun(0.0, -2.0),
+            "m" => self.turn_setting("method", true),
+            "b" => self.turn_bounces(),
+            "," | "." => {
+                let chosen = self.settings.chosen().to_owned();
+                self.turn_setting(&chosen, name == ".")
+            }
+            "tab" | "shift+tab" => {
+                // The list first, then another of it.
+                if self.text == Text::Settings {
+                    self.settings.choose(name == "tab");
+                }
+                self.text = Text::Settings;
+                Wish::Show
+            }
+            "1" => self.take(Tool::Look),
+            "2" => self.take(Tool::Brush(Action::Raise)),
+            "3" => self.take(Tool::Brush(Action::Lower)),
+            "4" => self.take(Tool::Brush(Action::Erode)),
+            "5" => self.take(Tool::Lights),
+            "[" | "]" | ";" | "'" if self.tool != Tool::Lights => self.change_brush(name),
+            "[" | "]" | ";" | "'" | "t" | "x" | "delete" | "pageup" | "pagedown" => {
+                self.change_ball(name)
+            }
+            "o" => {
+                self.tool = Tool::Lights;
+                self.place_ball(size, size.map(|n| f64::from(n) / 2.0))
+            }
+            "z" => self.undo(true),
+            "y" => self.undo(false),
+            "w" => self.move_by(Kind::Waves),
+            "g" => self.move_by(Kind::Ridge),
+            "r" => Wish::Error,
+            "p" => Wish::Picture,
+            "s" => Wish::Scene,
+            "q" | "escape" => Wish::End,
+            _ => Wish::Nothing,
+        }
+    }
+
+    /// Goes over to another tool; brushes have another plan.
+    fn take(&mut self, tool: Tool) -> Wish {
+        self.strokes.end(&self.scene.field);
+        self.tool = tool;
+        Wish::Light
+    }
+
+    /// Begins or ends what moves.
+    fn move_by(&mut self, kind: Kind) -> Wish {
+        self.strokes.end(&self.scene.field);
+        let before = self.moving.take().map(|moving| {
+            let kind = moving.kind;
+            self.scene.field = moving.end();
+            kind
+        });
+        if before != Some(kind) {
+            self.moving = Some(Moving::over(self.scene.field.clone(), kind));
+        }
+        Wish::Light
+    }
+
+    fn turn_bounces(&mut self) -> Wish {
+        // None, one, two, three, and none again.
+        if self.quality.bounces.count >= 3 {
+            self.asked.set("bounces", vec!["0".to_owned()]);
+            self.quality.bounces.count = 0;
+            return Wish::Light;
+        }
+        self.turn_setting("bounces", true)
+    }
+
+    fn turn_setting(&mut self, id: &str, ahead: bool) -> Wish {
+        match self.settings.turn(id, ahead, &mut self.asked) {
+            Ok(quality) => {
+                self.quality = quality;
+                Wish::Light
+            }
+            Err(Refused(why)) => self.say(&why),
+        }
+    }
+
+    /// A button that goes down at a pixel.
+    pub fn press(&mut self, button: Button, at: [f64; 2], size: [u32; 2]) -> Wish {
+        match (button, self.tool) {
+            (Button::Left, Tool::Brush(action)) => self.begin_stroke(action, at, size),
+            (Button::Left, Tool::Lights) => {
+                self.message = None;
+                self.take_ball(size, at)
+            }
+            _ => Wish::Nothing,
+        }
+    }
+
+    /// A drag by a button from a pixel, pixels.
+    pub fn drag(&mut self, button: Button, from: [f64; 2], way: [f64; 2], size: [u32; 2]) -> Wish {
+        let to = [from[0] + way[0], from[1] + way[1]];
+        self.cursor = to;
+        let field = &self.scene.field;
+        match (button, self.tool) {
+            (Button::Left, Tool::Brush(action)) => return self.draw_stroke(action, to, size),
+            (Button::Left, Tool::Lights) => return self.drag_ball(size, from, to),
+            (Button::Left, Tool::Look) => self.sight.turn(field, size, way),
+            (Button::Middle, _) => self.sight.pan(field, size, way),
+            (Button::Right, _) => return self.turn_sun(way[0] / 2.0, -way[1] / 4.0),
+        }
+        Wish::Show
+    }
+
+    /// The button goes up.
+    pub fn release(&mut self) -> Wish {
+        self.strokes.end(&self.scene.field);
+        Wish::Show
+    }
+
+    /// The mouse without a button, over a picture: brushes show where they are.
+    pub fn point(&mut self, at: [f64; 2]) -> Wish {
+        self.cursor = at;
+        if matches!(self.tool, Tool::Brush(_)) { Wish::Show } else { Wish::Nothing }
+    }
+
+    /// Notches of the wheel, upwards, at a pixel.
+    pub fn wheel(&mut self, notches: f64, at: [f64; 2], size: [u32; 2]) -> Wish {
+        let factor = 1.25_f64.powf(notches.clamp(-20.0, 20.0));
+        self.sight.near(&self.scene.field, size, factor, at);
+        Wish::Show
+    }
+}
+
+fn hundredths(degrees: f64) -> f64 {
+    (degrees * 100.0).round() / 100.0
+}

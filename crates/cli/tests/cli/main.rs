@@ -1,0 +1,169 @@
+//! The binary as scripts meet it: exit status 0 done, 1 failed, 2 wrong usage; one sentence on
+//! stderr where something is wrong, and then no file changed and none left behind.
+
+mod auto;
+mod bake;
+mod bake_light;
+mod bake_lobes;
+mod bake_sheet;
+mod camera;
+#[path = "../../../../tests/common/mod.rs"]
+mod common;
+mod compare;
+mod flags;
+#[path = "../../../../tests/groove/mod.rs"]
+mod groove;
+mod idle;
+mod inputs;
+mod light;
+mod needs_vulkan;
+mod plan;
+mod reference;
+mod scene_file;
+mod signals;
+mod trade;
+mod unlike;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// How a run ended.
+struct Run {
+    status: Option<i32>,
+    out: String,
+    err: String,
+}
+
+/// A folder with the files that the cases name; gone with the value.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    /// One valid height field of every format ("a.asc", …).
+    fn new() -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        for (name, bytes) in common::height_files() {
+            folder.write(name, &bytes);
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ridgelight"));
+        command.current_dir(self.0.path()).args(args);
+        command
+    }
+
+    /// Runs with whatever driver is there.
+    fn run(&self, args: &[&str]) -> Run {
+        ran(self.command(args))
+    }
+
+    /// Runs where no Vulkan driver answers: what is found out here needs no device.
+    fn run_without_driver(&self, args: &[&str]) -> Run {
+        let mut command = self.command(args);
+        for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            command.env(name, self.path("no-driver.json"));
+        }
+        command.env_remove("VK_ADD_DRIVER_FILES");
+        ran(command)
+    }
+
+    /// Every file by its path from here, hidden ones too; directories without contents.
+    fn contents(&self) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
+        let mut all = BTreeMap::new();
+        let mut folders = vec![self.0.path().to_owned()];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path.clone());
+                }
+                all.insert(path.clone(), std::fs::read(&path).ok());
+            }
+        }
+        all
+    }
+}
+
+fn ran(mut command: Command) -> Run {
+    let output = command.output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+    Run { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// A wrong request: arguments parted by blanks, the exit status, what the sentence must say.
+type Case<'a> = (&'a str, i32, &'a [&'a str]);
+
+/// Runs every case without a driver; what does not hold is told of all cases together.
+fn refused(folder: &Folder, cases: &[Case]) {
+    let before = folder.contents();
+    let mut wrong = Vec::new();
+    for (args, status, says) in cases {
+        let run = folder.run_without_driver(&args.split(' ').collect::<Vec<_>>());
+        let mut complain = |what: &str| wrong.push(format!("{args}\n  {what}\n  {}", run.err));
+        if run.status != Some(*status) {
+            complain(&format!("exit status {:?}, expected {status}", run.status));
+        }
+        // What cannot be parsed at all is answered with clap's usage.
+        let is_usage = *status == 2 && run.err.starts_with("error: ");
+        if !is_usage && (run.err.lines().count() != 1 || !run.err.starts_with("ridgelight: ")) {
+            complain("not one line");
+        }
+        if run.err.contains("panicked") {
+            complain("a panic");
+        }
+        if !run.out.is_empty() {
+            complain("something on stdout");
+        }
+        for said in says.iter().filter(|said| !run.err.contains(**said)) {
+            complain(&format!("does not say {said:?}"));
+        }
+        if folder.contents() != before {
+            complain("files are not as before");
+        }
+    }
+    assert!(wrong.is_empty(), "{} complaints:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// The matrix's own check: a right request and a wrong expectation are both seen.
+#[test]
+fn the_matrix_can_fail() {
+    let folder = Folder::new();
+    for case in [
+        ("plan a.asc", 2, &[][..]),
+        ("plan a.asc --azimuths 3", 1, &[]),
+        ("plan a.asc --azimuths 3", 2, &["--border"]),
+        ("plan a.asc --azimuths 3 --json p.json", 2, &["--json"]),
+    ] {
+        let result = std::panic::catch_unwind(|| refused(&folder, &[case]));
+        assert!(result.is_err(), "{case:?} passed");
+    }
+}
+
+/// A valid request where no driver answers is one sentence that says what to do.
+#[test]
+fn no_driver_is_said() {
+    let folder = Folder::new();
+    refused(
+        &folder,
+        &[
+            ("render a.asc -o out.exr", 1, &["driver"]),
+            ("horizon a.asc -o out.npy", 1, &["driver"]),
+            ("render a.asc -o out.exr --device nosuch", 1, &["driver"]),
+            ("devices", 1, &["driver"]),
+        ],
+    );
+}
+
+fn read(path: &Path) -> ridgelight_io::Planes {
+    ridgelight_io::read_planes(path).unwrap()
+}

@@ -1,0 +1,432 @@
+//! Speed against accuracy: what is refused, and what a small field's report holds.
+
+use std::path::Path;
+
+use crate::common::npy;
+use crate::{Folder, refused};
+
+#[test]
+fn wrong_trades_are_refused() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("taken")).unwrap();
+    folder.write("taken/trade.csv", b"an earlier report's");
+    folder.write("taken/notes.txt", b"mine");
+    refused(
+        &folder,
+        &[
+            ("trade a.asc", 2, &["--output"]),
+            ("trade a.asc -o a.npy", 2, &["-o: found the file a.npy", "a folder"]),
+            ("trade a.asc -o taken", 2, &["taken with notes.txt in it", "an earlier report"]),
+            ("trade a.asc -o no/such", 2, &["-o: found no/such", "a folder no that exists"]),
+            ("trade a.asc -o out --budget 0", 2, &["--budget: found 0", "1 to 1000000"]),
+            ("trade a.asc -o out --budget -5", 2, &["--budget: found -5"]),
+            ("trade a.asc -o out --budget nan", 2, &["--budget: found NaN"]),
+            ("trade a.asc -o out --budget soon", 2, &["--budget", "'soon'"]),
+            ("trade a.asc -o out --max-error 0", 2, &["--max-error: found 0", "above 0"]),
+            ("trade a.asc -o out --max-error inf", 2, &["--max-error: found inf"]),
+            ("trade a.asc -o out --time-budget -1", 2, &["--time-budget: found -1"]),
+            ("trade a.asc -o out --max-error 1 --time-budget 1", 2, &["cannot be used"]),
+            ("trade a.asc -o out --azimuths 8", 2, &["--azimuths"]),
+            ("trade a.asc -o out --json out.txt", 2, &["--json: found out.txt", ".json"]),
+            ("trade a.asc -o out --json a.asc", 2, &["--json"]),
+            ("trade a.asc -o out --sky -1", 2, &["--sky"]),
+            ("trade none.asc -o out", 1, &["none.asc"]),
+            ("trade a.asc -o out --reference none.exr", 1, &["none.exr"]),
+            ("trade a.asc -o out --reference a.npy", 2, &["--reference: found a.npy", "an .exr"]),
+            ("trade a.asc -o out", 1, &["driver"]),
+        ],
+    );
+    // No folder can be made in /proc, not even by root.
+    #[cfg(target_os = "linux")]
+    refused(&folder, &[("trade a.asc -o /proc/out", 1, &["/proc/out"])]);
+}
+
+/// A field of 16² with two peaks.
+fn write_peaks(folder: &Folder) {
+    let height = |i: usize| {
+        let (r, c) = ((i / 16) as f32, (i % 16) as f32);
+        let peak = |y: f32, x: f32, h: f32| (h - (r - y).hypot(c - x)).max(0.0);
+        peak(4.0, 5.0, 6.0).max(peak(11.0, 10.0, 4.5))
+    };
+    let data: Vec<u8> = (0..256).flat_map(|i| height(i).to_le_bytes()).collect();
+    folder.write("field.npy", &npy("<f4", false, "(16, 16)", &data));
+}
+
+fn text(path: &Path) -> String {
+    String::from_utf8(std::fs::read(path).unwrap()).unwrap()
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&text(path)).unwrap()
+}
+
+/// Whether x rises and y falls from each point to the next.
+fn falls(points: &[(f64, f64)]) -> bool {
+    points.windows(2).all(|two| two[0].0 < two[1].0 && two[0].1 > two[1].1)
+}
+
+/// Time and error of the frontier, in its order; each rises, falls.
+fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
+    let points = report["points"].as_array().unwrap();
+    let of = |i: &serde_json::Value| {
+        let point = &points[i.as_u64().unwrap() as usize];
+        (point["time_ns"].as_f64().unwrap(), point["relative_rmse"].as_f64().unwrap())
+    };
+    let front: Vec<_> = report["frontier"].as_array().unwrap().iter().map(of).collect();
+    assert!(!front.is_empty());
+    assert!(falls(&front), "{front:?}");
+    for point in points {
+        let (time, error) =
+            (point["time_ns"].as_f64().unwrap(), point["relative_rmse"].as_f64().unwrap());
+        assert!(front.iter().any(|f| f.0 <= time && f.1 <= error), "{point}");
+    }
+    front
+}
+
+/// The frontier of the table, from cheap to dear.
+fn table_frontier(csv: &str) -> Vec<(f64, f64)> {
+    let mut lines = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let [time, error, front] = ["time_ms", "relative_rmse", "frontier"]
+        .map(|n| names.iter().position(|name| *name == n).unwrap());
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let on = lines.filter(|row| row[front] == "true");
+    let mut all: Vec<_> = on.map(|row| (number(row[time]), number(row[error]))).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// The corners of the page's frontier, as (to the right, up): `M x y` and then `H x V y` each.
+fn plotted_frontier(page: &str) -> Vec<(f64, f64)> {
+    let path = page.split_once("class=front d=\"M").unwrap().1.split_once('"').unwrap().0;
+    path.replace('H', ";")
+        .replace('V', " ")
+        .split(';')
+        .map(|corner| {
+            let (x, y) = corner.split_once(' ').unwrap();
+            (x.parse::<f64>().unwrap(), -y.parse::<f64>().unwrap())
+        })
+        .collect()
+}
+
+/// A point that another covers is seen, wherever it is written.
+#[test]
+fn a_frontier_that_is_none_is_seen() {
+    let csv = "settings,time_ms,relative_rmse,frontier\na,2.0,1e-2,true\nb,1.0,2e-2,true\nc,3.0,9e-2,false\n";
+    assert_eq!(table_frontier(csv), [(1.0, 0.02), (2.0, 0.01)]);
+    assert!(falls(&table_frontier(csv)));
+    assert!(!falls(&table_frontier(&csv.replace("9e-2,false", "9e-2,true"))));
+    let page = "<path class=front d=\"M80.0 10.0H90.0V20.5H95.0V30.0\" />";
+    assert_eq!(plotted_frontier(page), [(80.0, -10.0), (90.0, -20.5), (95.0, -30.0)]);
+    assert!(falls(&plotted_frontier(page)));
+    assert!(!falls(&plotted_frontier(&page.replace("20.5", "9.5"))));
+}
+
+/// The published tables' frontiers fall, and the rest of their rows is no part of them.
+#[test]
+fn kept_tables_have_frontiers() {
+    for scene in ["mountain_sky", "mountain_sun", "moss_windows"] {
+        let name = format!("benches/results/trade_{scene}.csv");
+        let csv = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(&name));
+        let front = table_frontier(&csv);
+        assert!(front.len() > 2 && falls(&front), "{name}: {front:?}");
+        // With every row taken for one of the frontier's, a point covers another.
+        assert!(!falls(&table_frontier(&csv.replace(",false", ",true"))), "{name}");
+    }
+}
+
+#[test]
+fn gpu_trade_of_a_small_field() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let args = "trade field.npy -o report --json copy.json --evaluations 4";
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    let report = json(&folder.path("report/trade.json"));
+    assert_eq!(
+        (&report["evaluations"], &report["budget_s"]),
+        (&4.into(), &serde_json::Value::Null)
+    );
+    assert_eq!(run.out.matches("<- recommended").count(), 1, "{}", run.out);
+    let names: Vec<_> = std::fs::read_dir(folder.path("report"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(names.len(), 3, "{names:?}");
+
+    assert_eq!(report, json(&folder.path("copy.json")));
+    let points = report["points"].as_array().unwrap();
+    assert_eq!(points.len(), 4);
+    let front = monotone(&report);
+    let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
+    assert!(own > 0.0 && own < 0.02, "{own}");
+    assert!(report["truth"]["what"].as_str().unwrap().contains("sky by method brute"));
+    let how = report["truth"]["how"].as_str().unwrap();
+    let is_sure = ["95 % confidence", "all that there are"].iter().any(|said| how.contains(said));
+    assert!(is_sure && how.contains("off the oracle"), "{how}");
+    for point in points {
+        let error = point["relative_rmse"].as_f64().unwrap();
+        assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
+        assert!(!point["passes"].as_array().unwrap().is_empty());
+    }
+    // Every setting is accounted for, once; of what was not measured some are spelt out.
+    let left = |name: &str| report["left_out"][name].as_u64().unwrap() as usize;
+    let all = (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6;
+    assert_eq!((left("settings"), left("measured")), (all, points.len()));
+    assert_eq!(left("measured") + left("ruled_out") + left("not_tried"), all);
+    let groups = report["ruled_out"].as_array().unwrap();
+    let count = |g: &serde_json::Value| g["count"].as_u64().unwrap() as usize;
+    let spelt: usize = groups.iter().map(count).sum();
+    assert_eq!(groups.len(), left("reasons").min(40));
+    assert!(if left("reasons") <= 40 {
+        spelt == left("ruled_out")
+    } else {
+        spelt < left("ruled_out")
+    });
+    assert!(groups.iter().all(|g| g["settings"].as_array().unwrap().len() == count(g).min(6)));
+    assert_eq!(report["not_tried"].as_array().unwrap().len(), left("not_tried").min(40));
+    let recommended = report["recommendation"]["point"].as_u64().unwrap();
+    assert!(report["frontier"].as_array().unwrap().iter().any(|i| i.as_u64() == Some(recommended)));
+    // The knee: no other has a smaller product of time and error.
+    let product = |f: &(f64, f64)| f.0 * f.1;
+    let point = &points[recommended as usize];
+    let best = point["time_ns"].as_f64().unwrap() * point["relative_rmse"].as_f64().unwrap();
+    assert!(front.iter().all(|f| product(f) >= best * (1.0 - 1e-9)), "{front:?}");
+
+    let csv = text(&folder.path("report/trade.csv"));
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert_eq!(csv.lines().count(), points.len() + 1);
+    assert!(csv.lines().all(|l| l.split(',').count() == columns), "{csv}");
+    let table = table_frontier(&csv);
+    assert!(table.len() == front.len() && falls(&table), "{csv}");
+
+    let page = text(&folder.path("report/trade.html"));
+    for none in ["http", "src=\"/", "<link", "url(", "@import", "{{"] {
+        assert!(!page.contains(none), "{none}");
+    }
+    assert_eq!(page.matches("<circle class=\"point").count(), points.len());
+    assert_eq!(page.matches("<figure").count(), front.len() + 1);
+    // A tenth of a pixel is as near as the plot goes: what is as near may share a corner's place.
+    let plotted = plotted_frontier(&page);
+    let falls_or_stays = plotted.windows(2).all(|two| two[0].0 <= two[1].0 && two[0].1 >= two[1].1);
+    assert!(plotted.len() == front.len() && falls_or_stays, "{plotted:?}");
+    // What the eye sees of each, and why the one is recommended.
+    for point in points {
+        let on = front.iter().any(|f| Some(f.0) == point["time_ns"].as_f64());
+        let flip = point["flip"]["mean"].as_f64();
+        assert!(!on || flip.is_some_and(|f| (0.0..=1.0).contains(&f)), "{point}");
+    }
+    let why = report["recommendation"]["why"].as_array().unwrap();
+    let why: Vec<&str> = why.iter().map(|w| w.as_str().unwrap()).collect();
+    for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured"] {
+        assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
+    }
+    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep or a pyramid.
+    let hulls = report["hulls"].as_array().unwrap();
+    let has_hull = point["settings"]["hull"].is_string();
+    assert_eq!(hulls.len(), if has_hull { 3 } else { 0 }, "{hulls:?}");
+    assert_eq!(hulls.iter().any(|h| h["time_ratio"].is_number()), has_hull, "{hulls:?}");
+    assert_eq!(why.iter().any(|w| w.contains("Where the hull lives")), has_hull, "{why:?}");
+    for knob in report["knobs"].as_array().unwrap() {
+        let steps = knob["cheap_to_dear"].as_array().unwrap();
+        assert!(steps.contains(&knob["default"]) && !knob["dearer"].as_str().unwrap().is_empty());
+    }
+    assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
+    let flags = point["flags"].as_str().unwrap();
+    assert!(run.out.contains(flags), "{flags}");
+    assert!(flags.split(" --").all(|flag| page.contains(flag)), "{flags}");
+}
+
+/// A truth from a file; a bound that nothing keeps is said and ends with status 1, the report written
+/// over the earlier one all the same.
+#[test]
+fn gpu_trade_against_a_reference() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let truth = "render field.npy -o truth.exr --method brute --azimuths 256 --quiet";
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let trade = |more: &str| {
+        let args = format!("trade field.npy -o out --evaluations 2 --reference truth.exr {more}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!(run.err, "", "{args}");
+        (run, json(&folder.path("out/trade.json")))
+    };
+    let (run, report) = trade("--max-error 0.5");
+    assert_eq!(run.status, Some(0));
+    monotone(&report);
+    assert!(report["truth"]["what"].as_str().unwrap().contains("truth.exr"));
+    // A picture says nothing of its own error.
+    assert!(report["truth"]["own_relative_rmse"].is_null(), "{}", report["truth"]);
+    assert!(run.out.contains("Its own error (relative RMSE): unknown: it has no"), "{}", run.out);
+    // The cheapest of all is within a half.
+    assert_eq!(report["recommendation"]["point"], report["frontier"][0]);
+    let (run, report) = trade("--max-error 1e-9 --quiet");
+    assert_eq!((run.status, run.out.as_str()), (Some(1), ""));
+    assert_eq!(report["recommendation"]["holds"], false);
+    let why = report["recommendation"]["why"][0].as_str().unwrap();
+    assert!(why.contains("--max-error"), "{why}");
+    let (run, report) = trade("--time-budget 1e-6");
+    assert_eq!((run.status, &report["recommendation"]["holds"]), (Some(1), &false.into()));
+    let why = report["recommendation"]["why"][0].as_str().unwrap();
+    let told = why.split(" ms of --time-budget").next().and_then(|w| w.rsplit(' ').next());
+    let told: f64 = told.unwrap().parse().expect(why);
+    assert!((told / 1e-6 - 1.0).abs() < 0.01, "{why}");
+    // Another scene's truth is refused, and nothing is written.
+    let trace =
+        "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
+    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let before = folder.contents();
+    for (args, said) in [
+        (
+            "truth.exr --sun 90,20",
+            "truth.exr: header: sky: found 1,1,1, expected none, as in this scene",
+        ),
+        ("truth.exr --sky 0.5", "truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5"),
+        ("truth.exr --cell 2", "truth.exr: header: cell_m: found 1,1, expected 2,2"),
+        ("truth.exr --z-scale 2", "truth.exr: header: base_m: found 0.89"),
+        ("truth.exr --border open", "truth.exr: header: border: found plane, expected open"),
+        ("truth.exr --albedo 0.5", "truth.exr: header: albedo: found 1, expected 0.5"),
+        (
+            "traced.exr --sky 0.5 --sun 90,20",
+            "traced.exr: header: bounces: found 2, expected 0, as --bounces here",
+        ),
+        ("traced.exr --sky 0.5 --sun 180,20", "traced.exr: header: "),
+        (
+            "traced.exr --sky 0.5 --sun 90,20 --bounces 1",
+            "traced.exr: header: bounces: found 2, expected 1",
+        ),
+    ] {
+        let args = format!("trade field.npy -o other --evaluations 1 --reference {args}");
+        let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+        assert_eq!((run.status, run.err.lines().count()), (Some(1), 1), "{args}: {}", run.err);
+        assert!(run.err.contains(said), "{args}: {}", run.err);
+    }
+    assert!(folder.contents() == before);
+    let args = "trade a.asc -o other --reference truth.exr";
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert!(
+        run.status == Some(1) && run.err.contains("truth.exr: size: found 16 × 16"),
+        "{}",
+        run.err
+    );
+    assert!(folder.contents() == before);
+}
+
+/// Lobes of each sample, thrown twice, against light paths: harmonics and what is kept of lobes' light are walked, and nothing
+/// that lobes refuse is left as if it could be drawn. Without such a truth they are refused.
+#[test]
+fn gpu_trade_takes_lobes() {
+    let folder = Folder::new();
+    write_peaks(&folder);
+    let lobes: Vec<u8> = (0..512_u16)
+        .flat_map(|i| if i < 256 { f32::from(i % 9) } else { f32::from(i % 3) * 0.2 }.to_le_bytes())
+        .collect();
+    folder.write("lobes.npy", &npy("<f4", false, "(2, 16, 16)", &lobes));
+    let scene = "--sky 1 --sun 100,40 --albedo 0.5 --phong lobes.npy --bounces 2";
+    let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
+    assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
+    let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
+    let run = folder.run(&bare.split(' ').collect::<Vec<_>>());
+    assert_eq!(run.status, Some(2), "{}", run.err);
+    assert!(
+        run.err.contains("--phong with trade: found a lobe, expected --reference"),
+        "{}",
+        run.err
+    );
+    let run = folder.run(&format!("{bare} --reference truth.exr").split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let report = json(&folder.path("out/trade.json"));
+    let flags = |list: &str| -> Vec<String> {
+        let all = report[list].as_array().unwrap().iter();
+        all.map(|p| p["flags"].as_str().unwrap().to_owned()).collect()
+    };
+    let tried: Vec<String> = flags("points");
+    assert!(tried.iter().all(|f| f.contains("--basis sh --sh-order")), "{tried:?}");
+    assert!(tried.iter().all(|f| f.contains("--bounce-gloss")), "{tried:?}");
+    // Exact lines have no azimuth of the sun's.
+    let open = flags("not_tried");
+    assert!(!open.iter().chain(&tried).any(|f| f.contains("--lines exact")), "{open:?}");
+    let out = report["ruled_out"].as_array().unwrap();
+    let exact =
+        out.iter().find(|g| g["why"].as_str().unwrap().contains("--lines exact with --sun"));
+    let count = exact.expect("a reason")["count"].as_u64().unwrap();
+    // Every number of azimuths, slices of the sun and bounces, every order and gloss: all or none of each.
+    assert!(count > 0 && count % (6 * 6 * 5 * 3 * 4) == 0, "{count}");
+}
+
+/// Peaks and their truth with two bounces; the flags of that scene.
+fn write_bounced(folder: &Folder) -> &'static str {
+    const SCENE: &str = "--sun 100,40 --albedo 0.8 --bounces 2";
+    write_peaks(folder);
+    let truth = format!(
+        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {SCENE}"
+    );
+    assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
+    SCENE
+}
+
+/// With bounces, those over visible points are told beside them, from few directions and paths on; without bounces none are.
+#[test]
+fn gpu_trade_tells_what_may_be_baked() {
+    let folder = Folder::new();
+    let scene = write_bounced(&folder);
+    let args = format!(
+        "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr {scene}"
+    );
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("over visible points that are found once"), "{}", run.out);
+    let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(" paths: ")).collect();
+    assert_eq!(rows.len(), 9, "{}", run.out);
+    assert!(rows[0].starts_with("64 directions, 40 paths: "), "{rows:?}");
+    let report = text(&folder.path("out/trade.json"));
+    assert!(report.len() < 1 << 18, "{} bytes", report.len());
+    assert_eq!(report.matches("\"found_once_ns\"").count(), rows.len());
+    for row in rows {
+        let number = |after: &str, unit: &str| -> f64 {
+            let rest = row.split_once(after).expect(row).1;
+            rest.split_once(unit).expect(row).0.parse().expect(row)
+        };
+        let directions: f64 = row.split(' ').next().and_then(|n| n.parse().ok()).expect(row);
+        assert!(number("paths: ", " ms") > 0.0 && number("once in ", " ms") > 0.0, "{row}");
+        // Of all light a third at most is scattered on so flat a field, and most of that is found.
+        assert!((0.0..20.0).contains(&number("a frame, ", " %")), "{row}");
+        // Two bytes a sample and direction, in three digits.
+        let megabytes = 2e-6 * 256.0 * directions;
+        assert!((number("ms, ", " MB") / megabytes - 1.0).abs() < 0.01, "{row}");
+    }
+    let none = folder.run(&["trade", "field.npy", "-o", "none", "--evaluations", "1"]);
+    let report = text(&folder.path("none/trade.json"));
+    assert!(!report.contains("found_once_ns") && !none.out.contains("visible points"));
+}
+
+/// What may be baked and needs more than half of the memory budget (the other half is the baseline's) is told as refused, in
+/// the text and in the file; the trade goes on.
+#[test]
+fn gpu_trade_tells_what_the_memory_budget_refuses() {
+    let folder = Folder::new();
+    let scene = write_bounced(&folder);
+    let args = format!(
+        "trade field.npy -o out --evaluations 2 --max-error 1 --reference truth.exr --memory-budget 300000 {scene}"
+    );
+    let run = folder.run(&args.split(' ').collect::<Vec<_>>());
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(": refused: ")).collect();
+    assert!(rows[0].starts_with("64 directions, 40 paths: refused: "), "{rows:?}");
+    // Half of 300,000 bytes is 146.5 KiB.
+    let said = "the limit is 146.5 KiB of --memory-budget";
+    assert!(rows.iter().all(|row| row.contains("needs") && row.ends_with(said)), "{rows:?}");
+    let report = json(&folder.path("out/trade.json"));
+    assert_eq!(report["baked_refused"].as_array().unwrap().len(), rows.len());
+    assert_eq!(report["baked"], serde_json::json!([]));
+    assert!(run.out.contains("<- recommended"), "{}", run.out);
+}
+
+/// A pass that there is not is told before the light is verified.
+#[test]
+fn gpu_a_pass_that_is_not_is_told_at_once() {
+    let folder = Folder::new();
+    let run = folder.run(&["bench", "--size", "32", "--passes", "sky_shade,none"]);
+    assert_eq!((run.status, run.out.as_str()), (Some(2), ""), "{}", run.err);
+    assert!(run.err.contains("--passes: found none, expected"), "{}", run.err);
+}

@@ -1,0 +1,339 @@
+//! The window, in a display of its own (Xvfb): what it shows is what `render` writes, it outlives what happens to
+//! windows, holds no more memory after many frames, and validation has nothing to say.
+#![cfg(all(feature = "window", target_os = "linux"))]
+
+mod hands;
+mod lost;
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+use ridgelight_io::{Planes, read_planes};
+
+/// A display without a screen, gone with the value.
+struct Display {
+    server: Child,
+    name: String,
+}
+
+impl Display {
+    fn new() -> Self {
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb: run tools/setup --tests");
+        // Its number, once it takes clients.
+        let mut number = String::new();
+        let out = server.stdout.as_mut().expect("piped");
+        BufReader::new(out).read_line(&mut number).expect("a display's number");
+        Self { server, name: format!(":{}", number.trim()) }
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    /// With a field of hills, 64 columns and 48 rows, as "hills.asc".
+    fn new() -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        let height = |i: usize| {
+            let (x, y) = ((i % 64) as f32, (i / 64) as f32);
+            5.0 * (x / 6.0).sin() * (y / 5.0).cos() + (x * y / 40.0).sin()
+        };
+        let heights: Vec<String> = (0..64 * 48).map(|i| height(i).to_string()).collect();
+        let text = format!("ncols 64 nrows 48 cellsize 1 {}", heights.join(" "));
+        folder.write("hills.asc", text.as_bytes());
+        folder
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.0.path().join(name), bytes).unwrap();
+    }
+
+    fn command(&self, args: &str) -> Command {
+        // Longer than any takes: what hangs ends with 124.
+        let mut command = Command::new("timeout");
+        command.current_dir(self.0.path()).args(["1200", env!("CARGO_BIN_EXE_ridgelight")]);
+        command.args(args.split(' '));
+        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+        command
+    }
+
+    /// Runs what must succeed; its standard output.
+    fn done(&self, args: &str) -> String {
+        succeed(self.command(args))
+    }
+
+    /// A window driven by a script, under validation where the tests have it.
+    fn view(&self, display: &Display, args: &str, script: &str) -> String {
+        silent(self.window(display, args, script))
+    }
+
+    /// The same, to be run.
+    fn window(&self, display: &Display, args: &str, script: &str) -> Command {
+        self.write("script", script.as_bytes());
+        let flag = if is_validated() { " --validate" } else { "" };
+        let mut command = self.command(&format!("view {args} --script script{flag}"));
+        command.env("DISPLAY", &display.name);
+        command
+    }
+
+    fn picture(&self, name: &str) -> Planes {
+        read_planes(&self.0.path().join(name)).unwrap()
+    }
+}
+
+/// Its standard output; it says nothing else.
+fn succeed(mut command: Command) -> String {
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let said = String::from_utf8_lossy(&stderr);
+    assert!(status.success() && said.is_empty(), "{command:?}: {status}: {said}");
+    String::from_utf8(stdout).unwrap()
+}
+
+/// The same of a window, of which validation says nothing where it listens.
+fn silent(command: Command) -> String {
+    let out = succeed(command);
+    assert_eq!(is_validated(), out.lines().last() == Some("0 validation messages"), "{out}");
+    out
+}
+
+fn is_validated() -> bool {
+    std::env::var_os("RIDGELIGHT_VALIDATION").is_some_and(|v| v == "1")
+}
+
+/// Codes of a picture's colours, 8 bits each.
+fn colours(planes: &Planes) -> Vec<&[f32]> {
+    let named = |wanted: &str| planes.names.iter().position(|n| n == wanted);
+    ["R", "G", "B"].map(|n| planes.planes[named(n).expect(n)].as_slice()).to_vec()
+}
+
+fn assert_same(folder: &Folder, got: &str, want: &str) {
+    let (a, b) = (folder.picture(got), folder.picture(want));
+    assert_eq!([a.rows, a.cols], [b.rows, b.cols], "{got} and {want}");
+    assert!(colours(&a) == colours(&b), "{got} is not {want}");
+}
+
+const LIT: &str = "--sun 315,30 --sky 0.3 --azimuths 8";
+
+#[test]
+fn gpu_a_window_shows_what_render_writes() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nframes 2\nscreenshot first.png\npicture saved.png\n\
+        key shift+right\nkey .\nkey b\nframes 2\nscreenshot second.png\nscene second.json\n\
+        drag right 10,10 30,-20\nkey ,\nkey ,\nkey m\nkey m\nframes 1\nscreenshot third.png\n\
+        scene third.json\nlose\nframes 1\nscreenshot fourth.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+    folder.done(&format!("render hills.asc {LIT} -o first_r.png --quiet"));
+    assert_same(&folder, "first.png", "first_r.png");
+    assert_same(&folder, "saved.png", "first_r.png");
+    folder.done("render --scene second.json -o second_r.png --quiet");
+    let flags = "--sun 320,30 --sky 0.3 --azimuths 16 --bounces 1";
+    folder.done(&format!("render hills.asc {flags} -o second_f.png --quiet"));
+    assert_same(&folder, "second.png", "second_r.png");
+    assert_same(&folder, "second.png", "second_f.png");
+    folder.done("render --scene third.json -o third_r.png --quiet");
+    let flags = "--sun 335,35 --sky 0.3 --azimuths 4 --bounces 1 --method pyramid";
+    folder.done(&format!("render hills.asc {flags} -o third_f.png --quiet"));
+    assert_same(&folder, "third.png", "third_r.png");
+    assert_same(&folder, "third.png", "third_f.png");
+    // Another surface of the same window.
+    assert_same(&folder, "fourth.png", "third.png");
+    // The comparison can fail.
+    assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
+}
+
+/// What the window draws, and what `render --camera` does: the same passes, whose codes are rounded here by the
+/// device after its own power function, there by the host.
+#[test]
+fn gpu_a_camera_sees_what_render_does() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nkey v\nframes 2\nscreenshot shot.png\npicture saved.png\n\
+        key left\nkey up\nkey +\nkey k\ndrag middle 9,9 5,3\nframes 1\nscreenshot other.png\npicture other_p.png\nscene other.json\nkey home\nlose\n\
+        frames 1\nscreenshot again.png\nkey v\nframes 1\nscreenshot map.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 96x60"), script);
+    let camera = "--camera 180,45 --fov 40 --samples 1 --size 96x60";
+    folder.done(&format!("render hills.asc {LIT} {camera} -o camera.png --quiet"));
+    assert_same(&folder, "saved.png", "camera.png");
+    assert_same(&folder, "again.png", "shot.png");
+    folder.done("render --scene other.json -o other_r.png --quiet");
+    assert_same(&folder, "other_p.png", "other_r.png");
+    let [shot, saved, other] = ["shot.png", "saved.png", "other.png"].map(|n| folder.picture(n));
+    assert!(apart(&shot, &saved) <= 1.0, "{} codes", apart(&shot, &saved));
+    // The comparison can fail.
+    assert!(apart(&other, &saved) > 16.0);
+}
+
+/// The 8-bit code that a plane's linear light was read from (IEC 61966-2-1).
+fn code(light: f32) -> f64 {
+    let l = f64::from(light);
+    let encoded = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * encoded).round()
+}
+
+/// Numbers of a line that a report printed.
+fn reported(line: &str) -> (u64, u64) {
+    let number = |text: Option<&str>| text.and_then(|t| t.parse().ok()).expect("a number");
+    let frames = line.split(&[' ', ','][..]).nth(1);
+    (number(frames), number(line.split(' ').next_back()))
+}
+
+/// Two hundred frames of moving heights. A frame that left behind anything of its own, its heights (12 KiB), its
+/// text (460 KiB) or its pixels, would hold 2.4 MiB more or a multiple; what the allocators keep of themselves and the
+/// driver's threads grow into is given 2 MiB. The same beside a reference that gathers paths, a picture of three parts.
+#[test]
+fn gpu_two_hundred_frames_hold_no_memory() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key w\nframes 60\nreport\nframes 200\nreport\n\
+        key w\nkey c\npaths 640\nreport\nframes 200\nreport\n";
+    let out = folder.view(&display, &format!("hills.asc {LIT} --size 200x150"), script);
+    let lines: Vec<&str> = out.lines().filter(|line| line.starts_with("frames ")).collect();
+    for pair in lines.chunks_exact(2) {
+        let [before, after] = [pair[0], pair[1]].map(reported);
+        assert_eq!(after.0 - before.0, 200, "{out}");
+        assert!(after.1 < before.1 + 2048, "KiB {} and then {}", before.1, after.1);
+    }
+    assert_eq!(lines.len(), 4, "{out}");
+}
+
+/// Some columns of a picture.
+fn crop(planes: &Planes, first: usize, cols: usize) -> Planes {
+    let cut = |plane: &Vec<f32>| -> Vec<f32> {
+        let rows = plane.chunks_exact(planes.cols);
+        rows.flat_map(|row| &row[first..first + cols]).copied().collect()
+    };
+    Planes { cols, planes: planes.planes.iter().map(cut).collect(), ..planes.clone() }
+}
+
+/// The largest difference of codes.
+fn apart(a: &Planes, b: &Planes) -> f64 {
+    assert_eq!([a.rows, a.cols], [b.rows, b.cols]);
+    let pairs = colours(a).concat().into_iter().zip(colours(b).concat());
+    pairs.map(|(a, b)| (code(a) - code(b)).abs()).fold(0.0, f64::max)
+}
+
+/// A wall across level ground, a sun behind it. Without shadows all ground that does not touch the wall has the light of
+/// the sky and the sun's irradiance times the sine of its elevation over π. Ours is `render`'s, the reference
+/// `reference`'s, and how far they are apart is what their files say.
+#[test]
+fn gpu_a_split_window_shows_what_shadows_do() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let height = |i: usize| if (40..43).contains(&(i % 64)) { "12" } else { "0" };
+    let heights: Vec<&str> = (0..64 * 24).map(height).collect();
+    let text = format!("ncols 64 nrows 24 cellsize 1 {}", heights.join(" "));
+    folder.write("wall.asc", text.as_bytes());
+    let lit = "--sun 90,30,0 --sky 0.3 --azimuths 8";
+    let script = "key h\nkey h\nkey c\nkey r\nframes 2\npaths 4096\nscreenshot split.png\nkey h\nkey r\nframes 1\n\
+        text split.txt\nkey h\nkey h\nkey 2\nframes 2\nkey 1\nkey c\nsize 64,24\nframes 1\nscreenshot one.png\n";
+    folder.view(&display, &format!("wall.asc {lit} --size 196x24"), script);
+    for end in ["png", "exr"] {
+        folder.done(&format!("render wall.asc {lit} -o ours.{end} --quiet"));
+    }
+    folder.done("reference wall.asc --sun 90,30,0 --sky 0.3 -o truth.exr --spp 4096 --quiet");
+    let split = folder.picture("split.png");
+    let [off, ours, truth] = [0, 66, 132].map(|first| crop(&split, first, 64));
+    assert!(colours(&ours) == colours(&folder.picture("ours.png")), "ours");
+    assert_same(&folder, "one.png", "ours.png");
+    let level = code((0.3 + 0.5 / std::f64::consts::PI) as f32);
+    for (i, light) in colours(&off)[0].iter().enumerate() {
+        if !(38..45).contains(&(i % 64)) {
+            assert!((code(*light) - level).abs() <= 1.0, "column {}: {}", i % 64, code(*light));
+        }
+    }
+    // In the shadow, 12 / tan 30° long.
+    assert!(code(colours(&ours)[0][64 * 10 + 30]) < level - 16.0);
+    let exact = folder.picture("truth.exr");
+    let named = |planes: &Planes, name: &str| {
+        let at = planes.names.iter().position(|n| n == name).expect("a layer");
+        planes.planes[at].clone()
+    };
+    let red = named(&exact, "R");
+    for (i, (shown, light)) in colours(&truth)[0].iter().zip(&red).enumerate() {
+        assert!((code(*shown) - code(*light)).abs() <= 1.0, "sample {i}");
+    }
+    let light = folder.picture("ours.exr");
+    let ours = named(&light, if light.names.iter().any(|n| n == "Y") { "Y" } else { "R" });
+    let (spread, mean) =
+        (named(&exact, "standard_error.R"), red.iter().sum::<f32>() / (64.0 * 24.0));
+    let square = |a: f32, b: f32| f64::from(a - b).powi(2);
+    let noise: f64 = spread.iter().map(|s| f64::from(*s).powi(2)).sum();
+    let apart: f64 = ours.iter().zip(&red).map(|(a, b)| square(*a, *b)).sum::<f64>() - noise;
+    let rmse = 100.0 * (apart / (64.0 * 24.0)).sqrt() / f64::from(mean);
+    let said = std::fs::read_to_string(folder.0.path().join("split.txt")).unwrap();
+    // Three digits are said; sums of f32 and of f64 differ beyond those.
+    let expected = format!("ours is {rmse:.3} % RMSE +- ");
+    assert!(said.contains(&expected), "{expected} in {said}");
+}
+
+#[test]
+fn gpu_a_window_outlives_its_sizes() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "frames 2\nsize 301,203\nframes 2\nkey +\nkey left\nwheel -3 20,20\nsize 64,48\nkey home\n\
+        key h\nkey h\nframes 1\nsize 1,1\nframes 2\nsize 64,48\nframes 1\nscreenshot last.png\n";
+    folder.view(&display, &format!("hills.asc {LIT}"), script);
+    folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
+    assert_same(&folder, "last.png", "render.png");
+}
+
+/// Three pictures and the columns between them take 7 pixels: in 6 ours alone is shown, all of it, and paths that
+/// nobody sees are refused; so are those that never come.
+#[test]
+fn gpu_pictures_side_by_side_need_place() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let script = "key h\nkey h\nkey c\nframes 2\nsize 6,24\nframes 2\nscreenshot narrow.png\nkey c\nframes 1\n\
+        screenshot alone.png\nsize 64,48\nkey c\npaths 64\nscreenshot wide.png\n";
+    folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
+    assert_same(&folder, "narrow.png", "alone.png");
+    assert_eq!(folder.picture("wide.png").cols, 64);
+    for (script, says) in [
+        ("key c\nframes 1\nsize 6,24\npaths 64\n", "a window 6 pixels wide"),
+        ("paths 64\n", "no reference beside the light"),
+        ("key c\nkey w\npaths 64\n", "a field that moves"),
+        ("key c\npaths 4097\n", "found 4097, expected 4096 or less"),
+    ] {
+        folder.write("script", script.as_bytes());
+        let mut command =
+            folder.command(&format!("view hills.asc {LIT} --size 64x48 --script script"));
+        let Output { status, stderr, .. } = command.env("DISPLAY", &display.name).output().unwrap();
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(!status.success() && said.contains(says), "{script}: {said}");
+    }
+}
+
+fn refused(mut command: Command, says: &[&str]) {
+    let Output { status, stderr, .. } = command.output().unwrap();
+    let said = String::from_utf8_lossy(&stderr).into_owned();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(says.iter().all(|s| said.contains(s)), "{said}");
+}
+
+#[test]
+fn no_display_is_one_sentence() {
+    let folder = Folder::new();
+    refused(folder.command("view hills.asc"), &["ridgelight: view: needs a display: "]);
+    let mut elsewhere = folder.command("view hills.asc");
+    elsewhere.env("DISPLAY", ":6553");
+    refused(elsewhere, &["ridgelight: view: needs a display: "]);
+}
+
+#[test]
+fn a_window_without_a_driver_is_one_sentence() {
+    let (folder, display) = (Folder::new(), Display::new());
+    let mut command = folder.command("view hills.asc");
+    for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        command.env(name, Path::new("no-driver.json"));
+    }
+    command.env("DISPLAY", &display.name).env_remove("VK_ADD_DRIVER_FILES");
+    refused(command, &["driver"]);
+}

@@ -1,0 +1,177 @@
+//! The ellipse that holds the directions in which a sample sees the sky (Heidrich et al. 2000, §4), in f64.
+//!
+//! Directions above horizontal are dropped onto the plane z = 0 of the field: that of the flat base, not of each sample's
+//! own normal. A light then has one place in it for all samples, which the test needs no frame for; and the sky is cut by
+//! the base's horizon, not by the normal's, below which N·e is negative anyway.
+//!
+//! Where it starts: the mean and covariance of the lit directions over the plan's area, of which a direction of a share ω of
+//! the sphere covers z ω. A filled ellipse, wherever it lies, has the variance r²/4 along an axis of radius r, so that one
+//! is its own fit. What is searched for: as many lit and as few shadowed directions within as there can be, each counted as
+//! one, as all stand for the same share of the sphere.
+
+use glam::{DVec2, DVec3};
+pub use ridgelight::scene::least_radius;
+
+use ridgelight::scene::{VisiblePoint, VisiblePoints};
+
+/// In the plan of the hemisphere, the disc of radius 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// East, north; may lie outside the disc.
+    pub centre: DVec2,
+    /// Of length 1.
+    pub axis: DVec2,
+    /// One over the radius along the axis and across it. 0, 0: the whole disc.
+    pub inverse_radii: [f64; 2],
+}
+
+impl Ellipse {
+    /// All is lit.
+    pub const WHOLE: Self = Self { centre: DVec2::ZERO, axis: DVec2::X, inverse_radii: [0.0; 2] };
+    /// Nothing is: beyond the disc.
+    pub const EMPTY: Self =
+        Self { centre: DVec2::new(4.0, 0.0), axis: DVec2::X, inverse_radii: [1.0; 2] };
+
+    /// Of texels: centre and axis; 1 / radii.
+    pub fn of_texels(axes: [f32; 4], radii: [f32; 2]) -> Self {
+        let [x, y, along_x, along_y] = axes.map(f64::from);
+        Self {
+            centre: DVec2::new(x, y),
+            axis: DVec2::new(along_x, along_y),
+            inverse_radii: radii.map(f64::from),
+        }
+    }
+
+    /// Whether light from a direction, a unit vector whose z is above 0, arrives: equations 2 to 4.
+    pub fn holds(&self, direction: DVec3) -> bool {
+        self.reach(direction) <= 1.0
+    }
+
+    /// The left-hand side less 1 of equation 4, negated: at most 1 within.
+    pub fn reach(&self, direction: DVec3) -> f64 {
+        let from = direction.truncate() - self.centre;
+        let [along, across] = self.inverse_radii;
+        (self.axis.dot(from) * along).powi(2) + (self.axis.perp().dot(from) * across).powi(2)
+    }
+
+    /// With the ends along an axis (0) or across it (1) moved: the centre by `by`, the radius by `grow` to `least` or more.
+    pub fn moved(&self, across: usize, (by, grow): (f64, f64), least: f64) -> Self {
+        let mut moved = *self;
+        moved.centre += by * [self.axis, self.axis.perp()][across];
+        moved.inverse_radii[across] = 1.0 / (1.0 / self.inverse_radii[across] + grow).max(least);
+        moved
+    }
+}
+
+/// A direction above horizontal, and whether the sky is seen in it.
+pub type Seen = (DVec3, bool);
+
+/// The search's first step, its last, and how many it may take; of radii and centre, where the disc's radius is 1.
+pub const FIRST_STEP: f64 = 0.25;
+/// See [`FIRST_STEP`].
+pub const LAST_STEP: f64 = 1.0 / 64.0;
+/// See [`FIRST_STEP`].
+pub const MOST_STEPS: usize = 48;
+
+/// Of centre and radius along an axis, by steps: either end, both to one side, both apart.
+pub const MOVES: [(f64, f64); 8] = [
+    (-1.0, -1.0),
+    (0.0, -1.0),
+    (1.0, -1.0),
+    (-1.0, 0.0),
+    (1.0, 0.0),
+    (-1.0, 1.0),
+    (0.0, 1.0),
+    (1.0, 1.0),
+];
+
+/// What a sample sees of the sky above horizontal.
+pub fn seen(points: &VisiblePoints, sample: usize) -> Vec<Seen> {
+    let all = points.directions().vectors().iter().enumerate().filter(|(_, e)| e.z > 0.0);
+    all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
+}
+
+/// The same on a curved base, where a sample's directions are `bent`.
+pub fn seen_bent(points: &VisiblePoints, bent: &[DVec3], sample: usize) -> Vec<Seen> {
+    let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
+    all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
+}
+
+/// Lit directions within less shadowed ones.
+pub fn score(ellipse: &Ellipse, seen: &[Seen]) -> i64 {
+    let within = seen.iter().filter(|(e, _)| ellipse.holds(*e));
+    within.map(|(_, is_lit)| if *is_lit { 1 } else { -1 }).sum()
+}
+
+/// Mean and covariance (xx, xy, yy) of the lit directions over the plan's area; zeros where none is.
+pub fn moments(seen: &[Seen]) -> (DVec2, [f64; 3]) {
+    let lit = || seen.iter().filter(|s| s.1).map(|(e, _)| (e.truncate(), e.z));
+    let weight = lit().map(|(_, z)| z).sum::<f64>().max(1e-30);
+    let mean = lit().map(|(p, z)| p * z).sum::<DVec2>() / weight;
+    let mut spread = [0.0; 3];
+    for (p, z) in lit() {
+        let d = p - mean;
+        for (sum, square) in spread.iter_mut().zip([d.x * d.x, d.x * d.y, d.y * d.y]) {
+            *sum += z * square / weight;
+        }
+    }
+    (mean, spread)
+}
+
+/// Where the search starts.
+pub fn start(seen: &[Seen]) -> Ellipse {
+    let least = least_radius(seen.len());
+    let (centre, [xx, xy, yy]) = moments(seen);
+    let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let root = half_difference.hypot(xy);
+    let axis = if half_difference >= 0.0 {
+        DVec2::new(half_difference + root, xy)
+    } else {
+        DVec2::new(xy, root - half_difference) * if xy < 0.0 { -1.0 } else { 1.0 }
+    };
+    let axis = if root > 1e-6 * half_sum { axis.normalize() } else { DVec2::X };
+    let inverse = |variance: f64| 1.0 / (2.0 * variance.max(0.0).sqrt()).max(least);
+    Ellipse { centre, axis, inverse_radii: [inverse(half_sum + root), inverse(half_sum - root)] }
+}
+
+/// The ellipse, and its [`score`]: a start, moved by the best of its neighbours while one is better, then by half as much.
+/// The whole disc where that is as good, nothing where nothing is better than that.
+pub fn fit(seen: &[Seen]) -> (Ellipse, i64) {
+    let lit = seen.iter().filter(|s| s.1).count() as i64;
+    let whole = 2 * lit - seen.len() as i64;
+    if lit == 0 || lit == seen.len() as i64 {
+        return if lit == 0 { (Ellipse::EMPTY, 0) } else { (Ellipse::WHOLE, whole) };
+    }
+    let least = least_radius(seen.len());
+    let mut found = start(seen);
+    let mut best = score(&found, seen);
+    let mut step = FIRST_STEP;
+    for _ in 0..MOST_STEPS {
+        if step < LAST_STEP {
+            break;
+        }
+        let mut next = None;
+        for other in neighbours(&found, step, least) {
+            let of_other = score(&other, seen);
+            if of_other > best {
+                (best, next) = (of_other, Some(other));
+            }
+        }
+        match next {
+            Some(next) => found = next,
+            None => step *= 0.5,
+        }
+    }
+    match () {
+        () if whole.max(best) <= 0 => (Ellipse::EMPTY, 0),
+        () if whole >= best => (Ellipse::WHOLE, whole),
+        () => (found, best),
+    }
+}
+
+/// One step away, in the order in which the first of the best is taken.
+pub fn neighbours(of: &Ellipse, step: f64, least: f64) -> impl Iterator<Item = Ellipse> {
+    let of = *of;
+    let moves = (0..2).flat_map(|across| MOVES.map(|by| (across, by)));
+    moves.map(move |(across, (by, grow))| of.moved(across, (by * step, grow * step), least))
+}

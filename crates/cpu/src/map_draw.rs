@@ -1,0 +1,30 @@
+//! A lit field from above, as a screen shows it.
+
+use ridgelight::plan::Map;
+use ridgelight::scene::Tone;
+
+/// The four bytes of each pixel, row after row; `radiance` and `voids` are the field's, one a sample.
+pub fn map_draw(
+    map: &Map,
+    radiance: &[[f32; 3]],
+    voids: Option<&[bool]>,
+    tone: Tone,
+) -> Vec<[u8; 4]> {
+    let [width, height] = map.size;
+    // In f32, as on the device: which sample a pixel's middle is in must not differ.
+    let sample = |corner: f32, pixel: u32, count: u32| {
+        let place = ((pixel as f32 + 0.5) * map.samples_per_pixel + corner).floor();
+        (place >= 0.0 && place < count as f32).then_some(place as usize)
+    };
+    let pixel = |x: u32, y: u32| {
+        let col = sample(map.corner[0], x, map.field[0])?;
+        let at = sample(map.corner[1], y, map.field[1])? * map.field[0] as usize + col;
+        if voids.is_some_and(|v| v[at]) {
+            return None;
+        }
+        let [r, g, b] = radiance[at].map(|light| tone.code(light));
+        Some(if map.swaps { [b, g, r, 255] } else { [r, g, b, 255] })
+    };
+    let row = |y: u32| (0..width).map(move |x| pixel(x, y).unwrap_or(Map::BEYOND));
+    (0..height).flat_map(row).collect()
+}

@@ -1,0 +1,136 @@
+//! Where a path stands, and what a place reflects.
+
+use std::f64::consts::PI;
+
+use super::{Tracer, given, largest, one};
+use crate::shared::lobe::lobe_density;
+use crate::shared::random::{direction_about, on_circle};
+use crate::shared::trace::Met;
+use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
+use ridgelight::scene::{Albedo, Border, Lobe};
+
+/// Where a path stands.
+pub(super) struct Place {
+    pub(super) base: [i32; 2],
+    pub(super) offset: [Near; 2],
+    pub(super) own: Near,
+    pub(super) normal: Near3,
+    pub(super) albedo: Near3,
+    pub(super) lobe: [Near; 2],
+    pub(super) mirror: Near3,
+}
+
+/// What a place reflects: see the shader.
+pub(super) struct Reflected {
+    pub(super) facing: Near,
+    pub(super) light: Near3,
+    pub(super) density: Near,
+    pub(super) scattered: Near3,
+}
+
+impl Tracer<'_> {
+    /// Of what stands at a sample.
+    pub(super) fn first(&self, sample: usize) -> Place {
+        let cols = self.scene.field.cols();
+        let [own, east, north] = given(self.samples[sample]);
+        let normal = normalize([-east, -north, one()]);
+        let mirror = times(Near::of(2.0) * normal[2], normal);
+        Place {
+            base: [(sample % cols) as i32, (sample / cols) as i32],
+            offset: [Near::ZERO; 2],
+            own,
+            normal,
+            albedo: given(self.albedo[sample]),
+            lobe: self.lobes.get(sample).map_or([Near::ZERO; 2], |l| given(*l)),
+            mirror: minus(mirror, [Near::ZERO, Near::ZERO, one()]),
+        }
+    }
+
+    /// Of what a ray along e has met.
+    pub(super) fn place_of(&self, met: &Met, is_lower: bool, e: Near3) -> Place {
+        let [nw, ne, sw, se] = self.ground.corners(met.cell);
+        let [east, south] = if is_lower { [se - sw, sw - nw] } else { [ne - nw, se - ne] };
+        let [x, y] = self.ground.cell_m;
+        let normal = normalize([-east / x, south / y, one()]);
+        let (cols, rows) = (self.scene.field.cols(), self.scene.field.rows());
+        let at = met.cell.map(|i| i as usize);
+        let next = [(at[0] + 1) % cols, (at[1] + 1) % rows];
+        let third = if is_lower { [at[0], next[1]] } else { [next[0], at[1]] };
+        let [far, along] = if is_lower { met.offset } else { [met.offset[1], met.offset[0]] };
+        let near = one() - along;
+        let rest = one() - near - far;
+        let samples = [(near, at), (far, next), (rest, third)].map(|(w, [c, r])| (w, r * cols + c));
+        let between = |of: &dyn Fn(usize) -> Near| {
+            let [a, b, c] = samples.map(|(weight, sample)| weight * of(sample));
+            a + b + c
+        };
+        let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));
+        let lobe_is_map = matches!(self.scene.surface.phong, Some(Lobe::Map(_)));
+        let channel = |c: usize| between(&|i| Near::given(self.albedo[i][c]));
+        let lobe = |c: usize| match (lobe_is_map, self.lobes.first()) {
+            (true, _) => between(&|i| Near::given(self.lobes[i][c])).max(Near::ZERO),
+            (false, Some(lobe)) => Near::given(lobe[c]),
+            (false, None) => Near::ZERO,
+        };
+        Place {
+            base: met.cell,
+            offset: met.offset,
+            own: nw + met.offset[0] * east + met.offset[1] * south,
+            normal,
+            albedo: if is_map { [0, 1, 2].map(channel) } else { given(self.albedo[0]) },
+            lobe: [0, 1].map(lobe),
+            mirror: minus(e, times(Near::of(2.0) * dot(e, normal), normal)),
+        }
+    }
+
+    /// Share of scattered rays that the lobe sends.
+    fn lobe_choice(place: &Place) -> Near {
+        place.lobe[1] / (largest(place.albedo) + place.lobe[1]).max(Near::of(1e-30))
+    }
+
+    pub(super) fn reflected(&self, place: &Place, e: Near3) -> Reflected {
+        let facing = dot(place.normal, e);
+        let density = facing / Near::of(PI);
+        let light = times(density, place.albedo);
+        if self.lobes.is_empty() {
+            return Reflected { facing, light, density, scattered: place.albedo };
+        }
+        let lobe = lobe_density(minus(e, place.mirror), place.lobe[0]);
+        let choice = Self::lobe_choice(place);
+        let density = density * (one() - choice) + lobe * choice;
+        let more = place.lobe[1] * lobe;
+        let light = light.map(|l| l + more);
+        let scattered = light.map(|l| l / density.max(Near::of(1e-30)));
+        Reflected { facing, light, density, scattered }
+    }
+
+    /// Where the place lies in the world; none where rounding decides whether a field that repeats begins again there.
+    pub(super) fn centre(&self, place: &Place) -> Option<Near3> {
+        let (cols, rows) = (self.scene.field.cols(), self.scene.field.rows());
+        let mut from = [0, 1].map(|i| Near::given(place.base[i] as f32) + place.offset[i]);
+        if self.scene.surface.border == Border::Periodic {
+            for (from, side) in from.iter_mut().zip([cols, rows]) {
+                if !Near::given(side as f32).above(*from)? {
+                    *from = Near::ZERO;
+                }
+            }
+        }
+        let [x, y] = self.ground.cell_m;
+        Some([from[0] * x, (Near::given((rows - 1) as f32) - from[1]) * y, place.own])
+    }
+
+    /// Where the scattered ray goes; none where rounding decides whether by the lobe.
+    pub(super) fn scattered(&self, place: &Place, u: [Near; 2], v: [Near; 2]) -> Option<Near3> {
+        let by_lobe =
+            if self.lobes.is_empty() { false } else { Self::lobe_choice(place).above(v[0])? };
+        if by_lobe {
+            let power = one() / (place.lobe[0] + one());
+            let near_mirror = u[0].max(Near::of(1e-30)).powf(power);
+            return direction_about(place.mirror, one() - near_mirror, u[1]);
+        }
+        let two = Near::of(2.0);
+        let side = (Near::of(4.0) * u[0] * (one() - u[0])).sqrt();
+        let [cos, sin] = on_circle(u[1]).map(|c| c * side);
+        Some(normalize(plus(place.normal, [cos, sin, one() - two * u[0]])))
+    }
+}

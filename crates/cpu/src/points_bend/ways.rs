@@ -1,0 +1,268 @@
+//! How far what a sample sees stands, in f64: of a field that repeats, in which repetition.
+//!
+//! Of what a ray meets only the sample nearest to it in the plan is kept, and a field that repeats has it again and again, in
+//! rows and columns of repetitions. A ray passes many of them, high over or beside the one that it meets, and may have gone
+//! through a hundred repetitions: from a ridge falling by s a metre it goes on for up to relief / s. It has met the surface
+//! first in the repetition sought, within half a cell of the sample. So that is the first of all whose surface there, six flat
+//! triangles around the sample, the ray touches.
+
+use glam::{DVec2, DVec3};
+
+use super::MOST_TURN;
+use ridgelight::scene::{Border, Curvature, HeightField};
+
+/// How far is looked, columns or rows along which the direction runs faster: as far as rays go (`walk.glsl`).
+pub use ridgelight::scene::REACH_CELLS;
+/// Half the side of the square about a sample within which it is what is met, in cells, a little more: of what lies beyond, the
+/// ray meets nothing sooner.
+pub const HALF_SIDE: f64 = 0.51;
+/// A ray that is over the surface by this share of the heights that are compared, and of those that the surface rises by along
+/// the way, meets it: 128 roundings, more than rays and this err by together (`crossing_elevation` and `over` of the tolerances).
+pub const GRAZE: f64 = 1.0 / (1 << 17) as f64;
+
+/// One repetition of a sample beside a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// How far along the ray it stands in the plan, m. What is met lies within half a cell of the sample in the plan, but on a
+    /// steep wall far above or below: what moves with the base is off by half a cell's turn, whatever the slope. Infinite where
+    /// the base has turned by [`MOST_TURN`] before.
+    pub away_m: f64,
+    /// How far it is, m; 0 of what is infinitely far.
+    pub to_m: f64,
+    /// By how much the ray stays over the surface around it, m, at least; below 0 where it goes through.
+    pub over_m: f64,
+    /// Up to here it counts as met, m.
+    pub graze_m: f64,
+    /// Cells along the ray's faster axis.
+    pub cells: f64,
+    /// What the surface rises or falls by from the sample to a neighbour, m, at most.
+    pub relief_m: f64,
+    /// What the ray rises or falls by on the way and half a cell more, m.
+    pub climb_m: f64,
+}
+
+/// The repetitions of a sample that a ray may have met, nearest first.
+pub struct Ways {
+    /// The sample beside the ray, columns and rows: along the faster axis first.
+    gap: [i64; 2],
+    size: [i64; 2],
+    cell_m: [f64; 2],
+    by_rows: bool,
+    e: DVec3,
+    /// Heights over the sample's own, of its neighbours in the east, south, west, north, south-east and north-west.
+    around: [f64; 6],
+    rise_m: f64,
+    is_periodic: bool,
+    /// Columns and rows, towards east and south, per cell of the faster axis.
+    advance: DVec2,
+    climb_m: f64,
+    /// Repetitions along the faster axis that are looked at.
+    turns: std::ops::RangeInclusive<i64>,
+    /// Whether there are more, beyond a right angle of the base.
+    is_cut: bool,
+}
+
+impl Ways {
+    /// Of a sample `there` that is seen from `here` along e.
+    pub fn of(
+        (field, border): (&HeightField, Border),
+        curvature: Curvature,
+        [here, there]: [usize; 2],
+        e: DVec3,
+    ) -> Self {
+        let (cols, rows) = (field.cols() as i64, field.rows() as i64);
+        let [cell_x, cell_y] = field.cell_m();
+        let is_periodic = border == Border::Periodic;
+        let height = |at: i64| f64::from(field.heights_m()[at as usize]);
+        let place = |at: usize| [at as i64 % cols, at as i64 / cols];
+        let [[x, y], [to_x, to_y]] = [here, there].map(place);
+        let neighbour = |[right, down]: [i64; 2]| {
+            let at = (to_y + down).rem_euclid(rows) * cols + (to_x + right).rem_euclid(cols);
+            height(at) - height(there as i64)
+        };
+        let around = [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, -1]].map(neighbour);
+        let rise_m = height(there as i64) - height(here as i64);
+        let pace = DVec2::new(e.x / cell_x, -e.y / cell_y);
+        let by_rows = pace.y.abs() > pace.x.abs();
+        let swap = |[a, b]: [i64; 2]| if by_rows { [b, a] } else { [a, b] };
+        let main = pace.x.abs().max(pace.y.abs()).max(1e-30);
+        let [gap, size] = [[to_x - x, to_y - y], [cols, rows]].map(swap);
+        let mut ways = Self {
+            gap,
+            size,
+            cell_m: [cell_x, cell_y],
+            by_rows,
+            e,
+            around,
+            rise_m,
+            is_periodic: is_periodic && e.truncate().length_squared() >= 1e-12,
+            advance: pace / main,
+            climb_m: e.z / main,
+            turns: 0..=0,
+            is_cut: false,
+        };
+        if ways.is_periodic {
+            let rate = (DVec2::from_array(curvature.per_m) * e.truncate()).length();
+            ways.search(MOST_TURN / rate.max(1e-30) * main);
+        }
+        ways
+    }
+
+    /// Where rays are level with the surface around the sample, and no farther than the base's turn.
+    fn search(&mut self, turned_cells: f64) {
+        let [size, first] = [self.size[0], self.first().abs()].map(|n| n as f64);
+        let level = |rise: f64| {
+            let climb = if self.climb_m.abs() < 1e-30 {
+                1e-30_f64.copysign(self.climb_m)
+            } else {
+                self.climb_m
+            };
+            (self.rise_m + rise) / climb
+        };
+        let [low, high] = [
+            self.around.iter().copied().fold(0.0, f64::min),
+            self.around.iter().copied().fold(0.0, f64::max),
+        ];
+        let [a, b] = [level(low), level(high)];
+        // A cell for half a square and roundings.
+        let turn = |cells: f64| {
+            ((cells.clamp(-2.0, f64::from(REACH_CELLS)) - first) / size).floor() as i64
+        };
+        let (from, to) = (turn(a.min(b) - 1.0).max(0), turn(a.max(b) + 1.0).max(0));
+        let last = turn(turned_cells + 1.0).max(0);
+        self.is_cut = to > last;
+        self.turns = from..=to.min(last);
+    }
+
+    /// Cells to the nearest repetition ahead, below 0 towards west or north.
+    fn first(&self) -> i64 {
+        let [gap, size] = [self.gap[0], self.size[0]];
+        if self.ahead() > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) }
+    }
+
+    fn ahead(&self) -> f64 {
+        if self.by_rows { self.advance.y } else { self.advance.x }
+    }
+
+    /// All that may be met, nearest first; `half_side` as [`HALF_SIDE`]. Of a field that does not repeat the sample itself.
+    pub fn all(&self, half_side: f64) -> impl Iterator<Item = Way> + use<'_> {
+        let turns = if self.is_periodic { self.turns.clone() } else { 0..=0 };
+        turns.flat_map(move |k| self.beside(k).into_iter().flatten()).filter_map(move |gaps| {
+            match self.is_periodic {
+                true => self.way(gaps, half_side),
+                false => Some(self.whole(gaps)),
+            }
+        })
+    }
+
+    /// The first that is met; where none is, by roundings, the one passed nearest by.
+    pub fn met(&self) -> Way {
+        let mut nearest = None::<Way>;
+        for way in self.all(HALF_SIDE) {
+            if way.over_m <= way.graze_m {
+                return way;
+            }
+            if nearest.is_none_or(|best| way.over_m < best.over_m) {
+                nearest = Some(way);
+            }
+        }
+        if self.is_cut { self.far() } else { nearest.unwrap_or(self.whole(self.gap)) }
+    }
+
+    /// Whether what is met may lie beyond a right angle of the base.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// What lies so far that the base has turned away.
+    pub fn far(&self) -> Way {
+        Way { away_m: f64::INFINITY, to_m: 0.0, ..self.whole(self.gap) }
+    }
+
+    /// The repetitions that a ray may pass at its k-th along the faster axis, in the order in which it does.
+    fn beside(&self, k: i64) -> [Option<[i64; 2]>; 2] {
+        if !self.is_periodic {
+            return [Some(self.gap), None];
+        }
+        let [size, other_size] = self.size;
+        let main = self.first() + if self.ahead() > 0.0 { k * size } else { -k * size };
+        let turns = (main.abs() as f64 * self.aside() - self.gap[1] as f64) / other_size as f64;
+        let gaps = |turns: f64| Some([main, self.gap[1] + turns as i64 * other_size]);
+        // Within a column's or row's width a ray moves aside by one at most: only of lines two samples wide or less it passes two.
+        if other_size > 2 {
+            return [gaps((turns + 0.5).floor()), None];
+        }
+        let [low, high] = [turns.floor(), turns.floor() + 1.0];
+        if self.aside() < 0.0 { [gaps(high), gaps(low)] } else { [gaps(low), gaps(high)] }
+    }
+
+    /// Columns or rows of the slower axis per cell of the faster.
+    fn aside(&self) -> f64 {
+        if self.by_rows { self.advance.x } else { self.advance.y }
+    }
+
+    /// Where the ray passes within the square about a sample.
+    fn way(&self, gaps: [i64; 2], half_side: f64) -> Option<Way> {
+        let [main, other] = gaps.map(|gap| gap as f64);
+        let cells = main.abs();
+        let beside = cells * self.aside() - other;
+        // Cells from where it is beside the sample, along the faster axis; it begins at the start.
+        let (mut from, mut to) = ((-half_side).max(-cells), half_side);
+        if self.aside() == 0.0 {
+            if beside.abs() > half_side {
+                return None;
+            }
+        } else {
+            let [a, b] =
+                [(-half_side - beside) / self.aside(), (half_side - beside) / self.aside()];
+            (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
+        }
+        if from > to {
+            return None;
+        }
+        let start = if self.by_rows { DVec2::new(beside, 0.0) } else { DVec2::new(0.0, beside) };
+        let over = |u: f64| {
+            (cells + u) * self.climb_m - self.rise_m - self.risen(start + u * self.advance)
+        };
+        // Linear between grid lines and the diagonal.
+        let kink = |at: f64, pace: f64| if pace == 0.0 { to } else { (-at / pace).clamp(from, to) };
+        let mut least = over(to);
+        // A sample's own surface is left where the ray begins.
+        if gaps != [0, 0] {
+            let (p, a) = (start, self.advance);
+            for u in [from, kink(p.x, a.x), kink(p.y, a.y), kink(p.x - p.y, a.x - a.y)] {
+                least = least.min(over(u));
+            }
+        }
+        Some(Way { over_m: least, ..self.whole(gaps) })
+    }
+
+    /// The surface over the sample, so many columns east and rows south of it, within a cell: of six triangles around it.
+    fn risen(&self, at: DVec2) -> f64 {
+        let [east, south, west, north, south_east, north_west] = self.around;
+        let [x, y] = [at.x.abs(), at.y.abs()];
+        let along = if at.x >= 0.0 { east } else { west };
+        let down = if at.y >= 0.0 { south } else { north };
+        if (at.x >= 0.0) != (at.y >= 0.0) {
+            return x * along + y * down;
+        }
+        let (both, corner) = (x.min(y), if at.x >= 0.0 { south_east } else { north_west });
+        both * corner + (x - both) * along + (y - both) * down
+    }
+
+    /// A repetition, met whatever the heights.
+    fn whole(&self, gaps: [i64; 2]) -> Way {
+        let [x, y] = if self.by_rows { [gaps[1], gaps[0]] } else { gaps };
+        let to = DVec3::new(x as f64 * self.cell_m[0], -y as f64 * self.cell_m[1], self.rise_m);
+        let flat = self.e.truncate();
+        let away_m = match flat.length_squared() {
+            f if f < 1e-12 => 0.0,
+            f => to.truncate().dot(flat).max(0.0) / f,
+        };
+        let cells = gaps[0].abs() as f64;
+        let relief_m = self.around.iter().fold(0.0_f64, |most, rise| most.max(rise.abs()));
+        let graze_m = GRAZE * (self.rise_m.abs() + relief_m * (1.0 + 2.0 * cells));
+        let climb_m = (cells + HALF_SIDE) * self.climb_m.abs();
+        Way { away_m, to_m: to.length(), over_m: 0.0, graze_m, cells, relief_m, climb_m }
+    }
+}

@@ -1,0 +1,23 @@
+//! What a sample sees through its horizons, two azimuths at once, from a table of wedges.
+
+use ridgelight::basis::harmonics::rotate_z;
+use ridgelight::basis::wedge::WedgeTable;
+use ridgelight::plan::Azimuth;
+
+/// The series of what is free above these slopes along even azimuths, in any order, from a table of wedges.
+pub fn sh_wedges(table: &WedgeTable, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
+    let ray = |(a, s): &(Azimuth, f64)| [f64::from(a.sin_phi).atan2(a.cos_phi.into()), s.atan()];
+    wedges_around(table, lowest.iter().map(ray).collect())
+}
+
+/// The same of even azimuths and elevations, radians.
+pub fn wedges_around(table: &WedgeTable, mut circle: Vec<[f64; 2]>) -> Vec<f64> {
+    circle.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut sum = vec![0.0; table.texels[0].len()];
+    for (k, [phi, first]) in circle.iter().enumerate() {
+        let [_, last] = circle[(k + 1) % circle.len()];
+        let turned = rotate_z(&table.look_up([*first, last]), *phi);
+        sum.iter_mut().zip(turned).for_each(|(s, t)| *s += t);
+    }
+    sum
+}

@@ -1,0 +1,96 @@
+//! `gather.glsl`: walks the azimuths at one sample. The shader's order, by octants, only saves it
+//! loads; here azimuths come in their own.
+
+use super::field::{field_slope, normal_of};
+use super::fuse::{Found, fused, octant_around};
+use super::sweep::{Heights, March};
+use crate::lattice::Lattices;
+use glam::{DVec2, DVec3};
+use ridgelight::plan::azimuths::Azimuth;
+use ridgelight::scene::{Border, Fuse};
+use std::f64::consts::FRAC_PI_4;
+
+/// A swept field: everything that passes after the sweep read.
+#[derive(Clone, Copy, Debug)]
+pub struct Swept<'a> {
+    /// The heights.
+    pub heights: Heights<'a>,
+    /// The azimuths that were swept, with their layers.
+    pub azimuths: &'a [Azimuth],
+    /// What the sweep left.
+    pub lattices: &'a Lattices,
+    /// How lines are brought back to samples; `None` where the lattice holds one value a sample.
+    pub fuse: Option<Fuse>,
+    /// Lines are 2^line_shift / 32768 cells apart.
+    pub line_shift: u32,
+    /// Steps marched before the first that was written, along columns and along rows.
+    pub warm_up: [i32; 2],
+}
+
+impl Swept<'_> {
+    /// What a sample meets in one azimuth.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn found(&self, azimuth: &Azimuth, col: i32, row: i32) -> Found {
+        let march = March::new(self.heights, azimuth);
+        let (lane, step) = march.of_sample(col, row);
+        let own = self.heights.at(col, row);
+        let settings =
+            (self.fuse, self.line_shift, self.warm_up[usize::from(azimuth.marches_rows())]);
+        let around = octant_around(&march, lane, step, own);
+        fused(self.lattices.of(azimuth), &march, settings, (lane, step), &around)
+    }
+
+    /// Hands every azimuth's number, direction, lowest slope and the normal to `add_light`.
+    ///
+    /// The lowest slope is that of the lowest direction that both the horizon and the sample's own
+    /// plane leave free.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn add_all(&self, col: i32, row: i32, add_light: impl FnMut(usize, &Azimuth, f64, DVec3)) {
+        self.add_seen(col, row, true, add_light);
+    }
+
+    /// The same, the lowest slope with or without the sample's own plane.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn add_seen(
+        &self,
+        col: i32,
+        row: i32,
+        own_plane_hides: bool,
+        mut add_light: impl FnMut(usize, &Azimuth, f64, DVec3),
+    ) {
+        let gradient = field_slope(&self.heights, col, row);
+        let normal = normal_of(gradient);
+        for (k, azimuth) in self.azimuths.iter().enumerate() {
+            let horizon = f64::from(self.found(azimuth, col, row).slope);
+            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+            let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
+            let own = if own_plane_hides { gradient.dot(direction) } else { horizon };
+            let mut lowest = horizon.max(own);
+            if self.heights.border != Border::Open {
+                lowest = lowest.max(0.0);
+            }
+            add_light(k, azimuth, lowest, normal);
+        }
+    }
+
+    /// `of` at every sample, row-major.
+    pub fn per_sample<T>(&self, of: impl Fn(i32, i32) -> T) -> Vec<T> {
+        let cols = self.heights.cols;
+        (0..cols * self.heights.rows).map(|i| of((i % cols) as i32, (i / cols) as i32)).collect()
+    }
+}
+
+/// Integrals over elevation from the one of this slope to the zenith, of cos² and of sin cos: what a
+/// slice of the sky gives to the horizontal and to the vertical part of a normal (Timonen &
+/// Westerholm 2010, eq. 5, with elevation instead of zenith angle).
+///   ∫ cos² = π/4 - ω/2 - sin ω cos ω / 2,   ∫ sin cos = cos² ω / 2.
+pub fn elevation_moments(slope: f64) -> [f64; 2] {
+    let cos2 = 1.0 / (1.0 + slope * slope);
+    [FRAC_PI_4 - 0.5 * slope.atan() - 0.5 * slope * cos2, 0.5 * cos2]
+}

@@ -1,0 +1,56 @@
+//! `levels.glsl` and `spline.glsl`: the B-spline of a height pyramid's level.
+
+use super::sweep::wrapped;
+use ridgelight::plan::pyramid::{Level, Pyramid};
+
+/// Texels of all levels beside the field itself, as `height_levels` holds them.
+#[derive(Clone, Copy, Debug)]
+pub struct LevelTexels<'a> {
+    /// How they lie.
+    pub pyramid: &'a Pyramid,
+    /// One level behind the other, row after row.
+    pub texels: &'a [f32],
+}
+
+/// Four neighbouring texels of an axis of `count` and what they weigh at a place in texels: the
+/// uniform cubic B-spline; beyond the ends coefficients go on as their point reflection.
+pub fn spline_taps(place: f32, count: u32, periodic: bool) -> ([u32; 4], [f32; 4]) {
+    let count = count as i32;
+    let cell = place.floor() as i32;
+    let cell = if periodic { cell } else { cell.clamp(0, (count - 2).max(0)) };
+    let t = place - cell as f32;
+    let s = 1.0 - t;
+    let inner = |a: f32| (3.0 * a - 6.0) * a * a + 4.0;
+    let mut weight = [s * s * s, inner(t), inner(s), t * t * t].map(|w| w * (1.0 / 6.0));
+    let at = [-1, 0, 1, 2].map(|i| cell + i);
+    if periodic {
+        return (at.map(|i| wrapped(i, count) as u32), weight);
+    }
+    let low = if cell == 0 { weight[0] } else { 0.0 };
+    let high = if cell == count - 2 { weight[3] } else { 0.0 };
+    weight[0] -= low;
+    weight[1] += 2.0 * low - high;
+    weight[2] += 2.0 * high - low;
+    weight[3] -= high;
+    (at.map(|i| i.clamp(0, count - 1) as u32), weight)
+}
+
+impl LevelTexels<'_> {
+    /// Height of a level at a place in its texels (column, row).
+    ///
+    /// # Panics
+    /// When there are fewer texels than the level needs.
+    pub fn spline_at(&self, level: &Level, place: [f32; 2]) -> f32 {
+        let [cols, rows] = level.size;
+        let (x, x_weight) = spline_taps(place[0], cols, self.pyramid.periodic);
+        let (y, y_weight) = spline_taps(place[1], rows, self.pyramid.periodic);
+        let mut sum = 0.0;
+        for (row, weight) in y.iter().zip(y_weight) {
+            let first = level.first as usize + (row * cols) as usize;
+            let along: f32 =
+                x.iter().zip(x_weight).map(|(col, w)| w * self.texels[first + *col as usize]).sum();
+            sum += weight * along;
+        }
+        sum
+    }
+}

@@ -1,0 +1,131 @@
+//! `sweep.glsl`: march and lane positions of an azimuth.
+
+use ridgelight::plan::azimuths::{Azimuth, CELL, FLIPS_LANES, FLIPS_MARCH};
+use ridgelight::scene::{Border, HeightField};
+
+/// Below every slope that a field can have, and safe to square.
+pub const NO_SLOPE: f32 = -1e9;
+
+/// What lies at or under it stands for nothing met.
+pub const LOWEST_MET: f32 = -1e8;
+
+/// log2 of [`CELL`].
+pub const CELL_SHIFT: u32 = CELL.trailing_zeros();
+
+/// One over [`CELL`]: exact.
+pub const PER_CELL: f32 = 1.0 / CELL as f32;
+
+/// The heights as the shaders see them: one texel a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Heights<'a> {
+    /// Row-major, row 0 in the north, metres.
+    pub samples: &'a [f32],
+    /// Samples from west to east.
+    pub cols: usize,
+    /// Samples from north to south.
+    pub rows: usize,
+    /// Spacing of columns and of rows, metres.
+    pub cell_m: [f32; 2],
+    /// What lies beyond the edge.
+    pub border: Border,
+}
+
+impl<'a> Heights<'a> {
+    /// The heights of a field.
+    pub fn of(field: &'a HeightField, border: Border) -> Self {
+        Self {
+            samples: field.heights_m(),
+            cols: field.cols(),
+            rows: field.rows(),
+            cell_m: field.cell_m().map(|c| c as f32),
+            border,
+        }
+    }
+
+    /// `texelFetch(heights, ivec2(col, row), 0).x`.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn at(&self, col: i32, row: i32) -> f32 {
+        self.samples[row as usize * self.cols + col as usize]
+    }
+}
+
+/// A field as one azimuth marches over it.
+#[derive(Clone, Copy, Debug)]
+pub struct March<'a> {
+    /// The heights marched over.
+    pub heights: Heights<'a>,
+    /// The direction.
+    pub azimuth: Azimuth,
+    /// Samples across the march.
+    pub lanes: i32,
+    /// Samples along it.
+    pub steps: i32,
+}
+
+impl<'a> March<'a> {
+    /// The view of `azimuth`.
+    pub fn new(heights: Heights<'a>, azimuth: &Azimuth) -> Self {
+        let (cols, rows) = (heights.cols as i32, heights.rows as i32);
+        let (lanes, steps) = if azimuth.marches_rows() { (cols, rows) } else { (rows, cols) };
+        Self { heights, azimuth: *azimuth, lanes, steps }
+    }
+
+    /// Whether the field repeats.
+    pub fn periodic(&self) -> bool {
+        self.heights.border == Border::Periodic
+    }
+
+    /// Position along the march axis at a step, and the step at a position: the same flip.
+    pub fn march_position(&self, step: i32) -> i32 {
+        if self.azimuth.flags & FLIPS_MARCH != 0 { self.steps - 1 - step } else { step }
+    }
+
+    /// Position along the lane axis of a lane, and back.
+    pub fn lane_position(&self, lane: i32) -> i32 {
+        if self.azimuth.flags & FLIPS_LANES != 0 { self.lanes - 1 - lane } else { lane }
+    }
+
+    /// Lane and step of the sample in a column and row.
+    pub fn of_sample(&self, col: i32, row: i32) -> (i32, i32) {
+        let (lane, march) = if self.azimuth.marches_rows() { (col, row) } else { (row, col) };
+        (self.lane_position(lane), self.march_position(march))
+    }
+
+    /// Height at a position along the lane axis and one along the march axis.
+    pub fn fetch(&self, lane_at: i32, march_at: i32) -> f32 {
+        if self.azimuth.marches_rows() {
+            self.heights.at(lane_at, march_at)
+        } else {
+            self.heights.at(march_at, lane_at)
+        }
+    }
+
+    /// Height of a lane at a step, wrapped where the field repeats, else held at the edge.
+    pub fn height_at(&self, lane: i32, step: i32) -> f32 {
+        let inside = |i: i32, n: i32| {
+            if self.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) }
+        };
+        self.fetch(
+            self.lane_position(inside(lane, self.lanes)),
+            self.march_position(inside(step, self.steps)),
+        )
+    }
+
+    /// Whether cell diagonals run from (0, 0) to (1, 1) in march and lane coordinates.
+    pub fn split_along(&self) -> bool {
+        (self.azimuth.flags & FLIPS_MARCH != 0) == (self.azimuth.flags & FLIPS_LANES != 0)
+    }
+}
+
+/// `i` modulo `n`, 0 or more.
+pub fn wrapped(i: i32, n: i32) -> i32 {
+    let r = i % n;
+    if r < 0 { r + n } else { r }
+}
+
+/// Whether a lane position lies on the field.
+pub fn on_field(y: i32, lanes: i32) -> bool {
+    y >= 0 && y <= (lanes - 1) * CELL
+}

@@ -1,0 +1,259 @@
+//! What light errs by: through horizons, and of balls.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::DVec3;
+
+use super::{ARC_TANGENT, EPSILON, twin_table, twin_wedge_row};
+use crate::env_tables::EnvTables;
+use crate::sh_shade::OFF_PLANE;
+use ridgelight::basis::MAX_ORDER;
+use ridgelight::basis::legendre::occlusion_polynomials;
+use ridgelight::basis::slice::{Slices, from_nlp, slice_index};
+use ridgelight::scene::{HeightField, SphereLight, Wedges};
+
+/// What the light that a sample gets through its horizons errs by.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadeError {
+    lowest_slope: f64,
+    normal: f64,
+    count: f64,
+}
+
+impl ShadeError {
+    /// For horizons whose slopes err by `slope_error`, on a field of `relief_m` in cells of at least
+    /// `cell_m`, in `count` azimuths.
+    ///
+    /// A component of the gradient: differences 1, weighted exactly and summed 2, a quotient 5: 8 ε R / c;
+    /// two of them turn the normal by √2 of that, `inversesqrt` and products by 8 ε. The slope of the
+    /// sample's own plane is 3 roundings of the gradient besides, √2 R / c at most.
+    pub fn new(slope_error: f64, relief_m: f64, cell_m: f64, count: usize) -> Self {
+        let gradient = 2.0_f64.sqrt() * 8.0 * EPSILON * relief_m / cell_m;
+        let own_plane = gradient + 3.0 * EPSILON * 2.0_f64.sqrt() * relief_m / cell_m;
+        Self {
+            lowest_slope: slope_error.max(own_plane),
+            normal: gradient + 8.0 * EPSILON,
+            count: count as f64,
+        }
+    }
+
+    /// `sky_shade`, the sky's sum.
+    ///
+    /// Wedges sum to 2 π, over π. A slice's end moves by the slope's error, where the integrand is at most
+    /// 1; moments are at most π/2 + 1/2 for the normal to turn, and err by half an arc tangent and 10 ε;
+    /// terms, 4.2 in all, by 5 ε; each sum by ε of at most 2.
+    pub fn sky(&self) -> f64 {
+        2.0 * self.lowest_slope
+            + 5.0 * self.normal
+            + ARC_TANGENT
+            + (41.0 + 2.0 * self.count) * EPSILON
+    }
+
+    /// `sky_shade`, the environment's sum, from given tables; `brightest` is its largest radiance.
+    ///
+    /// As [`sky`](Self::sky), by tables: three components, √3 at most, change by 1 a radian (2 √3 over all
+    /// wedges), are at most π/2 (√3 π), and stand at a place that errs by an arc tangent and 22 ε.
+    pub fn environment(&self, brightest: f64) -> f64 {
+        let place = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
+        let rest = (33.0 + 5.5 * self.count) * EPSILON;
+        brightest * (3.5 * place + 5.5 * self.normal + rest)
+    }
+
+    /// The environment's sum of at most `brightest`, from an image of `columns` × `rows` by tables of `nodes`
+    /// made on the device.
+    ///
+    /// As [`environment`](Self::environment); and three components of every table, √3 at most, that err
+    /// themselves and by their rows, over moments of at most π/2, over π.
+    pub fn whole_environment(&self, brightest: f64, [columns, rows, nodes]: [f64; 3]) -> f64 {
+        let wedge = std::f64::consts::TAU / self.count;
+        let row = twin_wedge_row(brightest, wedge, columns / self.count + 2.0);
+        let largest = brightest * wedge;
+        let table = twin_table(rows * largest, largest, rows + nodes) + 0.5 * row;
+        self.environment(brightest) + 3.0_f64.sqrt() * self.count * table
+    }
+
+    /// What an azimuth's wedge of an environment gives a sample of this normal above a slope, from tables made on the device, of
+    /// which each moment is off by `table`.
+    ///
+    /// Each component of the normal times its moment. The place in a table errs as in [`environment`](Self::environment), across
+    /// which a moment changes by no more a node than from any node to the next there; the normal's turn moves it by the moments' length; a
+    /// mix, a product and a sum of each round 8 times, and sums of all azimuths once each.
+    pub fn wedge_looked_up(
+        &self,
+        tables: &EnvTables,
+        (azimuth, lowest, normal): (usize, f64, DVec3),
+        table: &[DVec3; 3],
+    ) -> DVec3 {
+        let place_rad = self.lowest_slope + ARC_TANGENT + 22.0 * EPSILON;
+        let nodes = (tables.nodes - 1) as f64 / (FRAC_PI_2 - tables.bottom_rad);
+        let moments = tables.looked_up(azimuth, lowest, place_rad);
+        let mut off = DVec3::ZERO;
+        let mut squared = DVec3::ZERO;
+        for (m, [moment, step]) in moments.into_iter().enumerate() {
+            let across = place_rad * nodes * step;
+            let rounded = (8.0 + self.count) * EPSILON * moment.abs();
+            off += normal[m].abs() * (table[m] + across + rounded);
+            squared += moment * moment;
+        }
+        off + self.normal * DVec3::new(squared.x.sqrt(), squared.y.sqrt(), squared.z.sqrt())
+    }
+
+    /// `sun_shade`, of slices whose weights sum to `weights`, where both agree on what is lit.
+    ///
+    /// As [`sky`](Self::sky), between two slopes, with weights over π instead of wedges.
+    pub fn sun(&self, weights: f64) -> f64 {
+        let slice = self.lowest_slope + 2.1 * self.normal + ARC_TANGENT + 33.0 * EPSILON;
+        weights / PI * slice + self.count * EPSILON
+    }
+
+    /// A coefficient of band `l` of `sh_visibility`.
+    ///
+    /// Azimuths' weights sum to 2 √π at most and err by 26 ε: five complex products of 4 ε from the cosine
+    /// and sine. A slice's end moves by the slope's error, where Θ_lm is √((2l+1)/2) at most. Its
+    /// polynomial of degree 6, of coefficients that sum to C, errs by 12 ε C itself, by 6 · 7 ε C of the
+    /// sine (`inversesqrt`, two products, a sum) and by 6 ε C of the cosine and sum; its angle by an arc
+    /// tangent. By Legendre coefficients, it is a sum of up to six such. Sums of √2 · 2 √π at most round
+    /// once an azimuth.
+    pub fn series(&self, l: usize, wedges: Wedges) -> f64 {
+        let magnitude = |c: &[f64]| c.iter().map(|v| v.abs()).sum::<f64>();
+        let sharpest = |l: usize| (l as f64 + 0.5).sqrt();
+        let slices = Slices::new(l + 1);
+        let of_band = slice_index(l, 0)..slice_index(l + 1, 0);
+        let [end, sum, angle] = match wedges {
+            Wedges::Slices => {
+                let parts = &slices.parts()[of_band];
+                let angle = parts.iter().map(|p| p.whole.abs()).fold(0.0, f64::max);
+                let sum = parts.iter().map(|p| magnitude(&p.polynomial)).fold(0.0, f64::max);
+                [sharpest(l), sum + PI * angle, angle]
+            }
+            // Horizons of a wedge move it as they move slices; texels of at most √2 · √2 Φ, weights between
+            // them and turns by powers of cosine and sine err by 60 ε.
+            Wedges::Table => [sharpest(l), 2.0 * sharpest(l).max(1.0), sharpest(l)],
+            Wedges::Nlp => {
+                // Whatever the order is, up to the highest.
+                let occlusion = occlusion_polynomials(MAX_ORDER);
+                let kept = |c: usize| {
+                    c.checked_sub(1).map_or(2.0_f64.sqrt(), |i| magnitude(&occlusion[i]))
+                };
+                let worst = |of: &dyn Fn(usize) -> f64| {
+                    let rows = &from_nlp(MAX_ORDER)[of_band.clone()];
+                    let sum = |row: &Vec<f64>| (0..MAX_ORDER).map(|c| row[c].abs() * of(c)).sum();
+                    rows.iter().map(sum).fold(0.0, f64::max)
+                };
+                [worst(&sharpest), 2.0 * worst(&kept), 0.0]
+            }
+        };
+        let slice = end * self.lowest_slope + 60.0 * EPSILON * sum + ARC_TANGENT * angle;
+        let weights = 2.0 * PI.sqrt();
+        weights * (slice + 2.0_f64.sqrt() * (26.0 + self.count) * EPSILON)
+    }
+
+    /// What `sh_shade` counts a node for, relative to that.
+    ///
+    /// Off each other's planes a sample and a node are off by two gradients' errors and two of the rise's 3
+    /// roundings, a quarter of a gradient's each at most, over their distance; of 1 / (1 + x²) the relative
+    /// change is below dx, x in units of [`OFF_PLANE`]. Hats, squares and quotients err by 30 ε. Weights are
+    /// divided by their sum, which errs as they do.
+    pub fn node_weight(&self) -> f64 {
+        2.0 * (2.0 * 1.25 * self.normal / OFF_PLANE + 30.0 * EPSILON)
+    }
+
+    /// How far a normal is turned, radians.
+    pub fn normal(&self) -> f64 {
+        self.normal
+    }
+
+    /// How near to a point sun a horizon has to stand for the two to disagree on what is lit.
+    pub fn lowest_slope(&self) -> f64 {
+        self.lowest_slope
+    }
+}
+
+/// Where a ball of light stands to a sample, and on what field.
+#[derive(Clone, Copy, Debug)]
+pub struct BallSeen {
+    /// Between the sample and the ball's middle.
+    pub distance_m: f64,
+    /// The same in the plane.
+    pub away_m: f64,
+    /// Of the ball.
+    pub radius_m: f64,
+    /// The ball's middle and all heights over the base, at most.
+    pub largest_m: f64,
+    /// Highest less lowest height.
+    pub relief_m: f64,
+    /// The smaller side of a cell.
+    pub cell_m: f64,
+    /// Whether the surface may pass through the ball.
+    pub is_cut: bool,
+}
+
+impl BallSeen {
+    /// Of a sample, by its place in the field's heights.
+    ///
+    /// # Panics
+    /// Outside the field.
+    pub fn of(field: &HeightField, ball: &SphereLight, sample: usize) -> Self {
+        let (cols, heights) = (field.cols(), field.heights_m());
+        let [cell_x, cell_y] = field.cell_m();
+        let [x, y, z] = ball.position_m;
+        let east = x - (sample % cols) as f64 * cell_x;
+        let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
+        let over = z - field.base_m();
+        let up = over - f64::from(heights[sample]);
+        let all = heights.iter().map(|h| f64::from(*h));
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        Self {
+            distance_m: east.hypot(north).hypot(up),
+            away_m: east.hypot(north),
+            radius_m: ball.radius_m,
+            largest_m: low.abs().max(high.abs()).max(over.abs()),
+            relief_m: high - low,
+            cell_m: cell_x.min(cell_y),
+            is_cut: over - ball.radius_m < high,
+        }
+    }
+
+    /// `sphere_shade` against its twin, for radiance 1.
+    ///
+    /// A slope errs as a march's at its first crossing, 38 ε R / c, and by places further on: a direction
+    /// turned by 24 ε and a position that errs by 8 ε of the distance, across which the surface rises by
+    /// R / c: 70 ε R / c together. The ball's middle errs by 4 ε of the distance and ε of its height, as an
+    /// angle 4 ε (1 + H/d); the ends of its disc by 2 (d/t)² of that, t the tangent's length, but never by
+    /// more than √(8 ε), what is left of a tangent that is nothing; directions, arc tangents and sums by
+    /// 40 ε and [`ARC_TANGENT`]. The circle's half chord on a piece of surface has a square that errs by
+    /// 16 ε r²: 4 √ε r where they just touch, seen from d - r or from within. Slices' weights sum to
+    /// π asin(r / away) at most, or to 2 π; two ends a slice, a normal that turns both its parts, over π.
+    pub fn twin(&self) -> f64 {
+        let Self { distance_m: d, away_m, radius_m: r, .. } = *self;
+        let steepness = self.relief_m / self.cell_m;
+        let place = 4.0 * EPSILON * (1.0 + self.largest_m / d.max(1e-3 * r));
+        let tangent2 = (1.0 - (r / d).powi(2)).abs();
+        let ends = (2.0 * place / tangent2).min((8.0 * EPSILON).sqrt() + place);
+        let angle = 70.0 * EPSILON * steepness + place + ends + ARC_TANGENT + 40.0 * EPSILON;
+        let from = (d - r).abs().max(1e-3 * r);
+        let touch = if self.is_cut { 4.0 * EPSILON.sqrt() * (r / from).min(1.0) } else { 0.0 };
+        let weights = if away_m > r { PI * (r / away_m).asin() } else { 2.0 * PI };
+        let normal = ShadeError::new(0.0, self.relief_m, self.cell_m, 1).normal();
+        weights / PI * (2.0 * angle + 2.0 * normal + touch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables of 257 nodes whose moments rise by 1 a node, looked up by a slope that is off by 3 nodes: off by 3 of every
+    /// moment, along a normal of one component.
+    #[test]
+    fn a_place_that_is_off_by_nodes_is_off_by_all_of_them() {
+        let nodes = 257;
+        let rising = (0..3 * nodes).map(|i| DVec3::splat((i % nodes) as f64)).collect();
+        let tables = EnvTables { nodes, bottom_rad: 0.0, texels: rising };
+        let node_rad = FRAC_PI_2 / 256.0;
+        let error = ShadeError { lowest_slope: 3.0 * node_rad, normal: 0.0, count: 1.0 };
+        let off = error.wedge_looked_up(&tables, (0, 0.5, DVec3::Z), &[DVec3::ZERO; 3]);
+        // Besides, an arc tangent and roundings of 100 or so.
+        assert!((3.0..3.01).contains(&off.x), "{off}");
+    }
+}

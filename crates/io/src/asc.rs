@@ -1,0 +1,172 @@
+//! ESRI ASCII grids: `key value` lines, then rows from north to south.
+
+use super::geo::{Cell, looks_like_degrees};
+use super::heights::Raster;
+use super::open;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// The header's keys, in either case. Positions are those of the south-west corner of the
+/// south-west cell, or of its centre.
+#[derive(Default)]
+struct Header {
+    ncols: Option<f64>,
+    nrows: Option<f64>,
+    corner: [Option<f64>; 2],
+    centre: [Option<f64>; 2],
+    cell: [Option<f64>; 2],
+    nodata: Option<f64>,
+}
+
+impl Header {
+    fn slot(&mut self, key: &str) -> Option<&mut Option<f64>> {
+        Some(match key {
+            "ncols" => &mut self.ncols,
+            "nrows" => &mut self.nrows,
+            "xllcorner" => &mut self.corner[0],
+            "yllcorner" => &mut self.corner[1],
+            "xllcenter" | "xllcentre" => &mut self.centre[0],
+            "yllcenter" | "yllcentre" => &mut self.centre[1],
+            "dx" => &mut self.cell[0],
+            "dy" => &mut self.cell[1],
+            "nodata_value" => &mut self.nodata,
+            _ => return None,
+        })
+    }
+
+    /// Cells of unknown unit are degrees when [`looks_like_degrees`] says so, else metres.
+    fn cell(&self, path: &Path, rows: usize, cols: usize) -> Result<Cell> {
+        let cell = match self.cell {
+            [None, None] => return Ok(Cell::Unknown),
+            [Some(x), Some(y)] => [x, y],
+            _ => {
+                let place = "header: dx, dy";
+                return Err(Error::file(path, place, "one of them", "both, or cellsize"));
+            }
+        };
+        if !cell.iter().all(|c| *c > 0.0 && c.is_finite()) {
+            let found = format!("{:?} × {:?}", cell[0], cell[1]);
+            return Err(Error::file(path, "header: cellsize", found, "positive lengths"));
+        }
+        let west_south =
+            [0, 1].map(|i| self.corner[i].or(self.centre[i].map(|c| c - cell[i] / 2.0)));
+        let [Some(west), Some(south)] = west_south else { return Ok(Cell::Metres(cell)) };
+        let (width, height) = (cols as f64 * cell[0], rows as f64 * cell[1]);
+        if looks_like_degrees([west, west + width], [south, south + height], cell) {
+            return Ok(Cell::Degrees { cell, latitude: south + height / 2.0 });
+        }
+        Ok(Cell::Metres(cell))
+    }
+}
+
+/// The grid. Its count of numbers must be the header's, no fewer and no more.
+pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        Error::file(path, format!("byte {}", e.valid_up_to()), "bytes that are no text", "text")
+    })?;
+    let mut words = text.split_ascii_whitespace().peekable();
+    let mut header = Header::default();
+    while let Some(key) =
+        words.next_if(|w| w.starts_with(|c: char| c.is_ascii_alphabetic()) && number(w).is_none())
+    {
+        let place = || format!("header: {}", shortened(key));
+        let word = words.next().unwrap_or("the end of the file");
+        let value =
+            number(word).ok_or_else(|| Error::file(path, place(), shortened(word), "a number"))?;
+        match key.to_ascii_lowercase().as_str() {
+            "cellsize" => header.cell = [Some(value); 2],
+            lower => {
+                let expected = "ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, \
+                                cellsize or dx and dy, NODATA_value";
+                *header.slot(lower).ok_or_else(|| {
+                    Error::file(path, "header", format!("the key {}", shortened(key)), expected)
+                })? = Some(value);
+            }
+        }
+    }
+    let count = |name: &str, value: Option<f64>| match value {
+        Some(v) if v.fract() == 0.0 && (0.0..1e15).contains(&v) => Ok(v as u64),
+        Some(v) => Err(Error::file(path, format!("header: {name}"), format!("{v:?}"), "a count")),
+        None => Err(Error::file(path, "header", format!("no {name}"), "ncols and nrows")),
+    };
+    let (rows, cols) = (count("nrows", header.nrows)?, count("ncols", header.ncols)?);
+    let (rows, cols) = open::size(path, "header", rows, cols)?;
+    // Every number takes at least a digit and a blank; 8 bytes of memory for 2 of text.
+    let claimed = 8 * rows as u64 * cols as u64;
+    open::plausible(path, "header", claimed, bytes.len() + 1, 4)?;
+    let mut values = Vec::with_capacity(rows * cols);
+    for row in 0..rows {
+        for col in 0..cols {
+            let word = words.next().unwrap_or("the end of the file");
+            values.push(number(word).ok_or_else(|| {
+                Error::file(path, format!("row {row}, column {col}"), shortened(word), "a number")
+            })?);
+        }
+    }
+    if let Some(word) = words.next() {
+        let expected = format!("the end after {rows} rows of {cols} columns");
+        return Err(Error::file(path, "after the last row", shortened(word), expected));
+    }
+    let cell = header.cell(path, rows, cols)?;
+    Ok(Raster { cell, nodata: header.nodata, ..Raster::bare(rows, cols, values) })
+}
+
+/// A number as these files write them; `nan` is one, so that it can mark no data.
+fn number(word: &str) -> Option<f64> {
+    word.parse().ok()
+}
+
+/// A word short enough for a sentence.
+fn shortened(word: &str) -> String {
+    word.chars().take(24).filter(|c| !c.is_control()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Raster> {
+        heights(Path::new("a.asc"), text.as_bytes())
+    }
+
+    #[test]
+    fn metres_degrees_and_centres() {
+        let grid = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4900000\ncellsize 30\n\
+                    NODATA_value -9999\n1 2 3\n4 -9999 6.5\n";
+        let raster = parse(grid).unwrap();
+        assert_eq!((raster.rows, raster.cols), (2, 3));
+        assert_eq!(raster.values, [1.0, 2.0, 3.0, 4.0, -9999.0, 6.5]);
+        assert_eq!((raster.cell, raster.nodata), (Cell::Metres([30.0; 2]), Some(-9999.0)));
+
+        let grid = "NCOLS 2 NROWS 4 XLLCENTER -72 YLLCENTER 44 DX 0.03125 DY 0.0625 \
+                    nodata_value nan 1 2 3 4 5 6 7 nan";
+        let raster = parse(grid).unwrap();
+        // Centre of the south row at 44, four rows of 1/16 degree: the middle is 1.5 rows up.
+        let expected = Cell::Degrees { cell: [0.03125, 0.0625], latitude: 44.09375 };
+        assert_eq!(raster.cell, expected);
+        assert!(raster.nodata.unwrap().is_nan() && raster.values[7].is_nan());
+
+        assert_eq!(parse("ncols 1 nrows 1 7").unwrap().cell, Cell::Unknown);
+    }
+
+    #[test]
+    fn each_mistake_is_named() {
+        for (text, said) in [
+            ("ncols 2 nrows 2 1 2 3", "row 1, column 1: found the end of the file"),
+            ("ncols 2 nrows 2 1 2 3 4 5", "after the last row: found 5"),
+            ("ncols 2 nrows 2 1 x 3 4", "row 0, column 1: found x"),
+            ("ncols 2 1 2", "no nrows"),
+            ("ncols 1.5 nrows 1 2", "ncols: found 1.5"),
+            ("ncols -1 nrows 1 2", "ncols: found -1"),
+            ("ncols 60000 nrows 10000 2", "no more than the file can hold"),
+            ("ncols 1e6 nrows 1 2", "1000000 columns"),
+            ("ncols", "ncols: found the end of the file"),
+            ("colour 3", "the key colour"),
+            ("ncols 1 nrows 1 cellsize 0 2", "cellsize: found 0"),
+            ("ncols 1 nrows 1 dx 1 2", "one of them"),
+        ] {
+            let error = parse(text).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(error.contains(said), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! The few GeoTIFF tags that say how large a cell is (OGC 19-008r4), and GDAL's no-data tag.
+
+use super::geo::{Cell, looks_like_degrees};
+use super::open;
+use super::tif::Tiff;
+use ridgelight::{Error, Result};
+use std::path::Path;
+use tiff::{decoder::ifd::Value, tags::Tag};
+
+const PIXEL_SCALE: u16 = 33550;
+const TIEPOINT: u16 = 33922;
+const TRANSFORMATION: u16 = 34264;
+const KEY_DIRECTORY: u16 = 34735;
+const KEY_DOUBLES: u16 = 34736;
+const GDAL_NODATA: u16 = 42113;
+
+const MODEL_TYPE: u16 = 1024;
+const RASTER_TYPE: u16 = 1025;
+const ANGULAR_UNIT: u16 = 2054;
+const LINEAR_UNIT: u16 = 3076;
+const LINEAR_UNIT_SIZE: u16 = 3077;
+const VERTICAL_UNIT: u16 = 4099;
+
+/// What the tags say.
+pub(super) struct Geo {
+    pub cell: Cell,
+    /// Metres in a unit of height.
+    pub unit_m: f64,
+    pub nodata: Option<f64>,
+}
+
+/// Grid coordinates: where the raster lies, north up.
+struct Grid {
+    cell: [f64; 2],
+    /// World position of raster position (0, 0), if there is a tie point.
+    origin: Option<[f64; 2]>,
+}
+
+pub(super) fn read(path: &Path, tiff: &mut Tiff, rows: usize, cols: usize) -> Result<Geo> {
+    let nodata = nodata(path, tiff)?;
+    let keys = Keys::read(path, tiff)?;
+    let unit_m = keys.length(path, VERTICAL_UNIT)?.unwrap_or(1.0);
+    let Some(grid) = grid(path, tiff)? else {
+        return Ok(Geo { cell: Cell::Unknown, unit_m, nodata });
+    };
+    // Raster position (0, 0) is the corner of the first pixel, or its centre (RasterType 2).
+    let last = |n: usize| if keys.short(RASTER_TYPE) == Some(2) { n - 1 } else { n } as f64;
+    let span = [last(cols) * grid.cell[0], last(rows) * grid.cell[1]];
+    let degrees = || -> Result<Cell> {
+        let Some([_, north]) = grid.origin else {
+            let place = format!("tag {TIEPOINT}");
+            return Err(Error::file(path, place, "nothing", "the latitude of a grid in degrees"));
+        };
+        Ok(Cell::Degrees { cell: grid.cell, latitude: north - span[1] / 2.0 })
+    };
+    let cell = match keys.short(MODEL_TYPE) {
+        Some(2) => match keys.short(ANGULAR_UNIT) {
+            // EPSG: degree, degree (supplier to define representation).
+            None | Some(9102 | 9122) => degrees()?,
+            Some(unit) => {
+                let place = format!("GeoKey {ANGULAR_UNIT}");
+                return Err(Error::file(path, place, format!("unit {unit}"), "9102 (degree)"));
+            }
+        },
+        Some(1) => {
+            let unit = keys.length(path, LINEAR_UNIT)?.unwrap_or(1.0);
+            Cell::Metres(grid.cell.map(|c| c * unit))
+        }
+        None | Some(0 | 32767) => match grid.origin {
+            Some([west, north])
+                if looks_like_degrees(
+                    [west, west + span[0]],
+                    [north, north - span[1]],
+                    grid.cell,
+                ) =>
+            {
+                degrees()?
+            }
+            _ => Cell::Metres(grid.cell),
+        },
+        Some(model) => {
+            let expected = "1 (projected) or 2 (geographic)";
+            let place = format!("GeoKey {MODEL_TYPE}");
+            return Err(Error::file(path, place, format!("model type {model}"), expected));
+        }
+    };
+    Ok(Geo { cell, unit_m, nodata })
+}
+
+/// A tag's value, `None` where it is absent. Its count is held against the file's size before the
+/// decoder makes room for it.
+fn find(path: &Path, tiff: &mut Tiff, tag: u16, expected: &str) -> Result<Option<Value>> {
+    let wrong = |found: String| Error::file(path, format!("tag {tag}"), found, expected);
+    let held = tiff.inner().get_ref().len() as u64;
+    let tag = Tag::from_u16_exhaustive(tag);
+    match tiff.image_ifd().directory().get(tag) {
+        Some(entry) if entry.count() > held => {
+            Err(wrong(format!("a claim of {} values in {held} bytes", entry.count())))
+        }
+        Some(_) => tiff.find_tag(tag).map_err(|e| wrong(open::complaint(e))),
+        None => Ok(None),
+    }
+}
+
+/// The numbers of a tag, `None` where it is absent.
+fn doubles(path: &Path, tiff: &mut Tiff, tag: u16) -> Result<Option<Vec<f64>>> {
+    let wrong = |e| Error::file(path, format!("tag {tag}"), open::complaint(e), "numbers");
+    let value = find(path, tiff, tag, "numbers")?;
+    value.map(|v| v.into_f64_vec().map_err(wrong)).transpose()
+}
+
+/// The grid from the transformation or from scale and tie point; `None` where there is neither.
+fn grid(path: &Path, tiff: &mut Tiff) -> Result<Option<Grid>> {
+    let (tag, cell, origin) = if let Some(m) = doubles(path, tiff, TRANSFORMATION)? {
+        let &[xi, xj, _, x0, yi, yj, _, y0, ..] = m.as_slice() else {
+            let found = format!("{} numbers", m.len());
+            return Err(Error::file(path, format!("tag {TRANSFORMATION}"), found, "16 numbers"));
+        };
+        if xj != 0.0 || yi != 0.0 {
+            return Err(Error::file(
+                path,
+                format!("tag {TRANSFORMATION}"),
+                "a rotated or sheared grid",
+                "columns to the east and rows to the south (warp it first)",
+            ));
+        }
+        (TRANSFORMATION, [xi, -yj], Some([x0, y0]))
+    } else if let Some(scale) = doubles(path, tiff, PIXEL_SCALE)? {
+        let &[x, y, ..] = scale.as_slice() else {
+            let found = format!("{} numbers", scale.len());
+            return Err(Error::file(path, format!("tag {PIXEL_SCALE}"), found, "3 numbers"));
+        };
+        let origin = match doubles(path, tiff, TIEPOINT)?.as_deref() {
+            None => None,
+            Some([i, j, _, east, north, ..]) => Some([east - i * x, north + j * y]),
+            Some(other) => {
+                let found = format!("{} numbers", other.len());
+                return Err(Error::file(path, format!("tag {TIEPOINT}"), found, "6 numbers"));
+            }
+        };
+        (PIXEL_SCALE, [x, y], origin)
+    } else {
+        return Ok(None);
+    };
+    if !cell.iter().all(|c| c.is_finite() && *c > 0.0) {
+        return Err(Error::file(
+            path,
+            format!("tag {tag}"),
+            format!("cells of {:?} × {:?}", cell[0], cell[1]),
+            "positive sizes, north up",
+        ));
+    }
+    Ok(Some(Grid { cell, origin }))
+}
+
+fn nodata(path: &Path, tiff: &mut Tiff) -> Result<Option<f64>> {
+    let expected = "a number, or nan";
+    let wrong = |found: String| Error::file(path, format!("tag {GDAL_NODATA}"), found, expected);
+    let Some(value) = find(path, tiff, GDAL_NODATA, expected)? else { return Ok(None) };
+    let text = value.into_string().map_err(|e| wrong(open::complaint(e)))?;
+    let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
+    let short: String = text.chars().filter(|c| !c.is_control()).take(24).collect();
+    text.parse().map(Some).map_err(|_| wrong(format!("{short:?}")))
+}
+
+/// The GeoKey directory: entries of four shorts (key, where the value is, count, value).
+struct Keys {
+    entries: Vec<[u16; 4]>,
+    doubles: Vec<f64>,
+}
+
+impl Keys {
+    fn read(path: &Path, tiff: &mut Tiff) -> Result<Self> {
+        let expected = "GeoKeys: four shorts each";
+        let shorts = match find(path, tiff, KEY_DIRECTORY, expected)? {
+            Some(value) => value.into_u16_vec().map_err(|e| {
+                let place = format!("tag {KEY_DIRECTORY}");
+                Error::file(path, place, open::complaint(e), expected)
+            })?,
+            None => Vec::new(),
+        };
+        // The first four are version and count.
+        let (chunks, _) = shorts.as_chunks::<4>();
+        let entries = chunks.iter().skip(1).copied().collect();
+        let doubles = doubles(path, tiff, KEY_DOUBLES)?.unwrap_or_default();
+        Ok(Self { entries, doubles })
+    }
+
+    /// The value of a key that is one short, held in the entry itself.
+    fn short(&self, key: u16) -> Option<u16> {
+        self.entries.iter().find(|e| e[0] == key && e[1] == 0).map(|e| e[3])
+    }
+
+    /// Metres in the EPSG unit of length that a key names; `None` where the key is absent.
+    fn length(&self, path: &Path, key: u16) -> Result<Option<f64>> {
+        let user_size = || {
+            let entry =
+                self.entries.iter().find(|e| e[0] == LINEAR_UNIT_SIZE && e[1] == KEY_DOUBLES)?;
+            let size = *self.doubles.get(usize::from(entry[3]))?;
+            (size.is_finite() && size > 0.0).then_some(size)
+        };
+        let metres = match self.short(key) {
+            None => return Ok(None),
+            Some(9001) => Some(1.0),
+            Some(9002) => Some(0.3048),
+            Some(9003) => Some(1200.0 / 3937.0),
+            Some(9036) => Some(1000.0),
+            Some(32767) if key == LINEAR_UNIT => user_size(),
+            // Undefined.
+            Some(0) => Some(1.0),
+            Some(_) => None,
+        };
+        metres.map(Some).ok_or_else(|| {
+            let unit = self.short(key).unwrap_or_default();
+            let expected = "9001 (metre), 9002 (foot), 9003 (US survey foot) or 9036 (kilometre)";
+            Error::file(path, format!("GeoKey {key}"), format!("unit {unit}"), expected)
+        })
+    }
+}

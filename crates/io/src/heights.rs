@@ -1,0 +1,157 @@
+//! Height fields from files: the format by name and first bytes, then one common finish.
+
+use super::geo::{Cell, metres_a_degree};
+use super::open::{self, Format};
+use super::{asc, exr, hgt, npy, npz, png, tif};
+use ridgelight::scene::HeightField;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// What the caller knows better than the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightOptions {
+    /// Spacing of columns and of rows, metres, each positive; overrides the file's.
+    pub cell_m: Option<[f64; 2]>,
+    /// Multiplies every height; any finite number, 1 by default.
+    pub z_scale: f64,
+    /// The value in the file that means "no data", before `z_scale`; NaN is allowed. Overrides
+    /// the file's own.
+    pub nodata: Option<f64>,
+}
+
+impl Default for HeightOptions {
+    fn default() -> Self {
+        Self { cell_m: None, z_scale: 1.0, nodata: None }
+    }
+}
+
+/// A grid as a decoder hands it over: values as stored, nothing interpreted yet.
+pub(super) struct Raster {
+    pub rows: usize,
+    pub cols: usize,
+    /// Row-major, row 0 in the north, in the file's unit.
+    pub values: Vec<f64>,
+    /// Whether the file holds 16- or 32-bit floats: a no-data value printed in decimal is then
+    /// compared after rounding it the same way.
+    pub single: bool,
+    pub cell: Cell,
+    /// Metres in the file's unit of height.
+    pub unit_m: f64,
+    pub nodata: Option<f64>,
+    /// Samples that the file itself masks, if it can.
+    pub voids: Option<Vec<bool>>,
+}
+
+impl Raster {
+    /// Values of which nothing else is known.
+    pub fn bare(rows: usize, cols: usize, values: Vec<f64>) -> Self {
+        Self {
+            rows,
+            cols,
+            values,
+            single: false,
+            cell: Cell::Unknown,
+            unit_m: 1.0,
+            nodata: None,
+            voids: None,
+        }
+    }
+}
+
+/// Reads a height field; the format is that of the name, and the first bytes must agree.
+///
+/// | name | holds | cell size | no data |
+/// |---|---|---|---|
+/// | `.png` | grey, 8 or 16 bits; one count is one metre | 1 × 1 | alpha 0, or the `tRNS` grey |
+/// | `.exr` | the only channel, or the only `height`, `elevation`, `Z`, `Y` or `R`; f16, f32, u32 | 1 × 1 | |
+/// | `.tif`, `.tiff` | one band of any integer or float type | GeoTIFF tags | GDAL's tag |
+/// | `.hgt` | SRTM: square, 16-bit big-endian | 1/(n-1)° at the latitude in the name | -32768 |
+/// | `.asc` | ESRI ASCII grid | header | header |
+/// | `.npy` | 2-D, integers or floats of any size, order and endianness | 1 × 1 | |
+/// | `.npz` | `elevation`, `heights`, `height`, `z` or the only 2-D array | `dx`, `dy` | |
+///
+/// Row 0 is the north. Cells in degrees become metres by the WGS84 ellipsoid at the latitude of
+/// the field's middle (one size for the whole field). A header without a unit (`.asc`, `.npz`, a
+/// TIFF without GeoKeys) is in degrees when its corners fit longitudes and latitudes and its cell
+/// is under 0.1, else in metres. A TIFF whose vertical unit is feet is turned into metres.
+///
+/// # Errors
+/// A file that cannot be read ([`Error::Io`]); options out of range ([`Error::Setting`]);
+/// everything wrong inside the file ([`Error::File`]): more than 65 536 a side or 2³⁰ samples,
+/// truncation, colour, rotation, a height that is not finite and not marked as no data.
+pub fn read_heights(path: &Path, options: &HeightOptions) -> Result<HeightField> {
+    parse_heights(path, &open::read(path)?, options)
+}
+
+/// [`read_heights`] from bytes in memory; `name` gives the format and stands in error messages.
+///
+/// # Errors
+/// As [`read_heights`], but for those of reading.
+pub fn parse_heights(name: &Path, bytes: &[u8], options: &HeightOptions) -> Result<HeightField> {
+    check(options)?;
+    const ACCEPTED: [Format; 7] = [
+        Format::Png,
+        Format::Exr,
+        Format::Tiff,
+        Format::Hgt,
+        Format::Asc,
+        Format::Npy,
+        Format::Npz,
+    ];
+    let raster = match open::format(name, bytes, &ACCEPTED)? {
+        Format::Png => png::heights(name, bytes),
+        Format::Exr => exr::heights(name, bytes),
+        Format::Tiff => tif::heights(name, bytes),
+        Format::Hgt => hgt::heights(name, bytes, options.cell_m.is_some()),
+        Format::Asc => asc::heights(name, bytes),
+        Format::Npz => npz::heights(name, bytes),
+        Format::Npy | Format::Hdr => npy::heights(name, bytes),
+    }?;
+    finish(name, raster, options)
+}
+
+fn check(options: &HeightOptions) -> Result<()> {
+    if let Some(cell) = options.cell_m
+        && !cell.iter().all(|c| (1e-12..=1e12).contains(c))
+    {
+        let found = format!("{:?} × {:?}", cell[0], cell[1]);
+        return Err(Error::setting("cell_m", found, "two lengths from 1e-12 to 1e12"));
+    }
+    if !options.z_scale.is_finite() {
+        return Err(Error::setting("z_scale", options.z_scale.to_string(), "a finite number"));
+    }
+    Ok(())
+}
+
+/// Marks voids, brings heights and cells to metres and makes the field.
+fn finish(path: &Path, raster: Raster, options: &HeightOptions) -> Result<HeightField> {
+    let Raster { rows, cols, mut values, single, cell, unit_m, nodata, mut voids } = raster;
+    if let Some(nodata) = options.nodata.or(nodata) {
+        let marks = voids.get_or_insert_with(|| vec![false; values.len()]);
+        for (mark, value) in marks.iter_mut().zip(&values) {
+            *mark |= *value == nodata
+                || value.is_nan() && nodata.is_nan()
+                || single && nodata.is_finite() && *value as f32 == nodata as f32;
+        }
+    }
+    let cell_m = match (options.cell_m, cell) {
+        (Some(cell), _) | (None, Cell::Metres(cell)) => cell,
+        (None, Cell::Unknown) => [1.0, 1.0],
+        (None, Cell::Degrees { cell, latitude }) => {
+            if !(-90.0..=90.0).contains(&latitude) {
+                let found = format!("latitude {latitude:?} in the field's middle");
+                return Err(Error::file(path, "georeference", found, "a latitude within ±90°"));
+            }
+            let [east, north] = metres_a_degree(latitude);
+            [cell[0] * east, cell[1] * north]
+        }
+    };
+    let factor = unit_m * options.z_scale;
+    if factor != 1.0 {
+        values.iter_mut().for_each(|v| *v *= factor);
+    }
+    HeightField::new(rows, cols, &values, cell_m, voids).map_err(|error| match error {
+        Error::Setting { name, found, expected } => Error::file(path, name, found, expected),
+        other => other,
+    })
+}

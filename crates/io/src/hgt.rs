@@ -1,0 +1,88 @@
+//! SRTM tiles: a square of big-endian 16-bit metres, row 0 in the north, nothing else.
+
+use super::geo::Cell;
+use super::heights::Raster;
+use super::open;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// SRTM's mark for radar shadow.
+const VOID: f64 = -32768.0;
+
+/// A tile of one degree, its edges on the outermost samples; 1201² and 3601² are the usual ones.
+/// Without a latitude in the name (N44W072: the tile's south-west corner) the cell is unknown,
+/// which is an error unless `cell_known`.
+pub(super) fn heights(path: &Path, bytes: &[u8], cell_known: bool) -> Result<Raster> {
+    let side = (bytes.len() / 2).isqrt();
+    if !bytes.len().is_multiple_of(2) || side < 2 || side * side * 2 != bytes.len() {
+        return Err(Error::file(
+            path,
+            "file size",
+            format!("{} bytes", bytes.len()),
+            "2·n² bytes for a square tile, as 2 884 802 (n = 1201) or 25 934 402 (n = 3601)",
+        ));
+    }
+    open::size(path, "file size", side as u64, side as u64)?;
+    let cell = match south_edge(path) {
+        Some(south) => {
+            let cell = 1.0 / (side - 1) as f64;
+            Cell::Degrees { cell: [cell, cell], latitude: south + 0.5 }
+        }
+        None if cell_known => Cell::Unknown,
+        None => {
+            return Err(Error::file(
+                path,
+                "name",
+                "no latitude",
+                "the tile's south-west corner, as in N44W072.hgt, or a cell size",
+            ));
+        }
+    };
+    let values =
+        bytes.chunks_exact(2).map(|b| f64::from(i16::from_be_bytes([b[0], b[1]]))).collect();
+    Ok(Raster { cell, nodata: Some(VOID), ..Raster::bare(side, side, values) })
+}
+
+/// The latitude of the tile's southern edge from a name that begins like `N44W072` or `s05e110`.
+fn south_edge(path: &Path) -> Option<f64> {
+    let stem = path.file_stem()?.to_str()?.to_ascii_uppercase();
+    let rest = stem.strip_prefix(['N', 'S'])?;
+    let digits = rest.find(['W', 'E'])?;
+    let latitude: u8 = rest.get(..digits)?.parse().ok()?;
+    let south = f64::from(latitude) * if stem.starts_with('S') { -1.0 } else { 1.0 };
+    (-90.0..90.0).contains(&south).then_some(south)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_the_corner_from_the_name() {
+        for (name, south) in [
+            ("N44W072.hgt", Some(44.0)),
+            ("s05e110.hgt", Some(-5.0)),
+            ("dir/N00E006.SRTMGL1.hgt", Some(0.0)),
+            ("tile.hgt", None),
+            ("N.hgt", None),
+            ("NW.hgt", None),
+            ("N95E000.hgt", None),
+            ("Nörd44W072.hgt", None),
+        ] {
+            assert_eq!(south_edge(Path::new(name)), south, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_tile_of_three_by_three() {
+        let bytes: Vec<u8> =
+            [1_i16, 2, 3, 4, -32768, 6, 7, 8, 9].iter().flat_map(|h| h.to_be_bytes()).collect();
+        let raster = heights(Path::new("N44W072.hgt"), &bytes, false).unwrap();
+        assert_eq!((raster.rows, raster.cols, raster.values[5]), (3, 3, 6.0));
+        assert_eq!(raster.cell, Cell::Degrees { cell: [0.5, 0.5], latitude: 44.5 });
+        assert!(heights(Path::new("a.hgt"), &bytes, false).is_err());
+        assert!(heights(Path::new("a.hgt"), &bytes, true).is_ok());
+        assert!(heights(Path::new("N44W072.hgt"), &bytes[1..], false).is_err());
+        assert!(heights(Path::new("N44W072.hgt"), &bytes[2..], false).is_err());
+    }
+}

@@ -1,0 +1,216 @@
+//! KTX 2.0 textures (Khronos KTX File Format Specification 2.0): one level, uncompressed, an array of layers or one.
+
+use super::atomic::{Temporary, Written};
+use crate::Component;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// The first twelve bytes of every file (§3.1).
+const IDENTIFIER: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
+/// Identifier, header and index, before the level index (§3).
+const HEADER_BYTES: usize = 80;
+/// An entry of the level index.
+const LEVEL_BYTES: usize = 24;
+
+/// A format of texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TexelFormat {
+    /// Of each component.
+    pub component: Component,
+    /// 1 (R), 2 (RG) or 4 (RGBA).
+    pub count: usize,
+}
+
+impl TexelFormat {
+    /// Its number in Vulkan, and its name there without `VK_FORMAT_`; none for other counts of components.
+    pub fn vulkan(self) -> Option<(u32, &'static str)> {
+        use Component::{F16, F32, Snorm8, Snorm16, Unorm8, Unorm16};
+        Some(match (self.component, self.count) {
+            (Unorm8, 1) => (9, "R8_UNORM"),
+            (Snorm8, 1) => (10, "R8_SNORM"),
+            (Unorm8, 2) => (16, "R8G8_UNORM"),
+            (Snorm8, 2) => (17, "R8G8_SNORM"),
+            (Unorm8, 4) => (37, "R8G8B8A8_UNORM"),
+            (Snorm8, 4) => (38, "R8G8B8A8_SNORM"),
+            (Unorm16, 1) => (70, "R16_UNORM"),
+            (Snorm16, 1) => (71, "R16_SNORM"),
+            (F16, 1) => (76, "R16_SFLOAT"),
+            (Unorm16, 2) => (77, "R16G16_UNORM"),
+            (Snorm16, 2) => (78, "R16G16_SNORM"),
+            (F16, 2) => (83, "R16G16_SFLOAT"),
+            (Unorm16, 4) => (91, "R16G16B16A16_UNORM"),
+            (Snorm16, 4) => (92, "R16G16B16A16_SNORM"),
+            (F16, 4) => (97, "R16G16B16A16_SFLOAT"),
+            (F32, 1) => (100, "R32_SFLOAT"),
+            (F32, 2) => (103, "R32G32_SFLOAT"),
+            (F32, 4) => (109, "R32G32B32A32_SFLOAT"),
+            _ => return None,
+        })
+    }
+
+    /// Bytes of a texel.
+    pub fn bytes(self) -> usize {
+        self.count * self.component.bytes()
+    }
+
+    /// The basic descriptor of Khronos' Data Format Specification 1.3 (§5), behind its total size: linear numbers
+    /// without primaries, a sample a component.
+    fn descriptor(self) -> Vec<u8> {
+        let block = 24 + 16 * self.count as u32;
+        let bits = 8 * self.component.bytes() as u32;
+        // Vendor 0 and type 0; version 2; colour model 1 (RGBSDA), primaries 0, transfer 1 (linear), flags 0;
+        // texels of 1 × 1 × 1 × 1 (each less one); bytes of the first plane.
+        let mut words =
+            vec![4 + block, 0, 2 | (block << 16), 1 | (1 << 16), 0, self.bytes() as u32, 0];
+        for i in 0..self.count as u32 {
+            // Channels of RGBSDA: 0, 1, 2 and, alpha, 15. Qualifiers: 0x40 signed, 0x80 float.
+            let channel = if i == 3 { 15 } else { i };
+            let (qualifiers, low, high) = match self.component {
+                Component::F16 | Component::F32 => (0xc0, (-1_f32).to_bits(), 1_f32.to_bits()),
+                other if other.is_signed() => {
+                    let one = other.one() as i32;
+                    (0x40, (-one) as u32, one as u32)
+                }
+                other => (0, 0, other.one() as u32),
+            };
+            words.extend([
+                (i * bits) | ((bits - 1) << 16) | ((channel | qualifiers) << 24),
+                0,
+                low,
+                high,
+            ]);
+        }
+        words.iter().flat_map(|word| word.to_le_bytes()).collect()
+    }
+}
+
+/// Writes a texture layer by layer, so that it may be larger than memory.
+///
+/// Nothing is at the destination until [`finish`](Self::finish); dropped before, it leaves nothing.
+#[derive(Debug)]
+pub struct Ktx2Writer {
+    file: Temporary,
+    left: u64,
+}
+
+impl Ktx2Writer {
+    /// Begins a texture of `rows` × `cols` texels, the first row uppermost: an array where `layers` is given.
+    ///
+    /// `texts` are keys and values to be kept beside KTXorientation and KTXwriter, which are there in any case.
+    ///
+    /// # Errors
+    /// A format that is none, sides of 0 or beyond 2³², a key that is empty, reserved ("KTX…") or there twice; a directory
+    /// that cannot be written to.
+    pub fn create(
+        path: &Path,
+        format: TexelFormat,
+        [cols, rows]: [usize; 2],
+        layers: Option<usize>,
+        texts: &[(String, String)],
+    ) -> Result<Self> {
+        let Some((vulkan, _)) = format.vulkan() else {
+            let found = format!("{} of {:?}", format.count, format.component);
+            return Err(Error::setting("texels", found, "1, 2 or 4 components"));
+        };
+        let side = |what: &str, n: usize| {
+            let found = || Error::setting(what, n.to_string(), "1 to 4294967295");
+            u32::try_from(n).ok().filter(|n| *n > 0).ok_or_else(found)
+        };
+        let layer_count = layers.map_or(Ok(0), |n| side("layers", n))?;
+        let sides = [side("columns", cols)?, side("rows", rows)?];
+        let level = (cols as u64).checked_mul(rows as u64).and_then(|n| {
+            n.checked_mul(u64::from(layer_count.max(1)))?.checked_mul(format.bytes() as u64)
+        });
+        let level = level.ok_or_else(|| {
+            Error::setting("texture", format!("{cols} × {rows} × {layer_count}"), "below 2⁶⁴ bytes")
+        })?;
+        let (descriptor, keys) = (format.descriptor(), keys(texts)?);
+        let descriptor_at = HEADER_BYTES + LEVEL_BYTES;
+        let keys_at = descriptor_at + descriptor.len();
+        // Texels begin at a multiple of both 4 and a texel's bytes, which are powers of two (§3.9.7).
+        let texels_at = (keys_at + keys.len()).next_multiple_of(format.bytes().max(4));
+        let mut head = IDENTIFIER.to_vec();
+        let (depth, faces, levels, supercompression) = (0, 1, 1, 0);
+        let words = [
+            vulkan,
+            format.component.bytes() as u32,
+            sides[0],
+            sides[1],
+            depth,
+            layer_count,
+            faces,
+            levels,
+            supercompression,
+            descriptor_at as u32,
+            descriptor.len() as u32,
+            keys_at as u32,
+            keys.len() as u32,
+        ];
+        head.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        // No supercompression's data; the level's place, length and length uncompressed.
+        let longs = [0, 0, texels_at as u64, level, level];
+        head.extend(longs.iter().flat_map(|long: &u64| long.to_le_bytes()));
+        head.extend(descriptor);
+        head.extend(keys);
+        head.resize(texels_at, 0);
+        let mut file = Temporary::create(path)?;
+        file.write(&head)?;
+        Ok(Self { file, left: level })
+    }
+
+    /// Appends texels, layers in order and rows from the uppermost on.
+    ///
+    /// # Errors
+    /// More than the texture holds; a disk that does not take them.
+    pub fn write(&mut self, texels: &[u8]) -> Result<()> {
+        let found = || Error::setting("texels", "more bytes", format!("{} more", self.left));
+        self.left = self.left.checked_sub(texels.len() as u64).ok_or_else(found)?;
+        self.file.write(texels)
+    }
+
+    /// Puts the file at its destination.
+    ///
+    /// # Errors
+    /// As [`close`](Self::close); a destination that cannot be replaced.
+    pub fn finish(self) -> Result<()> {
+        self.close()?.place()
+    }
+
+    /// Ends the file, which waits beside its destination.
+    ///
+    /// # Errors
+    /// Fewer texels than the texture holds; a disk that does not take them.
+    pub fn close(self) -> Result<Written> {
+        if self.left > 0 {
+            let found = format!("{} bytes too few", self.left);
+            return Err(Error::setting("texels", found, "all of them before the end"));
+        }
+        self.file.close()
+    }
+}
+
+/// Keys and values (§3.11): each with its length before it, a NUL behind both, padded to 4 bytes, sorted by key.
+fn keys(texts: &[(String, String)]) -> Result<Vec<u8>> {
+    let writer = concat!("ridgelight ", env!("CARGO_PKG_VERSION"));
+    let mut all = vec![("KTXorientation", "rd"), ("KTXwriter", writer)];
+    for (key, value) in texts {
+        let is_free = !key.is_empty() && !key.starts_with("KTX") && !key.starts_with("ktx");
+        if !is_free || key.contains('\0') || all.iter().any(|(other, _)| other == key) {
+            let expected = "keys of their own that do not begin with KTX";
+            return Err(Error::setting("texts", format!("the key \"{key}\""), expected));
+        }
+        all.push((key, value));
+    }
+    all.sort_by_key(|(key, _)| key.as_bytes());
+    let mut bytes = Vec::new();
+    for (key, value) in all {
+        let length = key.len() + value.len() + 2;
+        bytes.extend((length as u32).to_le_bytes());
+        for part in [key, value] {
+            bytes.extend(part.as_bytes());
+            bytes.push(0);
+        }
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,301 @@
+//! NumPy arrays: a reader of every integer and float type, a writer of streams of f32.
+
+use super::atomic::{Temporary, Written};
+use super::heights::Raster;
+use super::open;
+use half::f16;
+use ridgelight::scene::HeightField;
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// An array's header: what the bytes after it are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Array<'a> {
+    pub shape: Vec<usize>,
+    kind: u8,
+    size: usize,
+    big_endian: bool,
+    fortran: bool,
+    data: &'a [u8],
+}
+
+impl<'a> Array<'a> {
+    /// Parses a whole `.npy` file of version 1, 2 or 3. `inside` prefixes places, for arrays in an
+    /// archive ("elevation.npy: ").
+    pub fn parse(path: &Path, inside: &str, bytes: &'a [u8]) -> Result<Self> {
+        let wrong = |place: &str, found: String, expected: &str| {
+            Error::file(path, format!("{inside}{place}"), found, expected)
+        };
+        let short = || wrong("header", format!("{} bytes", bytes.len()), "a whole NPY header");
+        if !bytes.starts_with(b"\x93NUMPY") {
+            return Err(wrong("header", "no NPY signature".into(), "an NPY array"));
+        }
+        let (length, start) =
+            match *bytes.get(6..).and_then(|b| b.first_chunk::<6>()).ok_or_else(short)? {
+                [1, _, a, b, ..] => (usize::from(u16::from_le_bytes([a, b])), 10),
+                [2 | 3, _, a, b, c, d] => (u32::from_le_bytes([a, b, c, d]) as usize, 12),
+                [version, ..] => {
+                    return Err(wrong("header", format!("version {version}"), "version 1, 2 or 3"));
+                }
+            };
+        let text = bytes.get(start..).and_then(|b| b.get(..length)).ok_or_else(short)?;
+        let text = std::str::from_utf8(text)
+            .map_err(|_| wrong("header", "bytes that are no text".into(), "a dictionary"))?;
+        let data = &bytes[start + length..];
+
+        let missing =
+            |key: &str| wrong("header", format!("no {key}"), "descr, fortran_order, shape");
+        let descr = value(text, "descr").ok_or_else(|| missing("descr"))?;
+        let descr = descr.trim_matches(['\'', '"', ' ']);
+        let (kind, size, big_endian) = match *descr.as_bytes() {
+            [order @ (b'<' | b'>' | b'|' | b'='), kind @ (b'i' | b'u' | b'f'), size]
+                if matches!((kind, size), (_, b'2' | b'4' | b'8') | (b'i' | b'u', b'1')) =>
+            {
+                // '=' never leaves NumPy; it would mean the writer's machine: little-endian.
+                (kind, usize::from(size - b'0'), order == b'>')
+            }
+            _ => {
+                let found: String = descr.chars().filter(|c| !c.is_control()).take(24).collect();
+                let expected = "integers (i1 to i8, u1 to u8) or floats (f2, f4, f8)";
+                return Err(wrong("header: descr", format!("the type {found}"), expected));
+            }
+        };
+        let order = value(text, "fortran_order").ok_or_else(|| missing("fortran_order"))?;
+        let fortran = match order.trim() {
+            "True" => true,
+            "False" => false,
+            _ => return Err(wrong("header: fortran_order", "neither".into(), "True or False")),
+        };
+        let shape = value(text, "shape").ok_or_else(|| missing("shape"))?;
+        let shape = tuple(shape).ok_or_else(|| {
+            wrong("header: shape", "no tuple of counts".into(), "as (rows, cols)")
+        })?;
+        let claimed = shape.iter().try_fold(size, |n, d| n.checked_mul(*d));
+        if claimed != Some(data.len()) {
+            let expected = match claimed {
+                Some(n) => format!("{n} for the shape {shape:?}"),
+                None => format!("as many as the shape {shape:?} needs"),
+            };
+            return Err(wrong("data", format!("{} bytes", data.len()), &expected));
+        }
+        Ok(Self { shape, kind, size, big_endian, fortran, data })
+    }
+
+    /// Bytes of a value, where values are unsigned.
+    pub fn unsigned(&self) -> Option<usize> {
+        (self.kind == b'u').then_some(self.size)
+    }
+
+    /// Whether values are 16- or 32-bit floats.
+    pub fn single(&self) -> bool {
+        self.kind == b'f' && self.size < 8
+    }
+
+    /// The value at a place in memory order; 64-bit integers beyond 2⁵³ are rounded.
+    fn stored(&self, i: usize) -> f64 {
+        let mut b = [0_u8; 8];
+        b[..self.size].copy_from_slice(&self.data[i * self.size..(i + 1) * self.size]);
+        if self.big_endian {
+            b[..self.size].reverse();
+        }
+        match (self.kind, self.size) {
+            (b'f', 2) => f16::from_le_bytes([b[0], b[1]]).to_f64(),
+            (b'f', 4) => f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])),
+            (b'f', _) => f64::from_le_bytes(b),
+            (b'u', _) => u64::from_le_bytes(b) as f64,
+            // Shifting left and back right extends the sign.
+            (_, size) => {
+                let shift = 64 - 8 * size as u32;
+                (i64::from_le_bytes(b) << shift >> shift) as f64
+            }
+        }
+    }
+
+    /// All values with the last index running fastest, whatever the order in the file.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        let count = self.shape.iter().product();
+        (0..count).map(move |i| {
+            if !self.fortran {
+                return self.stored(i);
+            }
+            // Indices from the last to the first; Fortran's stride grows from the first.
+            let (mut rest, mut stride, mut at) = (i, count, 0);
+            for d in self.shape.iter().rev() {
+                stride /= d;
+                at += rest % d * stride;
+                rest /= d;
+            }
+            self.stored(at)
+        })
+    }
+}
+
+/// The text of a key's value in a Python dictionary of the kind NPY headers are.
+pub(super) fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let at = [format!("'{key}'"), format!("\"{key}\"")]
+        .iter()
+        .find_map(|quoted| text.find(quoted).map(|at| at + quoted.len()))?;
+    let rest = text.get(at..)?.trim_start().strip_prefix(':')?.trim_start();
+    let end = match rest.strip_prefix('(') {
+        Some(inner) => inner.find(')')? + 2,
+        None => rest.find([',', '}'])?,
+    };
+    rest.get(..end)
+}
+
+/// `(3, 4)`, `(3,)` or `()`; NumPy 1 wrote `3L` in Python 2.
+pub(super) fn tuple(text: &str) -> Option<Vec<usize>> {
+    let inner = text.trim().strip_prefix('(')?.strip_suffix(')')?.trim();
+    if inner.is_empty() {
+        return Some(Vec::new());
+    }
+    let inner = inner.strip_suffix(',').unwrap_or(inner);
+    inner.split(',').map(|n| n.trim().trim_end_matches('L').parse().ok()).collect()
+}
+
+/// A 2-D array; nothing is known of its cells.
+pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+    raster(path, "", &Array::parse(path, "", bytes)?)
+}
+
+/// A 2-D array as a raster; `inside` as in [`Array::parse`].
+pub(super) fn raster(path: &Path, inside: &str, array: &Array) -> Result<Raster> {
+    let place = format!("{inside}header: shape");
+    let &[rows, cols] = array.shape.as_slice() else {
+        let found = format!("{} dimensions", array.shape.len());
+        return Err(Error::file(path, place, found, "two: rows and columns"));
+    };
+    let (rows, cols) = open::size(path, &place, rows as u64, cols as u64)?;
+    let values = array.values().collect();
+    Ok(Raster { single: array.single(), ..Raster::bare(rows, cols, values) })
+}
+
+/// What stands before the data of an array of this type ("<f4") and shape, last index running fastest.
+///
+/// # Errors
+/// More dimensions than a header holds.
+pub(super) fn header(descr: &str, shape: &[usize]) -> Result<Vec<u8>> {
+    let sizes: String = shape.iter().map(|n| format!("{n}, ")).collect();
+    let mut text = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
+        sizes.trim_end()
+    );
+    // The data begins at a multiple of 64 bytes, after a 10-byte preamble and a line feed.
+    let padded = (10 + text.len() + 1).next_multiple_of(64);
+    text.push_str(&" ".repeat(padded - 10 - text.len() - 1));
+    text.push('\n');
+    let length = u16::try_from(text.len()).map_err(|_| {
+        Error::setting("shape", format!("{} dimensions", shape.len()), "a few dimensions")
+    })?;
+    Ok([&b"\x93NUMPY\x01\x00"[..], &length.to_le_bytes(), text.as_bytes()].concat())
+}
+
+/// Writes an array of little-endian f32 piece by piece, so that it may be larger than memory.
+///
+/// Nothing is at the destination until [`finish`](Self::finish); dropped before, it leaves nothing.
+#[derive(Debug)]
+pub struct NpyWriter {
+    file: Temporary,
+    shape: Vec<usize>,
+    left: usize,
+}
+
+impl NpyWriter {
+    /// Begins an array of `shape`, its last index running fastest: `[azimuths, rows, cols]` for
+    /// horizons.
+    ///
+    /// # Errors
+    /// A shape beyond the address space; a directory that cannot be written to.
+    pub fn create(path: &Path, shape: &[usize]) -> Result<Self> {
+        let left = shape.iter().try_fold(1_usize, |n, d| n.checked_mul(*d)).ok_or_else(|| {
+            Error::setting("shape", format!("{shape:?}"), "a product within the address space")
+        })?;
+        let file = begin(path, "<f4", shape)?;
+        Ok(Self { file, shape: shape.to_vec(), left })
+    }
+
+    /// Appends values in order; NaN is allowed.
+    ///
+    /// # Errors
+    /// More values than the shape holds; a disk that does not take them.
+    pub fn write(&mut self, values: &[f32]) -> Result<()> {
+        self.left = self.left.checked_sub(values.len()).ok_or_else(|| {
+            Error::setting(
+                format!("values for the shape {:?}", self.shape),
+                format!("{} more", values.len()),
+                format!("{} more", self.left),
+            )
+        })?;
+        for piece in values.chunks(4096) {
+            let bytes: Vec<u8> = piece.iter().flat_map(|v| v.to_le_bytes()).collect();
+            self.file.write(&bytes)?;
+        }
+        Ok(())
+    }
+
+    /// Puts the file at its destination.
+    ///
+    /// # Errors
+    /// As [`close`](Self::close); a destination that cannot be replaced.
+    pub fn finish(self) -> Result<()> {
+        self.close()?.place()
+    }
+
+    /// Ends the file, which waits beside its destination.
+    ///
+    /// # Errors
+    /// Fewer values than the shape holds; a disk that does not take them.
+    pub fn close(self) -> Result<Written> {
+        if self.left > 0 {
+            return Err(Error::setting(
+                format!("values for the shape {:?}", self.shape),
+                format!("{} too few", self.left),
+                "all of them before the end",
+            ));
+        }
+        self.file.close()
+    }
+}
+
+/// A file with an array's header, for its values to follow.
+fn begin(path: &Path, descr: &str, shape: &[usize]) -> Result<Temporary> {
+    let mut file = Temporary::create(path)?;
+    file.write(&header(descr, shape)?)?;
+    Ok(file)
+}
+
+/// Writes a field's heights as an array of little-endian f64, absolute, in its length unit; voids as NaN, to be read
+/// with no-data NaN. A field that is read from it has the same heights to a rounding of f32, above a base of its own.
+///
+/// # Errors
+/// A disk that does not take them.
+pub fn write_npy_heights(path: &Path, field: &HeightField) -> Result<()> {
+    let mut file = begin(path, "<f8", &[field.rows(), field.cols()])?;
+    let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
+    for (n, heights) in field.heights_m().chunks(4096).enumerate() {
+        let absolute = |(i, h): (usize, &f32)| match is_void(4096 * n + i) {
+            true => f64::NAN,
+            false => field.base_m() + f64::from(*h),
+        };
+        let bytes: Vec<u8> =
+            heights.iter().enumerate().flat_map(|h| absolute(h).to_le_bytes()).collect();
+        file.write(&bytes)?;
+    }
+    file.finish()
+}
+
+/// Writes an array of `shape` (last index fastest) from chunks of any lengths, in order.
+///
+/// # Errors
+/// As [`NpyWriter`]: too many or too few values, or a disk that does not take them.
+pub fn write_npy_f32<'a>(
+    path: &Path,
+    shape: &[usize],
+    chunks: impl IntoIterator<Item = &'a [f32]>,
+) -> Result<()> {
+    let mut writer = NpyWriter::create(path, shape)?;
+    for chunk in chunks {
+        writer.write(chunk)?;
+    }
+    writer.finish()
+}

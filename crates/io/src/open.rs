@@ -1,0 +1,222 @@
+//! What every reader does first: fetch the bytes, know the format, doubt the header.
+
+use ridgelight::{Error, Result};
+use std::{fs, io::Read, path::Path};
+
+/// The longest side of a field or picture that is read.
+pub(super) const SIDE_LIMIT: u64 = 1 << 16;
+/// The most samples (of one channel) that are read.
+pub(super) const SAMPLE_LIMIT: u64 = 1 << 30;
+/// The largest file that is read: the most samples there may be, as f64, twice over.
+const FILE_LIMIT: u64 = 16 * SAMPLE_LIMIT;
+/// DEFLATE's greatest expansion: a match of 258 bytes for two bits (RFC 1951, §3.2.5).
+pub(super) const DEFLATE_RATIO: u64 = 1032;
+
+/// A file format this module reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Png,
+    Exr,
+    Tiff,
+    Hgt,
+    Asc,
+    Npy,
+    Npz,
+    Hdr,
+}
+
+impl Format {
+    /// With its article, for sentences.
+    fn named(self) -> &'static str {
+        match self {
+            Format::Png => "a PNG",
+            Format::Exr => "an OpenEXR file",
+            Format::Tiff => "a TIFF",
+            Format::Hgt => "an SRTM tile",
+            Format::Asc => "an ESRI ASCII grid",
+            Format::Npy => "an NPY array",
+            Format::Npz => "a ZIP archive (NPZ)",
+            Format::Hdr => "a Radiance HDR picture",
+        }
+    }
+
+    /// For sentences.
+    fn extensions(self) -> &'static str {
+        match self {
+            Format::Png => ".png",
+            Format::Exr => ".exr",
+            Format::Tiff => ".tif .tiff",
+            Format::Hgt => ".hgt",
+            Format::Asc => ".asc",
+            Format::Npy => ".npy",
+            Format::Npz => ".npz",
+            Format::Hdr => ".hdr .pic",
+        }
+    }
+
+    /// By the name's extension, in either case.
+    pub fn of_name(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Format::Png),
+            "exr" => Some(Format::Exr),
+            "tif" | "tiff" => Some(Format::Tiff),
+            "hgt" => Some(Format::Hgt),
+            "asc" => Some(Format::Asc),
+            "npy" => Some(Format::Npy),
+            "npz" => Some(Format::Npz),
+            "hdr" | "pic" => Some(Format::Hdr),
+            _ => None,
+        }
+    }
+
+    /// By the first bytes. SRTM tiles have none; read as one, each of these would begin with a
+    /// height above 18 000 m or below -30 000 m, so no tile is taken for another format.
+    fn of_bytes(bytes: &[u8]) -> Option<Self> {
+        const STARTS: [(&[u8], Format); 9] = [
+            (b"\x89PNG\r\n\x1a\n", Format::Png),
+            (b"\x76\x2f\x31\x01", Format::Exr),
+            (b"II*\0", Format::Tiff),
+            (b"MM\0*", Format::Tiff),
+            (b"II+\0", Format::Tiff),
+            (b"MM\0+", Format::Tiff),
+            (b"\x93NUMPY", Format::Npy),
+            (b"PK\x03\x04", Format::Npz),
+            (b"#?", Format::Hdr),
+        ];
+        STARTS.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, format)| *format)
+    }
+}
+
+/// The format that the name claims, if it is one of `accepted` and the first bytes agree.
+pub(super) fn format(path: &Path, bytes: &[u8], accepted: &[Format]) -> Result<Format> {
+    let format = Format::of_name(path).filter(|f| accepted.contains(f)).ok_or_else(|| {
+        let found = match path.extension() {
+            Some(extension) => format!("the extension .{}", extension.display()),
+            None => "no extension".into(),
+        };
+        let names: Vec<_> = accepted.iter().map(|f| f.extensions()).collect();
+        Error::file(path, "name", found, format!("one of {}", names.join(" ")))
+    })?;
+    if bytes.is_empty() {
+        return Err(Error::file(path, "header", "an empty file", format.named()));
+    }
+    let expected = format!("{}, as its name says", format.named());
+    match Format::of_bytes(bytes) {
+        Some(found) if found != format => {
+            Err(Error::file(path, "first bytes", found.named(), expected))
+        }
+        None if !matches!(format, Format::Hgt | Format::Asc) => {
+            Err(Error::file(path, "first bytes", hex(bytes), expected))
+        }
+        _ => Ok(format),
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().take(4).map(|b| format!("{b:02x}")).collect::<Vec<_>>().join(" ")
+}
+
+/// The whole of a regular file.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    let io = |e| Error::io(path, e);
+    let about = fs::metadata(path).map_err(io)?;
+    if !about.is_file() {
+        let found = if about.is_dir() { "a directory" } else { "a device or a pipe" };
+        return Err(Error::file(path, "path", found, "a file"));
+    }
+    if about.len() > FILE_LIMIT {
+        let found = format!("{} bytes", about.len());
+        return Err(Error::file(path, "file size", found, format!("{FILE_LIMIT} bytes or fewer")));
+    }
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(usize::try_from(about.len()).unwrap_or(usize::MAX))
+        .map_err(|_| io(std::io::ErrorKind::OutOfMemory.into()))?;
+    let file = fs::File::open(path).map_err(io)?;
+    file.take(FILE_LIMIT).read_to_end(&mut bytes).map_err(io)?;
+    Ok(bytes)
+}
+
+/// Rows and columns as sizes in memory, if they are within what is read.
+pub(super) fn size(path: &Path, place: &str, rows: u64, cols: u64) -> Result<(usize, usize)> {
+    let side = 1..=SIDE_LIMIT;
+    if !side.contains(&rows) || !side.contains(&cols) || rows * cols > SAMPLE_LIMIT {
+        return Err(Error::file(
+            path,
+            place,
+            format!("{rows} rows and {cols} columns"),
+            format!("1 to {SIDE_LIMIT} of each and at most {SAMPLE_LIMIT} samples"),
+        ));
+    }
+    Ok((rows as usize, cols as usize))
+}
+
+/// Refuses a header that claims more bytes of samples than `held` bytes could expand to.
+pub(super) fn plausible(
+    path: &Path,
+    place: &str,
+    claimed: u64,
+    held: usize,
+    ratio: u64,
+) -> Result<()> {
+    if claimed > ratio.saturating_mul(held as u64) {
+        return Err(Error::file(
+            path,
+            place,
+            format!("a claim of {claimed} bytes of samples in {held} bytes"),
+            "no more than the file can hold",
+        ));
+    }
+    Ok(())
+}
+
+/// Memory for `count` values, all zero, or the system's refusal.
+pub(super) fn zeros<T: Copy + Default>(path: &Path, count: usize) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| Error::io(path, std::io::ErrorKind::OutOfMemory.into()))?;
+    values.resize(count, T::default());
+    Ok(values)
+}
+
+/// A decoder's complaint as the `found` of one sentence: one line, no full stop.
+pub(super) fn complaint(error: impl std::fmt::Display) -> String {
+    let text = error.to_string().replace(|c: char| c.is_control(), " ");
+    let words: Vec<_> = text.split_whitespace().collect();
+    words.join(" ").trim_end_matches('.').to_owned()
+}
+
+/// [`complaint`] of the `image` crate, whose word for a short file is the reader's.
+pub(super) fn reason(error: image::ImageError) -> String {
+    match error {
+        image::ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
+            "the end of the file".to_owned()
+        }
+        other => complaint(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn first_bytes_overrule_a_name() {
+        let all = [Format::Png, Format::Tiff, Format::Hgt];
+        let found = |name: &str, bytes: &[u8]| format(Path::new(name), bytes, &all);
+        assert_eq!(found("a.PNG", b"\x89PNG\r\n\x1a\n").unwrap(), Format::Png);
+        assert_eq!(found("a.hgt", &[0, 115]).unwrap(), Format::Hgt);
+        for (name, bytes, said) in [
+            ("a.png", &b"II*\0"[..], "a.png: first bytes: found a TIFF, expected a PNG"),
+            ("a.png", b"GIF8", "found 47 49 46 38"),
+            ("a.hgt", b"PK\x03\x04", "found a ZIP archive"),
+            ("a.npy", b"\x93NUMPY", "the extension .npy"),
+            ("a", b"", "no extension"),
+            ("a.png", b"", "an empty file"),
+        ] {
+            let error = found(name, bytes).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

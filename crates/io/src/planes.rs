@@ -1,0 +1,89 @@
+//! Results read back as plain planes, to be compared.
+
+use super::npy::Array;
+use super::open::{self, Format};
+use super::{exr, hdr, png};
+use ridgelight::{Error, Result};
+use std::path::Path;
+
+/// Named channels of one size, row-major. Anything may stand in them, NaN included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planes {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub cols: usize,
+    /// One name a plane.
+    pub names: Vec<String>,
+    /// One value a pixel.
+    pub planes: Vec<Vec<f32>>,
+}
+
+/// Reads every plane of a result.
+///
+/// `.exr`: all channels under their names ("direct.sky.R"), at full resolution. `.npy`: a 2-D array
+/// as the plane "0", a 3-D one [k, rows, cols] as "0" to "k-1". `.hdr`: "R", "G", "B". `.png`: "R",
+/// "G", "B" or "Y" decoded from sRGB to linear light, and "A" (0 to 1) where there is alpha.
+///
+/// # Errors
+/// A file that cannot be read or decoded; other dimensions; sizes beyond 65 536 a side or 2³⁰
+/// samples a plane.
+pub fn read_planes(path: &Path) -> Result<Planes> {
+    parse_planes(path, &open::read(path)?)
+}
+
+/// [`read_planes`] from bytes in memory; `name` gives the format and stands in error messages.
+///
+/// # Errors
+/// As [`read_planes`], but for those of reading.
+pub fn parse_planes(name: &Path, bytes: &[u8]) -> Result<Planes> {
+    match open::format(name, bytes, &[Format::Exr, Format::Npy, Format::Png, Format::Hdr])? {
+        Format::Exr => {
+            let file = exr::ExrFile::open(name, bytes)?;
+            let names: Vec<String> = file.names().into_iter().map(str::to_owned).collect();
+            let all: Vec<usize> = (0..names.len()).collect();
+            let (rows, cols, planes) = file.planes(&all, |v| v as f32)?;
+            Ok(Planes { rows, cols, names, planes })
+        }
+        Format::Npy => from_npy(name, bytes),
+        Format::Hdr => {
+            let (rows, cols, rgb) = hdr::colour(name, bytes)?;
+            let (names, planes) = channels(&rgb, false, None);
+            Ok(Planes { rows, cols, names, planes })
+        }
+        _ => {
+            let png = png::linear(name, bytes)?;
+            let (names, planes) = channels(&png.rgb, png.grey, png.alpha);
+            Ok(Planes { rows: png.rows, cols: png.cols, names, planes })
+        }
+    }
+}
+
+/// Names and planes of a picture.
+fn channels(rgb: &[[f32; 3]], grey: bool, alpha: Option<Vec<f32>>) -> (Vec<String>, Vec<Vec<f32>>) {
+    let colours: &[&str] = if grey { &["Y"] } else { &["R", "G", "B"] };
+    let mut names: Vec<String> = colours.iter().map(|n| (*n).to_owned()).collect();
+    let mut planes: Vec<Vec<f32>> =
+        (0..names.len()).map(|i| rgb.iter().map(|t| t[i]).collect()).collect();
+    if let Some(alpha) = alpha {
+        names.push("A".to_owned());
+        planes.push(alpha);
+    }
+    (names, planes)
+}
+
+fn from_npy(path: &Path, bytes: &[u8]) -> Result<Planes> {
+    let array = Array::parse(path, "", bytes)?;
+    let (count, rows, cols) = match *array.shape.as_slice() {
+        [rows, cols] => (1, rows, cols),
+        [count, rows, cols] => (count, rows, cols),
+        _ => {
+            let found = format!("{} dimensions", array.shape.len());
+            return Err(Error::file(path, "header: shape", found, "two or three"));
+        }
+    };
+    let (rows, cols) = open::size(path, "header: shape", rows as u64, cols as u64)?;
+    let mut values = array.values().map(|v| v as f32);
+    let planes = (0..count).map(|_| values.by_ref().take(rows * cols).collect()).collect();
+    Ok(Planes { rows, cols, names: (0..count).map(|i| i.to_string()).collect(), planes })
+}

@@ -1,0 +1,256 @@
+//! PNG: grey heights, colour maps, and pictures of results.
+
+use super::atomic::Temporary;
+use super::heights::Raster;
+use super::open;
+use ::png::{BitDepth, ColorType as Kind, Encoder, EncodingError};
+use image::codecs::png::PngDecoder;
+use image::{ColorType, ImageDecoder, ImageError, Limits};
+use ridgelight::scene::Tone;
+use ridgelight::{Error, Result};
+use std::{io::Cursor, path::Path};
+
+/// A decoded picture: samples of 8 or 16 bits; palettes and smaller depths are expanded, and the
+/// grey or colour of a `tRNS` chunk has become alpha.
+struct Samples {
+    rows: usize,
+    cols: usize,
+    colour: ColorType,
+    /// Bits a sample in the file.
+    depth: u8,
+    /// 255 or 65 535.
+    white: u16,
+    /// Interleaved channels.
+    values: Vec<u16>,
+}
+
+/// Decodes the first image.
+fn decode(path: &Path, bytes: &[u8]) -> Result<Samples> {
+    let wrong = |place: &str, e: ImageError| {
+        Error::file(path, place, open::reason(e), "a whole and valid PNG")
+    };
+    // What the decoder may take beside the picture: rows of up to SIDE_LIMIT pixels of 8 bytes,
+    // and texts and profiles, which it keeps (a chunk's buffer doubles as it grows, and is copied).
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(4 * bytes.len() as u64 + (4 << 20));
+    let decoder =
+        PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(|e| wrong("header", e))?;
+    let (cols, rows) = decoder.dimensions();
+    let (rows, cols) = open::size(path, "header", rows.into(), cols.into())?;
+    // The decoder tells only what it expands to. IHDR, always first and with its CRC now checked,
+    // has the depth at byte 24 and the colour type at 25.
+    let depth = bytes[24];
+    let channels = [1, 0, 3, 1, 2, 0, 4][usize::from(bytes[25])];
+    let line = (cols as u64 * channels * u64::from(depth)).div_ceil(8);
+    open::plausible(path, "header", line * rows as u64, bytes.len(), open::DEFLATE_RATIO)?;
+
+    let colour = decoder.color_type();
+    let count = rows * cols * usize::from(colour.channel_count());
+    let wide = depth == 16;
+    let values = if wide {
+        let mut values = open::zeros::<u16>(path, count)?;
+        let bytes = bytemuck::cast_slice_mut(&mut values);
+        decoder.read_image(bytes).map_err(|e| wrong("image data", e))?;
+        values
+    } else {
+        let mut values = open::zeros::<u8>(path, count)?;
+        decoder.read_image(&mut values).map_err(|e| wrong("image data", e))?;
+        values.into_iter().map(u16::from).collect()
+    };
+    // The decoder stops with the last row. A file that goes no further was cut.
+    if !bytes.windows(END.len()).rev().any(|w| w == END) {
+        return Err(Error::file(path, "end", "no IEND chunk", "a whole and valid PNG"));
+    }
+    Ok(Samples { rows, cols, colour, depth, white: if wide { 65535 } else { 255 }, values })
+}
+
+/// The chunk that ends every PNG: no bytes, its name, the CRC of that.
+const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+
+/// Grey of 8 or 16 bits as heights, one count one metre; transparent samples are voids.
+pub(super) fn heights(path: &Path, bytes: &[u8]) -> Result<Raster> {
+    let png = decode(path, bytes)?;
+    if png.colour.has_color() {
+        let found = "a palette, or red, green and blue";
+        return Err(Error::file(path, "header", found, "grey: heights have one channel"));
+    }
+    if png.depth < 8 {
+        let found = format!("{} bits a sample", png.depth);
+        return Err(Error::file(path, "header", found, "8 or 16 bits"));
+    }
+    let (values, voids) = if png.colour.has_alpha() {
+        let pixels = png.values.as_chunks::<2>().0;
+        let voids = pixels.iter().map(|[_, alpha]| *alpha == 0).collect();
+        (pixels.iter().map(|[grey, _]| f64::from(*grey)).collect(), Some(voids))
+    } else {
+        (png.values.into_iter().map(f64::from).collect(), None)
+    };
+    Ok(Raster { voids, ..Raster::bare(png.rows, png.cols, values) })
+}
+
+/// A picture in linear light.
+pub(super) struct Linear {
+    pub rows: usize,
+    pub cols: usize,
+    /// Whether red, green and blue are one grey channel in the file.
+    pub grey: bool,
+    pub rgb: Vec<[f32; 3]>,
+    /// Opacity, 0 to 1, not through the transfer curve.
+    pub alpha: Option<Vec<f32>>,
+}
+
+/// Any PNG in linear light: samples are sRGB-encoded, at 8 bits and at 16, whatever a `gAMA` chunk
+/// or profile says.
+pub(super) fn linear(path: &Path, bytes: &[u8]) -> Result<Linear> {
+    let png = decode(path, bytes)?;
+    let curve: Vec<f32> =
+        (0..=png.white).map(|v| decoded(f64::from(v) / f64::from(png.white)) as f32).collect();
+    let light = |v: u16| curve[usize::from(v)];
+    let opacity = |v: u16| f32::from(v) / f32::from(png.white);
+    let (grey, has_alpha) = (!png.colour.has_color(), png.colour.has_alpha());
+    let width = usize::from(png.colour.channel_count());
+    let pixels = png.values.chunks_exact(width);
+    let rgb = pixels
+        .clone()
+        .map(|p| if grey { [light(p[0]); 3] } else { [light(p[0]), light(p[1]), light(p[2])] })
+        .collect();
+    let alpha = has_alpha.then(|| pixels.map(|p| opacity(p[width - 1])).collect());
+    Ok(Linear { rows: png.rows, cols: png.cols, grey, rgb, alpha })
+}
+
+/// sRGB to linear light (IEC 61966-2-1), both in [0..1].
+fn decoded(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Writes an 8-bit RGB picture of linear radiance, with alpha where `transparent` is given.
+///
+/// `transparent` marks pixels, row-major like `rgb`, that become black with alpha 0; their
+/// radiance is not looked at. `metadata` becomes texts of the file: tEXt where it is ASCII, else iTXt
+/// (UTF-8).
+///
+/// # Errors
+/// As [`encode_png`]; a destination that cannot be written to.
+pub fn write_png(
+    path: &Path,
+    rows: usize,
+    cols: usize,
+    rgb: &[[f32; 3]],
+    transparent: Option<&[bool]>,
+    tone: Tone,
+    metadata: &[(String, String)],
+) -> Result<()> {
+    // By way of memory: the encoder loses the error of writing its last chunk.
+    let png = encode_png(rows, cols, rgb, transparent, tone, metadata)?;
+    let mut file = Temporary::create(path)?;
+    file.write(&png)?;
+    file.finish()
+}
+
+/// What [`write_png`] writes, as bytes.
+///
+/// # Errors
+/// Lengths that are not `rows`·`cols`; NaN outside transparent pixels (named by row and column);
+/// an exposure out of range; names of metadata that PNG does not take (empty, over 79 bytes).
+pub fn encode_png(
+    rows: usize,
+    cols: usize,
+    rgb: &[[f32; 3]],
+    transparent: Option<&[bool]>,
+    tone: Tone,
+    metadata: &[(String, String)],
+) -> Result<Vec<u8>> {
+    let count = rows.checked_mul(cols).filter(|n| *n > 0);
+    if count != Some(rgb.len()) || transparent.is_some_and(|t| t.len() != rgb.len()) {
+        let found = format!("{} pixels for {rows} × {cols}", rgb.len());
+        return Err(Error::setting("picture", found, "rows × columns pixels and marks"));
+    }
+    if !(tone.exposure >= 0.0 && tone.exposure.is_finite()) {
+        return Err(Error::setting("exposure", tone.exposure.to_string(), "a number, 0 or more"));
+    }
+    let hidden = |i: usize| transparent.is_some_and(|t| t[i]);
+    if let Some(i) = (0..rgb.len()).find(|&i| !hidden(i) && rgb[i].iter().any(|v| v.is_nan())) {
+        let place = format!("picture at row {}, column {}", i / cols, i % cols);
+        return Err(Error::setting(place, "NaN", "a number, or a transparent pixel"));
+    }
+    let side = |n: usize| {
+        u32::try_from(n).map_err(|_| Error::setting("picture", n.to_string(), "a side below 2³²"))
+    };
+    let (width, height) = (side(cols)?, side(rows)?);
+
+    let mut samples = Vec::with_capacity(rgb.len() * if transparent.is_some() { 4 } else { 3 });
+    for (i, texel) in rgb.iter().enumerate() {
+        let hidden = hidden(i);
+        samples.extend(if hidden { [0; 3] } else { texel.map(|v| tone.code(v)) });
+        if transparent.is_some() {
+            samples.push(if hidden { 0 } else { 255 });
+        }
+    }
+    let kind = if transparent.is_some() { Kind::Rgba } else { Kind::Rgb };
+    let mut png = Vec::new();
+    packed(&mut png, [width, height], kind, &samples, metadata)
+        .map_err(|e| Error::setting("picture", open::complaint(e), "one that PNG can hold"))?;
+    Ok(png)
+}
+
+fn packed(
+    png: &mut Vec<u8>,
+    [width, height]: [u32; 2],
+    kind: Kind,
+    samples: &[u8],
+    metadata: &[(String, String)],
+) -> std::result::Result<(), EncodingError> {
+    let mut encoder = Encoder::new(png, width, height);
+    encoder.set_color(kind);
+    encoder.set_depth(BitDepth::Eight);
+    for (name, text) in metadata {
+        if text.is_ascii() {
+            encoder.add_text_chunk(name.clone(), text.clone())?;
+        } else {
+            encoder.add_itxt_chunk(name.clone(), text.clone())?;
+        }
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(samples)?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_where_codes_change() {
+        for exposure in [1.0, 0.37, 1e-3, 250.0] {
+            let tone = Tone { exposure };
+            let steps = tone.steps();
+            assert_eq!(steps[0], 0.0);
+            for (code, step) in steps.iter().enumerate().skip(1) {
+                assert_eq!(usize::from(tone.code(*step)), code, "{exposure}");
+                assert_eq!(usize::from(tone.code(step.next_down())), code - 1, "{exposure}");
+            }
+        }
+        // No radiance has a code above 0, but at the least exposure infinity has every.
+        assert!(Tone { exposure: 0.0 }.steps()[1..].iter().all(|s| s.is_nan()));
+        assert!(Tone { exposure: 1e-45 }.steps()[1..].iter().all(|s| s.is_infinite()));
+    }
+
+    #[test]
+    fn every_code_survives_its_own_decoding() {
+        for code in 0..=255_u8 {
+            let light = decoded(f64::from(code) / 255.0) as f32;
+            assert_eq!(Tone::default().code(light), code);
+        }
+    }
+
+    #[test]
+    fn tone_is_a_factor_and_a_clip() {
+        let tone = Tone { exposure: 2.0 };
+        assert_eq!(
+            [-1.0, 0.0, 0.5, 9.0, f32::INFINITY].map(|v| tone.code(v)),
+            [0, 0, 255, 255, 255]
+        );
+        // Middle grey: linear 0.214 041 is sRGB 0.5, code 127.5 rounds to 128 or 127.
+        assert!((127..=128).contains(&tone.code(0.107_020_5)));
+    }
+}

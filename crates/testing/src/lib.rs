@@ -1,0 +1,243 @@
+//! Results that a repository keeps, for its tests: where one differs, what was got, what was wanted and the
+//! difference are left to be looked at.
+//!
+//! `RIDGELIGHT_BLESS=1` keeps what is got instead; refused where `CI` is set.
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use ridgelight::golden;
+//! # use ridgelight::gpu::Pixels;
+//! # fn test(pixels: Pixels) -> ridgelight::Result<()> {
+//! // Of `Headless::pixels`, 64 rows of 64 texels.
+//! let lit = golden::planes(&pixels, [64, 64])?;
+//! let off = golden::hold(&lit, Path::new("tests/goldens/lit.exr"), 1e-5, Path::new("target/goldens"))?;
+//! assert!(off <= 1.0, "the worst value, in tolerances");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Results of another driver differ by roundings: a tolerance above them ([`tolerance`](ridgelight_cpu::tolerance)
+//! has those of single passes) is better than a golden for each.
+
+#![deny(clippy::missing_errors_doc)]
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use ridgelight::gpu::Pixels;
+use ridgelight::{Error, Result};
+use ridgelight_io as files;
+use ridgelight_io::{Channels, Layer, Planes};
+
+/// Planes of an image of `rows` × `cols` texels: R, G and B of a colour (its alpha is left out), Y of one
+/// channel, 0, 1, 2 … of layers.
+///
+/// # Errors
+/// Values that are no whole layers of that size.
+pub fn planes(pixels: &Pixels, [rows, cols]: [usize; 2]) -> Result<Planes> {
+    let size = rows * cols * pixels.channels;
+    if size == 0 || !pixels.values.len().is_multiple_of(size) {
+        let found = format!("{} values of {} a texel", pixels.values.len(), pixels.channels);
+        return Err(Error::setting(&pixels.name, found, format!("layers of {rows} × {cols}")));
+    }
+    let layers: Vec<&[f32]> = pixels.values.chunks_exact(size).collect();
+    let plane = |layer: &[f32], channel: usize| {
+        layer.iter().skip(channel).step_by(pixels.channels).copied().collect()
+    };
+    let (names, planes) = match (pixels.channels, layers.as_slice()) {
+        (1, [layer]) => (vec!["Y".to_owned()], vec![plane(layer, 0)]),
+        (4, [layer]) => {
+            (["R", "G", "B"].map(str::to_owned).to_vec(), (0..3).map(|c| plane(layer, c)).collect())
+        }
+        _ => layers.iter().enumerate().map(|(k, l)| (k.to_string(), plane(l, 0))).unzip(),
+    };
+    Ok(Planes { rows, cols, names, planes })
+}
+
+/// Holds a result to the file kept for it, .exr or .npy ([`files::read_planes`]): how far the worst value is off,
+/// over `tolerance`. NaN is equal to NaN alone.
+///
+/// # Errors
+/// A value beyond the tolerance, another size, other names: with the place, and with the names of
+/// `KEPT.got.exr`, `KEPT.want.exr` and, of equal shapes, `KEPT.diff.exr`, written to `folder`, which is made
+/// where it is missing. Files that cannot be read or written.
+pub fn hold(got: &Planes, kept: &Path, tolerance: f64, folder: &Path) -> Result<f64> {
+    let is_set = |name: &str, value: &str| std::env::var_os(name).is_some_and(|v| v == value);
+    if is_set("RIDGELIGHT_BLESS", "1") {
+        if std::env::var_os("CI").is_some() {
+            return Err(Error::setting("RIDGELIGHT_BLESS", "CI set too", "one of them"));
+        }
+        keep(kept, got)?;
+    }
+    let want = in_order(files::read_planes(kept)?, &got.names);
+    let wrong = match worst(got, &want, tolerance) {
+        Ok((ratio, _)) if ratio <= 1.0 => return Ok(ratio),
+        Ok((_, (plane, i))) => {
+            let place =
+                format!("{}: row {}, column {}", got.names[plane], i / got.cols, i % got.cols);
+            let [found, expected] = [got, &want].map(|p| p.planes[plane][i].to_string());
+            (place, found, format!("{expected} within {tolerance:e}"))
+        }
+        Err((found, expected)) => ("the whole".to_owned(), found, expected),
+    };
+    std::fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    let name = kept.file_name().unwrap_or(OsStr::new("golden")).to_string_lossy();
+    let left = |what: &str| -> PathBuf { folder.join(format!("{name}.{what}.exr")) };
+    write_exr(&left("got"), got)?;
+    write_exr(&left("want"), &want)?;
+    let mut all = "got,want";
+    if shape(got) == shape(&want) {
+        let mut diff = got.clone();
+        for (d, w) in diff.planes.iter_mut().flatten().zip(want.planes.iter().flatten()) {
+            *d -= w;
+        }
+        write_exr(&left("diff"), &diff)?;
+        all = "got,want,diff";
+    }
+    let (place, found, expected) = wrong;
+    let see = left(&format!("{{{all}}}"));
+    Err(Error::file(kept, place, found, format!("{expected}; see {}", see.display())))
+}
+
+fn shape(planes: &Planes) -> (usize, usize, &[String]) {
+    (planes.rows, planes.cols, &planes.names)
+}
+
+type Place = (usize, usize);
+
+/// The largest |difference| over `tolerance`, with its plane and place there; else what is wrong with the whole.
+fn worst(
+    got: &Planes,
+    want: &Planes,
+    tolerance: f64,
+) -> std::result::Result<(f64, Place), (String, String)> {
+    if shape(got) != shape(want) {
+        let told = |p: &Planes| format!("{} × {} of {}", p.rows, p.cols, p.names.join(", "));
+        return Err((told(got), told(want)));
+    }
+    let mut worst = (0.0, (0, 0));
+    for (plane, (got, want)) in got.planes.iter().zip(&want.planes).enumerate() {
+        for (i, (got, want)) in got.iter().zip(want).enumerate() {
+            let error = match (got.is_nan(), want.is_nan()) {
+                (true, true) => 0.0,
+                (false, false) if got == want => 0.0,
+                (false, false) => (f64::from(*got) - f64::from(*want)).abs() / tolerance,
+                _ => f64::INFINITY,
+            };
+            if error > worst.0 || error.is_nan() {
+                worst = (if error.is_nan() { f64::INFINITY } else { error }, (plane, i));
+            }
+        }
+    }
+    Ok(worst)
+}
+
+/// Channels of an EXR are stored by name.
+fn in_order(kept: Planes, names: &[String]) -> Planes {
+    let place = |name: &String| kept.names.iter().position(|n| n == name);
+    let order: Option<Vec<usize>> = names.iter().map(place).collect();
+    match order.filter(|order| order.len() == kept.names.len()) {
+        Some(order) => Planes {
+            names: names.to_vec(),
+            planes: order.iter().map(|i| kept.planes[*i].clone()).collect(),
+            ..kept
+        },
+        None => kept,
+    }
+}
+
+fn keep(path: &Path, planes: &Planes) -> Result<()> {
+    if path.extension().is_some_and(|e| e == "npy") {
+        let shape = [planes.planes.len(), planes.rows, planes.cols];
+        return files::write_npy_f32(path, &shape, planes.planes.iter().map(Vec::as_slice));
+    }
+    write_exr(path, planes)
+}
+
+fn write_exr(path: &Path, planes: &Planes) -> Result<()> {
+    let all = planes.names.iter().zip(&planes.planes);
+    let layer = |name: &String, values| Layer {
+        name: name.clone(),
+        channels: Channels::Scalar("", values),
+    };
+    let layers: Vec<Layer> = all.map(|(name, values)| layer(name, values)).collect();
+    files::write_exr(path, planes.rows, planes.cols, &layers, &[])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_by_three() -> Planes {
+        let values = vec![0.0, 1.0, f32::NAN, 3.0, 4.0, 5.0];
+        Planes { rows: 2, cols: 3, names: vec!["Y".to_owned()], planes: vec![values] }
+    }
+
+    #[test]
+    fn what_differs_leaves_three_images() {
+        let folder = tempfile::tempdir().unwrap();
+        let (kept, left) = (folder.path().join("seen.exr"), folder.path().join("left"));
+        let want = two_by_three();
+        keep(&kept, &want).unwrap();
+        assert_eq!(hold(&want, &kept, 1e-6, &left).unwrap(), 0.0);
+        assert!(!left.exists());
+        let mut got = want.clone();
+        got.planes[0][4] += 5e-7;
+        // An ulp of 4 is 4.8e-7.
+        let ratio = hold(&got, &kept, 1e-6, &left).unwrap();
+        assert!(ratio > 0.0 && ratio <= 1.0, "{ratio}");
+        got.planes[0][4] = 4.5;
+        let wrong = hold(&got, &kept, 1e-6, &left).unwrap_err().to_string();
+        for said in [
+            "seen.exr: Y: row 1, column 1",
+            "found 4.5",
+            "expected 4 within 1e-6",
+            "{got,want,diff}",
+        ] {
+            assert!(wrong.contains(said), "{said} in {wrong}");
+        }
+        let read = |what: &str| {
+            files::read_planes(&left.join(format!("seen.exr.{what}.exr"))).unwrap().planes
+        };
+        assert_eq!((read("got")[0][4], read("want")[0][4], read("diff")[0][4]), (4.5, 4.0, 0.5));
+    }
+
+    #[test]
+    fn no_number_another_size_and_other_names_are_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = folder.path().join("seen.npy");
+        let want = Planes { names: vec!["0".to_owned()], ..two_by_three() };
+        keep(&kept, &want).unwrap();
+        let refuses =
+            |got: &Planes| hold(got, &kept, f64::MAX, folder.path()).unwrap_err().to_string();
+        let mut got = want.clone();
+        got.planes[0][0] = f32::NAN;
+        assert!(refuses(&got).contains("row 0, column 0: found NaN"), "{}", refuses(&got));
+        (got.planes[0][0], got.planes[0][2]) = (0.0, 2.0);
+        assert!(refuses(&got).contains("row 0, column 2: found 2"), "{}", refuses(&got));
+        let turned = Planes { rows: 3, cols: 2, ..want.clone() };
+        assert!(
+            refuses(&turned).contains("found 3 × 2 of 0, expected 2 × 3 of 0"),
+            "{}",
+            refuses(&turned)
+        );
+        let renamed = Planes { names: vec!["Y".to_owned()], ..want };
+        assert!(refuses(&renamed).contains("2 × 3 of Y"), "{}", refuses(&renamed));
+    }
+
+    #[test]
+    fn planes_are_colours_numbers_or_layers() {
+        let of = |channels: usize, values: Vec<f32>, size: [usize; 2]| {
+            let pixels = Pixels { name: "lit".into(), channels, values };
+            planes(&pixels, size).map(|p| (p.names.join(""), p.planes))
+        };
+        assert_eq!(of(1, vec![1.0, 2.0], [1, 2]).unwrap(), ("Y".into(), vec![vec![1.0, 2.0]]));
+        let colour = of(4, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], [2, 1]).unwrap();
+        assert_eq!(colour, ("RGB".into(), vec![vec![1.0, 5.0], vec![2.0, 6.0], vec![3.0, 7.0]]));
+        assert_eq!(
+            of(1, vec![1.0, 2.0], [1, 1]).unwrap(),
+            ("01".into(), vec![vec![1.0], vec![2.0]])
+        );
+        assert!(of(1, vec![1.0; 3], [1, 2]).is_err());
+    }
+}

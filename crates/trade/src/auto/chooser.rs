@@ -1,0 +1,338 @@
+//! Which settings to draw next, and which to take.
+
+use std::cmp::Ordering;
+
+use super::candidates::{candidates, is_exact, is_finer};
+use super::model::{Costs, Model};
+use super::probes::Measured;
+use super::statistics::Statistics;
+use ridgelight::scene::{BounceEngine, Bounces, Quality, Scene};
+
+/// Frames that are tried at most, and exact ones beyond them.
+const TRIALS: usize = 16;
+const RESORTS: usize = 2;
+/// Where estimates turned out too low twice: how far within the error others must be.
+const MARGIN: f64 = 1.5;
+/// One time of a frame may be so many times another of the same settings.
+const WAVER: f64 = 1.25;
+/// What a further frame must be expected to save of the cost or to take off the error, in ln.
+const WORTH: f64 = 0.05;
+/// How much more accurate than what is asked for the control should be, and at least is, unless so many
+/// frames were not; and how much dearer it may be than what is expected to hold.
+const CONTROL: f64 = 3.0;
+const COARSEST_CONTROL: f64 = 2.0;
+const CONTROLS: usize = 4;
+const DEAREST_CONTROL: f64 = 6.0;
+/// Where nothing is expected to reach the goal: how much less accurate than the best that is drawn next may
+/// be for being cheaper.
+const NEARLY: f64 = 2.0;
+/// Frames that are expected to take longer are not drawn: half a minute.
+const LONGEST_NS: f64 = 30e9;
+
+/// What settings are chosen for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The cheapest of at most this relative RMSE, above 0.
+    MaxError(f64),
+    /// The most accurate of at most so many nanoseconds a frame, above 0.
+    MaxCost(f64),
+}
+
+impl Goal {
+    /// Whether settings that were drawn reach it: an error by its bound, not by its estimate.
+    pub fn is_reached(&self, trial: &Trial) -> bool {
+        match self {
+            Goal::MaxError(most) => trial.measured.at_most <= *most,
+            Goal::MaxCost(most) => trial.ns <= *most && trial.measured != Measured::UNKNOWN,
+        }
+    }
+
+    /// Whether they are known not to: an error by as much less than its estimate as its bound is more, a
+    /// time that is more by what times waver.
+    pub fn is_missed(&self, trial: &Trial) -> bool {
+        match self {
+            Goal::MaxError(most) => 2.0 * trial.measured.error - trial.measured.at_most > *most,
+            Goal::MaxCost(most) => trial.ns > WAVER * *most,
+        }
+    }
+}
+
+/// Settings that were drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// The settings.
+    pub quality: Quality,
+    /// Their error on the probes.
+    pub measured: Measured,
+    /// Nanoseconds of a frame.
+    pub ns: f64,
+}
+
+/// Walks settings towards a goal: [`next`](Self::next) says what to draw, [`drawn`](Self::drawn) and
+/// [`judged`](Self::judged) take what came of it.
+#[derive(Clone, Debug)]
+pub struct Chooser<'a> {
+    scene: &'a Scene,
+    goal: Goal,
+    model: Model,
+    first_guess: Model,
+    costs: Costs,
+    candidates: Vec<Quality>,
+    trials: Vec<Trial>,
+}
+
+impl<'a> Chooser<'a> {
+    /// For a scene with so many bounces and what [`Statistics`] say of it.
+    pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal, bounces: u32) -> Self {
+        let model = Model::of(scene, statistics, bounces);
+        let samples = scene.field.rows() * scene.field.cols();
+        Self {
+            scene,
+            goal,
+            first_guess: model.clone(),
+            model,
+            costs: Costs::guessed(samples),
+            candidates: candidates(scene, bounces),
+            trials: Vec::new(),
+        }
+    }
+
+    /// What to draw next; none where nothing is expected to be better than [`best`](Self::best).
+    pub fn next(&self) -> Option<Quality> {
+        if self.trials.len() >= TRIALS {
+            return None;
+        }
+        match self.goal {
+            Goal::MaxError(most) => self.next_within(most),
+            Goal::MaxCost(most) => {
+                let affordable = self.open().filter(|q| self.cost(q) <= most).copied();
+                let next = affordable.min_by(|a, b| self.error(a).total_cmp(&self.error(b)));
+                match self.best() {
+                    Some(best) => {
+                        next.filter(|q| self.error(q) < (1.0 - WORTH) * best.measured.error)
+                    }
+                    None => next.or_else(|| {
+                        self.open().min_by(|a, b| self.cost(a).total_cmp(&self.cost(b))).copied()
+                    }),
+                }
+            }
+        }
+    }
+
+    /// First a control for [`Probes::error`](super::Probes::error), finer than the goal; then the cheapest
+    /// that is expected to hold; where nothing is, the most accurate.
+    fn next_within(&self, most: f64) -> Option<Quality> {
+        let is_controlled = self.trials.iter().any(|t| t.measured.error <= most / COARSEST_CONTROL);
+        if !is_controlled && self.trials.len() < CONTROLS {
+            return self.control(most);
+        }
+        let most = most / self.doubt();
+        let Some(best) = self.best() else {
+            return self.cheapest_within(most).or_else(|| self.most_accurate());
+        };
+        // What is saved, in ln, times the chance that it holds.
+        let gain = |q: &Quality| {
+            let expected = self.model.expected(q);
+            let deviations = (most / expected.error).ln() / expected.factor.ln().max(0.05);
+            (best.ns / self.cost(q)).ln().max(0.0) * normal(deviations)
+        };
+        let gains = self.open().map(|q| (gain(q), q));
+        let (gain, next) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (gain > WORTH).then_some(*next)
+    }
+
+    /// A frame to hold others against: finer than the goal, where that is not too dear.
+    fn control(&self, most: f64) -> Option<Quality> {
+        let Some(holds) = self.cheapest_within(most) else { return self.most_accurate() };
+        let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
+        self.cheapest_within(most / CONTROL).filter(affordable).or_else(|| {
+            let all = self.open().filter(|q| affordable(q));
+            all.min_by(|a, b| self.error(a).total_cmp(&self.error(b))).copied()
+        })
+    }
+
+    /// Takes nanoseconds of a frame by label of each pass; its error follows by [`judged`](Self::judged).
+    pub fn drawn(&mut self, quality: &Quality, passes: &[(String, f64)]) {
+        let ns = passes.iter().map(|p| p.1).sum();
+        self.costs.learn(self.scene, quality, passes);
+        self.trials.push(Trial { quality: *quality, measured: Measured::UNKNOWN, ns });
+    }
+
+    /// Takes errors of all that was drawn, in order: none where one stays as it was.
+    pub fn judged(&mut self, measured: &[Option<Measured>]) {
+        self.model = self.first_guess.clone();
+        let mut trials = std::mem::take(&mut self.trials);
+        for (trial, measured) in trials.iter_mut().zip(measured) {
+            trial.measured = measured.unwrap_or(trial.measured);
+            if trial.measured != Measured::UNKNOWN {
+                self.learn(trial);
+            }
+        }
+        self.trials = trials;
+    }
+
+    /// Takes error and nanoseconds of what was drawn once more.
+    pub fn confirmed(&mut self, quality: &Quality, measured: Measured, ns: f64) -> Option<&Trial> {
+        let trial = self.trials.iter_mut().find(|t| t.quality == *quality)?;
+        (trial.measured, trial.ns) = (measured, ns);
+        Some(trial)
+    }
+
+    /// What to draw where nothing holds, or all that was chosen turned out not to: of exact horizons, which
+    /// have no errors that few samples see, what is well expected to hold; with bounces of every sample and what it
+    /// sees itself. None where one holds.
+    pub fn last_resort(&self, has_failed: bool) -> Option<Quality> {
+        let Goal::MaxError(most) = self.goal else { return None };
+        let is_held = |t: &Trial| self.goal.is_reached(t) && (!has_failed || is_surest(&t.quality));
+        if self.trials.len() >= TRIALS + RESORTS || self.trials.iter().any(is_held) {
+            return None;
+        }
+        let exact = || self.open().filter(|q| is_surest(q));
+        let least = exact().map(|q| self.error(q)).min_by(f64::total_cmp)?;
+        let enough = (most / CONTROL).max(least);
+        exact()
+            .filter(|q| self.error(q) <= enough)
+            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
+            .copied()
+    }
+
+    /// Of what was drawn the cheapest that is well within an error, else that of the least.
+    pub fn surest(&self) -> Option<&Trial> {
+        self.surest_of(|_| true)
+    }
+
+    /// The same of exact horizons alone, where any reach the goal.
+    pub fn exact(&self) -> Option<&Trial> {
+        self.surest_of(|t| is_surest(&t.quality)).or_else(|| self.surest())
+    }
+
+    fn surest_of(&self, is_asked: impl Fn(&Trial) -> bool) -> Option<&Trial> {
+        let Goal::MaxError(most) = self.goal else { return self.best() };
+        let all = || self.reached().filter(|t| is_asked(t));
+        let well = all().filter(|t| MARGIN * t.measured.at_most <= most);
+        well.min_by(|a, b| a.ns.total_cmp(&b.ns)).or_else(|| all().min_by(by_error))
+    }
+
+    fn reached(&self) -> impl Iterator<Item = &Trial> {
+        self.trials.iter().filter(|t| self.goal.is_reached(t))
+    }
+
+    fn learn(&mut self, trial: &Trial) {
+        let Measured { error, at_most } = trial.measured;
+        // At most is 2.7 standard deviations or more above, in ln about so of it.
+        let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
+        self.model.learn(&trial.quality, error, spread);
+    }
+
+    /// Whether something that was drawn may be better than [`best`](Self::best), by its estimate: more
+    /// probes would tell.
+    pub fn is_undecided(&self) -> bool {
+        let Goal::MaxError(most) = self.goal else { return false };
+        let best_ns = self.best().map_or(f64::INFINITY, |b| b.ns);
+        let may = |t: &Trial| t.measured.error <= most && most < t.measured.at_most;
+        self.trials.iter().any(|t| may(t) && t.ns < best_ns)
+    }
+
+    /// Whether a trial's picture may still be asked for: it is the best so far, or may become it.
+    pub fn may_be_best(&self, trial: &Trial) -> bool {
+        let Some(best) = self.best() else { return !self.goal.is_missed(trial) };
+        let is_better = match self.goal {
+            Goal::MaxError(_) => trial.ns <= best.ns,
+            Goal::MaxCost(_) => trial.measured.at_most <= best.measured.at_most,
+        };
+        is_better && !self.goal.is_missed(trial)
+    }
+
+    /// Leaves out settings that cannot be drawn, and all that are no cheaper in any.
+    pub fn refuse(&mut self, quality: &Quality) {
+        self.candidates.retain(|q| !is_finer(q, quality));
+    }
+
+    /// Of what was drawn, that which reaches the goal best; none where nothing reaches it.
+    pub fn best(&self) -> Option<&Trial> {
+        match self.goal {
+            Goal::MaxError(_) => self.reached().min_by(|a, b| a.ns.total_cmp(&b.ns)),
+            Goal::MaxCost(_) => self.reached().min_by(by_error),
+        }
+    }
+
+    /// What a refusal lacks: that which ended the search.
+    pub fn lacks(&self) -> String {
+        let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
+        if self.trials.len() >= TRIALS {
+            format!("more than the {} frames that are drawn at most", self.trials.len())
+        } else if self.candidates.iter().any(|q| !is_drawn(q) && self.cost(q) > LONGEST_NS) {
+            format!("frames that are expected to take more than {} s each", LONGEST_NS / 1e9)
+        } else {
+            "finer settings than are chosen among".into()
+        }
+    }
+
+    /// All that was drawn, in order.
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
+    }
+
+    /// The error that was expected of settings before anything was drawn.
+    pub fn expected(&self, quality: &Quality) -> super::Expected {
+        self.first_guess.expected(quality)
+    }
+
+    /// Nanoseconds expected of a frame.
+    pub fn cost(&self, quality: &Quality) -> f64 {
+        self.costs.expected_ns(self.scene, quality)
+    }
+
+    fn error(&self, quality: &Quality) -> f64 {
+        self.model.expected(quality).error
+    }
+
+    /// How far bounds lie above estimates, by the last frame that was not its own control.
+    fn doubt(&self) -> f64 {
+        let last = self.trials.last().filter(|_| self.trials.len() > 1);
+        last.map_or(1.05, |t| t.measured.at_most / t.measured.error.max(1e-12)).clamp(1.0, 1.5)
+    }
+
+    /// Not drawn, and not known to miss the goal: settings no finer in anything than some that were
+    /// estimated beyond the error, or no coarser than some beyond the time.
+    fn open(&self) -> impl Iterator<Item = &Quality> {
+        self.candidates.iter().filter(|q| {
+            let is_open = |t: &Trial| {
+                let misses_too = match self.goal {
+                    Goal::MaxError(_) => is_finer(&t.quality, q),
+                    Goal::MaxCost(_) => is_finer(q, &t.quality),
+                };
+                t.quality != **q && !(self.goal.is_missed(t) && misses_too)
+            };
+            self.cost(q) <= LONGEST_NS && self.trials.iter().all(is_open)
+        })
+    }
+
+    fn cheapest_within(&self, most: f64) -> Option<Quality> {
+        self.open()
+            .filter(|q| self.error(q) <= most)
+            .min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
+            .copied()
+    }
+
+    /// Of what is nearly as accurate as anything the cheapest.
+    fn most_accurate(&self) -> Option<Quality> {
+        let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
+        self.cheapest_within(NEARLY * least)
+    }
+}
+
+/// Exact horizons, and bounces of every sample without means of the ground in place of what is seen.
+fn is_surest(quality: &Quality) -> bool {
+    let Bounces { count, engine, .. } = quality.bounces;
+    is_exact(quality) && (count == 0 || quality.subsample == 1 && engine != BounceEngine::Pyramid)
+}
+
+/// The normal distribution, to 0.01, by a logistic one (Bowling et al. 2009).
+fn normal(deviations: f64) -> f64 {
+    1.0 / (1.0 + (-1.702 * deviations).exp())
+}
+
+fn by_error(a: &&Trial, b: &&Trial) -> Ordering {
+    a.measured.at_most.total_cmp(&b.measured.at_most)
+}

@@ -1,0 +1,366 @@
+use ridgelight::basis::random::{STEP, mixed, unit};
+use ridgelight::scene::{Border, Scene};
+use ridgelight::{Error, Result};
+use ridgelight_cpu::lit::Lit;
+use ridgelight_cpu::oracle::PERIOD_CAP;
+
+/// Probes: as many as [`CELLS`] allow, within these.
+const FEWEST: usize = 64;
+const MOST: usize = 1000;
+/// Cells that the oracle's rays may cross: some seconds of one core.
+const CELLS: usize = 1 << 29;
+/// Probes that tell how far the oracle itself is off.
+const SELVES: usize = 64;
+/// Samples about a difference of pictures in which others' errors are expected, too: a shadow of 40 cells
+/// moves its edge by so much for the 3° of 64 azimuths.
+const REACH: usize = 2;
+
+/// Samples all over a field, and their light by the f64 oracle.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    is_whole: bool,
+    places: Vec<usize>,
+    /// 1 / (count · chance of the place): 1 where all are as likely.
+    factors: Vec<f64>,
+    light: Vec<[f64; 3]>,
+    /// Variance of each light's paths, mean of the channels; 0 of direct light.
+    noise: Vec<f64>,
+    /// Root mean square by which the oracle's light is off that of half its rays, and of light that no path may have
+    /// met.
+    off: f64,
+}
+
+/// Bounced light of a sample by light paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traced {
+    /// Exit radiance, linear RGB, of what has been reflected at least once before.
+    pub mean: [f64; 3],
+    /// Of the mean, by the spread of independent batches of paths.
+    pub standard_error: [f64; 3],
+}
+
+/// A relative RMSE as probes tell it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// The estimate: RMSE over all samples and channels, over the mean of the truth.
+    pub error: f64,
+    /// It is no more than this: see [`Probes::error`].
+    pub at_most: f64,
+}
+
+impl Measured {
+    /// Of what was not yet judged, or holds values beyond f32.
+    pub(super) const UNKNOWN: Self = Self { error: f64::INFINITY, at_most: f64::INFINITY };
+}
+
+/// A mean square with its bound, and the mean of the truth.
+#[derive(Clone, Copy)]
+struct Square {
+    estimate: f64,
+    at_most: f64,
+    mean: f64,
+}
+
+impl Probes {
+    /// One-sided, by the normal approximation of a mean of 64 or more, corrected for its skewness (Chen
+    /// 1995).
+    pub const CONFIDENCE: f64 = 0.95;
+
+    /// Deviations of the normal distribution that 5 % lie beyond: of a bound that is looked at once.
+    pub const ONE_LOOK: f64 = 1.645;
+
+    /// That 5 %/4 lie beyond: four bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
+    /// (Bonferroni).
+    pub const FOUR_LOOKS: f64 = 2.241;
+
+    /// That 5 %/8 lie beyond: with bounces, each of four looks may miss by its probes or by light that no path has met
+    /// ([`CHANCE_OF_UNMET`](Self::CHANCE_OF_UNMET)), and eight bounds hold together.
+    pub const EACH_OF_FOUR_LOOKS: f64 = 2.498;
+
+    /// Of more light being left unmet than is said, in one of four looks: the other 5 %/8.
+    pub const CHANCE_OF_UNMET: f64 = (1.0 - Self::CONFIDENCE) / 8.0;
+
+    /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
+    /// all cores.
+    ///
+    /// `unsure`, of each sample how far pictures of it lie apart ([`apart`]), draws half of the probes to
+    /// where errors are: shadows' edges are few samples with nearly all of the error. Empty: all alike.
+    ///
+    /// # Errors
+    /// A field of voids alone.
+    pub fn of(scene: &Scene, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
+        let field = &scene.field;
+        let known: Vec<usize> = (0..field.rows() * field.cols())
+            .filter(|i| field.voids().is_none_or(|v| !v[*i]))
+            .collect();
+        if known.is_empty() {
+            return Err(Error::setting("field", "voids alone", "samples to light"));
+        }
+        let weights: Vec<f64> =
+            known.iter().map(|i| unsure.get(*i).copied().unwrap_or(0.0)).collect();
+        let (picks, factors) = picks(&weights, wanted, seed);
+        let places: Vec<usize> = picks.into_iter().map(|k| known[k]).collect();
+        let lit = Lit::of(scene);
+        let light = lights(&lit, field.cols(), &places);
+        let stride = places.len().div_ceil(SELVES);
+        let some: Vec<usize> = places.iter().copied().step_by(stride).collect();
+        let halves = lights(&lit.halved(), field.cols(), &some);
+        let squares = halves.iter().enumerate().map(|(i, half)| {
+            let whole = light[i * stride];
+            let square: f64 = half.iter().zip(whole).map(|(h, w)| (h - w).powi(2) / 3.0).sum();
+            factors[i * stride] * square
+        });
+        let off = (squares.sum::<f64>() / some.len() as f64).sqrt();
+        let noise = vec![0.0; places.len()];
+        Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, off })
+    }
+
+    /// Where they are: samples by their place, row-major; some may be there twice.
+    pub fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// Adds what paths know of bounced light to that of the oracle, `unmet` by which light that no path has met may
+    /// be off in each channel, root mean square.
+    ///
+    /// # Panics
+    /// Of another number of samples.
+    pub fn add_bounced(&mut self, traced: &[Traced], unmet: [f64; 3]) {
+        assert_eq!(traced.len(), self.len(), "one a probe");
+        for ((light, noise), more) in self.light.iter_mut().zip(&mut self.noise).zip(traced) {
+            light.iter_mut().zip(more.mean).for_each(|(l, m)| *l += m);
+            *noise += more.standard_error.iter().map(|e| e * e).sum::<f64>() / 3.0;
+        }
+        let unmet = unmet.iter().map(|u| u * u).sum::<f64>() / 3.0;
+        self.off = (self.off.powi(2) + unmet).sqrt();
+    }
+
+    /// Relative RMSE that the chance of paths alone may add to the bound, so many `deviations` above, of a picture that
+    /// is off by a relative `error` everywhere: the bound is the root of the sum of both squares. Of `count` probes
+    /// like these whose paths leave a `share` of these' variance.
+    pub fn chance(&self, error: f64, share: f64, count: usize, deviations: f64) -> f64 {
+        let square = (error * self.mean()).powi(2);
+        let each = self.noise.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(n, f)| f.powi(2) * wavering(square, share * n)).sum();
+        self.relative(deviations * (sum / self.len() as f64 / count as f64).sqrt())
+    }
+
+    /// Mean of the light.
+    fn mean(&self) -> f64 {
+        let each = self.light.iter().zip(&self.factors);
+        let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
+        (sum / self.len() as f64).abs()
+    }
+
+    /// The root of a mean square over the mean of the light.
+    fn relative(&self, square: f64) -> f64 {
+        if square == 0.0 { 0.0 } else { square.sqrt() / self.mean() }
+    }
+
+    /// Takes others in, of another seed and by the same `unsure`; nothing where all samples are known.
+    pub fn extend(&mut self, others: &Self) {
+        if self.is_whole {
+            return;
+        }
+        if others.is_whole {
+            *self = others.clone();
+            return;
+        }
+        let [own, more] = [self.len(), others.len()].map(|n| n as f64);
+        self.off = ((own * self.off.powi(2) + more * others.off.powi(2)) / (own + more)).sqrt();
+        self.places.extend(&others.places);
+        self.factors.extend(&others.factors);
+        self.light.extend(&others.light);
+        self.noise.extend(&others.noise);
+    }
+
+    /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
+    pub fn affordable(scene: &Scene) -> usize {
+        let side = scene.field.rows().max(scene.field.cols());
+        // Rays over a field that repeats may go on through that many periods.
+        let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
+        (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(FEWEST, MOST)
+    }
+
+    /// By how much the oracle's light may be off itself, over the mean of it.
+    pub fn own_error(&self) -> f64 {
+        self.relative(self.off.powi(2))
+    }
+
+    /// By how much more it may be off than that of the `same` probes before [`add_bounced`](Self::add_bounced): by light
+    /// that no path has met, over the mean of all light.
+    pub(super) fn off_since(&self, same: &Self) -> f64 {
+        // Below 0 by rounding alone: each is added to the square.
+        self.relative((self.off.powi(2) - same.off.powi(2)).max(0.0))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether they are all samples without void.
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// Never: a field of voids alone has none to give.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids; its bound
+    /// lies so many `deviations` above, and by how far the oracle is off by itself: as far as by half of
+    /// its rays, as errors fall with their number or faster.
+    ///
+    /// A `control` is a better picture of the same scene, of which all samples are known: with T, C and
+    /// L for picture, control and truth, mean (T-L)² = mean of (T-C)² over all samples + mean of
+    /// (T-L)² - (T-C)² over the probes (the difference estimator, Cochran 1977 §7.9 with slope 1), each by
+    /// its chance (Hansen & Hurwitz 1943). The nearer the control is to the truth, the less is left to
+    /// chance. Without one the picture is its own: so too where the probes find the control worse,
+    /// or where the sum, a difference, is no square.
+    ///
+    /// Where L wavers, as bounced light by paths does, its variance is in (T-L)² and is taken off: the mean is right,
+    /// its own spread over the probes is in the bound, and an estimate that comes out below 0 is told as 0.
+    pub fn error(
+        &self,
+        picture: &[Vec<f32>],
+        control: Option<&[Vec<f32>]>,
+        deviations: f64,
+    ) -> Measured {
+        let own = self.square(picture, picture, deviations);
+        let better = control.map(|c| (c, self.square(c, c, deviations)));
+        let square = match better {
+            Some((c, of_control)) if of_control.estimate <= own.estimate => {
+                Some(self.square(picture, c, deviations))
+                    .filter(|s| s.estimate > 0.0)
+                    .unwrap_or(own)
+            }
+            _ => own,
+        };
+        let relative = |s: f64| if s == 0.0 { 0.0 } else { s.sqrt() / square.mean };
+        let off = relative(self.off.powi(2));
+        let [error, at_most] = [square.estimate, square.at_most].map(|s| relative(s.max(0.0)));
+        let measured = Measured { error, at_most: at_most + off };
+        // Of a picture with values beyond f32 nothing is known.
+        if measured.at_most.is_finite() { measured } else { Measured::UNKNOWN }
+    }
+
+    fn square(&self, picture: &[Vec<f32>], control: &[Vec<f32>], deviations: f64) -> Square {
+        let at =
+            |planes: &[Vec<f32>], c: usize, i: usize| f64::from(planes[c.min(planes.len() - 1)][i]);
+        let (mut squares, mut sum, mut values) = (0.0, 0.0, 0.0_f64);
+        for c in 0..3 {
+            for i in 0..picture[0].len() {
+                let (t, k) = (at(picture, c, i), at(control, c, i));
+                if !k.is_nan() {
+                    squares += (t - k).powi(2);
+                    sum += k;
+                    values += 1.0;
+                }
+            }
+        }
+        let count = self.places.len() as f64;
+        let (mut rest, mut shift, mut wavering) = (Vec::new(), 0.0, 0.0);
+        let lights = self.light.iter().zip(&self.noise);
+        for ((i, factor), (light, noise)) in self.places.iter().zip(&self.factors).zip(lights) {
+            let (mut square, mut of_control) = (-noise, 0.0);
+            for (c, l) in light.iter().enumerate() {
+                let (t, k) = (at(picture, c, *i), at(control, c, *i));
+                square += (t - l).powi(2) / 3.0;
+                of_control += (t - k).powi(2) / 3.0;
+                shift += factor * (l - k) / (3.0 * count);
+            }
+            rest.push(factor * (square - of_control));
+            wavering += factor.powi(2) * self::wavering(square.max(0.0), *noise);
+        }
+        let mean_rest = rest.iter().sum::<f64>() / count;
+        let variance =
+            rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+        // Of a field that is probed whole nothing but the paths is left to chance.
+        let variance = if self.is_whole { wavering / count } else { variance };
+        let deviation = (variance / count).sqrt();
+        let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
+        let is_spread = variance > 0.0 && !self.is_whole;
+        let skew = if is_spread { cubes / variance.powf(1.5) } else { 0.0 };
+        let estimate = squares / values.max(1.0) + mean_rest;
+        let mean = (sum / values.max(1.0) + shift).abs();
+        let quantile = quantile(deviations, skew, count);
+        Square { estimate, at_most: estimate + quantile * deviation, mean }
+    }
+}
+
+/// Variance of (d + ε)² - s², of d² and the variance of ε, of channels that waver together: 4 d² ε² + 2 ε⁴, and 2 ε⁴ of
+/// s², its estimate, which is as much as two batches leave of it.
+fn wavering(square: f64, noise: f64) -> f64 {
+    4.0 * (square * noise + noise.powi(2))
+}
+
+/// Deviations from a mean of so many values to its bound: z, more where few values are large (Chen 1995,
+/// eq. for upper-tailed tests of positively skewed means).
+fn quantile(z: f64, skew: f64, count: f64) -> f64 {
+    let a = skew.max(0.0) / (6.0 * count.sqrt());
+    z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
+}
+
+/// Light of samples, on all cores.
+fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        let at = |i: &usize| lit.at(i / cols, i % cols);
+        let parts = places.chunks(places.len().div_ceil(threads).max(1));
+        let all: Vec<_> = parts
+            .map(|part| scope.spawn(move || part.iter().map(at).collect::<Vec<_>>()))
+            .collect();
+        let joined = all.into_iter().map(std::thread::ScopedJoinHandle::join);
+        joined.flat_map(|t| t.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
+}
+
+/// How far two pictures of a scene lie apart at each sample, the farthest within 2 samples.
+pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
+    let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
+    let count = a[0].len();
+    let off: Vec<f64> = (0..count)
+        .map(|i| (0..3).map(|c| f64::from((last(a, c, i) - last(b, c, i)).abs())).sum::<f64>())
+        // Voids are NaN.
+        .map(|d| if d.is_nan() { 0.0 } else { d })
+        .collect();
+    let farthest = |values: &[f64], i: usize, at: usize, length: usize, stride: usize| {
+        let (from, to) = (at.saturating_sub(REACH), (at + REACH).min(length - 1));
+        (from..=to).map(|j| values[i - at * stride + j * stride]).fold(0.0, f64::max)
+    };
+    let along: Vec<f64> = (0..count).map(|i| farthest(&off, i, i % cols, cols, 1)).collect();
+    (0..count).map(|i| farthest(&along, i, i / cols, count / cols, cols)).collect()
+}
+
+/// `wanted` of the weights' places, half by weight and half by number alone, one in each of as many equal
+/// parts of the chances in reading order, within a part by chance; and 1 / (number · chance) of each.
+/// All once where all are wanted.
+fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
+    let count = weights.len();
+    if wanted >= count {
+        return ((0..count).collect(), vec![1.0; count]);
+    }
+    let chance = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
+    let sum: f64 = weights.iter().sum();
+    // In units of the mean chance.
+    let of = |i: usize| {
+        if sum > 0.0 { 0.5 + 0.5 * weights[i] / sum * count as f64 } else { 1.0 }
+    };
+    let (mut all, mut factors) = (Vec::with_capacity(wanted), Vec::with_capacity(wanted));
+    let (mut i, mut until) = (0, of(0));
+    for k in 0..wanted {
+        let place = (k as f64 + chance(k as u64)) / wanted as f64 * count as f64;
+        while until < place && i + 1 < count {
+            i += 1;
+            until += of(i);
+        }
+        all.push(i);
+        factors.push(1.0 / of(i));
+    }
+    (all, factors)
+}
+
+#[cfg(test)]
+mod tests;

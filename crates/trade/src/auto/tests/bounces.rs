@@ -1,0 +1,135 @@
+//! Choices of bounces, whose light paths are made up of the quadrature's.
+
+use super::*;
+use ridgelight_cpu::bounce::{self, Fineness};
+use ridgelight::scene::{Albedo, BounceEngine, Bounces};
+
+/// Two bounces of an albedo of 0.8, by the f64 quadrature, which the paths that are told waver about by 5 % of it. Pictures
+/// are the truth but for what settings of bounces leave: of bounces that are not drawn all, of what azimuths they have
+/// 32nds / azimuths · 10 % of the second bounce's light. What is chosen holds by the truth without chance, and is
+/// cheaper than the defaults; a goal below what paths tell is refused; so is one that drawing all bounces does not reach.
+#[test]
+fn choices_of_bounces_hold_and_walk_their_settings() {
+    let mut scene = scene();
+    scene.surface.albedo = Albedo::Constant([0.8; 3]);
+    let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
+    let all = bounce::light(&scene, 2, fineness).unwrap();
+    let lit = Lit::of(&scene);
+    let direct: Vec<f64> = (0..SIDE * SIDE).map(|i| lit.at(i / SIDE, i % SIDE)[0]).collect();
+    let thrown = |i: usize, count: usize| all[count][i][0] - all[0][i][0];
+    let picture = |quality: &Quality| -> Vec<f32> {
+        let drawn = quality.bounces.worth_drawing(f64::from(0.8_f32)) as usize;
+        let off = 3.2 / f64::from(quality.bounces.azimuths) * f64::from(u8::from(drawn > 0));
+        (0..SIDE * SIDE)
+            .map(|i| (direct[i] + thrown(i, drawn) + off * thrown(i, 1)) as f32)
+            .collect()
+    };
+    let true_error = |quality: &Quality| {
+        let truth = |i: usize| direct[i] + thrown(i, 2);
+        let squares = picture(quality)
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (f64::from(*p) - truth(i)).powi(2))
+            .sum::<f64>();
+        (squares * (SIDE * SIDE) as f64).sqrt() / (0..SIDE * SIDE).map(truth).sum::<f64>()
+    };
+    let cost = |quality: &Quality| {
+        let Bounces { azimuths, .. } = quality.bounces;
+        let drawn = quality.bounces.worth_drawing(f64::from(0.8_f32));
+        1e6 * f64::from(quality.azimuths) + 1e6 * f64::from(drawn * azimuths)
+    };
+    let found = |most: f64, waver: f64| {
+        let mut told = Vec::new();
+        let mut trace = |samples: &[usize], batches: u32, seed: u32| {
+            told.push(batches);
+            let error = waver / f64::from(batches).sqrt();
+            let of = |(k, i): (usize, &usize)| {
+                let turn = (f64::from(seed % 1009) + 1.0) * (k as f64 + 1.0) * 2.399_963;
+                // A sine of evenly spread turns has the variance ½.
+                let mean = thrown(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
+                Traced { mean: [mean; 3], standard_error: [thrown(*i, 2) * error; 3] }
+            };
+            Ok(samples.iter().enumerate().map(of).collect())
+        };
+        let bounced = Some(Bounced { count: 2, trace: &mut trace });
+        let found = choose(&scene, Goal::MaxError(most), WHOLE, bounced, |quality| {
+            let mut ns = vec![("sky_shade".to_owned(), 1e6 * f64::from(quality.azimuths))];
+            ns.push(("bounce_walk bounce1".to_owned(), cost(quality) - ns[0].1));
+            Ok(Drawn { planes: vec![picture(quality)], passes: ns })
+        });
+        (found, told)
+    };
+    for most in [0.05, 0.02] {
+        let (chosen, told) = found(most, 0.05);
+        let chosen = chosen.unwrap();
+        let Trial { quality, measured, .. } = chosen.trial;
+        assert!(measured.at_most <= most, "{most}: {measured:?}");
+        assert!(true_error(&quality) <= most, "{most}: {} of {quality:?}", true_error(&quality));
+        assert!(
+            cost(&quality)
+                < cost(&Quality {
+                    bounces: Bounces { count: 2, ..Bounces::NONE },
+                    ..Quality::default()
+                })
+        );
+        // As many as the probes that judged what is chosen were traced with, the last.
+        assert_eq!(chosen.paths, told[told.len() - 1] * ridgelight::plan::REFERENCE_BATCH);
+        assert!(told.iter().all(|batches| (8..=256).contains(batches)), "{told:?}");
+        let azimuths: Vec<u32> = chosen.trials.iter().map(|t| t.quality.bounces.azimuths).collect();
+        assert!(azimuths.iter().any(|a| *a != azimuths[0]), "{azimuths:?}");
+        let text = flags(&quality, &scene);
+        assert!(text.contains("--bounces 2 --bounce-engine"), "{text}");
+    }
+    // Ten times the light that is thrown: of 256 batches 60 % are left of each sample.
+    let refused = found(0.001, 10.0).0.unwrap_err().to_string();
+    assert!(
+        refused.contains("a goal of 0.00100: needs bounced light that is known so well"),
+        "{refused}"
+    );
+    assert!(refused.contains("16384 light paths from each of 144 samples"), "{refused}");
+    // 128 azimuths leave 2.5 % of the first bounce.
+    let refused = found(1e-4, 0.0).0.unwrap_err().to_string();
+    assert!(refused.contains("nearest found"), "{refused}");
+}
+
+/// A goal that all are expected to hold: exact horizons are the last resort, and with bounces every sample's own,
+/// though at every second one and by means of the ground they are cheaper.
+#[test]
+fn the_last_resort_leaves_nothing_to_means() {
+    let mut scene = scene();
+    scene.surface.albedo = Albedo::Constant([0.8; 3]);
+    let statistics = Statistics::of(&scene);
+    for count in [0, 2] {
+        let chooser = Chooser::new(&scene, &statistics, Goal::MaxError(1e6), count);
+        let quality = chooser.last_resort(true).unwrap();
+        let all = crate::auto::candidates::candidates(&scene, count);
+        let exact = all.iter().filter(|q| crate::auto::candidates::is_exact(q));
+        let cheaper = exact.filter(|q| chooser.cost(q) < chooser.cost(&quality));
+        if count == 0 {
+            assert_eq!(cheaper.count(), 0);
+            continue;
+        }
+        let is_mean = |q: &Quality| q.subsample > 1 || q.bounces.engine == BounceEngine::Pyramid;
+        assert!(!is_mean(&quality), "{quality:?}");
+        assert!(cheaper.filter(|q| is_mean(q)).count() > 0, "means are no cheaper");
+    }
+}
+
+/// Candidates of bounces are valid and none is there twice; of few bounces no two energies leave out the same ones.
+#[test]
+fn what_is_chosen_among_differs() {
+    let mut scene = scene();
+    for (albedo, bounces, cutoffs) in [(0.8, 1, 1), (0.3, 4, 3), (0.01, 2, 3)] {
+        scene.surface.albedo = Albedo::Constant([albedo; 3]);
+        let all = crate::auto::candidates::candidates(&scene, bounces);
+        let mut energies: Vec<f64> = all.iter().map(|q| q.bounces.cutoff).collect();
+        energies.sort_by(f64::total_cmp);
+        energies.dedup();
+        assert_eq!(energies.len(), cutoffs, "{energies:?}");
+        for (i, quality) in all.iter().enumerate() {
+            quality.check().unwrap();
+            assert_eq!(quality.bounces.count, bounces);
+            assert!(!all[..i].contains(quality), "{quality:?}");
+        }
+    }
+}

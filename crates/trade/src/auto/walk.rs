@@ -1,0 +1,418 @@
+//! Draws, judges, draws again: the whole of a choice, for a caller who can draw.
+
+use super::chooser::{Chooser, Goal, Trial};
+use super::model::{Expected, PARTS, Part};
+use super::probes::{Probes, Traced, apart};
+use super::statistics::Statistics;
+use crate::trade::start;
+use ridgelight::plan::{REFERENCE_BATCH, unmet_bounced_error};
+use ridgelight::scene::{
+    Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
+    Scene, Wedges, Window,
+};
+use ridgelight::{Error, Result};
+
+/// A frame that was drawn with some settings.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// Radiance: one plane or three, row-major, NaN at voids.
+    pub planes: Vec<Vec<f32>>,
+    /// Nanoseconds by label of each pass: of a typical draw, not of one that compiles.
+    pub passes: Vec<(String, f64)>,
+}
+
+/// Settings that reach a goal, and what is known of them.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// The settings; their error by probes that did not choose them; their time, of a frame drawn again.
+    pub trial: Trial,
+    /// The error that the scene's statistics alone had led to expect.
+    pub expected: Expected,
+    /// How many samples of the oracle tell that error.
+    pub probes: usize,
+    /// Light paths from each, that tell bounced light; 0 without.
+    pub paths: u32,
+    /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
+    /// and may miss shadows' edges.
+    pub confidence: Option<f64>,
+    /// All that was drawn, in order, the chosen among it.
+    pub trials: Vec<Trial>,
+}
+
+/// Settings that are drawn first: where their pictures differ most probes are taken. The second are the
+/// defaults.
+const COARSE: Quality = Quality {
+    method: Method::Sweep,
+    azimuths: 8,
+    sun_azimuths: 2,
+    light_cutoff: 1.0 / 65536.0,
+    light_basis: LightBasis::Exact,
+    lines: Lines::FourCells,
+    fuse: Fuse::AimedNearest,
+    precision: Precision::F32,
+    hull: Hull::Auto,
+    table_elevations: 64,
+    // Of pyramids alone.
+    level_step: 4,
+    level_offset: 2,
+    levels: Levels::Stack,
+    basis: Basis::Table,
+    sh_order: 4,
+    wedges: Wedges::Slices,
+    receiver: Receiver::Plane,
+    window: Window::None,
+    subsample: 2,
+    wedge_side: 64,
+    bounces: Bounces { azimuths: 8, ..Bounces::NONE },
+};
+
+/// Bounced light that a choice is to hold, too.
+pub struct Bounced<'t> {
+    /// Times that light may be reflected: [`Bounces::count`], above 0.
+    pub count: u32,
+    /// Traces bounced light of samples, by their place, in so many batches of paths ([`REFERENCE_BATCH`]) of a seed.
+    pub trace: &'t mut Trace<'t>,
+}
+
+/// See [`Bounced::trace`].
+pub type Trace<'t> = dyn FnMut(&[usize], u32, u32) -> Result<Vec<Traced>> + 't;
+
+/// Batches that tell how many are wanted; at most.
+const FIRST_BATCHES: u32 = 8;
+const MOST_BATCHES: u32 = 256;
+/// Share of the goal that the chance of paths may be of the bound of what is chosen ([`Probes::chance`]): so much is
+/// wanted, which takes the bound of such an error up by √(1 + 0.4²), 8 %; more, up to √(1 + 0.8²), 28 %, is taken where
+/// [`MOST_BATCHES`] tell no better, and beyond that the goal is refused.
+const CHANCE_WANTED: f64 = 0.4;
+const CHANCE_AT_MOST: f64 = 0.8;
+/// Share of that which light that no path has met may be.
+const UNMET: f64 = 0.25;
+/// What is wanted of the light where the goal is a time.
+const CHANCE_OF_TIMED: f64 = 0.002;
+
+/// Where bounds alone stand in the way probes are added up to so many times the first.
+const MOST_PROBES: usize = 4;
+
+/// What is chosen is judged once more by probes that had no part in choosing it, so many times the first:
+/// its bound is theirs. Where it does not hold, others are chosen, so many times in all: twice the cheapest,
+/// then what holds by a margin, then exact horizons.
+const CONFIRMING_PROBES: usize = 3;
+const CONFIRMATIONS: u64 = 4;
+
+/// Probes, and the pictures that may still be asked for, in the order of what was drawn.
+struct Judge<'a> {
+    scene: &'a Scene,
+    bounced: Option<Bounced<'a>>,
+    batches: u32,
+    /// Where probes are drawn to, how many at a time, and of which seed the next.
+    unsure: Vec<f64>,
+    step: usize,
+    seed: u64,
+    probes: Probes,
+    pictures: Vec<Option<Vec<Vec<f32>>>>,
+    control: usize,
+}
+
+impl<'a> Judge<'a> {
+    fn new(
+        scene: &'a Scene,
+        (step, seed): (usize, u64),
+        unsure: Vec<f64>,
+        bounced: Option<Bounced<'a>>,
+        goal: Goal,
+    ) -> Result<Self> {
+        let probes = Probes::of(scene, step, seed, &unsure)?;
+        let batches = FIRST_BATCHES;
+        let mut judge = Self {
+            scene,
+            bounced,
+            batches,
+            unsure,
+            step,
+            seed,
+            probes,
+            pictures: vec![],
+            control: 0,
+        };
+        let direct = judge.probes.clone();
+        judge.trace_first()?;
+        let (wanted, error) = match goal {
+            Goal::MaxError(most) => (CHANCE_WANTED * most, most),
+            Goal::MaxCost(_) => (CHANCE_OF_TIMED, 0.0),
+        };
+        let known = scene.field.rows() * scene.field.cols()
+            - scene.field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
+        let judging = known.min(CONFIRMING_PROBES * judge.probes.len());
+        let chance = |batches: u32, error: f64| {
+            let share = f64::from(FIRST_BATCHES) / f64::from(batches);
+            judge.probes.chance(error, share, judging, Probes::EACH_OF_FOUR_LOOKS)
+        };
+        let least = chance(MOST_BATCHES, error);
+        if error > 0.0 && least > CHANCE_AT_MOST * error {
+            // The chance grows with the root of the error or less: each step halves what is wrong of the logarithm.
+            let told = (0..30).fold(error, |e, _| chance(MOST_BATCHES, e) / CHANCE_AT_MOST);
+            return Err(Error::Limit {
+                what: format!("a goal of {}", figures(error)),
+                needs: "bounced light that is known so well".into(),
+                limit: format!(
+                    "{}, as the chance of {} light paths from each of {judging} samples would be {}",
+                    figures(told),
+                    MOST_BATCHES * REFERENCE_BATCH,
+                    figures(least)
+                ),
+            });
+        }
+        // What was not met falls with the number of paths itself.
+        let unmet = judge.probes.off_since(&direct) / (UNMET * wanted) * f64::from(FIRST_BATCHES);
+        let enough = (FIRST_BATCHES..MOST_BATCHES)
+            .find(|b| chance(*b, error) <= wanted && unmet <= f64::from(*b))
+            .unwrap_or(MOST_BATCHES);
+        if enough > FIRST_BATCHES {
+            judge.batches = enough;
+            judge.probes = direct;
+            judge.trace_first()?;
+        }
+        Ok(judge)
+    }
+
+    /// Probes that were not yet drawn.
+    fn fresh(&mut self, wanted: usize) -> Result<Probes> {
+        self.seed = self.seed.wrapping_add(1 << 32);
+        let mut probes = Probes::of(self.scene, wanted, self.seed, &self.unsure)?;
+        self.trace(&mut probes)?;
+        Ok(probes)
+    }
+
+    fn trace_first(&mut self) -> Result<()> {
+        let mut probes = self.probes.clone();
+        self.trace(&mut probes)?;
+        self.probes = probes;
+        Ok(())
+    }
+
+    /// Adds bounced light, where there is any, by paths that no others have gone.
+    fn trace(&mut self, probes: &mut Probes) -> Result<()> {
+        let Some(bounced) = &mut self.bounced else { return Ok(()) };
+        self.seed = self.seed.wrapping_add(1 << 32);
+        // Of both halves, mixed (Steele, Lea & Flood 2014).
+        let seed = (self.seed ^ (self.seed >> 32)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
+        let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
+        let of = (self.batches * REFERENCE_BATCH, probes.len());
+        let chance = Probes::CHANCE_OF_UNMET;
+        probes.add_bounced(&traced, unmet_bounced_error(self.scene, bounced.count, of, chance));
+        Ok(())
+    }
+
+    /// Judges a frame, and, where it is the best control or there are more probes than before, all others
+    /// once more; takes more probes where they would decide.
+    fn take(&mut self, chooser: &mut Chooser<'_>, quality: &Quality, drawn: Drawn) -> Result<()> {
+        self.pictures.push(Some(drawn.planes));
+        chooser.drawn(quality, &drawn.passes);
+        self.judge(chooser);
+        self.decide(chooser)
+    }
+
+    fn decide(&mut self, chooser: &mut Chooser<'_>) -> Result<()> {
+        while chooser.is_undecided()
+            && !self.probes.is_whole()
+            && self.probes.len() < MOST_PROBES * self.step
+        {
+            let more = self.fresh(self.probes.len())?;
+            self.probes.extend(&more);
+            self.judge(chooser);
+        }
+        Ok(())
+    }
+
+    fn judge(&mut self, chooser: &mut Chooser<'_>) {
+        let alone = |p: &Vec<Vec<f32>>| self.probes.error(p, None, Probes::ONE_LOOK).error;
+        let own =
+            self.pictures.iter().enumerate().filter_map(|(i, p)| Some((i, alone(p.as_ref()?))));
+        self.control = own.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
+        let control = self.control();
+        let measured = |p: &Vec<Vec<f32>>| self.probes.error(p, control, Probes::ONE_LOOK);
+        let all: Vec<_> = self.pictures.iter().map(|p| p.as_ref().map(measured)).collect();
+        chooser.judged(&all);
+        for (i, (picture, trial)) in self.pictures.iter_mut().zip(chooser.trials()).enumerate() {
+            if i != self.control && !chooser.may_be_best(trial) {
+                *picture = None;
+            }
+        }
+    }
+
+    /// The picture of the least error by the probes alone.
+    fn control(&self) -> Option<&[Vec<f32>]> {
+        self.pictures.get(self.control)?.as_deref()
+    }
+}
+
+/// Chooses settings for a goal: `draw` draws the scene with what it is told, so many samples of exact
+/// light judge, others for another `seed`.
+///
+/// What is chosen is drawn again: its time is that of this frame, and its bound is one by samples that
+/// had no part in the choice. What is `bounced` is judged, and its settings are chosen, too.
+///
+/// # Errors
+/// A goal out of range, or finer than paths can tell; one that nothing reaches, with the nearest that was; what `draw` answers, but for
+/// [`Error::Limit`], which leaves out the settings and all that are dearer, unless all are.
+pub fn choose<'a>(
+    scene: &'a Scene,
+    goal: Goal,
+    (probes, seed): (usize, u64),
+    bounced: Option<Bounced<'a>>,
+    mut draw: impl FnMut(&Quality) -> Result<Drawn>,
+) -> Result<Chosen> {
+    let (name, bound) = match goal {
+        Goal::MaxError(most) => ("--max-error", most),
+        Goal::MaxCost(ns) => ("--time-budget", ns / 1e6),
+    };
+    if !(bound > 0.0 && bound.is_finite()) {
+        return Err(Error::setting(name, bound.to_string(), "a number above 0"));
+    }
+    let count = bounced.as_ref().map_or(0, |b| b.count);
+    let mut chooser = Chooser::new(scene, &Statistics::of(scene), goal, count);
+    let (mut pilots, mut refused) = (Vec::new(), None);
+    for mut quality in [start(), COARSE] {
+        quality.bounces.count = count;
+        match draw(&quality) {
+            Err(limit @ Error::Limit { .. }) => {
+                chooser.refuse(&quality);
+                refused = Some(limit);
+            }
+            drawn => pilots.push((quality, drawn?)),
+        }
+    }
+    let unsure = match (pilots.as_slice(), refused) {
+        ([(_, a), (_, b)], _) => apart(&a.planes, &b.planes, scene.field.cols()),
+        // The coarsest do not fit either: what is in the way is no setting.
+        ([], Some(limit)) => return Err(limit),
+        _ => Vec::new(),
+    };
+    let is_aimed = !unsure.is_empty();
+    let mut judge = Judge::new(scene, (probes, seed), unsure, bounced, goal)?;
+    let own = judge.probes.own_error();
+    if let Goal::MaxError(most) = goal
+        && own >= most
+    {
+        return Err(Error::Limit {
+            what: format!("--max-error {most}"),
+            needs: "exact light that is known so well".into(),
+            limit: format!(
+                "{}, by which half of its rays are off{}",
+                figures(own),
+                match count {
+                    0 => "",
+                    _ => ", or light that no path has met",
+                }
+            ),
+        });
+    }
+    for (quality, drawn) in pilots {
+        judge.take(&mut chooser, &quality, drawn)?;
+    }
+    for look in 1..=CONFIRMATIONS {
+        let is_last = look == CONFIRMATIONS;
+        while let Some(quality) = chooser.next().or_else(|| chooser.last_resort(is_last)) {
+            match draw(&quality) {
+                Err(Error::Limit { .. }) => chooser.refuse(&quality),
+                drawn => judge.take(&mut chooser, &quality, drawn?)?,
+            }
+        }
+        let best = match CONFIRMATIONS - look {
+            0 => chooser.exact(),
+            1 => chooser.surest(),
+            _ => chooser.best(),
+        };
+        let Some(best) = best else { break };
+        let quality = best.quality;
+        let Drawn { planes, passes } = draw(&quality)?;
+        let fresh = judge.fresh(CONFIRMING_PROBES * probes)?;
+        let looks = if count > 0 { Probes::EACH_OF_FOUR_LOOKS } else { Probes::FOUR_LOOKS };
+        let ns = passes.iter().map(|p| p.1).sum();
+        let measured = fresh.error(&planes, judge.control(), looks);
+        let trial = chooser.confirmed(&quality, measured, ns).copied();
+        if let Some(trial) = trial.filter(|t| goal.is_reached(t)) {
+            return Ok(Chosen {
+                trial,
+                expected: chooser.expected(&quality),
+                probes: fresh.len(),
+                paths: if count > 0 { judge.batches * REFERENCE_BATCH } else { 0 },
+                confidence: (is_aimed || fresh.is_whole()).then_some(Probes::CONFIDENCE),
+                trials: chooser.trials().to_vec(),
+            });
+        }
+        judge.probes.extend(&fresh);
+        judge.judge(&mut chooser);
+    }
+    Err(out_of_reach(goal, &chooser, judge.probes.len(), scene))
+}
+
+fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> Error {
+    let trials = chooser.trials();
+    let miss = |t: &Trial| match goal {
+        Goal::MaxError(_) => t.measured.at_most,
+        Goal::MaxCost(_) => t.ns,
+    };
+    let Some(nearest) = trials.iter().min_by(|a, b| miss(a).total_cmp(&miss(b))) else {
+        return Error::Limit {
+            what: "choosing settings".into(),
+            needs: "settings that fit the device".into(),
+            limit: "its memory".into(),
+        };
+    };
+    let flags = flags(&nearest.quality, scene);
+    match goal {
+        Goal::MaxError(most) => Error::Limit {
+            what: format!("--max-error {most}"),
+            needs: chooser.lacks(),
+            limit: format!(
+                "{}, the nearest found ({flags}; measured {}, by {probes} probes)",
+                figures(nearest.measured.at_most),
+                figures(nearest.measured.error)
+            ),
+        },
+        Goal::MaxCost(ns) => Error::Limit {
+            what: format!("--time-budget {}", ns / 1e6),
+            needs: format!("{} ms a frame ({flags})", figures(nearest.ns / 1e6)),
+            limit: format!("{} ms", ns / 1e6),
+        },
+    }
+}
+
+/// Three figures, without an exponent.
+fn figures(x: f64) -> String {
+    let decimals = if x > 0.0 { 2.0 - x.log10().floor() } else { 0.0 };
+    format!("{x:.*}", decimals.clamp(0.0, 12.0) as usize)
+}
+
+/// Settings that are chosen, as the command line spells them: those that a scene has.
+pub fn flags(quality: &Quality, scene: &Scene) -> String {
+    let mut all = match (quality.method, quality.lines) {
+        _ if !Part::Geometry.is_in(scene) => String::new(),
+        (Method::Brute, _) => "--method brute".to_owned(),
+        (Method::Pyramid, _) => {
+            let Quality { level_step, level_offset, .. } = quality;
+            format!("--method pyramid --level-step {level_step} --level-offset {level_offset}")
+        }
+        (_, Lines::Exact) => "--lines exact".to_owned(),
+        (_, lines) => format!("--lines {} --fuse {}", lines.name(), quality.fuse.name()),
+    };
+    for part in PARTS.into_iter().filter(|p| p.is_in(scene)) {
+        match part {
+            Part::Geometry => {}
+            Part::Azimuths => all += &format!(" --azimuths {}", quality.azimuths),
+            Part::Table if quality.basis == Basis::Sh => {
+                all += &format!(" --basis sh --sh-order {}", quality.sh_order);
+            }
+            Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
+            Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
+        }
+    }
+    let Bounces { count, engine, azimuths, cutoff, .. } = quality.bounces;
+    if count > 0 {
+        all += &format!(" --bounces {count} --bounce-engine {}", engine.name());
+        all += &format!(" --bounce-azimuths {azimuths} --bounce-cutoff {cutoff}");
+        all += &format!(" --subsample {}", quality.subsample);
+    }
+    all.trim_start().to_owned()
+}

@@ -1,0 +1,339 @@
+//! The settings that trade speed for accuracy, each as a ladder from cheap to dear. Whoever adds a
+//! method or a setting registers its knob in [`knobs`]; search, frontier and report know none by name.
+//!
+//! Where the hull lives is no knob: it costs time and never changes the result.
+
+use ridgelight::scene::{
+    Basis, BounceEngine, BounceGloss, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision,
+    Quality, Scene,
+};
+use std::ops::RangeInclusive;
+
+/// One setting, or two that exclude each other, and the values that are walked.
+#[derive(Clone, Debug)]
+pub struct Knob {
+    /// What it is called.
+    pub name: &'static str,
+    /// Its values as the command line spells them, flag and all, from cheap to dear.
+    pub steps: Vec<String>,
+    /// What a count may be, of which the steps are a few; none for a choice, whose steps are all there
+    /// are.
+    pub range: Option<RangeInclusive<u32>>,
+    /// The step that the default is.
+    pub default: usize,
+    /// Which way is dearer, and what that is thought to buy.
+    pub dearer: &'static str,
+    /// Gives a quality the value of a step.
+    set: fn(&mut Quality, usize),
+    /// Whether all its values do the same beside the others.
+    idle: fn(&Quality) -> bool,
+}
+
+const AZIMUTHS: [u32; 6] = [8, 16, 32, 64, 128, 256];
+const SUN_AZIMUTHS: [u32; 6] = [1, 2, 4, 8, 16, 32];
+const TABLE_ELEVATIONS: [u32; 6] = [32, 64, 128, 256, 512, 1024];
+const SH_ORDERS: [u32; 5] = [2, 3, 4, 5, 6];
+const SUBSAMPLES: [u32; 3] = [4, 2, 1];
+const LINES: [(Lines, &str); 6] = [
+    (Lines::FourCells, "4"),
+    (Lines::TwoCells, "2"),
+    (Lines::Cell, "1"),
+    (Lines::HalfCell, "1/2"),
+    (Lines::QuarterCell, "1/4"),
+    (Lines::Exact, "exact"),
+];
+const FUSES: [Fuse; 6] =
+    [Fuse::Nearest, Fuse::Slopes, Fuse::Own, Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
+const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
+const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
+
+const BOUNCE_ENGINES: [BounceEngine; 3] =
+    [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::Brute];
+const BOUNCE_GLOSSES: [BounceGloss; 3] =
+    [BounceGloss::Scalar, BounceGloss::VectorF16, BounceGloss::Vector];
+const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
+const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
+const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
+
+fn has_no_lines(quality: &Quality) -> bool {
+    matches!(quality.method, Method::Brute | Method::Pyramid) || quality.lines == Lines::Exact
+}
+
+fn has_no_levels(quality: &Quality) -> bool {
+    quality.method != Method::Pyramid
+}
+
+/// The lights that give any light: of others no setting changes anything.
+fn shining(lights: &Lights) -> Lights {
+    let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
+    let mut shining = lights.clone();
+    shining.sky = lights.sky.filter(is_lit);
+    shining.suns.retain(|sun| is_lit(&sun.irradiance));
+    shining.keys.retain(|key| is_lit(&key.radiance));
+    shining.spheres.retain(|ball| is_lit(&ball.radiance));
+    shining
+}
+
+/// Whether the surface mirrors anything.
+fn has_lobe(scene: &Scene) -> bool {
+    scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
+}
+
+/// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
+/// an environment. Lobes are lit by harmonics alone, and throw light on by pyramids alone, from every sample.
+pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
+    let (lights, has_lobe) = (&shining(&scene.lights), has_lobe(scene));
+    let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
+    let mut all = vec![
+        Knob {
+            name: "sweep",
+            steps: LINES
+                .iter()
+                .map(|(_, name)| format!("--lines {name}"))
+                .chain(["pyramid", "brute"].map(|method| format!("--method {method}")))
+                .collect(),
+            range: None,
+            default: 0,
+            dearer: "closer lines, then every sample on a line: small occluders; a pyramid of heights, \
+                     which only costs more; brute force",
+            set: |quality, step| match LINES.get(step) {
+                Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
+                None if step == LINES.len() => quality.method = Method::Pyramid,
+                None => quality.method = Method::Brute,
+            },
+            idle: |_| false,
+        },
+        Knob {
+            name: "fuse",
+            steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "more of the lines' results, then the surface itself, then all around there: horizons of each \
+                     sample",
+            set: |quality, step| quality.fuse = FUSES[step],
+            idle: has_no_lines,
+        },
+        Knob {
+            name: "precision",
+            steps: PRECISIONS.iter().map(|p| format!("--precision {}", p.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "more bits: heights on the hull, stored slopes",
+            set: |quality, step| quality.precision = PRECISIONS[step],
+            idle: has_no_lines,
+        },
+        Knob {
+            name: "level step",
+            steps: spell("--level-step", &LEVEL_STEPS),
+            range: Some(Quality::LEVEL_STEP),
+            default: 0,
+            dearer: "more levels of a pyramid: what stands between two samples",
+            set: |quality, step| quality.level_step = LEVEL_STEPS[step],
+            idle: has_no_levels,
+        },
+        Knob {
+            name: "level offset",
+            steps: spell("--level-offset", &LEVEL_OFFSETS),
+            range: Some(Quality::LEVEL_OFFSET),
+            default: 0,
+            dearer: "finer levels of a pyramid: sharp distant horizons",
+            set: |quality, step| quality.level_offset = LEVEL_OFFSETS[step],
+            idle: has_no_levels,
+        },
+    ];
+    // Balls of light look themselves for what hides them.
+    let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
+    if lights.sky.is_none() && lights.environment.is_none() && are_none_aimed {
+        all.clear();
+    }
+    if lights.sky.is_some() || lights.environment.is_some() {
+        all.push(Knob {
+            name: "azimuths",
+            steps: spell("--azimuths", &AZIMUTHS),
+            range: Some(Quality::AZIMUTHS),
+            default: 0,
+            dearer: "more azimuths: sharp silhouettes",
+            set: |quality, step| quality.azimuths = AZIMUTHS[step],
+            idle: |_| false,
+        });
+    }
+    if lights.have_slices() {
+        all.push(Knob {
+            name: "sun azimuths",
+            steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
+            range: Some(Quality::SUN_AZIMUTHS),
+            default: 0,
+            dearer: "more slices of a sun's disc, a key light or a ball of light: soft shadows",
+            set: |quality, step| quality.sun_azimuths = SUN_AZIMUTHS[step],
+            idle: |_| false,
+        });
+    }
+    if !lights.spheres.is_empty() {
+        all.push(Knob {
+            name: "light basis",
+            steps: LIGHT_BASES.iter().map(|b| format!("--light-basis {}", b.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "each slice of a ball of light exact: sharp shadows",
+            set: |quality, step| quality.light_basis = LIGHT_BASES[step],
+            idle: |_| false,
+        });
+    }
+    if lights.environment.is_some() && !has_lobe {
+        all.push(Knob {
+            name: "table elevations",
+            steps: spell("--table-elevations", &TABLE_ELEVATIONS),
+            range: Some(Quality::TABLE_ELEVATIONS),
+            default: 0,
+            dearer: "more elevations a table: small bright places",
+            set: |quality, step| quality.table_elevations = TABLE_ELEVATIONS[step],
+            idle: |quality| quality.basis == Basis::Sh,
+        });
+    }
+    if lights.environment.is_some() || (lights.sky.is_some() && has_lobe) {
+        let orders = SH_ORDERS.map(|n| format!("--basis sh --sh-order {n}"));
+        let table = (!has_lobe).then(|| "--basis table".to_owned());
+        all.push(Knob {
+            name: "basis",
+            steps: orders.into_iter().chain(table).collect(),
+            range: None,
+            default: 0,
+            dearer: "higher orders of harmonics, then tables: the environment's detail",
+            set: |quality, step| match SH_ORDERS.get(step) {
+                Some(order) => (quality.basis, quality.sh_order) = (Basis::Sh, *order),
+                None => quality.basis = Basis::Table,
+            },
+            idle: |_| false,
+        });
+    }
+    let is_sampled_all = has_lobe && bounces > 0;
+    if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
+        all.push(Knob {
+            name: "sub-sampling",
+            steps: spell("--subsample", &SUBSAMPLES),
+            range: None,
+            default: 0,
+            dearer: "what is seen, and thrown, at more samples: sharp shadows",
+            set: |quality, step| quality.subsample = SUBSAMPLES[step],
+            idle: |quality| quality.basis != Basis::Sh && quality.bounces.count == 0,
+        });
+    }
+    if bounces > 0 {
+        all.extend(bounce_knobs(has_lobe));
+    }
+    let start = start_of(scene);
+    for knob in &mut all {
+        knob.default = default_step(knob, &start);
+    }
+    all
+}
+
+fn bounce_knobs(has_lobe: bool) -> [Knob; 2] {
+    let by = match has_lobe {
+        true => Knob {
+            name: "bounce gloss",
+            steps: BOUNCE_GLOSSES.iter().map(|g| format!("--bounce-gloss {}", g.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "radiance by direction, then in full precision: what lobes throw on",
+            set: |quality, step| quality.bounces.gloss = BOUNCE_GLOSSES[step],
+            idle: |_| false,
+        },
+        false => Knob {
+            name: "bounce engine",
+            steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
+            range: None,
+            default: 0,
+            dearer: "one sample a level of pyramids; every stretch of surface that a sample sees",
+            set: |quality, step| quality.bounces.engine = BOUNCE_ENGINES[step],
+            idle: |_| false,
+        },
+    };
+    [
+        by,
+        Knob {
+            name: "bounce azimuths",
+            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
+            range: Some(Bounces::AZIMUTHS),
+            default: 0,
+            dearer: "more azimuths of bounces: narrow things that shine",
+            set: |quality, step| quality.bounces.azimuths = BOUNCE_AZIMUTHS[step],
+            idle: |_| false,
+        },
+    ]
+}
+
+/// What the defaults walk from: sweeps and tables, which is what they come to.
+pub fn start() -> Quality {
+    Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
+}
+
+/// The same for a scene: lobes are lit by harmonics.
+pub fn start_of(scene: &Scene) -> Quality {
+    let Lights { sky, environment, .. } = shining(&scene.lights);
+    let is_mirrored = has_lobe(scene) && (sky.is_some() || environment.is_some());
+    let basis = if is_mirrored { Basis::Sh } else { Basis::Table };
+    Quality { basis, ..start() }
+}
+
+fn default_step(knob: &Knob, start: &Quality) -> usize {
+    let is_default = |step: &usize| {
+        let mut quality = *start;
+        (knob.set)(&mut quality, *step);
+        quality == *start
+    };
+    (0..knob.steps.len()).find(is_default).expect("every default is on its ladder")
+}
+
+/// Settings, and where they stand on each knob's ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// The settings.
+    pub quality: Quality,
+    /// A step for each knob; none where the knob is idle.
+    pub steps: Vec<Option<usize>>,
+}
+
+impl Place {
+    /// As the command line spells it.
+    pub fn flags(&self, knobs: &[Knob]) -> String {
+        let each = knobs.iter().zip(&self.steps).filter_map(|(k, s)| Some(k.steps[(*s)?].as_str()));
+        each.collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Every combination of steps that does something of its own, from cheap to dear, the others of
+/// `start`'s settings as they are.
+pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
+    let mut all = Vec::new();
+    let mut steps = vec![0; knobs.len()];
+    'next: loop {
+        let mut quality = *start;
+        knobs.iter().zip(&steps).for_each(|(k, s)| (k.set)(&mut quality, *s));
+        let idle: Vec<bool> = knobs.iter().map(|k| (k.idle)(&quality)).collect();
+        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
+        // Where no slopes are stored, f16 is f32.
+        let is_other = quality.precision == Precision::F16 && !stores_slopes;
+        let is_repeated = idle.iter().zip(&steps).any(|(idle, s)| *idle && *s > 0);
+        if !is_repeated && (!is_other || has_no_lines(&quality)) {
+            let mut quality = *start;
+            for ((knob, step), _) in knobs.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
+            {
+                (knob.set)(&mut quality, *step);
+            }
+            let steps = steps.iter().zip(&idle).map(|(s, idle)| (!idle).then_some(*s)).collect();
+            all.push(Place { quality, steps });
+        }
+        for (step, knob) in steps.iter_mut().zip(knobs) {
+            *step += 1;
+            if *step < knob.steps.len() {
+                continue 'next;
+            }
+            *step = 0;
+        }
+        return all;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+use super::*;
+use ridgelight::scene::{HeightField, KeyLight, Lobe, Phong, SphereLight, Sun, Surface};
+
+fn scene(lights: Lights) -> Scene {
+    let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
+    Scene { field, surface: Surface::default(), lights }
+}
+
+fn sky() -> Lights {
+    Lights { sky: Some([1.0; 3]), ..Lights::default() }
+}
+
+fn sun(diameter_rad: f64) -> Lights {
+    let sun = Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad, irradiance: [1.0; 3] };
+    Lights { suns: vec![sun], ..Lights::default() }
+}
+
+#[test]
+fn only_knobs_that_change_something_are_walked() {
+    let names = |lights| knobs(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
+    let always = ["sweep", "fuse", "precision", "level step", "level offset"];
+    let with = |more: &[&'static str]| [&always, more].concat();
+    assert_eq!(names(sky()), with(&["azimuths"]));
+    assert_eq!(names(sun(0.01)), with(&["sun azimuths"]));
+    assert_eq!(names(sun(0.0)), with(&[]));
+    let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+    let spheres = vec![ball];
+    assert_eq!(
+        names(Lights { spheres: spheres.clone(), ..Lights::default() }),
+        ["sun azimuths", "light basis"]
+    );
+    let balls_too = with(&["sun azimuths", "light basis"]);
+    assert_eq!(names(Lights { spheres: spheres.clone(), ..sun(0.0) }), balls_too);
+    // A patch of the sky needs horizons as a sun does; a dark sky and a dark sun none.
+    let keys = vec![KeyLight {
+        azimuth_rad: 0.0,
+        width_rad: 1.0,
+        elevations_rad: [0.1, 0.5],
+        radiance: [1.0; 3],
+    }];
+    assert_eq!(names(Lights { keys, ..Lights::default() }), with(&["sun azimuths"]));
+    let mut dark = Lights { sky: Some([0.0; 3]), spheres, ..sun(0.01) };
+    dark.suns[0].irradiance = [0.0; 3];
+    assert_eq!(names(dark), ["sun azimuths", "light basis"]);
+}
+
+/// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
+/// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
+#[test]
+fn places_are_all_that_differ() {
+    let knobs = knobs(&scene(sky()), 0);
+    let start = start();
+    let all = places(&knobs, &start);
+    assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
+    for (i, place) in all.iter().enumerate() {
+        place.quality.check().unwrap();
+        assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
+    }
+    let default = all.iter().find(|p| p.quality == start).unwrap();
+    let flags = "--lines 1 --fuse aimed-nearest --precision f32 --azimuths 64";
+    assert_eq!(default.flags(&knobs), flags);
+    let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
+    assert_eq!(brute.len(), 6);
+    assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
+    assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
+}
+
+/// A lobe mirrors sky and environment by harmonics, throws light by pyramids from every sample, and needs neither under
+/// a sun alone; one of nothing changes nothing.
+#[test]
+fn lobes_have_knobs_of_their_own() {
+    let names = |lights: Lights, scale: f32, bounces: u32| {
+        let mut scene = scene(lights);
+        scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale }));
+        knobs(&scene, bounces).iter().map(|k| k.name).collect::<Vec<_>>()
+    };
+    let always = ["sweep", "fuse", "precision", "level step", "level offset"];
+    let with = |more: &[&'static str]| [&always, more].concat();
+    assert_eq!(names(sky(), 0.0, 0), with(&["azimuths"]));
+    assert_eq!(names(sky(), 0.2, 0), with(&["azimuths", "basis"]));
+    assert_eq!(names(sun(0.0), 0.2, 0), with(&[]));
+    let thrown = ["azimuths", "basis", "bounce gloss", "bounce azimuths"];
+    assert_eq!(names(sky(), 0.2, 2), with(&thrown));
+    let mut scene = scene(sky());
+    scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.2 }));
+    let all = knobs(&scene, 1);
+    let found: Vec<&str> = all.iter().map(|k| k.steps[k.default].as_str()).collect();
+    let [.., basis, gloss, _] = found[..] else { panic!("{found:?}") };
+    assert_eq!([basis, gloss], ["--basis sh --sh-order 4", "--bounce-gloss vector"]);
+    assert!(!all.iter().flat_map(|k| &k.steps).any(|step| step == "--basis table"));
+}
+
+/// Steps rise within the range, differ, and the default is the command line's.
+#[test]
+fn knobs_say_their_range_and_default() {
+    let light = Lights {
+        environment: Some(
+            ridgelight::scene::Environment::new(2, 1, vec![[1.0; 3]; 2], 0.0).unwrap(),
+        ),
+        ..sun(0.01)
+    };
+    let all = knobs(&scene(light), 1);
+    let found: Vec<(&str, &str)> =
+        all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
+    let expected = [
+        ("sweep", "--lines 1"),
+        ("fuse", "--fuse aimed-nearest"),
+        ("precision", "--precision f32"),
+        ("level step", "--level-step 4"),
+        ("level offset", "--level-offset 2"),
+        ("azimuths", "--azimuths 64"),
+        ("sun azimuths", "--sun-azimuths 8"),
+        ("table elevations", "--table-elevations 256"),
+        ("basis", "--basis table"),
+        ("sub-sampling", "--subsample 1"),
+        ("bounce engine", "--bounce-engine auto"),
+        ("bounce azimuths", "--bounce-azimuths 32"),
+    ];
+    assert_eq!(found, expected);
+    for knob in &all {
+        let Some(range) = &knob.range else { continue };
+        let count = |s: &String| s.split(' ').next_back().unwrap().parse::<u32>().unwrap();
+        let counts: Vec<u32> = knob.steps.iter().map(count).collect();
+        assert!(counts.iter().all(|c| range.contains(c)), "{counts:?}");
+        assert!(counts.windows(2).all(|two| two[0] < two[1]), "{counts:?}");
+        for (step, count) in counts.iter().enumerate() {
+            let mut quality = start();
+            (knob.set)(&mut quality, step);
+            quality.check().unwrap();
+            assert_eq!(quality == start(), step == knob.default, "{count}");
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Walks over models whose whole grid is known.
+
+use super::*;
+use ridgelight::basis::random::{STEP, mixed, unit};
+
+/// Numbers in [0, 1).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(STEP);
+        unit(mixed(self.0))
+    }
+}
+
+type Steps = Vec<Option<usize>>;
+
+/// Every combination; the last knob idle on the dearest step of the first, as fuses are under brute
+/// force.
+fn grid(sides: &[usize]) -> Vec<Steps> {
+    let mut all = vec![vec![]];
+    for side in sides {
+        all = (0..*side).flat_map(|s| all.iter().map(move |a| [&a[..], &[s]].concat())).collect();
+    }
+    let last = sides.len() - 1;
+    all.retain(|a| a[0] + 1 < sides[0] || a[last] == 0);
+    let idle = |a: &[usize], k: usize| k == last && a[0] + 1 == sides[0];
+    all.iter()
+        .map(|a| a.iter().enumerate().map(|(k, s)| (!idle(a, k)).then_some(*s)).collect())
+        .collect()
+}
+
+/// Costs multiply and squared errors add, by steps of random size that never go the wrong way.
+fn monotone(sides: &[usize], random: &mut Random) -> impl Fn(&Steps) -> Value + use<> {
+    let ladders: Vec<Vec<[f64; 2]>> = sides
+        .iter()
+        .map(|side| {
+            let mut at = [1.0, 1.0];
+            (0..*side)
+                .map(|_| {
+                    let here = at;
+                    // A third of the steps change one of the two only.
+                    let kind = random.next();
+                    if kind > 0.17 {
+                        at[0] *= 1.0 + 2.0 * random.next();
+                    }
+                    if kind < 0.83 {
+                        at[1] *= 0.1 + 0.9 * random.next();
+                    }
+                    here
+                })
+                .collect()
+        })
+        .collect();
+    move |steps| {
+        // An idle knob costs nothing and does all it can.
+        let at = |(k, s): (usize, &Option<usize>)| s.map_or([1.0, 0.0], |s| ladders[k][s]);
+        let each = || steps.iter().enumerate().map(at);
+        // The first ladder's last step makes up for any step of the idle one.
+        let idle = steps.iter().any(Option::is_none);
+        let dear: f64 = if idle { ladders.last().unwrap().last().unwrap()[0] } else { 1.0 };
+        Value {
+            cost: dear * each().map(|v| v[0]).product::<f64>(),
+            error: each().map(|v| v[1] * v[1]).sum::<f64>().sqrt(),
+        }
+    }
+}
+
+/// Walks until nothing is open, or `most` places are measured.
+fn walk(steps: &[Steps], model: impl Fn(&Steps) -> Value, floor: f64, most: usize) -> Search {
+    let mut search = Search::new(steps.to_vec(), steps.len() / 2, floor);
+    while let Some(place) = search.next().filter(|_| search.order().len() < most) {
+        assert_eq!(search.value(place), None, "nothing is measured twice");
+        search.measured(place, model(&steps[place]));
+        let values: Vec<Value> = search.order().iter().map(|&i| search.value(i).unwrap()).collect();
+        let of_all: Vec<usize> = frontier(&values).iter().map(|i| search.order()[*i]).collect();
+        assert_eq!(search.frontier(), of_all, "the frontier of what was measured");
+    }
+    search
+}
+
+/// Every point of the whole grid's frontier is in what the walk found, by value.
+fn lost(steps: &[Steps], model: &impl Fn(&Steps) -> Value, floor: f64, search: &Search) -> usize {
+    let all: Vec<Value> = steps
+        .iter()
+        .map(|s| {
+            let value = model(s);
+            Value { error: value.error.max(floor), ..value }
+        })
+        .collect();
+    let found: Vec<Value> = search.frontier().iter().map(|&i| search.value(i).unwrap()).collect();
+    let front = frontier(&all);
+    front.iter().filter(|&&i| !found.iter().any(|f| f.covers(&all[i]))).count()
+}
+
+#[test]
+fn pruning_loses_no_point_of_a_monotone_frontier() {
+    let mut pruned = 0;
+    for seed in 0..60 {
+        let mut random = Random(seed);
+        let sides = [&[4, 5, 3][..], &[3, 2, 6, 3], &[7], &[2, 2]][seed as usize % 4];
+        let steps = grid(sides);
+        let model = monotone(sides, &mut random);
+        // With a floor that hides the most accurate third, and without.
+        let floor = if seed % 2 == 0 { 0.0 } else { 0.4 };
+        let search = walk(&steps, &model, floor, usize::MAX);
+        assert_eq!(search.breaks(), [], "seed {seed}");
+        assert_eq!(lost(&steps, &model, floor, &search), 0, "seed {seed}");
+        for (place, value) in steps.iter().map(&model).enumerate() {
+            match search.skip(place) {
+                Some(Skip::Covered { by, dearer_than, worse_than }) => {
+                    let of = |i: usize| search.value(i).unwrap();
+                    let error = worse_than.map_or(floor, |i| of(i).error);
+                    // What it says holds: the bounds do, and the one that covers covers it.
+                    assert!(of(dearer_than).cost <= value.cost && error <= value.error.max(floor));
+                    assert!(of(by).cost <= value.cost && of(by).error <= value.error.max(floor));
+                    pruned += 1;
+                }
+                Some(other) => panic!("{other:?}"),
+                None => assert!(search.value(place).is_some()),
+            }
+        }
+    }
+    assert!(pruned > 300, "{pruned} places were ruled out");
+}
+
+/// The check itself: rules that throw away a frontier's point are seen.
+#[test]
+fn a_lost_point_is_seen() {
+    let sides = [4, 5, 3];
+    let model = monotone(&sides, &mut Random(7));
+    let steps = grid(&sides);
+    let whole = walk(&steps, &model, 0.0, usize::MAX);
+    assert!(whole.frontier().len() > 3);
+    assert!(lost(&steps, &model, 0.0, &walk(&steps, &model, 0.0, 3)) > 0);
+}
+
+/// The first knob's cost falls where it should rise, the second's error rises at its last step: both
+/// are said, bound nothing from then on, and the frontier is whole.
+#[test]
+fn a_ladder_the_wrong_way_round_is_noticed() {
+    let sides = [3, 4, 3];
+    let steps = grid(&sides);
+    for seed in 0..20 {
+        let right = monotone(&sides, &mut Random(100 + seed));
+        let wrong = |steps: &Steps| {
+            let value = right(steps);
+            let first = steps[0].unwrap_or(0) as i32;
+            let last = steps[1].unwrap_or(0) == 3;
+            Value {
+                cost: value.cost * 0.2_f64.powi(first),
+                error: value.error * if last { 8.0 } else { 1.0 },
+            }
+        };
+        let search = walk(&steps, wrong, 0.0, usize::MAX);
+        let broken =
+            |side, knob| search.breaks().iter().any(|b| b.side == side && b.knobs.contains(&knob));
+        assert!(broken(Side::Cost, 0) && broken(Side::Error, 1), "seed {seed}");
+        for found in search.breaks() {
+            let [low, high] = [found.lower, found.higher].map(|i| search.value(i).unwrap());
+            assert!(low.cost > high.cost || high.error > low.error, "seed {seed}: {found:?}");
+        }
+        assert_eq!(lost(&steps, &wrong, 0.0, &search), 0, "seed {seed}");
+    }
+}
+
+/// On a grid of 1,152 places with measured-like ladders, the first 45 hold a frontier whose gaps are
+/// small: no point of the whole frontier is better than one found by more than a factor of 1.5 in
+/// both.
+#[test]
+fn a_short_walk_comes_near_the_whole_frontier() {
+    let sides = [6, 4, 6, 8];
+    let steps = grid(&sides);
+    for seed in 0..10 {
+        let model = monotone(&sides, &mut Random(1000 + seed));
+        let search = walk(&steps, &model, 0.0, 45);
+        let all: Vec<Value> = steps.iter().map(&model).collect();
+        let missed = |v: &Value| {
+            let found = search.frontier().iter().map(|&i| search.value(i).unwrap());
+            found.map(|f| (f.cost / v.cost).max(f.error / v.error)).fold(f64::INFINITY, f64::min)
+        };
+        let worst = frontier(&all).iter().map(|&i| missed(&all[i])).fold(0.0, f64::max);
+        assert!(worst < 1.5, "seed {seed}: {worst}");
+    }
+}
+
+/// What was given up for its cost rules out what costs more, and says so.
+#[test]
+fn too_dear_is_too_dear_for_all_above() {
+    let steps = grid(&[4, 4]);
+    let mut search = Search::new(steps.clone(), 0, 0.0);
+    let at = |a: usize, b: usize| {
+        steps.iter().position(|s| s[0] == Some(a) && s[1].is_none_or(|s| s == b)).unwrap()
+    };
+    search.measured(at(0, 0), Value { cost: 1.0, error: 1.0 });
+    search.give_up(at(1, 1), true);
+    search.give_up(at(0, 1), false);
+    assert_eq!(search.skip(at(2, 1)), Some(Skip::TooDear { than: at(1, 1) }));
+    assert_eq!(search.skip(at(3, 0)), Some(Skip::TooDear { than: at(1, 1) }));
+    assert!(!search.is_open(at(1, 1)) && search.is_open(at(0, 2)) && search.is_open(at(2, 0)));
+}
+
+/// A value corrected afterwards leaves what it would have left at first: frontier, breaks, reasons.
+#[test]
+fn a_corrected_value_is_as_if_it_were_the_first() {
+    let sides = [3, 4, 3];
+    let steps = grid(&sides);
+    for seed in 0..20 {
+        let model = monotone(&sides, &mut Random(300 + seed));
+        let mut right = walk(&steps, &model, 0.1, 9);
+        let mut corrected = Search::new(steps.clone(), steps.len() / 2, 0.1);
+        let wrong = right.order()[seed as usize % 9];
+        for &place in right.order() {
+            let value = model(&steps[place]);
+            let share = if place == wrong { 0.01 } else { 1.0 };
+            corrected.measured(place, Value { cost: share * value.cost, ..value });
+        }
+        for search in [&mut right, &mut corrected] {
+            search.give_up(0, true);
+        }
+        assert_ne!(corrected.value(wrong), right.value(wrong));
+        corrected.measured_again(wrong, model(&steps[wrong]));
+        assert_eq!(corrected.order(), right.order());
+        assert_eq!(corrected.frontier(), right.frontier());
+        assert_eq!(corrected.breaks(), right.breaks());
+        for place in 0..steps.len() {
+            assert_eq!(corrected.value(place), right.value(place));
+            assert_eq!(corrected.skip(place), right.skip(place));
+        }
+    }
+}
+
+/// A dear place beside which a knob is idle differs from a cheap one in a single knob, too; but how that
+/// knob changes costs is not known, so what is expected of the cheap one comes from the start.
+#[test]
+fn what_is_expected_comes_from_differences_that_were_seen() {
+    let steps = grid(&[3, 3, 3]);
+    let at = |wanted: [Option<usize>; 3]| steps.iter().position(|s| s[..] == wanted).unwrap();
+    let start = at([Some(1); 3]);
+    let mut search = Search::new(steps.clone(), start, 0.0);
+    for (place, cost, error) in [
+        (start, 1.0, 1.0),
+        (at([Some(1), Some(0), Some(1)]), 0.5, 2.0),
+        (at([Some(1), Some(1), Some(0)]), 0.8, 1.5),
+        (at([Some(2), Some(0), None]), 1000.0, 0.0),
+    ] {
+        search.measured(place, Value { cost, error });
+    }
+    let found = search.predicted(at([Some(1), Some(0), Some(0)]));
+    assert!((found.cost - 0.4).abs() < 1e-12, "{found:?}");
+    // 2² + 1.5² - 1².
+    assert!((found.error - 5.25_f64.sqrt()).abs() < 1e-12, "{found:?}");
+}

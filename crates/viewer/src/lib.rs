@@ -1,0 +1,300 @@
+//! Pictures of a lit field in a window.
+
+#![deny(clippy::missing_errors_doc)]
+
+mod chain;
+mod drawer;
+mod queue;
+mod recording;
+mod slot;
+
+use std::any::Any;
+use std::sync::Arc;
+
+use ash::{khr, vk};
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+
+use ridgelight::gpu::{Frame, Headless, HeadlessOptions, SurfaceSource, Timing, Work, failed};
+use ridgelight::plan::{Map, Plan, Rectangle, View};
+use ridgelight::scene::Tone;
+use ridgelight::{Error, Result};
+
+use chain::Chain;
+use drawer::Drawer;
+use slot::Slot;
+
+/// Frames in flight.
+const SLOTS: usize = 2;
+
+/// A device that shows pictures in a window: its swapchain, and two frames in flight.
+pub struct Screen {
+    gpu: Headless,
+    swapchains: khr::swapchain::Device,
+    /// None before the first picture and where the last is of no use any more.
+    chain: Option<Chain>,
+    slots: Vec<Slot>,
+    next: usize,
+    /// One a pane of the last shot.
+    drawers: Vec<Drawer>,
+    /// Outlives its surface, which goes with the device.
+    _window: Arc<dyn Any>,
+}
+
+/// Pixels over a picture: opaque.
+#[derive(Clone, Copy, Debug)]
+pub struct Panel<'a> {
+    /// Column and row of the picture where its upper left corner is.
+    pub at: [u32; 2],
+    /// Columns and rows, pixels; what does not fit is cut off.
+    pub size: [u32; 2],
+    /// Red, green, blue and 255, row after row.
+    pub pixels: &'a [[u8; 4]],
+}
+
+/// How a lit field is seen.
+#[derive(Clone, Copy, Debug)]
+pub enum Sight<'a> {
+    /// From straight above, to the byte as in a PNG; its order of bytes is [`Screen::swaps`].
+    Map(&'a Map),
+    /// From a camera.
+    Camera(&'a View),
+}
+
+/// One frame of a picture: what is done to it, and where it is shown.
+pub struct Pane<'a> {
+    /// Made by [`Screen::frame`].
+    pub frame: &'a mut Frame,
+    /// The heights above the field's base, one a sample, and the rectangle where they are new; else as they are.
+    pub heights: Option<(&'a [f32], Rectangle)>,
+    /// Before it is shown.
+    pub work: Work<'a>,
+    /// What is seen of it, and how large.
+    pub sight: Sight<'a>,
+    /// The picture's column where it begins, in its first row.
+    pub left: u32,
+}
+
+/// What a picture is beside its panes.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot<'a> {
+    /// How radiance looks.
+    pub tone: Tone,
+    /// The field's, where it has any.
+    pub voids: Option<&'a [bool]>,
+    /// Over the picture, in this order.
+    pub panels: &'a [Panel<'a>],
+    /// Whether the picture is read back, which waits for it.
+    pub keeps: bool,
+}
+
+/// GPU times of one pane of a picture.
+#[derive(Clone, Debug, Default)]
+pub struct PaneTimes {
+    /// What lit its frame; nothing where nothing did.
+    pub light: Vec<Timing>,
+    /// What drew it.
+    pub drawing: Vec<Timing>,
+}
+
+/// What became of a frame that has been handed to the window.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// GPU times of the picture before the last, of each pane, where they are in.
+    pub timings: Vec<PaneTimes>,
+    /// Red, green, blue, 255 of each pixel, row after row, where they were to be kept.
+    pub pixels: Option<Vec<[u8; 4]>>,
+    /// Whether the window took it: not where it has become another meanwhile, or lost its surface. Then another is due.
+    pub is_taken: bool,
+}
+
+impl Screen {
+    /// A device for a window, the one that `options` name or the first that shows pictures in it.
+    ///
+    /// # Errors
+    /// As [`Headless::new`]; a window or a device that takes no pictures.
+    pub fn new<W>(window: Arc<W>, options: &HeadlessOptions) -> Result<Self>
+    where
+        W: HasDisplayHandle + HasWindowHandle + 'static,
+    {
+        let unknown = |e: raw_window_handle::HandleError| Error::Device {
+            doing: "showing pictures in a window".into(),
+            reason: e.to_string(),
+        };
+        let display = window.display_handle().map_err(unknown)?.as_raw();
+        let handle = window.window_handle().map_err(unknown)?.as_raw();
+        let source = SurfaceSource {
+            extensions: ash_window::enumerate_required_extensions(display)
+                .map_err(failed("showing pictures in a window"))?,
+            // SAFETY: the instance is made with the extensions above; the window is alive, as `_window` is kept.
+            create: Box::new(move |entry, instance| unsafe {
+                ash_window::create_surface(entry, instance, display, handle, None)
+            }),
+        };
+        let gpu = Headless::showing(options, Some(source))?;
+        let host = gpu.host();
+        let swapchains = khr::swapchain::Device::new(&host.instance, &host.device);
+        let (slots, _window) = (Vec::new(), window as Arc<dyn Any>);
+        let mut screen =
+            Self { gpu, swapchains, chain: None, slots, next: 0, drawers: Vec::new(), _window };
+        for _ in 0..SLOTS {
+            let slot = Slot::new(&screen.gpu)?;
+            screen.slots.push(slot);
+        }
+        Ok(screen)
+    }
+
+    /// Its device.
+    pub fn gpu(&mut self) -> &mut Headless {
+        &mut self.gpu
+    }
+
+    /// A frame whose light it can show: as [`Headless::frame`], for frames in flight, dark until it is lit. To be ended
+    /// by [`end`](Self::end).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn frame(&mut self, plan: Plan, contents: &[&[f32]]) -> Result<Frame> {
+        let frame = self.gpu.frame_in_flight(plan, contents, SLOTS)?;
+        let darkened = frame.outputs.iter().try_for_each(|image| {
+            let texels = image.extent.iter().map(|n| *n as usize).product::<usize>();
+            let dark = vec![0.0; texels * (image.format.bytes() / 4) as usize];
+            self.gpu.upload(image, &dark)
+        });
+        match darkened {
+            Ok(()) => Ok(frame),
+            Err(error) => {
+                self.gpu.end(frame);
+                Err(error)
+            }
+        }
+    }
+
+    /// Frees a frame, once the device is done with it.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn end(&mut self, frame: Frame) -> Result<()> {
+        self.wait()?;
+        self.gpu.end(frame);
+        Ok(())
+    }
+
+    /// Waits for all that was handed to the device.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn wait(&self) -> Result<()> {
+        // SAFETY: one thread alone, the one that owns this, hands commands to the device.
+        unsafe { self.gpu.host().device.device_wait_idle() }.map_err(failed("waiting"))
+    }
+
+    /// Columns and rows of the next picture, made ready; none while the window has no area. `wanted` is the
+    /// window's, for systems where a surface has no size of its own.
+    ///
+    /// # Errors
+    /// A device that is out of memory or lost, or that takes no pictures in 8 bits a colour; a window that is gone.
+    pub fn size(&mut self, wanted: [u32; 2]) -> Result<Option<[u32; 2]>> {
+        let known = match chain::capabilities(&mut self.gpu) {
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                self.renew()?;
+                chain::capabilities(&mut self.gpu)
+            }
+            known => known,
+        };
+        let known = known.map_err(|result| match result {
+            vk::Result::ERROR_SURFACE_LOST_KHR => Error::Device {
+                doing: "showing pictures in a window".into(),
+                reason: "its surface was lost, and so was the next: the window is gone".into(),
+            },
+            other => failed("asking a window for its size")(other),
+        })?;
+        let size = chain::size(&known, wanted);
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        if self.chain.as_ref().is_none_or(|c| c.is_stale || c.size != size) {
+            self.wait()?;
+            let old = self.chain.take();
+            let made = Chain::new(&mut self.gpu, &self.swapchains, (&known, size), old.as_ref());
+            if let Some(old) = old {
+                old.end(&self.gpu, &self.swapchains);
+            }
+            self.chain = Some(made?);
+        }
+        Ok(Some(size))
+    }
+
+    /// Whether blue comes first in the bytes of its pictures; known once there is one.
+    pub fn swaps(&self) -> bool {
+        self.chain.as_ref().is_some_and(Chain::swaps)
+    }
+
+    /// Begins anew with another surface of the window, as after the loss of one.
+    ///
+    /// # Errors
+    /// A device that is lost, a window that is gone.
+    pub fn renew(&mut self) -> Result<()> {
+        self.wait()?;
+        if let Some(chain) = self.chain.take() {
+            chain.end(&self.gpu, &self.swapchains);
+        }
+        match self.gpu.surface() {
+            Some((entry, instance, surface)) => surface.renew(entry, instance),
+            None => Ok(()),
+        }
+    }
+
+    /// Lights the frames of a picture's panes as they say, draws it and hands it to the window. None where there was no
+    /// picture to draw into: [`size`](Self::size) then tells the next, and nothing of the panes was done.
+    ///
+    /// # Errors
+    /// Panes that do not fit, or a device out of memory or lost. Nothing of the panes counts as done then, and what this
+    /// had in hand of the window is given up: the next [`size`](Self::size) makes it anew.
+    pub fn draw(&mut self, panes: &mut [Pane<'_>], shot: &Shot<'_>) -> Result<Option<Shown>> {
+        let slot = self.next;
+        let Some(chain) = &self.chain else { return Ok(None) };
+        let (size, swaps) = (chain.size, chain.swaps());
+        self.slots[slot].settle(&self.gpu)?;
+        let mut timings = Vec::new();
+        for (n, pane) in panes.iter_mut().enumerate() {
+            let was_lit = self.slots[slot].was_lit.get(n).is_some_and(|was| *was);
+            let light = pane.frame.renderer().timings(slot).filter(|_| was_lit);
+            let drawing = self.drawers.get(n).map(|d| d.timings(slot)).unwrap_or_default();
+            timings.push(PaneTimes { light: light.unwrap_or_default(), drawing });
+        }
+        // All that may be refused comes before a picture is taken.
+        self.prepare(slot, panes, shot)?;
+        let Some(image) = self.acquire(slot)? else { return Ok(None) };
+        let is_taken = match self.hand_over(slot, image, panes, shot) {
+            Ok(is_taken) => is_taken,
+            Err(error) => {
+                for pane in panes.iter_mut().filter(|pane| !pane.work.is_none()) {
+                    pane.frame.renderer().forget();
+                }
+                self.give_up(slot);
+                return Err(error);
+            }
+        };
+        self.slots[slot].was_lit = panes.iter().map(|pane| !pane.work.is_none()).collect();
+        self.next = (slot + 1) % SLOTS;
+        let pixels = if shot.keeps { Some(self.read_back(slot, (size, swaps))?) } else { None };
+        Ok(Some(Shown { timings, pixels, is_taken }))
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // A lost device is done with everything.
+        let _ = self.wait();
+        for drawer in self.drawers.drain(..) {
+            drawer.end(&mut self.gpu);
+        }
+        if let Some(chain) = self.chain.take() {
+            chain.end(&self.gpu, &self.swapchains);
+        }
+        for mut slot in self.slots.drain(..) {
+            slot.free(&mut self.gpu);
+            slot.end(&self.gpu);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! A picture's way from the window to the queue and back.
+
+use ash::vk;
+
+use super::{Pane, Screen, Shot};
+use ridgelight::Result;
+use ridgelight::gpu::failed;
+
+/// Compositors may hold pictures of windows that nobody sees.
+const PATIENCE_NS: u64 = 500_000_000;
+
+impl Screen {
+    /// The number of the picture to draw into; the slot is free.
+    pub(super) fn acquire(&mut self, slot: usize) -> Result<Option<usize>> {
+        let acquired = self.slots[slot].acquired(&self.gpu)?;
+        let Some(chain) = &mut self.chain else { return Ok(None) };
+        let none = vk::Fence::null();
+        // SAFETY: the semaphore is this slot's, whose commands, which waited for it, have run.
+        let got = unsafe {
+            self.swapchains.acquire_next_image(chain.swapchain, PATIENCE_NS, acquired, none)
+        };
+        match got {
+            Ok((image, is_suboptimal)) => {
+                chain.is_stale |= is_suboptimal;
+                Ok(Some(image as usize))
+            }
+            Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => Ok(None),
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
+                chain.is_stale = true;
+                Ok(None)
+            }
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew().map(|()| None),
+            Err(other) => Err(failed("taking a picture of the window's")(other)),
+        }
+    }
+
+    /// Records a picture that was taken, runs it and shows it; whether the window took it.
+    pub(super) fn hand_over(
+        &mut self,
+        slot: usize,
+        image: usize,
+        panes: &mut [Pane<'_>],
+        shot: &Shot<'_>,
+    ) -> Result<bool> {
+        self.record(slot, image, panes, shot)?;
+        self.submit(slot, image)?;
+        self.present(slot, image)
+    }
+
+    /// After a picture was taken that could not be handed over: with all others of the window's it goes, and with it the
+    /// semaphore that its taking signals, for which nothing will wait.
+    pub(super) fn give_up(&mut self, slot: usize) {
+        // A lost device is done with everything.
+        let _ = self.wait();
+        if let Some(chain) = self.chain.take() {
+            chain.end(&self.gpu, &self.swapchains);
+        }
+        self.slots[slot].give_up(&self.gpu);
+    }
+
+    fn submit(&mut self, slot: usize, image: usize) -> Result<()> {
+        let (device, slot) = (&self.gpu.host().device, &mut self.slots[slot]);
+        let chain = self.chain.as_ref().expect("acquired from");
+        let stage = vk::PipelineStageFlags2::ALL_TRANSFER;
+        let wait = [vk::SemaphoreSubmitInfo::default().semaphore(slot.acquired).stage_mask(stage)];
+        let signal = [vk::SemaphoreSubmitInfo::default()
+            .semaphore(chain.finished[image])
+            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(slot.commands)];
+        let submit = [vk::SubmitInfo2::default()
+            .wait_semaphore_infos(&wait)
+            .command_buffer_infos(&commands)
+            .signal_semaphore_infos(&signal)];
+        // SAFETY: everything is this device's; the slot is free.
+        unsafe {
+            device
+                .reset_fences(&[slot.done])
+                .and_then(|()| device.queue_submit2(self.gpu.queue(), &submit, slot.done))
+        }
+        .map_err(failed("running a frame"))?;
+        slot.is_in_flight = true;
+        Ok(())
+    }
+
+    /// Whether the window takes it.
+    fn present(&mut self, slot: usize, image: usize) -> Result<bool> {
+        let chain = self.chain.as_mut().expect("acquired from");
+        let (finished, swapchains) = ([chain.finished[image]], [chain.swapchain]);
+        let images = [image as u32];
+        let info = vk::PresentInfoKHR::default()
+            .wait_semaphores(&finished)
+            .swapchains(&swapchains)
+            .image_indices(&images);
+        // SAFETY: the picture was acquired, and is left for presenting by the commands of this slot.
+        let shown = unsafe { self.swapchains.queue_present(self.gpu.queue(), &info) };
+        match shown {
+            Ok(is_suboptimal) => {
+                chain.is_stale |= is_suboptimal;
+                Ok(true)
+            }
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
+                chain.is_stale = true;
+                Ok(false)
+            }
+            Err(vk::Result::ERROR_SURFACE_LOST_KHR) => self.renew().map(|()| false),
+            Err(other) => Err(failed(format!("showing frame {slot}"))(other)),
+        }
+    }
+}
