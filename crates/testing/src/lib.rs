@@ -16,7 +16,7 @@
 //! # }
 //! ```
 //!
-//! Results of another driver differ by roundings: a tolerance above them ([`tolerance`](ridgelight_cpu::tolerance)
+//! Results of another driver differ by roundings: a tolerance above them (`ridgelight_cpu::tolerance`
 //! has those of single passes) is better than a golden for each.
 
 #![deny(clippy::missing_errors_doc)]
