@@ -135,7 +135,7 @@ fn folded(op: u32, operands: &[u32]) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::shaders;
+    use crate::gpu::shaders::{self, Specialised};
 
     /// Opcodes and operands of a module.
     fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {
@@ -168,6 +168,22 @@ mod tests {
             }
         }
         assert!(count > 100, "{count}");
+    }
+
+    /// Words of the generated structs stand in the order of the shader's constants: their defaults are the module's.
+    #[test]
+    fn generated_defaults_are_the_modules() {
+        let all: [Specialised; 4] = [
+            shaders::HorizonSweep::default().into(),
+            shaders::PathTrace::default().into(),
+            shaders::PictureToneFrag::default().into(),
+            shaders::SunShade::default().into(),
+        ];
+        for Specialised { shader, constants } in all {
+            assert_eq!(constants.len(), shader.constants.len(), "{}", shader.name);
+            let [given, own] = [specialised(shader, &constants), specialised(shader, &[])];
+            assert_eq!(given, own, "{}", shader.name);
+        }
     }
 
     /// bool, u32; a boolean and a number of 7 that are asked for, one of 5 that is not, their sum, what the
