@@ -18,7 +18,7 @@ pub(crate) struct Pipeline {
 }
 
 /// A shader's name and its constants.
-type Key = (&'static str, Vec<(u32, u32)>);
+type Key = (&'static str, Vec<u32>);
 
 /// Pipelines, one a shader and set of constants: of a renderer, or of all that share a clone of this.
 #[derive(Clone, Default)]
@@ -73,7 +73,7 @@ impl Pipelines {
     }
 }
 
-fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeline> {
+fn make(host: &Host, shader: &Shader, constants: &[u32]) -> Result<Pipeline> {
     let device = &host.device;
     let doing = || format!("making the pipeline of {}", shader.name);
     let bindings: Vec<_> = shader
@@ -101,7 +101,7 @@ fn make(host: &Host, shader: &Shader, constants: &[(u32, u32)]) -> Result<Pipeli
         vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&push);
     let mut made =
         Pipeline { pipeline: vk::Pipeline::null(), layout: vk::PipelineLayout::null(), set_layout };
-    let words = specialised(shader.words, constants);
+    let words = specialised(shader, constants);
     let module_info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the SPIR-V is glslang's output for this very layout, with constants of its own types;
     // the cache is null or the host's;

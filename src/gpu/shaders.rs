@@ -1,4 +1,4 @@
-//! The compiled shaders and what each binds, as `build.rs` found by reflection.
+//! The compiled shaders, what each binds and what it is specialised by, as `build.rs` found by reflection.
 
 /// How a shader uses a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,15 @@ pub struct Binding {
     pub written: bool,
 }
 
+/// One specialisation constant of a shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Constant {
+    /// `constant_id`.
+    pub id: u32,
+    /// Its name in the shader, in lower case.
+    pub name: &'static str,
+}
+
 /// One compiled shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
@@ -47,8 +56,38 @@ pub struct Shader {
     pub push_bytes: u32,
     /// Its bindings, by number.
     pub bindings: &'static [Binding],
+    /// Its specialisation constants, by number.
+    pub constants: &'static [Constant],
     /// SPIR-V.
     pub words: &'static [u32],
+}
+
+/// A shader and a word for each of its specialisation constants, in their order. Made only from the struct of that
+/// shader, so that no constant is addressed by number.
+#[derive(Clone, Debug)]
+pub(crate) struct Specialised {
+    pub shader: &'static Shader,
+    pub constants: Vec<u32>,
+}
+
+/// SPIR-V of all shaders, one after the other.
+static WORDS: [u32; WORD_COUNT] =
+    words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
+
+#[allow(long_running_const_eval, reason = "a turn for each word of SPIR-V")]
+const fn words_of(bytes: &[u8]) -> [u32; WORD_COUNT] {
+    let (all, _) = bytes.as_chunks();
+    let mut words = [0; WORD_COUNT];
+    let mut i = 0;
+    while i < WORD_COUNT {
+        words[i] = u32::from_le_bytes(all[i]);
+        i += 1;
+    }
+    words
+}
+
+const fn words_at(first: usize, count: usize) -> &'static [u32] {
+    WORDS.split_at(first).1.split_at(count).0
 }
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

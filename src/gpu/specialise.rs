@@ -5,6 +5,8 @@
 
 use std::collections::HashMap;
 
+use super::shaders::Shader;
+
 /// Words before the first instruction.
 const HEADER: usize = 5;
 
@@ -23,9 +25,17 @@ const DECORATE: u32 = 71;
 const COMPOSITE_EXTRACT: u32 = 81;
 const SPEC_ID: u32 = 1;
 
+/// A shader's module with words in place of its specialisation constants, in their order, and of those beyond the
+/// words with their defaults.
+pub(crate) fn specialised(shader: &Shader, words: &[u32]) -> Vec<u32> {
+    let numbered: Vec<_> =
+        shader.constants.iter().map(|constant| constant.id).zip(words.iter().copied()).collect();
+    with_constants(shader.words, &numbered)
+}
+
 /// A module with `constants`, (constant_id, word), in place of its specialisation constants, and of the others
 /// with their defaults. What [`folded`] does not know stays as it is.
-pub(crate) fn specialised(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
+fn with_constants(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
     let mut out = words[..HEADER].to_vec();
     // By result id: what is asked for, values of scalars, and of vectors.
     let (mut asked, mut known) = (HashMap::new(), HashMap::new());
@@ -125,7 +135,7 @@ fn folded(op: u32, operands: &[u32]) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::shaders;
+    use crate::gpu::shaders::{self, Specialised};
 
     /// Opcodes and operands of a module.
     fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {
@@ -143,7 +153,7 @@ mod tests {
     fn no_constant_is_left_to_the_driver() {
         let mut count = 0;
         for shader in shaders::ALL.iter().chain(shaders::GRAPHICS) {
-            let made = specialised(shader.words, &[]);
+            let made = specialised(shader, &[]);
             let is_number = |(op, o): &(u32, &[u32])| *op == DECORATE && o[1] == SPEC_ID;
             let before = instructions(shader.words).into_iter().filter(|i| !is_number(i));
             let (before, after): (Vec<_>, _) = (before.collect(), instructions(&made));
@@ -158,6 +168,22 @@ mod tests {
             }
         }
         assert!(count > 100, "{count}");
+    }
+
+    /// Words of the generated structs stand in the order of the shader's constants: their defaults are the module's.
+    #[test]
+    fn generated_defaults_are_the_modules() {
+        let all: [Specialised; 4] = [
+            shaders::HorizonSweep::default().into(),
+            shaders::PathTrace::default().into(),
+            shaders::PictureToneFrag::default().into(),
+            shaders::SunShade::default().into(),
+        ];
+        for Specialised { shader, constants } in all {
+            assert_eq!(constants.len(), shader.constants.len(), "{}", shader.name);
+            let [given, own] = [specialised(shader, &constants), specialised(shader, &[])];
+            assert_eq!(given, own, "{}", shader.name);
+        }
     }
 
     /// bool, u32; a boolean and a number of 7 that are asked for, one of 5 that is not, their sum, what the
@@ -197,7 +223,7 @@ mod tests {
             op(CONSTANT, &[uint, second, 5]),
             op(SPEC_CONSTANT_OP, &[uint, other, 9999, five]),
         ]);
-        assert_eq!(specialised(&given, &[(10, 1), (11, 7), (13, 1)]), expected);
+        assert_eq!(with_constants(&given, &[(10, 1), (11, 7), (13, 1)]), expected);
     }
 
     #[test]

@@ -157,7 +157,15 @@ pub(crate) fn plan(
         // Of each azimuth every sample's height, and of those that are seen, at most all, radiance.
         let looked_at = u64::from(of.heights.samples()) * u64::from(count);
         builder.pass(
-            &shaders::BOUNCE_GATHER,
+            shaders::BounceGather {
+                periodic: of.heights.periodic,
+                stack: is_stack,
+                levels: of.heights.levels() as i32,
+                shade_levels: of.shade.levels() as i32,
+                grey: bounce.grey,
+                is_plane: of.receiver == Receiver::Plane,
+                node_stride: nodes.stride as i32,
+            },
             &part,
             format!(
                 "{} along {count} azimuths, {} samples each, {}",
@@ -169,15 +177,6 @@ pub(crate) fn plan(
                 }
             ),
             [across.div_ceil(8), along.div_ceil(8), 1],
-            &[
-                (0, u32::from(of.heights.periodic)),
-                (1, u32::from(is_stack)),
-                (2, of.heights.levels()),
-                (3, of.shade.levels()),
-                (4, u32::from(bounce.grey)),
-                (5, u32::from(of.receiver == Receiver::Plane)),
-                (6, nodes.stride),
-            ],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
             samples * (2 * 16 + looked_at * (4 + 16)),

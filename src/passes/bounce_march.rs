@@ -44,18 +44,17 @@ pub(crate) fn plan(
             false => format!("{} azimuths {first}..{last}", bounce.name),
         };
         builder.pass(
-            &shaders::BOUNCE_MARCH,
+            shaders::BounceMarch {
+                border: scene.surface.border as u32,
+                thin_rows,
+                thin_cols,
+                most_steps: blocks.most_steps() as i32,
+                grey: bounce.grey,
+                node_stride: nodes.stride as i32,
+            },
             &part,
             format!("{}, every stretch seen along {count} azimuths", bounce.why),
             [across.div_ceil(8), along.div_ceil(8), 1],
-            &[
-                (0, scene.surface.border as u32),
-                (1, u32::from(thin_rows)),
-                (2, u32::from(thin_cols)),
-                (3, blocks.most_steps()),
-                (4, u32::from(bounce.grey)),
-                (5, nodes.stride),
-            ],
             &BounceMarchPush {
                 land: LandPush::of(field, blocks),
                 azimuths: azimuths as i32,

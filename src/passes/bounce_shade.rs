@@ -32,11 +32,10 @@ pub(crate) fn plan(
     let [cell_x, cell_y] = field.cell_m();
     let samples = u64::from(size[0]) * u64::from(size[1]);
     builder.pass(
-        &shaders::BOUNCE_SHADE,
+        shaders::BounceShade { node_stride: at.nodes.stride as i32 },
         &bounce.name,
         "the radiance that nodes see, by every sample's own share of ground",
         [size[0].div_ceil(8), size[1].div_ceil(8), 1],
-        &[(0, at.nodes.stride)],
         &BounceShadePush {
             cols: size[0] as i32,
             rows: size[1] as i32,

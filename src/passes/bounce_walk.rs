@@ -95,18 +95,17 @@ pub(crate) fn plan(
             // Of two nodes one keeps 16 bytes.
             let bytes_an_azimuth = if *from == From::Kept { 10 } else { 2 };
             let pass = builder.pass(
-                &shaders::BOUNCE_WALK,
+                shaders::BounceWalk {
+                    line_shift: swept.line_shift as i32,
+                    border: border as u32,
+                    marches_rows: axis.marches_rows,
+                    grey: bounce.grey,
+                    node_stride: nodes.stride as i32,
+                    from: *from as u32,
+                },
                 &format!("{part}{which}{turn}"),
                 format!("{}, stretches seen along {} azimuths", bounce.why, last - first),
                 [along.div_ceil(8), across.div_ceil(8), 1],
-                &[
-                    (0, swept.line_shift),
-                    (1, border as u32),
-                    (2, u32::from(axis.marches_rows)),
-                    (3, u32::from(bounce.grey)),
-                    (4, nodes.stride),
-                    (5, *from as u32),
-                ],
                 &BounceWalkPush {
                     cols: cols as i32,
                     rows: rows as i32,

@@ -35,11 +35,14 @@ pub(crate) fn plan(
     let count = circle.len() as u32;
     let seen = at.count(size) * u64::from(count);
     let pass = builder.pass(
-        &shaders::CAST_GATHER,
+        shaders::CastGather {
+            border: border as u32,
+            grey: bounce.grey,
+            node_stride: at.nodes.stride as i32,
+        },
         &bounce.name,
         format!("{}, by the casting sets of {count} azimuths", bounce.why),
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
-        &[(0, border as u32), (1, u32::from(bounce.grey)), (2, at.nodes.stride)],
         &CastGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
         &[
             ("casting_sets", casts),

@@ -27,11 +27,10 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
     builder.pass(
-        &shaders::DIRTY_LIST,
+        shaders::DirtyList,
         "",
         "light is summed only where some sample is marked",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &[],
         &DirtyListPush { cols, rows },
         &[("dirty_samples", dirty), ("edit_list", list)],
         8 * all,

@@ -22,11 +22,10 @@ pub(crate) fn plan(builder: &mut Builder, size: [u32; 2], [dirty, list]: [Resour
     let all = u64::from(across) * u64::from(down);
     let [cols, rows] = size.map(|n| n as i32);
     let pass = builder.pass(
-        &shaders::DIRTY_MARK,
+        shaders::DirtyMark,
         "",
         "samples whose own surface was edited; clears the marks of the last edit",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &[],
         &DirtyMarkPush { cols, rows, rectangle: Rectangle::whole(size).words() },
         &[("dirty_samples", dirty), ("edit_list", list)],
         4 * all,

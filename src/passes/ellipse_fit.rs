@@ -42,11 +42,10 @@ pub(crate) fn plan(
     let is_bent = bound.iter().any(|(name, _)| *name == "bent");
     let above = directions.vectors().iter().filter(|e| e.z > 0.0).count();
     builder.pass(
-        &shaders::ELLIPSE_FIT,
+        shaders::EllipseFit { small: is_small, bent: is_bent },
         &format!("{base}rows {}..{}", rows.start, rows.end),
         "the ellipse of directions in which each sample sees the sky",
         [cols.div_ceil(8), height.div_ceil(8), 1],
-        &[(0, u32::from(is_small)), (1, u32::from(is_bent))],
         &EllipseFitPush {
             cols: cols as i32,
             rows: rows.end as i32,

@@ -34,11 +34,10 @@ pub(crate) fn plan(
     let rows_kept = environment.rows_above_ground(border) as u32;
     let words = u64::from(azimuths) * 3 * u64::from(rows_kept + nodes);
     builder.pass(
-        &shaders::ENV_TABLES,
+        shaders::EnvTables,
         "",
         format!("light above each of {nodes} elevations, so that shading looks up instead of integrating"),
         [1, azimuths.div_ceil(4), 1],
-        &[],
         &EnvTablesPush {
             height: environment.height() as i32,
             rows: rows_kept as i32,

@@ -31,11 +31,10 @@ pub(crate) fn plan(
     let count = 2 * sh.light_order - 1;
     let texels = (environment.width() * sh.rows) as u64;
     builder.pass(
-        &shaders::ENV_TURNS,
+        shaders::EnvTurns,
         sh.part(),
         format!("the environment around each row, up to {} turns", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],
-        &[],
         &EnvTurnsPush {
             width: environment.width() as i32,
             rows: sh.rows as i32,

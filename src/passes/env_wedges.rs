@@ -30,14 +30,13 @@ pub(crate) fn plan(
     let texels = u64::from(width) * u64::from(kept);
     let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
     let pass = builder.pass(
-        &shaders::ENV_WEDGES,
+        shaders::EnvWedges,
         "",
         format!(
             "the environment's light in each azimuth's wedge: {kept} of {} rows can be seen",
             environment.height()
         ),
         [kept.div_ceil(8), azimuths, 1],
-        &[],
         &EnvWedgesPush { width: width as i32, rows: kept as i32, rotation_rad: turn as f32 },
         &[("environment", image), ("azimuths", directions), ("wedge_rows", rows)],
         texels * 16 + u64::from(azimuths) * u64::from(kept) * 48,

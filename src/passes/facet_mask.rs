@@ -37,11 +37,10 @@ pub(crate) fn plan(
     let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let words = u64::from(cells_x) * u64::from(cells_y) * u64::from(layers.end - layers.start);
     builder.pass(
-        &shaders::FACET_MASK,
+        shaders::FacetMask { border: border as u32, most_steps: blocks.most_steps() as i32 },
         &format!("layers {}..{}", layers.start, layers.end),
         "which triangles are seen from each direction",
         [cells_x.div_ceil(8), cells_y.div_ceil(8), layers.end - layers.start],
-        &[(0, border as u32), (1, blocks.most_steps())],
         &FacetMaskPush {
             land: LandPush::of(field, blocks),
             highest_m,

@@ -35,11 +35,10 @@ pub(crate) fn plan(
     let count = directions.end - directions.start;
     let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
     builder.pass(
-        &shaders::FAN_WEIGH,
+        shaders::FanWeigh,
         part,
         "what each direction stands for on the curved base",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &[],
         &FanWeighPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -81,19 +81,18 @@ pub(crate) fn plan(
     let layers = u64::from(glossy.layers());
     let written = vectors.map_or(16, |_| glossy.texel_bytes() * layers);
     builder.pass(
-        &shaders::GLOSS_EXIT,
+        shaders::GlossExit {
+            order: glossy.order as i32,
+            grey: glossy.grey,
+            lobe_is_map: lobes.map.is_some(),
+            is_direct,
+            throws,
+            vectors: has_vectors,
+            halves: vectors.is_some_and(|v| v.halves),
+        },
         &leaving.name,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[
-            (0, glossy.order),
-            (1, u32::from(glossy.grey)),
-            (2, u32::from(lobes.map.is_some())),
-            (3, u32::from(is_direct)),
-            (4, u32::from(throws)),
-            (5, u32::from(has_vectors)),
-            (6, u32::from(vectors.is_some_and(|v| v.halves))),
-        ],
         &GlossExitPush {
             cols: cols as i32,
             rows: rows as i32,

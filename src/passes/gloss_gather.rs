@@ -55,7 +55,16 @@ pub(crate) fn plan(
         let looks = u64::from(looked_at) * u64::from(count);
         let of_look = if has_vectors { 4 * glossy.texel_bytes() * u64::from(layers) } else { 16 };
         builder.pass(
-            &shaders::GLOSS_GATHER,
+            shaders::GlossGather {
+                periodic: of.heights.periodic,
+                stack: of.heights.stored == Levels::Stack,
+                levels: of.heights.levels() as i32,
+                shade_levels: of.shade.levels() as i32,
+                grey: bounce.grey,
+                vectors: has_vectors,
+                order: glossy.order as i32,
+                most_knots: knots as i32,
+            },
             &part,
             format!(
                 "{} along {count} azimuths, {looked_at} samples each, {}; as a series besides",
@@ -67,16 +76,6 @@ pub(crate) fn plan(
                 }
             ),
             [cols.div_ceil(8), rows.div_ceil(8), 1],
-            &[
-                (0, u32::from(of.heights.periodic)),
-                (1, u32::from(of.heights.stored == Levels::Stack)),
-                (2, of.heights.levels()),
-                (3, of.shade.levels()),
-                (4, u32::from(bounce.grey)),
-                (5, u32::from(has_vectors)),
-                (6, glossy.order),
-                (7, knots),
-            ],
             &GatherPush::of(field, of, azimuths, first..last),
             &bound,
             samples * (2 * 16 + 2 * 16 * u64::from(layers) + looks * (4 + of_look)),

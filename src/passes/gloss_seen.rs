@@ -21,11 +21,10 @@ pub(crate) fn plan(
     let samples = u64::from(cols) * u64::from(rows);
     let fours = u64::from((glossy.order * glossy.order).div_ceil(4));
     builder.pass(
-        &shaders::GLOSS_SEEN,
+        shaders::GlossSeen { order: glossy.order as i32, grey: glossy.grey },
         "",
         "what is seen times the light, to be thrown on",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[(0, glossy.order), (1, u32::from(glossy.grey))],
         &GlossSeenPush { cols: cols as i32, rows: rows as i32 },
         &[
             ("visibility", visibility),

@@ -30,11 +30,10 @@ pub(crate) fn plan(
     let [across, down] = [cells_x, cells_y].map(|n| n.div_ceil(1 << (2 * level)));
     let blocks = u64::from(across) * u64::from(down);
     builder.pass(
-        &shaders::HEIGHT_BOUNDS,
+        shaders::HeightBounds,
         &format!("level {level}"),
         "rays above all of a block skip it",
         [across.div_ceil(8), down.div_ceil(8), 1],
-        &[],
         &HeightBoundsPush {
             cells_x: cells_x as i32,
             cells_y: cells_y as i32,

@@ -34,11 +34,13 @@ pub(crate) fn plan(
     let (cols, rows) = (field.cols() as u32, field.rows() as u32);
     let samples = u64::from(cols) * u64::from(rows);
     builder.pass(
-        &shaders::HEIGHT_CELLS,
+        shaders::HeightCells {
+            periodic: border == Border::Periodic,
+            begins_paths: paths.is_some(),
+        },
         "",
         "a ray reads a cell at once; light begins with the samples' normals",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[(0, u32::from(border == Border::Periodic)), (1, u32::from(paths.is_some()))],
         &HeightCellsPush {
             cols: cols as i32,
             rows: rows as i32,

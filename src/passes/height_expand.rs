@@ -20,11 +20,10 @@ pub(crate) fn plan(
     let [cols, rows] = pyramid.size;
     let samples = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
     builder.pass(
-        &shaders::HEIGHT_EXPAND,
+        shaders::HeightExpand { periodic: pyramid.periodic },
         "",
         "a march then reads levels as it reads the field",
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
-        &[(0, u32::from(pyramid.periodic))],
         &HeightExpandPush {
             size: pyramid.size.map(|n| n as i32),
             width_shift: pyramid.width_shift() as i32,

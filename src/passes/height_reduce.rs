@@ -16,11 +16,10 @@ pub(crate) fn plan(
     let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
     let away = apart * f64::from(1 << pyramid.level_offset);
     builder.pass(
-        &shaders::HEIGHT_REDUCE,
+        shaders::HeightReduce { periodic: pyramid.periodic, from_field: from == 0 },
         &format!("level {number}"),
         format!("every {apart:.1} samples, for marches {away:.0} steps away"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[(0, u32::from(pyramid.periodic)), (1, u32::from(from == 0))],
         &ReducePush::of(pyramid, number),
         &[("heights", heights), ("height_levels", levels), ("level_table", table)],
         4 * (level.texels() + source.texels()),

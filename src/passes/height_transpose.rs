@@ -28,11 +28,13 @@ pub(crate) fn plan(
 ) {
     let quads = axis.lanes.div_ceil(4);
     let pass = builder.pass(
-        &shaders::HEIGHT_TRANSPOSE,
+        shaders::HeightTranspose {
+            marches_rows: axis.marches_rows,
+            periodic: border == Border::Periodic,
+        },
         axis.name(),
         "four neighbouring lanes are read at once",
         [quads.div_ceil(8), axis.steps.div_ceil(8), 1],
-        &[(0, u32::from(axis.marches_rows)), (1, u32::from(border == Border::Periodic))],
         &HeightTransposePush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

@@ -14,11 +14,15 @@ pub(crate) fn plan(
     let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
     let samples = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
     let pass = builder.pass(
-        &shaders::HORIZON_MARCH,
+        shaders::HorizonMarch {
+            all_crossings: true,
+            periodic: axis.warm_up > 0,
+            writes_distances: distances,
+            node_stride: nodes.stride as i32,
+        },
         part,
         format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
         [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
-        &[(0, 1), (1, u32::from(axis.warm_up > 0)), (2, u32::from(distances)), (3, nodes.stride)],
         &MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
         samples * 8,

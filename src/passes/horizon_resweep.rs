@@ -41,11 +41,10 @@ pub(crate) fn plan(
 ) {
     let axis = batch.axis;
     let pass = builder.pass(
-        &shaders::HORIZON_RESWEEP,
+        shaders::HorizonResweep { line_shift: sweep.line_shift as i32, hull_packed: sweep.packed },
         part,
         "lines that meet the edit, until it is off their hulls",
         [batch.most_lines.div_ceil(32), 1, batch.count],
-        &[(0, sweep.line_shift), (1, u32::from(sweep.packed))],
         &HorizonResweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

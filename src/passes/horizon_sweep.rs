@@ -58,9 +58,9 @@ fn run(
     again: bool,
 ) {
     let axis = batch.axis;
-    let depth = sweep.hull_depth;
+    let depth = sweep.hull_depth as i32;
     let private = sweep.hull == HullPlace::Private;
-    let shared_words = 4 * depth * sweep.group_size * if sweep.packed { 1 } else { 2 };
+    let shared_words = 4 * depth * sweep.group_size as i32 * if sweep.packed { 1 } else { 2 };
     let mut bound = vec![("azimuths", images.azimuths)];
     // Lines a cell apart share texels of four lanes; all others fetch sample by sample.
     match images.lane_heights {
@@ -77,7 +77,21 @@ fn run(
     let value_bytes = if images.occluders.is_some() { 2 } else { 0 }
         + if images.slopes.is_some() { u64::from(sweep.slope_format) * 4 % 6 } else { 0 };
     let pass = builder.pass(
-        &shaders::HORIZON_SWEEP,
+        shaders::HorizonSweep {
+            local_size_x: sweep.group_size,
+            hull_place: sweep.hull as u32,
+            hull_depth: depth,
+            private_entries: if private && !sweep.packed { depth } else { 1 },
+            private_words: if private && sweep.packed { depth } else { 1 },
+            shared_words: if sweep.hull == HullPlace::Shared { shared_words } else { 1 },
+            hull_holds_line: sweep.holds_line,
+            hull_packed: sweep.packed,
+            writes_occluders: images.occluders.is_some(),
+            slope_format: if images.slopes.is_some() { sweep.slope_format } else { 0 },
+            periodic: axis.warm_up > 0,
+            line_shift: sweep.line_shift as i32,
+            redoes_lost: again,
+        },
         part,
         if again {
             "lines whose hull was deeper than its memory; ends at once where there are none"
@@ -95,21 +109,6 @@ fn run(
             )
         },
         [lines.div_ceil(4 * sweep.group_size), 1, batch.count],
-        &[
-            (0, sweep.group_size),
-            (1, sweep.hull as u32),
-            (2, depth),
-            (3, if private && !sweep.packed { depth } else { 1 }),
-            (4, if private && sweep.packed { depth } else { 1 }),
-            (5, if sweep.hull == HullPlace::Shared { shared_words } else { 1 }),
-            (6, u32::from(sweep.holds_line)),
-            (7, u32::from(sweep.packed)),
-            (8, u32::from(images.occluders.is_some())),
-            (9, if images.slopes.is_some() { sweep.slope_format } else { 0 }),
-            (10, u32::from(axis.warm_up > 0)),
-            (11, sweep.line_shift),
-            (12, u32::from(again)),
-        ],
         &HorizonSweepPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

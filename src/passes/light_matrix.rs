@@ -41,11 +41,10 @@ pub(crate) fn plan(
     bound.extend(turns.map(|t| ("env_turns", t)));
     let [r, g, b] = sky.unwrap_or_default();
     builder.pass(
-        &shaders::LIGHT_MATRIX,
+        shaders::LightMatrix,
         sh.part(),
         format!("light of order {light_order} times what is seen: {receivers} × {}", order * order),
         [1, 1, 1],
-        &[],
         &LightMatrixPush {
             rows: rows as i32,
             light_order: light_order as i32,

@@ -56,19 +56,18 @@ pub(crate) fn plan(builder: &mut Builder, [cols, rows]: [u32; 2], part: &str, li
     let texel = if light.grey { 4 } else { 16 };
     let written = u64::from(light.radiance.is_some()) * 2 + u64::from(light.layer.is_some());
     let pass = builder.pass(
-        &shaders::LIGHT_RESOLVE,
+        shaders::LightResolve {
+            sum_has_colour: light.has_colour,
+            albedo_is_map: light.albedo_map.is_some(),
+            adds_to_radiance: light.radiance.is_some(),
+            writes_layer: light.layer.is_some(),
+            grey: light.grey,
+            relights: light.edited.is_some(),
+            colour_is_texel: light.texel.is_some(),
+        },
         part,
         "the light's sum, coloured, into the picture",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[
-            (0, u32::from(light.has_colour)),
-            (1, u32::from(light.albedo_map.is_some())),
-            (2, u32::from(light.radiance.is_some())),
-            (3, u32::from(light.layer.is_some())),
-            (4, u32::from(light.grey)),
-            (5, u32::from(light.edited.is_some())),
-            (6, u32::from(light.texel.is_some())),
-        ],
         &LightResolvePush {
             cols: cols as i32,
             rows: rows as i32,

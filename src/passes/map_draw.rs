@@ -28,11 +28,10 @@ pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)
     let [width, height] = map.size;
     let pixels = u64::from(width) * u64::from(height);
     builder.pass(
-        &shaders::MAP_DRAW,
+        shaders::MapDraw { grey: !map.has_colour, has_voids: map.has_voids },
         "",
         "radiance as a screen shows it",
         [width.div_ceil(8), height.div_ceil(8), 1],
-        &[(0, u32::from(!map.has_colour)), (1, u32::from(map.has_voids))],
         &MapDrawPush {
             size: map.size.map(|n| n as i32),
             field: map.field.map(|n| n as i32),

@@ -135,7 +135,7 @@ pub(crate) fn plan(
         (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
     };
     builder.pass(
-        &shaders::PATH_TRACE,
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.phong.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_balls: !lights.spheres.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.phong, Some(Lobe::Map(_))), at_places: listed.is_some() },
         &label.join(" "),
         match listed {
             None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
@@ -144,23 +144,6 @@ pub(crate) fn plan(
             ),
         },
         [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
-        &[
-            (0, surface.border as u32),
-            (1, u32::from(thin_rows)),
-            (6, u32::from(thin_cols)),
-            (2, SET_BITS),
-            (3, u32::from(is_map)),
-            (4, u32::from(lights.environment.is_some())),
-            (5, u32::from(surface.phong.is_some())),
-            (7, u32::from(count > 0)),
-            (11, u32::from(!lights.keys.is_empty())),
-            (8, u32::from(!lights.spheres.is_empty())),
-            (9, u32::from(bounces > 0)),
-            (10, blocks.most_steps()),
-            (12, u32::from(part.is_some())),
-            (13, u32::from(matches!(surface.phong, Some(Lobe::Map(_))))),
-            (14, u32::from(listed.is_some())),
-        ],
         &PathTracePush {
             land: LandPush::of(field, blocks),
             highest_m,

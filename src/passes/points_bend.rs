@@ -44,11 +44,10 @@ pub(crate) fn plan(
     let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     builder.pass(
-        &shaders::POINTS_BEND,
+        shaders::PointsBend { border: border as u32, small: is_small, reach: REACH_CELLS as i32 },
         part,
         "where samples see on the curved base what they see on the flat one",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &[(0, border as u32), (1, u32::from(is_small)), (2, REACH_CELLS)],
         &PointsBendPush {
             cols: cols as i32,
             rows: rows as i32,

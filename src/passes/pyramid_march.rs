@@ -65,16 +65,15 @@ pub(crate) fn plan(
     let places = u64::from(lanes) * u64::from(steps);
     let samples = places * u64::from(batch.count);
     let pass = builder.pass(
-        &shaders::PYRAMID_MARCH,
+        shaders::PyramidMarch {
+            periodic: pyramid.periodic,
+            stack: is_stack,
+            levels: pyramid.levels() as i32,
+            node_stride: nodes.stride as i32,
+        },
         part,
         format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
         [lanes.div_ceil(8), steps.div_ceil(8), 1],
-        &[
-            (0, u32::from(pyramid.periodic)),
-            (1, u32::from(is_stack)),
-            (2, pyramid.levels()),
-            (3, nodes.stride),
-        ],
         &PyramidMarchPush {
             lanes: axis.lanes as i32,
             steps: axis.steps as i32,

@@ -112,20 +112,19 @@ pub(crate) fn plan(
     let views = if sums { steps.views } else { 1 };
     let looks = u64::from(cols) * u64::from(rows) * u64::from(count) * u64::from(views);
     builder.pass(
-        &shaders::SCATTER_GATHER,
+        shaders::ScatterGather {
+            source: source as u32,
+            sums,
+            small: is_small,
+            albedo_is_map: is_map,
+            has_lobe: steps.lobe.is_some(),
+            lobe_is_map: matches!(steps.lobe, Some(Lobe::Map(_))),
+            bent: steps.curvature != Curvature::FLAT,
+            own_lobe: sums && steps.own_lobe,
+        },
         &part,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), if sums { views } else { count }],
-        &[
-            (0, source as u32),
-            (1, u32::from(sums)),
-            (2, u32::from(is_small)),
-            (3, u32::from(is_map)),
-            (4, u32::from(steps.lobe.is_some())),
-            (5, u32::from(matches!(steps.lobe, Some(Lobe::Map(_))))),
-            (6, u32::from(steps.curvature != Curvature::FLAT)),
-            (7, u32::from(sums && steps.own_lobe)),
-        ],
         &ScatterGatherPush {
             cols: cols as i32,
             rows: rows as i32,
@@ -159,11 +158,10 @@ pub(crate) fn plan_nothing(
     let [cols, rows] = [field.cols() as u32, field.rows() as u32];
     let samples = u64::from(cols) * u64::from(rows);
     builder.pass(
-        &shaders::SCATTER_GATHER,
+        shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
         "nothing",
         "no light: nothing is scattered",
         [cols.div_ceil(8), rows.div_ceil(8), views],
-        &[(0, Source::None as u32), (1, 1)],
         &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
         &[("scattered", scattered)],
         16 * samples * u64::from(views),

@@ -46,7 +46,14 @@ pub(crate) fn plan(
     let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
     let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
     builder.pass(
-        &shaders::SH_SHADE,
+        shaders::ShShade {
+            border: border as u32,
+            marches_rows: axis.marches_rows,
+            order: sh.order as i32,
+            receiver: sh.lit as u32,
+            node_stride: sh.nodes.stride as i32,
+            lobe_is_map: map.is_some(),
+        },
         match sh.lit {
             Lit::Plane | Lit::Cosine => "env",
             Lit::Gloss => "glossy",
@@ -57,14 +64,6 @@ pub(crate) fn plan(
             Lit::Gloss => "what is seen times the light's matrix; a Phong lobe of as many bands",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, border as u32),
-            (1, u32::from(axis.marches_rows)),
-            (2, sh.order as u32),
-            (3, sh.lit as u32),
-            (4, sh.nodes.stride),
-            (5, u32::from(map.is_some())),
-        ],
         &ShShadePush {
             cols: cols as i32,
             rows: rows as i32,

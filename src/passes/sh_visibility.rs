@@ -36,7 +36,18 @@ pub(crate) fn plan(
     let nodes = u64::from(lanes) * u64::from(steps);
     let kept = sh.layers() as u64 * 16 * if batch.is_first { 1 } else { 2 };
     let pass = builder.pass(
-        &shaders::SH_VISIBILITY,
+        shaders::ShVisibility {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            order: sh.order as i32,
+            by_nlp: wedges == Wedges::Nlp,
+            marches_rows: axis.marches_rows,
+            own_plane_hides: sh.own_plane_hides,
+            lane_stride: sh.nodes.stride as i32,
+            lattice_stride: lattice_of.stride as i32,
+        },
         part,
         match wedges {
             Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
@@ -44,18 +55,6 @@ pub(crate) fn plan(
             Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
         },
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, sweep.fuse_mode()),
-            (1, sweep.lattice_content()),
-            (2, sweep.line_shift()),
-            (3, border as u32),
-            (4, sh.order as u32),
-            (5, u32::from(wedges == Wedges::Nlp)),
-            (6, u32::from(axis.marches_rows)),
-            (7, u32::from(sh.own_plane_hides)),
-            (8, sh.nodes.stride),
-            (9, lattice_of.stride),
-        ],
         &ShadePush::of(batch, cell_m),
         &bound,
         nodes * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),

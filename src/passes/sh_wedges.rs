@@ -60,17 +60,16 @@ pub(crate) fn plan(
     bound.extend(images.nodes.map(|n| ("nodes", n)));
     let layers = sh.layers() as u64;
     builder.pass(
-        &shaders::SH_WEDGES,
+        shaders::ShWedges {
+            border: border as u32,
+            marches_rows: axis.marches_rows,
+            order: sh.order as i32,
+            own_plane_hides: sh.own_plane_hides,
+            lane_stride: sh.nodes.stride as i32,
+        },
         "env",
         format!("what is seen, as harmonics from a table of {0} × {0} wedges", table.side),
         [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, border as u32),
-            (1, u32::from(axis.marches_rows)),
-            (2, sh.order as u32),
-            (3, u32::from(sh.own_plane_hides)),
-            (4, sh.nodes.stride),
-        ],
         &ShWedgesPush {
             cols: cols as i32,
             rows: rows as i32,

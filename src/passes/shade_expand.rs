@@ -28,11 +28,10 @@ pub(crate) fn plan(
     let [cols, rows] = pyramid.size;
     let texels = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
     builder.pass(
-        &shaders::SHADE_EXPAND,
+        shaders::ShadeExpand { periodic: pyramid.periodic },
         &bounce.name,
         format!("{} levels of radiance at every sample, by B-splines", pyramid.levels()),
         [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
-        &[(0, u32::from(pyramid.periodic))],
         &ShadeExpandPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -16,11 +16,14 @@ pub(crate) fn plan(
     let [cols, rows] = level.size;
     let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
     builder.pass(
-        &shaders::SHADE_REDUCE,
+        shaders::ShadeReduce {
+            periodic: pyramid.periodic,
+            from_field: from == 0,
+            grey: bounce.grey,
+        },
         &format!("{} level {number}", bounce.name),
         format!("radiance every {apart:.1} samples"),
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[(0, u32::from(pyramid.periodic)), (1, u32::from(from == 0)), (2, u32::from(bounce.grey))],
         &ReducePush::of(pyramid, number),
         &[("exit_radiance", bounce.exit), ("shade_levels", levels), ("shade_table", table)],
         16 * (level.texels() + source.texels()),

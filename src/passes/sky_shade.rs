@@ -40,7 +40,16 @@ pub(crate) fn plan(
     let sums = if images.sky_sum.is_some() { 8 } else { 0 }
         + if images.environment.is_some() { 32 } else { 0 };
     let pass = builder.pass(
-        &shaders::SKY_SHADE,
+        shaders::SkyShade {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            has_sky: images.sky_sum.is_some(),
+            has_environment: images.environment.is_some(),
+            marches_rows: axis.marches_rows,
+            relights: images.edited.is_some(),
+        },
         part,
         match (images.sky_sum, images.environment) {
             (Some(_), Some(_)) => "uniform sky in closed form; environment from its tables",
@@ -48,16 +57,6 @@ pub(crate) fn plan(
             _ => "environment from its tables",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, sweep.fuse_mode()),
-            (1, sweep.lattice_content()),
-            (2, sweep.line_shift()),
-            (3, border as u32),
-            (4, u32::from(images.sky_sum.is_some())),
-            (5, u32::from(images.environment.is_some())),
-            (6, u32::from(axis.marches_rows)),
-            (7, u32::from(images.edited.is_some())),
-        ],
         &ShadePush::of(batch, cell_m),
         &bound,
         axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),

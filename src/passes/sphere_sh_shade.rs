@@ -152,25 +152,24 @@ fn dispatch(
         }
     };
     builder.pass(
-        &shaders::SPHERE_SH_SHADE,
+        shaders::SphereShShade {
+            border: scene.surface.border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: most_steps(scene.surface.border, field) as i32,
+            order: soft.order as i32,
+            wedges: soft.wedges as u32,
+            own_plane_hides: soft.receiver == Receiver::Plane,
+            by_pyramid: levels.is_some(),
+            stack: levels.is_some_and(|p| p.stored == Levels::Stack),
+            levels: levels.map_or(0, |p| p.levels()) as i32,
+        },
         part,
         match soft.wedges {
             Wedges::Table => "the ball times what a table of wedges all around sees up to it",
             Wedges::Slices | Wedges::Nlp => "the ball times what is seen across and up to it",
         },
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[
-            (0, scene.surface.border as u32),
-            (1, u32::from(thin_rows)),
-            (2, u32::from(thin_cols)),
-            (3, most_steps(scene.surface.border, field)),
-            (4, soft.order),
-            (5, soft.wedges as u32),
-            (6, u32::from(soft.receiver == Receiver::Plane)),
-            (7, u32::from(levels.is_some())),
-            (8, u32::from(levels.is_some_and(|p| p.stored == Levels::Stack))),
-            (9, levels.map_or(0, |p| p.levels())),
-        ],
         &SphereShShadePush {
             land: LandPush::of(field, blocks),
             first: [col as i32, row as i32],

@@ -131,16 +131,15 @@ fn dispatch(
     let [r, g, b] = ball.radiance;
     let begins = look.begins && slices.start == 0;
     builder.pass(
-        &shaders::SPHERE_SHADE,
+        shaders::SphereShade {
+            border: scene.surface.border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: blocks.most_steps() as i32,
+        },
         part,
         "slices of the ball over what the surface hides of them",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &[
-            (0, scene.surface.border as u32),
-            (1, u32::from(thin_rows)),
-            (2, u32::from(thin_cols)),
-            (3, blocks.most_steps()),
-        ],
         &SphereShadePush {
             land: LandPush::of(field, blocks),
             first: [col as i32, row as i32],

@@ -48,17 +48,16 @@ pub(crate) fn plan(
     bound.extend(thrown.map(|glossy| ("arriving", glossy.arriving)));
     let layers = thrown.map_or(0, |glossy| glossy.layers());
     builder.pass(
-        &shaders::SUN_GLOSS,
+        shaders::SunGloss {
+            border: border as u32,
+            marches_rows: axis.marches_rows,
+            lobe_is_map: lobes.map.is_some(),
+            order: thrown.map_or(0, |glossy| glossy.order) as i32,
+            grey: thrown.is_some_and(|glossy| glossy.grey),
+        },
         name,
         "the lobe towards the sun, times the part of it that is seen",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, border as u32),
-            (1, u32::from(axis.marches_rows)),
-            (2, u32::from(lobes.map.is_some())),
-            (3, thrown.map_or(0, |glossy| glossy.order)),
-            (4, u32::from(thrown.is_some_and(|glossy| glossy.grey))),
-        ],
         &SunGlossPush {
             cols: cols as i32,
             rows: rows as i32,

@@ -28,7 +28,15 @@ pub(crate) fn plan(
         bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
     }
     let pass = builder.pass(
-        &shaders::SUN_SHADE,
+        shaders::SunShade {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            shape: shape as u32,
+            marches_rows: axis.marches_rows,
+            relights: edited.is_some(),
+        },
         part,
         match shape {
             Shape::Disc => "the part of each chord of the disc above the horizon",
@@ -36,15 +44,6 @@ pub(crate) fn plan(
             Shape::Patch => "the part of its elevations above the horizon",
         },
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &[
-            (0, sweep.fuse_mode()),
-            (1, sweep.lattice_content()),
-            (2, sweep.line_shift()),
-            (3, border as u32),
-            (4, shape as u32),
-            (5, u32::from(axis.marches_rows)),
-            (6, u32::from(edited.is_some())),
-        ],
         &ShadePush::of(batch, cell_m),
         &bound,
         axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),

@@ -14,16 +14,15 @@ pub(crate) fn plan(
     let axis = batch.axis;
     let group_size = 8;
     let pass = builder.pass(
-        &shaders::SURFACE_SWEEP,
+        shaders::SurfaceSweep {
+            local_size_x: group_size,
+            hull_depth: hull_depth as i32,
+            periodic: axis.warm_up > 0,
+            writes_distances: distances,
+        },
         part,
         format!("exact horizons of {} azimuths along {}", batch.count, axis.name()),
         [batch.most_lines.div_ceil(group_size), 1, batch.count],
-        &[
-            (0, group_size),
-            (1, hull_depth),
-            (2, u32::from(axis.warm_up > 0)),
-            (3, u32::from(distances)),
-        ],
         &MarchPush::of(batch),
         &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
         batch.line_samples * 4 + axis.samples() * u64::from(batch.count) * 4,

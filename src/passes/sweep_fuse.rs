@@ -40,19 +40,18 @@ pub(crate) fn plan(
     bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
     bound.extend(distances.map(|d| ("horizon_distances", d)));
     let pass = builder.pass(
-        &shaders::SWEEP_FUSE,
+        shaders::SweepFuse {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            writes_distances: distances.is_some(),
+            lattice_has_distances: sweep.lattice_has_distances(),
+            marches_rows: axis.marches_rows,
+        },
         part,
         "from the lines back to the samples",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), batch.count],
-        &[
-            (0, sweep.fuse_mode()),
-            (1, sweep.lattice_content()),
-            (2, sweep.line_shift()),
-            (3, border as u32),
-            (4, u32::from(distances.is_some())),
-            (5, u32::from(sweep.lattice_has_distances())),
-            (6, u32::from(axis.marches_rows)),
-        ],
         &SweepFusePush {
             cols: cols as i32,
             rows: rows as i32,

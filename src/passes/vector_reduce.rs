@@ -18,11 +18,10 @@ pub(crate) fn plan(
     let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
     let layers = glossy.layers();
     builder.pass(
-        &shaders::VECTOR_REDUCE,
+        shaders::VectorReduce { periodic: pyramid.periodic, from_field: from == 0 },
         &format!("{name} level {number}"),
         format!("radiance by direction every {apart:.1} samples"),
         [cols.div_ceil(8), rows.div_ceil(8), layers],
-        &[(0, u32::from(pyramid.periodic)), (1, u32::from(from == 0))],
         &ReducePush::of(pyramid, number),
         &[
             ("exit_vectors", exit),

@@ -42,17 +42,16 @@ pub(crate) fn plan(
     let words = u64::from(cols) * u64::from(rows) * u64::from(count);
     let rays = words * if is_small { 2 } else { 1 };
     builder.pass(
-        &shaders::VISIBLE_POINTS,
+        shaders::VisiblePoints {
+            border: border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: blocks.most_steps() as i32,
+            small: is_small,
+        },
         part,
         "the sample that each sample sees in each direction",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &[
-            (0, border as u32),
-            (1, u32::from(thin_rows)),
-            (2, u32::from(thin_cols)),
-            (3, blocks.most_steps()),
-            (4, u32::from(is_small)),
-        ],
         &VisiblePointsPush {
             land: LandPush::of(field, blocks),
             highest_m,

@@ -2,7 +2,7 @@ use super::azimuths::Azimuth;
 use super::batch::bytes_text;
 use super::pass::place_barriers;
 use super::{Format, Kind, Limits, Owner, Pass, Plan, Resource, ResourceId};
-use crate::gpu::shaders::Shader;
+use crate::gpu::shaders::Specialised;
 use crate::{Error, Result};
 
 /// Collects a plan.
@@ -50,20 +50,20 @@ impl Builder {
         ResourceId(self.resources.len() - 1)
     }
 
-    /// Adds a dispatch of `shader`; `bound` names its bindings, all others are unused.
+    /// Adds a dispatch of a shader with its constants; `bound` names its bindings, all others are unused.
     #[expect(clippy::too_many_arguments, reason = "a pass is all of this")]
     pub(crate) fn pass<P: bytemuck::Pod>(
         &mut self,
-        shader: &'static Shader,
+        of: impl Into<Specialised>,
         part: &str,
         why: impl Into<String>,
         groups: [u32; 3],
-        constants: &[(u32, u32)],
         push: &P,
         bound: &[(&str, ResourceId)],
         bytes: u64,
         samples: u64,
     ) -> &mut Pass {
+        let Specialised { shader, constants } = of.into();
         let push = bytemuck::bytes_of(push).to_vec();
         assert_eq!(push.len(), shader.push_bytes as usize, "{}: push constants", shader.name);
         for (name, id) in bound {
@@ -89,7 +89,7 @@ impl Builder {
             part: part.to_owned(),
             why: why.into(),
             groups,
-            constants: constants.to_vec(),
+            constants,
             push,
             bindings,
             azimuths: 0..0,

@@ -18,8 +18,8 @@ pub struct Pass {
     pub why: String,
     /// Workgroups.
     pub groups: [u32; 3],
-    /// Specialisation constants, as (id, word).
-    pub constants: Vec<(u32, u32)>,
+    /// Words of the shader's specialisation constants, in their order.
+    pub constants: Vec<u32>,
     /// Push constants.
     pub push: Vec<u8>,
     /// What each of the shader's bindings is, in their order; none where its constants leave the
@@ -53,6 +53,12 @@ impl Pass {
         } else {
             format!("{} {}", self.name(), self.part)
         }
+    }
+
+    /// The word of a specialisation constant by its name in lower case; none where the shader has no such constant.
+    pub fn constant(&self, name: &str) -> Option<u32> {
+        let place = self.shader.constants.iter().position(|c| c.name == name)?;
+        self.constants.get(place).copied()
     }
 
     /// Resources that its shader may write.

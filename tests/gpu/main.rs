@@ -14,6 +14,8 @@ mod colours;
 mod contract;
 mod curved;
 mod debugger;
+// Its shaders are compiled from GLSL only.
+#[cfg(any(feature = "glslang", feature = "shaderc"))]
 mod decoders;
 mod edits;
 mod embedding;

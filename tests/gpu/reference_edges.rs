@@ -72,7 +72,7 @@ fn a_narrow_lobe_keeps_its_digits() {
     }
 }
 
-/// The bound on steps, constant 10 of `path_trace`, set too low for rays over a ridge: they are counted.
+/// The bound on steps, MOST_STEPS of `path_trace`, set too low for rays over a ridge: they are counted.
 #[test]
 fn rays_that_are_given_up_are_counted() {
     let mut device = Device::new();
@@ -80,8 +80,9 @@ fn rays_that_are_given_up_are_counted() {
     let scene = under_sky(ridge, Border::Plane);
     let mut plan = plan::reference(&scene, 0, 1, &device.limits()).expect("a plan");
     assert_eq!(traced_by(&mut device, &scene, plan.clone(), 1, &[]).1, 0);
-    let constants = &mut plan.passes.last_mut().expect("path_trace").constants;
-    constants.iter_mut().find(|(id, _)| *id == 10).expect("the bound").1 = 2;
+    let pass = plan.passes.last_mut().expect("path_trace");
+    let bound = pass.shader.constants.iter().position(|c| c.name == "most_steps");
+    pass.constants[bound.expect("the bound")] = 2;
     assert!(traced_by(&mut device, &scene, plan, 1, &[]).1 > 0);
 }
 

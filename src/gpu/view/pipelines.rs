@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::super::memory::DEPTH;
-use super::super::shaders::{BindingKind, Shader};
+use super::super::shaders::{BindingKind, Specialised};
 use super::super::specialise::specialised;
 use super::super::{Host, failed};
 use crate::Result;
@@ -18,11 +18,9 @@ pub(super) struct Drawing {
 }
 
 /// What a pipeline is made from.
-pub(super) struct Recipe<'a> {
+pub(super) struct Recipe {
     /// Vertex, fragment.
-    pub shaders: [&'a Shader; 2],
-    /// Of the fragment shader.
-    pub constants: &'a [(u32, u32)],
+    pub shaders: [Specialised; 2],
     pub format: vk::Format,
     pub samples: vk::SampleCountFlags,
     /// How depths must compare to what is there, and whether they are kept.
@@ -36,13 +34,13 @@ pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
 
 impl Drawing {
     /// Makes layouts and pipeline; what is made before an error is this one's to [`free`](Self::free).
-    pub fn make(&mut self, host: &Host, recipe: &Recipe<'_>) -> Result<()> {
+    pub fn make(&mut self, host: &Host, recipe: &Recipe) -> Result<()> {
         let device = &host.device;
-        let doing = || format!("making the pipeline of {}", recipe.shaders[1].name);
+        let doing = || format!("making the pipeline of {}", recipe.shaders[1].shader.name);
         let bindings: Vec<_> = recipe
             .shaders
             .iter()
-            .flat_map(|s| s.bindings)
+            .flat_map(|s| s.shader.bindings)
             .map(|binding| {
                 assert!(matches!(binding.kind, BindingKind::SampledImage { .. }));
                 vk::DescriptorSetLayoutBinding::default()
@@ -56,7 +54,7 @@ impl Drawing {
         // SAFETY: the device is alive; the bindings are those that reflection found.
         self.set_layout = unsafe { device.create_descriptor_set_layout(&set_info, None) }
             .map_err(failed(doing()))?;
-        self.push_bytes = recipe.shaders.iter().map(|s| s.push_bytes).max().unwrap_or(0);
+        self.push_bytes = recipe.shaders.iter().map(|s| s.shader.push_bytes).max().unwrap_or(0);
         let push =
             [vk::PushConstantRange { stage_flags: STAGES, offset: 0, size: self.push_bytes }];
         let layouts = [self.set_layout];
@@ -76,9 +74,9 @@ impl Drawing {
             made
         };
         self.pipeline = made.map_err(failed(doing()))?;
-        host.name(self.pipeline, recipe.shaders[1].name);
-        host.name(self.layout, recipe.shaders[1].name);
-        host.name(self.set_layout, recipe.shaders[1].name);
+        host.name(self.pipeline, recipe.shaders[1].shader.name);
+        host.name(self.layout, recipe.shaders[1].shader.name);
+        host.name(self.set_layout, recipe.shaders[1].shader.name);
         Ok(())
     }
 
@@ -94,7 +92,7 @@ impl Drawing {
     }
 }
 
-impl Recipe<'_> {
+impl Recipe {
     /// # Safety
     /// The device is alive; the modules are the caller's to destroy, after an error, too.
     unsafe fn modules(
@@ -102,10 +100,8 @@ impl Recipe<'_> {
         device: &ash::Device,
         modules: &mut [vk::ShaderModule; 2],
     ) -> std::result::Result<(), vk::Result> {
-        for (module, (shader, constants)) in
-            modules.iter_mut().zip(self.shaders.iter().zip([&[], self.constants]))
-        {
-            let words = specialised(shader.words, constants);
+        for (module, Specialised { shader, constants }) in modules.iter_mut().zip(&self.shaders) {
+            let words = specialised(shader, constants);
             let info = vk::ShaderModuleCreateInfo::default().code(&words);
             // SAFETY: as the caller says.
             *module = unsafe { device.create_shader_module(&info, None) }?;

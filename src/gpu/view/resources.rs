@@ -24,13 +24,14 @@ impl ViewRenderer {
             self.linear = Some(self.memory.attachment("picture_radiance", LINEAR, size, one)?);
         }
         self.make_indices()?;
-        let flag = |number: u32, is: bool| (number, u32::from(is));
         let is_grey = self.shape.radiance == Format::R32Float;
         self.terrain.make(
             &self.host,
             &Recipe {
-                shaders: [&shaders::TERRAIN_DRAW_VERT, &shaders::TERRAIN_DRAW_FRAG],
-                constants: &[flag(0, is_grey), flag(1, self.shape.has_voids)],
+                shaders: [
+                    shaders::TerrainDrawVert.into(),
+                    shaders::TerrainDrawFrag { is_grey, has_voids: self.shape.has_voids }.into(),
+                ],
                 format: drawn,
                 samples: self.samples,
                 depth: Some((vk::CompareOp::GREATER, true)),
@@ -39,8 +40,11 @@ impl ViewRenderer {
         self.sky.make(
             &self.host,
             &Recipe {
-                shaders: [&shaders::SKY_DRAW_VERT, &shaders::SKY_DRAW_FRAG],
-                constants: &[flag(0, self.shape.environment.is_some())],
+                shaders: [
+                    shaders::SkyDrawVert.into(),
+                    shaders::SkyDrawFrag { has_environment: self.shape.environment.is_some() }
+                        .into(),
+                ],
                 format: drawn,
                 samples: self.samples,
                 // Where nothing has been drawn.
@@ -51,8 +55,10 @@ impl ViewRenderer {
             self.tone.insert(Drawing::default()).make(
                 &self.host,
                 &Recipe {
-                    shaders: [&shaders::PICTURE_TONE_VERT, &shaders::PICTURE_TONE_FRAG],
-                    constants: &[flag(0, curve == Curve::Encode)],
+                    shaders: [
+                        shaders::PictureToneVert.into(),
+                        shaders::PictureToneFrag { encodes: curve == Curve::Encode }.into(),
+                    ],
                     format: self.format,
                     samples: one,
                     depth: None,

@@ -81,7 +81,7 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let exit = run.exit(pass);
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let oracle = Oracle::new(&run.scene.field, run.border());
-    let nodes = Nodes { stride: constant(pass, 5) };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
     let (places, brightest) = (places(run, nodes), brightest(&exit));
     let cell_m = run.scene.field.cell_m();
@@ -158,7 +158,7 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         receiver,
         azimuths,
     };
-    let nodes = Nodes { stride: constant(pass, 6) };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
     let places = places(run, nodes);
     let [x, y] = field.cell_m();
@@ -201,17 +201,18 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = colours(&got);
     let brightest = exit.as_flattened().iter().fold(0.0_f64, |m, v| m.max((*v).into()));
     let is_last = word(IS_LAST) == 1;
-    let nodes = Nodes { stride: constant(pass, 4) };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
     let [across, _] = nodes.size(run.plan.size).map(|n| n as usize);
     let kept = self::places(run, Nodes { stride: 2 * nodes.stride });
     let places = places(run, nodes);
-    let from = constant(pass, 5);
+    let from = constant(pass, "from");
     // All of them, those of lanes whose casting sets are kept, the others.
-    let across_of = |[row, col]: [usize; 2]| if constant(pass, 2) == 1 { col } else { row };
+    let across_of =
+        |[row, col]: [usize; 2]| if constant(pass, "marches_rows") == 1 { col } else { row };
     let lanes: HashSet<usize> = kept.iter().map(|place| across_of(*place)).collect();
     let is_walked = |i: usize| from == 0 || (from == 1) == lanes.contains(&across_of(places[i]));
     let wedge = std::f64::consts::TAU / f64::from(run.quality.bounces.azimuths);
-    let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
+    let settings = (Some(Fuse::AimedNearest), constant(pass, "line_shift"));
     let walked: Vec<_> = run.swept(range.clone(), settings, |swept| {
         let of = |[row, col]: &[usize; 2]| walked_along(swept, &exit, *col as i32, *row as i32).0;
         places.iter().map(of).collect()

@@ -61,7 +61,8 @@ pub(super) fn dirty_mark(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn horizon_resweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let occluders = stored(run, pass, "occluders", 2).expect("written");
     let first = pushed(pass, offsets::horizon_resweep_push::FIRST_AZIMUTH) as usize;
-    let options = SweepOptions { line_shift: constant(pass, 0), ..SweepOptions::default() };
+    let options =
+        SweepOptions { line_shift: constant(pass, "line_shift"), ..SweepOptions::default() };
     let mut pairs = Vec::new();
     for k in first..first + pass.groups[2] as usize {
         let azimuth = run.plan.azimuths[k];

@@ -27,7 +27,7 @@ fn short(got: f64, than: f64, off: f64) -> Pair {
 pub(super) fn ellipse_fit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (field, border) = (&run.scene.field, run.border());
     let directions = run.directions();
-    let is_bent = constant(pass, 1) == 1;
+    let is_bent = constant(pass, "bent") == 1;
     let all: Vec<Vec<Seen>> = if is_bent {
         let looks = super::bend::of_samples(run, pass, directions.count());
         let above = |of: &Vec<(DVec3, f64)>| {

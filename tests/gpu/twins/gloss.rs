@@ -75,7 +75,7 @@ fn magnitude(series: &Series) -> f64 {
 }
 
 pub(super) fn gloss_seen(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let order = constant(pass, 0) as usize;
+    let order = constant(pass, "order") as usize;
     let seen = device_series(run, pass, order);
     let texels = run.floats(pass, "light_matrix").expect("bound");
     let entries: Vec<_> = texels.chunks_exact(4).map(super::light::rgb).collect();
@@ -102,7 +102,8 @@ pub(super) fn gloss_seen(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn gloss_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::gloss_exit_push::BEGINS;
     let [order, direct, throws, vectors, halves] =
-        [0, 3, 4, 5, 6].map(|id| constant(pass, id) as usize);
+        ["order", "is_direct", "throws", "vectors", "halves"]
+            .map(|name| constant(pass, name) as usize);
     let (is_direct, throws, has_vectors) = (direct == 1, throws == 1, vectors == 1);
     let has_series = has_vectors || !is_direct;
     let arriving = if has_series { run.all_series(pass, "arriving", order) } else { Vec::new() };
@@ -186,10 +187,10 @@ pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::gloss_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
-    let order = constant(pass, 6) as usize;
+    let order = constant(pass, "order") as usize;
     let shade = run.shade();
     let pyramid = Pyramid::new(&run.quality, run.plan.size, run.border());
-    let vectors = (constant(pass, 5) == 1).then(|| {
+    let vectors = (constant(pass, "vectors") == 1).then(|| {
         let levels = match shade.levels() {
             0 => Vec::new(),
             _ => run.all_series(pass, "vector_levels", order),

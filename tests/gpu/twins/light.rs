@@ -131,7 +131,7 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let mut pairs = Vec::new();
     if let Some(got) = run.floats(pass, "sky_sum") {
         // Shares of ground for bounces take no horizontal for the least.
-        let is_open = constant(pass, 3) == Border::Open as u32;
+        let is_open = constant(pass, "border") == Border::Open as u32;
         let want = run.swept(range.clone(), fuse_of(pass), |swept| {
             let border = if is_open { Border::Open } else { swept.heights.border };
             let heights = Heights { border, ..swept.heights };
@@ -161,7 +161,7 @@ pub(super) fn sky_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
-    let shape = [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, 4) as usize];
+    let shape = [Shape::Disc, Shape::Point, Shape::Patch][constant(pass, "shape") as usize];
     let is_point = shape == Shape::Point;
     let got = run.floats(pass, "sun_sum").expect("written");
     let [cols, _] = run.size();
@@ -232,7 +232,7 @@ pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// What the same pass leaves of what arrives, where it is thrown on.
 fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair> {
-    let order = constant(pass, 3) as usize;
+    let order = constant(pass, "order") as usize;
     if order == 0 {
         return Vec::new();
     }
@@ -302,16 +302,16 @@ pub(super) fn sphere_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::light_resolve_push::{CLEARS, COLOUR, TEXEL};
     let mut colour = [0, 4, 8].map(|c| f32::from_bits(pushed(pass, COLOUR + c)));
-    if constant(pass, 6) == 1 {
+    if constant(pass, "colour_is_texel") == 1 {
         let texels = run.floats(pass, "light_colours").expect("read");
         let texel = &texels[4 * pushed(pass, TEXEL) as usize..];
         colour = [0, 1, 2].map(|c| colour[c] * texel[c]);
     }
     let map = match &run.scene.surface.albedo {
-        Albedo::Map(map) if constant(pass, 1) == 1 => Some(map.as_slice()),
+        Albedo::Map(map) if constant(pass, "albedo_is_map") == 1 => Some(map.as_slice()),
         _ => None,
     };
-    let layer = if constant(pass, 0) == 1 {
+    let layer = if constant(pass, "sum_has_colour") == 1 {
         let sum = run.floats(pass, "colour_sum").expect("read");
         let sum: Vec<[f64; 3]> = sum.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
         resolve_twin::light_resolve(LightSum::Colour(&sum), colour, map)
@@ -324,7 +324,7 @@ pub(super) fn light_resolve(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         run.radiance = vec![[0.0; 3]; layer.len()];
         run.lights = 0;
     }
-    if constant(pass, 2) == 1 {
+    if constant(pass, "adds_to_radiance") == 1 {
         resolve_twin::add_to_radiance(&mut run.radiance, &layer);
         run.lights += 1;
     }

@@ -116,8 +116,8 @@ fn twin_of(pass: &Pass) -> Twin {
 }
 
 /// A specialisation constant of a pass.
-fn constant(pass: &Pass, id: u32) -> u32 {
-    pass.constants.iter().find(|c| c.0 == id).expect("a constant of the pass").1
+fn constant(pass: &Pass, name: &str) -> u32 {
+    pass.constant(name).expect("a constant of the pass")
 }
 
 /// A word of a pass's push constants.
@@ -129,8 +129,8 @@ fn pushed(pass: &Pass, offset: usize) -> u32 {
 fn fuse_of(pass: &Pass) -> (Option<Fuse>, u32) {
     use Fuse::{Aimed, AimedAround, AimedNearest, Nearest, Own, Slopes};
     let modes = [Nearest, Slopes, Own, AimedNearest, Aimed, AimedAround].map(Some);
-    let fuse = (constant(pass, 0) as usize).checked_sub(1).and_then(|mode| modes[mode]);
-    (fuse, constant(pass, 2))
+    let fuse = (constant(pass, "fuse") as usize).checked_sub(1).and_then(|mode| modes[mode]);
+    (fuse, constant(pass, "line_shift"))
 }
 
 /// Runs a case; prints the worst ratio of each pass and fails above 1. Returns the lines redone.

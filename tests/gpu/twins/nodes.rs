@@ -31,7 +31,7 @@ pub(super) fn places(run: &Run, nodes: Nodes) -> Vec<[usize; 2]> {
 /// does, but for half a part of each ring's weight, and that of radiances that are columns and rows, which lie as their
 /// mean does, within a sample: it stands half a step away, and across it as much again.
 pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<Pair> {
-    let places = &places(run, Nodes { stride: 2 * constant(pass, 4) });
+    let places = &places(run, Nodes { stride: 2 * constant(pass, "node_stride") });
     let begin = pushed(pass, offsets::bounce_walk_push::BEGIN) as usize;
     let Some(sets) = casting_sets(run, pass, begin, places) else {
         return Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
     let ramp = |i: usize| [1.0, (i % cols) as f32, (i / cols) as f32];
     let exit: Vec<[f32; 3]> = (0..cols * rows).map(ramp).collect();
     let exit64: Vec<[f64; 3]> = exit.iter().map(|c| c.map(f64::from)).collect();
-    let settings = (Some(Fuse::AimedNearest), constant(pass, 0));
+    let settings = (Some(Fuse::AimedNearest), constant(pass, "line_shift"));
     let far = cols.max(rows) as f64;
     let wedge = TAU / f64::from(run.quality.bounces.azimuths);
     let slices: Vec<Slices> = places.iter().map(|place| run.slices(*place, wedge, 1.0)).collect();
@@ -98,7 +98,7 @@ fn casting_sets(
 /// From the device's own casting sets: a product and a sum for each, of weights that are products themselves.
 pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::cast_gather_push::{BEGIN, COUNT};
-    let places = places(run, Nodes { stride: constant(pass, 2) });
+    let places = places(run, Nodes { stride: constant(pass, "node_stride") });
     let begin = pushed(pass, BEGIN) as usize;
     let sets = casting_sets(run, pass, begin, &places).expect("bound");
     assert_eq!(sets.len(), pushed(pass, COUNT) as usize);
@@ -107,7 +107,7 @@ pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         None => run.exit(pass),
     };
     let texels = run.floats(pass, "bounce_sum").expect("written");
-    let walked = Nodes { stride: constant(pass, 2) / 2 };
+    let walked = Nodes { stride: constant(pass, "node_stride") / 2 };
     let sums = run.floats(pass, "node_sum").expect("bound");
     let wholes: HashMap<[usize; 2], f64> = self::places(run, walked)
         .into_iter()
@@ -129,7 +129,7 @@ pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// From the device's own light at nodes and shares.
 pub(super) fn bounce_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let nodes = Nodes { stride: constant(pass, 0) };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
     let light = colours(&run.floats(pass, "node_sum").expect("bound"));
     let share: Vec<f64> =
         run.floats(pass, "sky_share").expect("bound").into_iter().map(f64::from).collect();

@@ -91,7 +91,9 @@ pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let mut twin = left.clone();
         let warm_up = run.warm_up(azimuth.marches_rows());
         march_twin(run.heights(), &alone, &pyramid, stored, warm_up, &mut twin);
-        for ([step, lane], [row, col]) in marched(&march, Nodes { stride: constant(pass, 3) }) {
+        for ([step, lane], [row, col]) in
+            marched(&march, Nodes { stride: constant(pass, "node_stride") })
+        {
             let texel = left.texel(lane, march.march_position(step), 0);
             let word = words[(azimuth.layer as usize * height + row) * width + col];
             left.slopes[texel] = f32::from_bits(word);

@@ -40,8 +40,8 @@ pub(super) fn scatter_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     ]
     .map(|o| pushed(pass, o) as usize);
     let weight = f64::from(f32::from_bits(pushed(pass, push::WEIGHT_SR)));
-    let (source, sums) = (constant(pass, 0), constant(pass, 1) == 1);
-    let own_lobe = paths > 0 && constant(pass, 7) == 1;
+    let (source, sums) = (constant(pass, "source"), constant(pass, "sums") == 1);
+    let own_lobe = paths > 0 && constant(pass, "own_lobe") == 1;
     let points = run.points.clone().expect("a case with points");
     let texel = |i: usize| -> [f64; 4] {
         std::array::from_fn(|c| f64::from(run.plan.constants[4 * i + c]))

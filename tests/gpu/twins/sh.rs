@@ -94,16 +94,20 @@ pub(super) fn device_series(run: &mut Run, pass: &Pass, order: usize) -> Vec<Vec
 pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::shade_push::{AZIMUTH_COUNT, CLEARS, FIRST_AZIMUTH};
     let (range, error) = so_far(run, pass, [FIRST_AZIMUTH, AZIMUTH_COUNT, CLEARS]);
-    let order = constant(pass, 4) as usize;
+    let order = constant(pass, "order") as usize;
     let series = Series {
         order,
-        wedges: if constant(pass, 5) == 1 { Wedges::Nlp } else { Wedges::Slices },
-        receiver: if constant(pass, 7) == 1 { Receiver::Plane } else { Receiver::Lobe },
+        wedges: if constant(pass, "by_nlp") == 1 { Wedges::Nlp } else { Wedges::Slices },
+        receiver: if constant(pass, "own_plane_hides") == 1 {
+            Receiver::Plane
+        } else {
+            Receiver::Lobe
+        },
     };
     let got = device_series(run, pass, order);
     let twin = |swept: &Swept| visibility_twin(swept, series);
     let want = run.swept(range.clone(), fuse_of(pass), twin);
-    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, 8) });
+    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, "lane_stride") });
     let [cols, rows] = nodes.size(size);
     assert_eq!(got.len(), (cols * rows) as usize);
     let mut pairs = Vec::new();
@@ -126,8 +130,8 @@ pub(super) fn sh_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 /// From the device's own horizons.
 pub(super) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let order = constant(pass, 2) as usize;
-    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, 4) });
+    let order = constant(pass, "order") as usize;
+    let (size, nodes) = (run.plan.size, Nodes { stride: constant(pass, "lane_stride") });
     let [cols, rows] = nodes.size(size);
     let plane = (size[0] * size[1]) as usize;
     let angles = run.floats(pass, "horizon_angles").expect("bound");
@@ -150,7 +154,7 @@ pub(super) fn sh_wedges(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let angle = f64::from(angles[k * plane + row * size[0] as usize + col]);
             let horizon = angle.clamp(-FRAC_PI_2, FRAC_PI_2).tan();
             let towards = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
-            let hides = constant(pass, 3) == 1;
+            let hides = constant(pass, "own_plane_hides") == 1;
             let own = if hides { slope.dot(towards) } else { f64::NEG_INFINITY };
             (*azimuth, horizon.max(own))
         };
@@ -189,18 +193,18 @@ fn node_surfaces(run: &mut Run, pass: &Pass, nodes: Nodes) -> Vec<Pair> {
 }
 
 pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let order = constant(pass, 2) as usize;
+    let order = constant(pass, "order") as usize;
     let seen = device_series(run, pass, order);
     let matrix = texels(run, pass, "light_matrix");
     let matrix: Vec<Vec<DVec3>> = matrix.chunks_exact(order * order).map(<[_]>::to_vec).collect();
     let got = run.floats(pass, "env_sum").expect("written");
-    if constant(pass, 3) == 2 {
+    if constant(pass, "receiver") == 2 {
         run.gloss = got.chunks_exact(4).map(|t| rgb(t).to_array()).collect();
     }
     let [cols, _] = run.size();
     let heights = run.heights();
     let error = run.sample_error();
-    let nodes = Nodes { stride: constant(pass, 4) };
+    let nodes = Nodes { stride: constant(pass, "node_stride") };
     let across = nodes.size(run.plan.size)[0];
     let none = vec![0.0; order * order];
     let seen: Vec<Seen> =
@@ -218,7 +222,7 @@ pub(super) fn sh_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             between = Seen::between(around.iter().map(|(at, w)| (node(*at), *w)), &error);
             &between
         };
-        let is_gloss = constant(pass, 3) == 2;
+        let is_gloss = constant(pass, "receiver") == 2;
         let want = if is_gloss {
             let normal = normal_of(field_slope(&heights, place[0], place[1]));
             gloss_on(normal, run.lobe(i), &seen.values, &matrix)

@@ -25,7 +25,7 @@ use super::{Pair, Run, constant, fuse_of, pushed};
 pub(super) fn height_transpose(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, rows] = run.size();
     let samples = run.heights().samples;
-    let by_row = constant(pass, 0) == 1;
+    let by_row = constant(pass, "marches_rows") == 1;
     let (lanes, want) = if by_row {
         (cols, heights_by_row(samples))
     } else {
@@ -77,24 +77,25 @@ fn slope_of(march: &March, y: i32, step: i32, back: i32) -> Option<f64> {
 }
 
 pub(super) fn horizon_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    let in_occluders = constant(pass, 1) == 2;
-    let holds_line = constant(pass, 6) == 1;
+    let in_occluders = constant(pass, "hull_place") == 2;
+    let holds_line = constant(pass, "hull_holds_line") == 1;
     if !holds_line && !in_occluders {
         // Complete once its lost lines have been redone, by the pass that follows.
         let lost = run.words(pass, "lost_lines").expect("written");
         run.lost += lost.iter().filter(|w| **w != 0).count();
         return Vec::new();
     }
-    let slope_format = constant(pass, 9);
-    let occluders = stored(run, pass, "occluders", 2).filter(|_| constant(pass, 8) == 1);
+    let slope_format = constant(pass, "slope_format");
+    let occluders =
+        stored(run, pass, "occluders", 2).filter(|_| constant(pass, "writes_occluders") == 1);
     let slopes = stored(run, pass, "slopes", if slope_format == 1 { 4 } else { 2 });
-    let packed = (constant(pass, 7) == 1).then(|| height_scale(run.heights().samples));
+    let packed = (constant(pass, "hull_packed") == 1).then(|| height_scale(run.heights().samples));
     let first = pushed(pass, offsets::horizon_sweep_push::FIRST_AZIMUTH) as usize;
     let mut pairs = Vec::new();
     for k in first..first + pass.groups[2] as usize {
         let azimuth = run.plan.azimuths[k];
         let options = SweepOptions {
-            line_shift: constant(pass, 11),
+            line_shift: constant(pass, "line_shift"),
             warm_up: run.warm_up(azimuth.marches_rows()),
             packed,
             slopes_f16: slope_format == 2,
@@ -257,7 +258,7 @@ fn one_a_sample(
 
 pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
-    let stored = (constant(pass, 3) == 1, Nodes { stride: 1 });
+    let stored = (constant(pass, "writes_distances") == 1, Nodes { stride: 1 });
     one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
         let warm_up = run.warm_up(azimuth.marches_rows());
         surface_twin::surface_sweep(run.heights(), azimuth, warm_up, twin);
@@ -268,10 +269,11 @@ pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 
 pub(super) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let first = pushed(pass, offsets::march_push::FIRST_AZIMUTH);
-    let stored = (constant(pass, 2) == 1, Nodes { stride: constant(pass, 3) });
+    let stored =
+        (constant(pass, "writes_distances") == 1, Nodes { stride: constant(pass, "node_stride") });
     one_a_sample(run, pass, first, stored, |run, azimuth, twin| {
         let warm_up = run.warm_up(azimuth.marches_rows());
-        let options = MarchOptions { all_crossings: constant(pass, 0) == 1, warm_up };
+        let options = MarchOptions { all_crossings: constant(pass, "all_crossings") == 1, warm_up };
         march_twin::horizon_march(run.heights(), azimuth, options, twin);
         twin_march_slope(run.relief()[1], azimuth.step_m.into())
     })

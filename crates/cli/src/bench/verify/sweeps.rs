@@ -159,10 +159,10 @@ fn check_aimed(
 fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shape)> {
     let own = |pass: &&Pass| pass.name() == "sun_shade" && pass.part == light;
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
-    let (_, shape) = passes.first()?.constants.iter().find(|c| c.0 == 4)?;
+    let shape = passes.first()?.constant("shape")?;
     let ranges = passes.iter().map(|p| p.azimuths.start as usize..p.azimuths.end as usize);
     let azimuths = ranges.flat_map(|range| plan.azimuths[range].iter().copied()).collect();
-    Some((azimuths, [Shape::Disc, Shape::Point, Shape::Patch][*shape as usize]))
+    Some((azimuths, [Shape::Disc, Shape::Point, Shape::Patch][shape as usize]))
 }
 
 /// A sun's light of the twin at each place, none where a point sun may be hidden or not, and what a device's may be off by.

@@ -1,0 +1,140 @@
+//! GLSL to SPIR-V 1.3, which every Vulkan 1.1 device takes.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{fail, read};
+
+/// Folders of `shaders_glsl/` without shaders: text that others include, and what `tools/shaders` writes.
+const NOT_SHADERS: [&str; 2] = ["shared", "compiled"];
+
+/// The shaders in a folder and in the folders inside it, sorted by file name.
+pub fn shaders_in(folder: &Path) -> Vec<PathBuf> {
+    let mut sources = Vec::new();
+    find(folder, &mut sources);
+    sources.sort_by(|a, b| a.file_name().cmp(&b.file_name()));
+    sources
+}
+
+fn find(folder: &Path, sources: &mut Vec<PathBuf>) {
+    let entries = fs::read_dir(folder);
+    let entries = entries.unwrap_or_else(|e| fail(&format!("{}: {e}", folder.display())));
+    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
+        let is_other = NOT_SHADERS.iter().any(|name| path.ends_with(name));
+        if path.is_dir() && !is_other {
+            find(&path, sources);
+        } else if stage(&path).is_some() {
+            sources.push(path);
+        }
+    }
+}
+
+/// The SPIR-V of one shader. The first error stops the build with file and line.
+pub fn compile(path: &Path) -> Vec<u32> {
+    let (text, files) = include(path);
+    translate(&text, &files)
+}
+
+/// What a file's extension says, where it is a shader's.
+pub fn stage(path: &Path) -> Option<&'static str> {
+    let extension = path.extension()?;
+    ["comp", "frag", "vert"].into_iter().find(|stage| extension == *stage)
+}
+
+/// Splices `#include "x"` lines (relative to the shader's folder, each file once) and returns the
+/// text with `#line` marks, and the files that their source numbers stand for.
+fn include(path: &Path) -> (String, Vec<PathBuf>) {
+    let mut files = Vec::new();
+    let mut text = String::new();
+    splice(path, &mut files, &mut text);
+    (text, files)
+}
+
+fn splice(path: &Path, files: &mut Vec<PathBuf>, text: &mut String) {
+    println!("cargo:rerun-if-changed={}", path.display());
+    let source = String::from_utf8(read(path));
+    let source = source.unwrap_or_else(|e| fail(&format!("{}: {e}", path.display())));
+    let number = files.len();
+    files.push(path.to_owned());
+    if number > 0 {
+        writeln!(text, "#line 1 {number}").unwrap();
+    }
+    for (i, line) in source.lines().enumerate() {
+        let Some(rest) = line.trim().strip_prefix("#include \"") else {
+            text.push_str(line);
+            text.push('\n');
+            continue;
+        };
+        let Some(name) = rest.strip_suffix('"') else {
+            fail(&format!("{}:{}: an #include without its closing quote", path.display(), i + 1));
+        };
+        let included = Path::new("shaders_glsl").join(name);
+        if !files.contains(&included) {
+            splice(&included, files, text);
+        }
+        writeln!(text, "#line {} {number}", i + 2).unwrap();
+    }
+}
+
+/// Turns `ERROR: 1:20: …` (glslang) and `1:20: …` (shaderc) into `shaders_glsl/shared/x.glsl:20: …`.
+fn located(log: &str, files: &[PathBuf]) -> String {
+    log.lines()
+        .map(|line| {
+            let rest = line.strip_prefix("ERROR: ").unwrap_or(line);
+            let mut parts = rest.splitn(3, ':');
+            match (parts.next().and_then(|n| n.parse::<usize>().ok()), parts.next(), parts.next()) {
+                (Some(n), Some(row), Some(what)) if n < files.len() => {
+                    format!("{}:{row}:{what}", files[n].display())
+                }
+                _ => line.to_owned(),
+            }
+        })
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+#[cfg(not(feature = "shaderc"))]
+fn translate(text: &str, files: &[PathBuf]) -> Vec<u32> {
+    use glslang::{Compiler, CompilerOptions, ShaderInput, ShaderSource, ShaderStage};
+    let compiler = Compiler::acquire().unwrap_or_else(|| fail("glslang did not start"));
+    let options = CompilerOptions {
+        source_language: glslang::SourceLanguage::GLSL,
+        target: glslang::Target::Vulkan {
+            version: glslang::VulkanVersion::Vulkan1_1,
+            spirv_version: glslang::SpirvVersion::SPIRV1_3,
+        },
+        ..CompilerOptions::default()
+    };
+    let source = ShaderSource::from(text);
+    let stage = match stage(&files[0]) {
+        Some("vert") => ShaderStage::Vertex,
+        Some("frag") => ShaderStage::Fragment,
+        _ => ShaderStage::Compute,
+    };
+    let words = ShaderInput::new(&source, stage, &options, None, None)
+        .and_then(|input| compiler.create_shader(input))
+        .and_then(|shader| shader.compile());
+    words.unwrap_or_else(|e| fail(&located(&e.to_string(), files)))
+}
+
+#[cfg(feature = "shaderc")]
+fn translate(text: &str, files: &[PathBuf]) -> Vec<u32> {
+    let compiler =
+        shaderc::Compiler::new().unwrap_or_else(|e| fail(&format!("shaderc did not start: {e}")));
+    let mut options =
+        shaderc::CompileOptions::new().unwrap_or_else(|e| fail(&format!("shaderc: {e}")));
+    options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_1 as u32);
+    options.set_target_spirv(shaderc::SpirvVersion::V1_3);
+    let name = files[0].to_string_lossy();
+    let kind = match stage(&files[0]) {
+        Some("vert") => shaderc::ShaderKind::Vertex,
+        Some("frag") => shaderc::ShaderKind::Fragment,
+        _ => shaderc::ShaderKind::Compute,
+    };
+    compiler
+        .compile_into_spirv(text, kind, &name, "main", Some(&options))
+        .unwrap_or_else(|e| fail(&located(&e.to_string(), files)))
+        .as_binary()
+        .to_vec()
+}

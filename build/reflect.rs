@@ -1,0 +1,271 @@
+//! What a SPIR-V module binds, is pushed and is specialised by.
+
+use std::collections::BTreeMap;
+
+use rspirv::dr::{Instruction, Module, Operand};
+use rspirv::spirv::{BuiltIn, Decoration, Dim, Op, StorageClass};
+
+use super::fail;
+
+/// One binding of a shader.
+pub struct Binding {
+    pub name: String,
+    /// A `BindingKind` as Rust text.
+    pub kind: String,
+    pub written: bool,
+}
+
+/// Default of a specialisation constant, of its own type.
+pub enum Default {
+    Bool(bool),
+    Int(i32),
+    Uint(u32),
+    Float(f32),
+}
+
+/// One specialisation constant of a shader.
+pub struct Constant {
+    pub name: String,
+    pub default: Default,
+}
+
+/// What reflection finds in a shader; bindings and constants by number.
+pub struct Reflection {
+    pub push_bytes: u32,
+    pub bindings: BTreeMap<u32, Binding>,
+    pub constants: BTreeMap<u32, Constant>,
+}
+
+/// Byte offsets by structure and member, of all shaders.
+pub type Layouts = BTreeMap<String, BTreeMap<String, u32>>;
+
+/// Reflects one shader and adds the offsets of its structs. A struct of one name must have one layout in all shaders.
+pub fn reflect(name: &str, words: &[u32], layouts: &mut Layouts) -> Reflection {
+    let module = rspirv::dr::load_words(words).unwrap_or_else(|e| fail(&format!("{name}: {e:?}")));
+    let d = Decorations { module: &module };
+    let (push_bytes, bindings) = variables(name, &d);
+    add_layouts(name, &d, layouts);
+    Reflection { push_bytes, bindings, constants: constants(name, &d) }
+}
+
+/// Size of the push constants, and the bindings by number.
+fn variables(name: &str, d: &Decorations<'_>) -> (u32, BTreeMap<u32, Binding>) {
+    let mut bindings = BTreeMap::new();
+    let mut push_bytes = 0;
+    for variable in &d.module.types_global_values {
+        if variable.class.opcode != Op::Variable {
+            continue;
+        }
+        let target = variable.result_id.expect("a variable has an id");
+        let pointer = d.ty(variable.result_type.expect("a variable has a type"));
+        let Operand::StorageClass(class) = pointer.operands[0] else { continue };
+        let pointee = d.ty(id(&pointer.operands[1]));
+        if class == StorageClass::PushConstant {
+            let structure = pointee.result_id.expect("a struct has an id");
+            push_bytes = pointee.operands.iter().enumerate().fold(0, |end, (m, member)| {
+                let offset = d.of_member(structure, m as u32, Decoration::Offset).unwrap_or(0);
+                end.max(offset + size_of_type(d, id(member)))
+            });
+            continue;
+        }
+        let Some(binding) = d.of(target, Decoration::Binding) else { continue };
+        if d.of(target, Decoration::DescriptorSet).unwrap_or(0) != 0 {
+            fail(&format!("{name}: only descriptor set 0 is used"));
+        }
+        let (kind, written) = match pointee.class.opcode {
+            Op::TypeStruct => {
+                let structure = pointee.result_id.expect("a struct has an id");
+                let members = pointee.operands.len() as u32;
+                let frozen = (0..members)
+                    .all(|m| d.of_member(structure, m, Decoration::NonWritable).is_some());
+                ("StorageBuffer".to_owned(), !frozen)
+            }
+            Op::TypeImage if pointee.operands[1] == Operand::Dim(Dim::DimBuffer) => {
+                ("TexelBuffer".to_owned(), false)
+            }
+            Op::TypeImage => {
+                let uint = d.ty(id(&pointee.operands[0])).class.opcode == Op::TypeInt;
+                let layered = literal(&pointee.operands[3]) == 1;
+                if literal(&pointee.operands[5]) == 2 {
+                    let Operand::ImageFormat(format) = pointee.operands[6] else {
+                        fail(&format!("{name}: a storage image without a format field"))
+                    };
+                    let kind = format!(
+                        "StorageImage {{ format: {:?}, uint: {uint}, layered: {layered} }}",
+                        format!("{format:?}")
+                    );
+                    (kind, d.of(target, Decoration::NonWritable).is_none())
+                } else {
+                    (format!("SampledImage {{ uint: {uint}, layered: {layered} }}"), false)
+                }
+            }
+            other => {
+                fail(&format!("{name}: binding {binding} is a {other:?}, which nothing here uses"))
+            }
+        };
+        // A block without an instance is known by its own name.
+        let block = super::generate::snake(&d.name(pointee.result_id.expect("a type has an id")));
+        let name = Some(d.name(target)).filter(|n| !n.is_empty()).unwrap_or(block);
+        bindings.insert(binding, Binding { name, kind, written });
+    }
+    (push_bytes, bindings)
+}
+
+fn add_layouts(name: &str, d: &Decorations<'_>, layouts: &mut Layouts) {
+    for structure in &d.module.types_global_values {
+        if structure.class.opcode != Op::TypeStruct {
+            continue;
+        }
+        let target = structure.result_id.expect("a struct has an id");
+        let type_name = d.name(target);
+        if type_name.is_empty() || type_name.starts_with("gl_") {
+            continue;
+        }
+        for m in 0..structure.operands.len() as u32 {
+            let Some(offset) = d.of_member(target, m, Decoration::Offset) else { continue };
+            let member = d.member_name(target, m);
+            let known =
+                layouts.entry(type_name.clone()).or_default().insert(member.clone(), offset);
+            if known.is_some_and(|k| k != offset) {
+                fail(&format!(
+                    "{name}: {type_name}.{member} has another offset than in an earlier shader"
+                ));
+            }
+        }
+    }
+}
+
+/// The specialisation constants by number. Those of the workgroup's size, which GLSL does not name, are
+/// `LOCAL_SIZE_X`, `_Y` and `_Z`.
+fn constants(name: &str, d: &Decorations<'_>) -> BTreeMap<u32, Constant> {
+    let values = &d.module.types_global_values;
+    let group_size = values.iter().find(|i| {
+        i.class.opcode == Op::SpecConstantComposite && d.is_group_size(i.result_id.unwrap_or(0))
+    });
+    let axis_of = |target: u32| {
+        let parts = &group_size?.operands;
+        let axis = parts.iter().position(|part| id(part) == target)?;
+        Some(["LOCAL_SIZE_X", "LOCAL_SIZE_Y", "LOCAL_SIZE_Z"][axis].to_owned())
+    };
+    let mut constants = BTreeMap::new();
+    for constant in values {
+        let target = constant.result_id.unwrap_or(0);
+        let default = match constant.class.opcode {
+            Op::SpecConstantTrue => Default::Bool(true),
+            Op::SpecConstantFalse => Default::Bool(false),
+            Op::SpecConstant => {
+                let of_type = d.ty(constant.result_type.expect("a constant has a type"));
+                let [Operand::LiteralBit32(word)] = constant.operands[..] else {
+                    fail(&format!("{name}: a specialisation constant of other than 32 bits"))
+                };
+                match (of_type.class.opcode, of_type.operands.get(1)) {
+                    (Op::TypeFloat, _) => Default::Float(f32::from_bits(word)),
+                    (_, Some(Operand::LiteralBit32(1))) => Default::Int(word as i32),
+                    _ => Default::Uint(word),
+                }
+            }
+            _ => continue,
+        };
+        let Some(number) = d.of(target, Decoration::SpecId) else { continue };
+        let own_name = Some(d.name(target)).filter(|name| !name.is_empty());
+        let Some(constant) = axis_of(target).or(own_name) else {
+            fail(&format!("{name}: specialisation constant {number} has no name"))
+        };
+        if constants.insert(number, Constant { name: constant, default }).is_some() {
+            fail(&format!("{name}: two specialisation constants have the number {number}"));
+        }
+    }
+    constants
+}
+
+fn id(operand: &Operand) -> u32 {
+    operand.id_ref_any().unwrap_or_else(|| fail("SPIR-V: an id was expected"))
+}
+
+fn literal(operand: &Operand) -> u32 {
+    match operand {
+        Operand::LiteralBit32(n) => *n,
+        _ => fail("SPIR-V: a literal was expected"),
+    }
+}
+
+/// What the decorations of a module say.
+struct Decorations<'m> {
+    module: &'m Module,
+}
+
+impl Decorations<'_> {
+    fn of(&self, target: u32, wanted: Decoration) -> Option<u32> {
+        self.module.annotations.iter().find_map(|a| {
+            (a.class.opcode == Op::Decorate
+                && id(&a.operands[0]) == target
+                && a.operands[1] == Operand::Decoration(wanted))
+            .then(|| a.operands.get(2).map_or(0, literal))
+        })
+    }
+
+    /// Whether it is the size of the workgroup.
+    fn is_group_size(&self, target: u32) -> bool {
+        self.module.annotations.iter().any(|a| {
+            a.class.opcode == Op::Decorate
+                && id(&a.operands[0]) == target
+                && a.operands[1] == Operand::Decoration(Decoration::BuiltIn)
+                && a.operands[2] == Operand::BuiltIn(BuiltIn::WorkgroupSize)
+        })
+    }
+
+    fn of_member(&self, target: u32, member: u32, wanted: Decoration) -> Option<u32> {
+        self.module.annotations.iter().find_map(|a| {
+            (a.class.opcode == Op::MemberDecorate
+                && id(&a.operands[0]) == target
+                && literal(&a.operands[1]) == member
+                && a.operands[2] == Operand::Decoration(wanted))
+            .then(|| a.operands.get(3).map_or(0, literal))
+        })
+    }
+
+    fn name(&self, target: u32) -> String {
+        self.module
+            .debug_names
+            .iter()
+            .find(|n| n.class.opcode == Op::Name && id(&n.operands[0]) == target)
+            .and_then(|n| match &n.operands[1] {
+                Operand::LiteralString(s) => Some(s.clone()),
+                _ => None,
+            })
+            .unwrap_or_default()
+    }
+
+    fn member_name(&self, target: u32, member: u32) -> String {
+        self.module
+            .debug_names
+            .iter()
+            .find(|n| {
+                n.class.opcode == Op::MemberName
+                    && id(&n.operands[0]) == target
+                    && literal(&n.operands[1]) == member
+            })
+            .and_then(|n| match &n.operands[2] {
+                Operand::LiteralString(s) => Some(s.clone()),
+                _ => None,
+            })
+            .unwrap_or_default()
+    }
+
+    fn ty(&self, target: u32) -> &Instruction {
+        self.module
+            .types_global_values
+            .iter()
+            .find(|i| i.result_id == Some(target))
+            .unwrap_or_else(|| fail("SPIR-V: a type is missing"))
+    }
+}
+
+fn size_of_type(d: &Decorations, target: u32) -> u32 {
+    let ty = d.ty(target);
+    match ty.class.opcode {
+        Op::TypeInt | Op::TypeFloat => literal(&ty.operands[0]) / 8,
+        Op::TypeVector => size_of_type(d, id(&ty.operands[0])) * literal(&ty.operands[1]),
+        other => fail(&format!("a push constant holds a {other:?}: scalars and vectors only")),
+    }
+}
