@@ -95,6 +95,7 @@
 pub mod basis;
 mod error;
 pub mod gpu;
+mod graph;
 mod passes;
 pub mod plan;
 pub mod scene;

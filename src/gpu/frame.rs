@@ -1,7 +1,8 @@
 use super::allocator::Blocks;
 use super::memory::Backed;
 use super::{Headless, ImageArg, ImageState, Renderer, Timing};
-use crate::plan::{Format, Kind, Owner, Plan, Rectangle, Resource};
+use crate::graph::{Format, Kind, Owner, Rectangle, Resource};
+use crate::plan::Plan;
 use crate::{Error, Result};
 
 /// A renderer with images for its inputs and outputs; given back with [`Headless::end`].

@@ -7,7 +7,8 @@ use super::failed;
 use super::frame::Owned;
 use super::memory::{Backed, DEPTH, whole_attachment};
 use super::{Frame, Headless, ImageArg, ImageState, Timing, ViewInputs, ViewOutputs, ViewRenderer};
-use crate::plan::{Format, View};
+use crate::graph::Format;
+use crate::plan::View;
 use crate::{Error, Result};
 
 /// A picture of a lit field before a camera.

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::allocator::{Allocation, Allocator, MemoryRequest, MemoryUse};
 use super::{Host, failed};
-use crate::plan::{Format, Kind};
+use crate::graph::{Format, Kind};
 use crate::{Error, Result};
 
 pub(crate) use attachment::{DEPTH, whole_attachment};

@@ -93,12 +93,12 @@ mod read;
 mod renderer;
 mod requirements;
 mod scattering;
-pub mod shaders;
 mod specialise;
 mod surface;
 mod validation;
 mod view;
 
+pub use crate::graph::shaders;
 pub use allocator::{Allocation, Allocator, Blocks, MemoryRequest, MemoryUse};
 #[doc(hidden)]
 pub use frame::Owned;
@@ -120,7 +120,7 @@ pub use view::{ViewInputs, ViewOutputs, ViewRenderer};
 use ash::vk;
 
 use crate::Error;
-use crate::plan::Format;
+use crate::graph::Format;
 
 /// A device that a renderer records for: borrowed, never destroyed by it.
 ///

@@ -7,7 +7,7 @@ use super::shaders::{BindingKind, Shader};
 use super::specialise::specialised;
 use super::{Host, failed};
 use crate::Result;
-use crate::plan::Pass;
+use crate::graph::Pass;
 
 /// One shader with its constants, ready to bind.
 #[derive(Clone, Copy)]

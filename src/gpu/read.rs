@@ -6,7 +6,7 @@ use ash::vk;
 use super::allocator::MemoryUse;
 use super::frame::Owned;
 use super::{Frame, Headless, ImageArg, ImageState, Renderer, failed, memory};
-use crate::plan::{Kind, Owner, ResourceId};
+use crate::graph::{Kind, Owner, ResourceId};
 use crate::{Error, Result};
 
 impl Frame {

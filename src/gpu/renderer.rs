@@ -13,7 +13,8 @@ use super::memory::{Backed, Memory};
 use super::pipelines::{Pipeline, Pipelines};
 use super::shaders::BindingKind;
 use super::{Host, requirements};
-use crate::plan::{Pass, Plan, Rectangle, ResourceId};
+use crate::graph::{Pass, Rectangle, ResourceId};
+use crate::plan::Plan;
 use crate::{Error, Result};
 
 pub use buffers::{BufferArg, InputArg};

@@ -3,7 +3,7 @@ use std::ffi::CStr;
 use ash::vk;
 
 use super::shaders::{self, BindingKind, Shader};
-use crate::plan::{Format, Limits};
+use crate::graph::{Format, Limits};
 
 /// What one device offers.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{Frame, Headless, Timing};
 use crate::Result;
-use crate::plan::{self, Limits};
+use crate::graph::Limits;
+use crate::plan;
 use crate::scene::{Border, Directions, HeightField, Scatter, Scene, VisiblePoints};
 
 impl Headless {

@@ -135,7 +135,8 @@ fn folded(op: u32, operands: &[u32]) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::shaders::{self, Specialised};
+    use crate::graph::shaders;
+    use crate::graph::shaders::Specialised;
 
     /// Opcodes and operands of a module.
     fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {

@@ -20,7 +20,7 @@ use pipelines::Drawing;
 /// Images that a [`ViewRenderer`] reads, in any state; they are left as they came.
 ///
 /// Of the plan that lit the field: its input "heights", its output "radiance", its input "environment"; also in
-/// another of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
+/// another of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewInputs {
     /// Heights above the field's base, one texel a sample.

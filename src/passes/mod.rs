@@ -1,57 +1,44 @@
 //! One file a pass: what it binds, how large it is, and why it is there; below, what several push alike.
 
-pub(crate) mod bounce_gather;
-pub(crate) mod bounce_march;
-pub(crate) mod bounce_shade;
-pub(crate) mod bounce_walk;
-pub(crate) mod cast_gather;
-pub(crate) mod dirty_list;
-pub(crate) mod dirty_mark;
-pub(crate) mod ellipse_fit;
-pub(crate) mod env_tables;
-pub(crate) mod env_turns;
-pub(crate) mod env_wedges;
-pub(crate) mod facet_mask;
-pub(crate) mod fan_weigh;
-pub(crate) mod gloss_exit;
-pub(crate) mod gloss_gather;
-pub(crate) mod gloss_seen;
-pub(crate) mod height_bounds;
-pub(crate) mod height_cells;
-pub(crate) mod height_expand;
-pub(crate) mod height_reduce;
-pub(crate) mod height_transpose;
-pub(crate) mod horizon_march;
-pub(crate) mod horizon_resweep;
-pub(crate) mod horizon_sweep;
-pub(crate) mod light_matrix;
-pub(crate) mod light_resolve;
-pub(crate) mod map_draw;
-pub(crate) mod path_trace;
-pub(crate) mod picture_tone;
-pub(crate) mod points_bend;
-pub(crate) mod pyramid_march;
-pub(crate) mod scatter_gather;
-pub(crate) mod sh_shade;
-pub(crate) mod sh_visibility;
-pub(crate) mod sh_wedges;
-pub(crate) mod shade_expand;
-pub(crate) mod shade_reduce;
-pub(crate) mod sky_draw;
-pub(crate) mod sky_shade;
-pub(crate) mod sphere_sh_shade;
-pub(crate) mod sphere_shade;
-pub(crate) mod sun_gloss;
-pub(crate) mod sun_shade;
-pub(crate) mod surface_sweep;
-pub(crate) mod sweep_fuse;
-pub(crate) mod terrain_draw;
-pub(crate) mod vector_reduce;
-pub(crate) mod visible_points;
+pub(crate) mod bake;
+pub(crate) mod bounce;
+pub(crate) mod direct;
+pub(crate) mod edit;
+pub(crate) mod horizon;
+pub(crate) mod rays;
+pub(crate) mod reference;
+pub(crate) mod sh;
+pub(crate) mod specular;
+pub(crate) mod view;
 
-use crate::gpu::shaders::same_layout;
-use crate::plan::pyramid::Pyramid;
-use crate::plan::{Batch, Blocks, ResourceId};
+pub use bake::facet_mask;
+pub(crate) use bake::{ellipse_fit, fan_weigh, points_bend, scatter_gather, visible_points};
+pub(crate) use bounce::{
+    bounce_gather, bounce_march, bounce_nodes, bounce_shade, bounce_walk, bounces, cast_gather,
+    shade_expand, shade_reduce, vector_reduce,
+};
+pub(crate) use direct::{env_tables, light_resolve, sky_shade, sphere_shade, spheres, sun_shade};
+pub(crate) use edit::{dirty_list, dirty_mark, edits, horizon_resweep};
+pub use horizon::{azimuths, batch, nodes, pyramid, sweep, sweeping};
+pub(crate) use horizon::{
+    height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, pyramid_march,
+    surface_sweep, sweep_fuse,
+};
+pub(crate) use rays::{blocks, height_bounds, height_cells};
+pub(crate) use reference::path_trace;
+pub(crate) use sh::{
+    env_turns, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges, sphere_sh,
+    sphere_sh_shade,
+};
+pub(crate) use specular::{gloss_exit, gloss_gather, gloss_seen, glossy, sun_gloss};
+pub use view::map_draw;
+pub(crate) use view::{picture_tone, sky_draw, terrain_draw};
+
+use crate::graph::ResourceId;
+use crate::graph::shaders::same_layout;
+use crate::passes::batch::Batch;
+use crate::passes::blocks::Blocks;
+use crate::passes::pyramid::Pyramid;
 use crate::scene::{HeightField, Phong};
 
 /// What passes are told of lobes: one of all samples, or an image of each sample's.

@@ -1,7 +1,7 @@
 //! Visible points on a curved base, between those on the flat one and what is made of them.
 
 use super::visible_points::texels;
-use super::{Builder, Format, Limits, Owner, ResourceId};
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 
 use crate::passes::{fan_weigh, points_bend};
 use crate::scene::{Border, Curvature, Directions, Fans, HeightField};

@@ -1,6 +1,8 @@
 use std::ops::Range;
 
-use super::{Azimuth, Pass, Plan, ResourceId};
+use super::Plan;
+use crate::graph::{Pass, ResourceId};
+use crate::passes::azimuths::Azimuth;
 
 impl Plan {
     /// Passes that must run after a frame of `before`, by position, for the same outputs as if all
@@ -74,7 +76,9 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::{self, Limits, Picture, Plan, Resource};
+    use crate::graph::{Limits, Resource};
+    use crate::plan;
+    use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{Basis, Environment, Lights, Method, Quality, Scene, Sun, Surface};
 

@@ -1,7 +1,8 @@
+use super::Plan;
 use super::bend::Bends;
-use super::blocks::Blocks;
 use super::visible_points::{check_field, images, one_image, record, texels};
-use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::blocks::Blocks;
 use crate::passes::ellipse_fit as pass;
 use crate::scene::{Border, Changed, Curvature, Directions, HeightField};
 use crate::{Error, Result};

@@ -1,13 +1,12 @@
-use super::batch::bytes_text;
-use super::blocks::Blocks;
+use super::Plan;
 use super::visible_points::{check_field, texels};
-use super::{Builder, Format, Limits, Owner, Plan};
+use crate::graph::bytes_text;
+use crate::graph::{Builder, Format, Limits, Owner};
+use crate::passes::blocks::Blocks;
 use crate::passes::facet_mask as pass;
+use crate::passes::facet_mask::DIRECTIONS_A_WORD;
 use crate::scene::{Border, Directions, HeightField};
 use crate::{Error, Result};
-
-/// Directions whose bits stand in a word of the device, as in `facets.glsl`.
-pub const DIRECTIONS_A_WORD: usize = 15;
 
 /// Rays that one dispatch follows, about, as of visible points.
 const BAND_RAYS: u64 = 1 << 24;

@@ -1,7 +1,10 @@
-use super::azimuths::Azimuth;
-use super::sweep::Sweep;
-use super::sweeping::{circle, part, prepare, settings};
-use super::{Builder, Format, Limits, Nodes, Owner, Plan, batch};
+use super::Plan;
+use crate::graph::{Builder, Format, Limits, Owner};
+use crate::passes::azimuths::Azimuth;
+use crate::passes::batch;
+use crate::passes::nodes::Nodes;
+use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::{circle, part, prepare, settings};
 use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 

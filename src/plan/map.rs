@@ -1,47 +1,7 @@
-use super::{Builder, Format, Limits, Owner, Plan};
+use super::Plan;
+use crate::graph::{Builder, Format, Limits, Owner};
+use crate::passes::map_draw::Map;
 use crate::{Error, Result, passes};
-
-/// What part of a lit field a screen shows from above, north up, and how large.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Map {
-    /// Columns and rows of the field.
-    pub field: [u32; 2],
-    /// Whether the radiance has four channels; else it has one.
-    pub has_colour: bool,
-    /// Whether there is an image of samples without data, which are not shown.
-    pub has_voids: bool,
-    /// Columns and rows of the picture, pixels.
-    pub size: [u32; 2],
-    /// Column and row of the field at the picture's upper left corner; 0, 0 is the field's. Within ±1e6.
-    pub corner: [f32; 2],
-    /// Side of a pixel, [1e-3..1e3] samples: a pixel shows the sample that its middle is in.
-    pub samples_per_pixel: f32,
-    /// Whether blue comes first in a pixel's four bytes, not red.
-    pub swaps: bool,
-}
-
-impl Map {
-    /// The four bytes of pixels where there is no field.
-    pub const BEYOND: [u8; 4] = [0x20, 0x20, 0x20, 0xff];
-
-    /// # Errors
-    /// What is out of range, by name.
-    pub fn check(&self) -> Result<()> {
-        if !self.corner.iter().all(|v| v.abs() <= 1e6) {
-            let found = format!("{},{}", self.corner[0], self.corner[1]);
-            return Err(Error::setting("map: corner", found, "numbers within ±1e6"));
-        }
-        if !(1e-3..=1e3).contains(&self.samples_per_pixel) {
-            let found = self.samples_per_pixel.to_string();
-            return Err(Error::setting(
-                "map: samples a pixel",
-                found,
-                "a number from 0.001 to 1000",
-            ));
-        }
-        Ok(())
-    }
-}
 
 /// The pass that draws a [`Map`].
 ///

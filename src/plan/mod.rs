@@ -33,66 +33,50 @@
 //! [`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan) goes over to it where images and passes are the same.
 //! A rectangle of heights that has changed needs [`Plan::edit_passes`] alone.
 
-pub mod azimuths;
-mod batch;
 mod bend;
-mod blocks;
-mod bounce_nodes;
-mod bounces;
-mod builder;
 mod change;
 mod choice;
 mod edit;
 mod ellipses;
 mod facet_mask;
-pub(crate) mod glossy;
+mod finish;
 mod horizons;
-mod limits;
 mod map;
-mod nodes;
-mod pass;
 mod picture;
 mod print;
-pub mod pyramid;
 mod reference;
-mod resource;
 pub(crate) mod scatter;
-pub mod sh;
 mod shining;
-pub(crate) mod sphere_sh;
-mod spheres;
-pub mod sweep;
-mod sweeping;
 mod view;
 mod visible_points;
 
-pub use azimuths::Azimuth;
-pub use batch::{Axis, Batch};
-pub(crate) use blocks::Blocks;
-pub(crate) use bounce_nodes::NodeSum;
-pub(crate) use bounces::Bounce;
-pub(crate) use builder::Builder;
 #[doc(hidden)]
 pub use choice::most_light;
-pub use edit::{Reach, Rectangle};
 pub use ellipses::{curved_ellipses, ellipses};
-pub use facet_mask::{DIRECTIONS_A_WORD, facet_mask};
+pub use facet_mask::facet_mask;
 pub use horizons::horizons;
-pub use limits::Limits;
-pub use map::{Map, map};
-pub use nodes::Nodes;
-pub use pass::{Pass, ResourceId, missing_barriers};
+pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
     unmet_bounced_error, unmet_error,
 };
-pub use resource::{Format, Kind, Owner, Resource};
 pub use scatter::{scatter, scatter_inputs, scatter_views, views_at_once};
-pub(crate) use spheres::samples_within;
-pub use sweeping::circle_rad;
 pub use view::{View, ViewOptions, ViewPass, ViewResource, surface_error_m};
 pub use visible_points::visible_points;
+
+pub use crate::graph::{
+    Axis, Format, Kind, Limits, Owner, Pass, Reach, Rectangle, Resource, ResourceId,
+    missing_barriers,
+};
+pub use crate::passes::azimuths::{self, Azimuth};
+pub use crate::passes::batch::Batch;
+pub use crate::passes::facet_mask::DIRECTIONS_A_WORD;
+pub use crate::passes::map_draw::Map;
+pub use crate::passes::nodes::Nodes;
+pub use crate::passes::sh_layout::lowest_rad;
+pub use crate::passes::sweeping::circle_rad;
+pub use crate::passes::{pyramid, sweep};
 
 use crate::{Error, Result};
 

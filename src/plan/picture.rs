@@ -2,18 +2,22 @@ mod drawing;
 mod gloss;
 mod images;
 
-use super::azimuths::{self, Shape};
-use super::blocks::Blocks;
-use super::bounce_nodes::BounceNodes;
-use super::bounces::{self, Bouncing};
-use super::edit::Edits;
+use super::Plan;
 use super::reference::lobe_texels;
 use super::shining::Shining;
-use super::sphere_sh::SphereSh;
-use super::sweep::Sweep;
-use super::sweeping::{Lists, prepare, settings};
-use super::{Builder, Limits, Nodes, Plan};
+use crate::graph::{Builder, Limits};
 use crate::passes;
+use crate::passes::azimuths;
+use crate::passes::azimuths::Shape;
+use crate::passes::blocks::Blocks;
+use crate::passes::bounce_nodes::BounceNodes;
+use crate::passes::bounces;
+use crate::passes::bounces::Bouncing;
+use crate::passes::edits::Edits;
+use crate::passes::nodes::Nodes;
+use crate::passes::sphere_sh::SphereSh;
+use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::{Lists, prepare, settings};
 use crate::scene::{
     Albedo, Basis, Border, Bounces, Environment, LightBasis, Lobe, Quality, Scene, Wedges,
 };

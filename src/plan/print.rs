@@ -1,7 +1,8 @@
 use std::fmt;
 
-use super::batch::bytes_text;
-use super::{Kind, Owner, Plan};
+use super::Plan;
+use crate::graph::bytes_text;
+use crate::graph::{Kind, Owner};
 
 /// A table of passes, a table of resources, and what was left out.
 impl fmt::Display for Plan {

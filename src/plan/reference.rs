@@ -1,8 +1,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::blocks::Blocks;
+use super::Plan;
 use super::choice::{choice_density, environment_cdf, most_light};
-use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
 use crate::scene::{Albedo, Border, KeyLight, Lights, Lobe, Phong, Scene};
 use crate::{Error, Result};

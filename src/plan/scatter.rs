@@ -6,11 +6,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::batch::bytes_text;
+use super::Plan;
 use super::bend::Bends;
-use super::blocks::Blocks;
 use super::visible_points::{images, one_image, record, texels};
-use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use crate::graph::bytes_text;
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::blocks::Blocks;
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
     Albedo, Curvature, Directions, HeightField, Lobe, Scatter, Scene, VisiblePoints, check_view,

@@ -1,8 +1,9 @@
 use super::Picture;
-use super::azimuths::{self, Azimuth, Shape};
-use super::spheres::Spheres;
-use super::sweep::Sweep;
-use super::sweeping::circle;
+use crate::passes::azimuths;
+use crate::passes::azimuths::{Azimuth, Shape};
+use crate::passes::spheres::Spheres;
+use crate::passes::sweep::Sweep;
+use crate::passes::sweeping::circle;
 use crate::scene::{
     Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Quality, Scene, Sun,
 };

@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::batch::bytes_text;
-use super::{Format, Limits, Plan};
+use super::Plan;
+use crate::graph::bytes_text;
+use crate::graph::{Format, Limits};
 use crate::passes::sky_draw::SkyDrawPush;
 use crate::passes::terrain_draw::{TILE, TerrainDrawPush};
 use crate::scene::{Border, Camera, Lens, Scene, corners};

@@ -1,6 +1,7 @@
-use super::batch::bytes_text;
-use super::blocks::{Blocks, REACH_CELLS};
-use super::{Builder, Format, Limits, Owner, Plan, ResourceId};
+use super::Plan;
+use crate::graph::bytes_text;
+use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
+use crate::passes::blocks::{Blocks, REACH_CELLS};
 use crate::passes::visible_points as pass;
 use crate::scene::{Border, Directions, HeightField, VisiblePoints};
 use crate::{Error, Result};

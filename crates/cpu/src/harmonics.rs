@@ -18,7 +18,7 @@ use ridgelight::basis::light::receiver;
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Azimuth;
-use ridgelight::plan::sh::lowest_rad;
+use ridgelight::plan::lowest_rad;
 use ridgelight::scene::{Border, Environment, Phong, Quality, Wedges};
 
 /// What a sample sees: coefficients, and how far a device's may be from each.

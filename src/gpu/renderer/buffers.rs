@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::{ImageArg, ImageState, Renderer};
-use crate::plan::{Kind, Owner, Rectangle, Resource, ResourceId};
+use crate::graph::{Kind, Owner, Rectangle, Resource, ResourceId};
 use crate::{Error, Result};
 
 /// Texels in a buffer of the caller's, handed in for one recording where [`Plan::take_buffer`] said so: row after

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::buffers::check_buffer;
 use super::{ImageArg, ImageState, InputArg, Renderer};
-use crate::plan::{Kind, Owner, Resource, ResourceId};
+use crate::graph::{Kind, Owner, Resource, ResourceId};
 use crate::{Error, Result};
 
 impl Renderer {

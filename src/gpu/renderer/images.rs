@@ -43,7 +43,7 @@ pub struct ImageArg {
     /// A view of its colour: 2D, or 2D array where the plan's resource is layered.
     pub view: vk::ImageView,
     /// Its format: the plan's; of inputs that only hold heights, an environment, an albedo or colours of lights also another
-    /// of [`Format::vk_read`](crate::plan::Format::vk_read) that the device can sample.
+    /// of [`Format::vk_read`](crate::graph::Format::vk_read) that the device can sample.
     pub format: vk::Format,
     /// Columns, rows and layers; must be the plan's.
     pub extent: [u32; 3],

@@ -8,7 +8,7 @@ use super::super::shaders::BindingKind;
 use super::buffers::Taken;
 use super::images::transition;
 use super::{BufferArg, ImageArg, ImageState, InputArg, Renderer};
-use crate::plan::{Owner, Pass, Rectangle, ResourceId};
+use crate::graph::{Owner, Pass, Rectangle, ResourceId};
 
 impl Renderer {
     /// Records passes, all arguments checked.

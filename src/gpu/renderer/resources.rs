@@ -8,7 +8,8 @@ use super::super::memory::{Backed, Memory};
 use super::super::pipelines::descriptor_type;
 use super::super::shaders::BindingKind;
 use super::{Renderer, Slot};
-use crate::plan::{Format, Kind, Owner, Plan, Resource, ResourceId};
+use crate::graph::{Format, Kind, Owner, Resource, ResourceId};
+use crate::plan::Plan;
 use crate::{Error, Result};
 
 /// Buffers that the host writes, by name: the plan's azimuths, and its constants.

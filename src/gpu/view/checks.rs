@@ -7,7 +7,8 @@ use super::super::memory::DEPTH;
 use super::{Curve, LINEAR, ViewInputs, ViewOutputs, ViewRenderer, wrong};
 use crate::gpu::ImageArg;
 use crate::gpu::renderer::{check_stage, check_state};
-use crate::plan::{Format, View};
+use crate::graph::Format;
+use crate::plan::View;
 use crate::{Error, Result};
 
 /// What a device must offer for a view, and how its radiance gets into a picture.

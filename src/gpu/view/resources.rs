@@ -7,8 +7,8 @@ use super::super::memory::DEPTH;
 use super::super::{failed, shaders};
 use super::pipelines::{Drawing, Recipe};
 use super::{Curve, LABELS, LINEAR, Slot, ViewRenderer};
+use crate::graph::Format;
 use crate::passes::terrain_draw::tile_indices;
-use crate::plan::Format;
 use crate::{Error, Result};
 
 impl ViewRenderer {

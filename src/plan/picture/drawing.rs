@@ -1,14 +1,14 @@
 //! The passes of a picture, light by light.
 
-use super::super::blocks::Blocks;
-use super::super::bounces::{Bouncing, bounce_name};
-use super::super::edit::Edits;
 use super::super::shining::{Aimed, Colour, Shining};
-use super::super::sphere_sh::SphereSh;
-use super::super::spheres::light_name;
-use super::super::sweeping::{Lists, Sweeping, part};
-use super::super::{Builder, ResourceId};
 use super::images::{Harmonics, Images, Tables};
+use crate::graph::{Builder, ResourceId};
+use crate::passes::blocks::Blocks;
+use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::edits::Edits;
+use crate::passes::sphere_sh::SphereSh;
+use crate::passes::spheres::light_name;
+use crate::passes::sweeping::{Lists, Sweeping, part};
 use crate::passes::{self, light_resolve};
 use crate::scene::{Albedo, Border, Quality, Scene};
 use crate::{Error, Result};

@@ -1,11 +1,11 @@
 //! What a lobe beside the diffuse reflection adds to a picture.
 
-use super::super::Batch;
-use super::super::ResourceId;
-use super::super::bounces::{Bouncing, bounce_name};
-use super::super::glossy::{Glossy, Thrown};
 use super::super::shining::Shining;
 use super::drawing::Drawing;
+use crate::graph::ResourceId;
+use crate::passes::batch::Batch;
+use crate::passes::bounces::{Bouncing, bounce_name};
+use crate::passes::glossy::{Glossy, Thrown};
 use crate::passes::{self, Lobes, gloss_exit, light_resolve};
 use crate::scene::{Basis, BounceEngine, Lobe, Phong, Quality, Receiver, Sun};
 use crate::{Error, Result};
@@ -186,7 +186,9 @@ impl Drawing<'_> {
 #[cfg(test)]
 mod tests {
     use crate::Result;
-    use crate::plan::{self, Limits, Picture, Plan};
+    use crate::graph::Limits;
+    use crate::plan;
+    use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
         Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Phong, Quality, Scene,
@@ -216,7 +218,7 @@ mod tests {
     }
 
     fn names(plan: &Plan) -> Vec<String> {
-        plan.passes.iter().map(crate::plan::Pass::label).collect()
+        plan.passes.iter().map(crate::graph::Pass::label).collect()
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! What a picture's passes read and write besides the sweeps' own.
 
-use super::super::azimuths::Azimuth;
-use super::super::sh::{Sh, WedgeTexels};
 use super::super::shining::Shining;
-use super::super::spheres::light_name;
-use super::super::{Builder, Format, Owner, ResourceId};
 use super::Picture;
+use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::passes::azimuths::Azimuth;
+use crate::passes::sh_layout::{Sh, WedgeTexels};
+use crate::passes::spheres::light_name;
 use crate::scene::{Albedo, Border, Environment, Lobe, Quality, Scene, Wedges};
 
 /// Images of the field's size, and the environment.

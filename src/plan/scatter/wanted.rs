@@ -2,7 +2,7 @@
 
 use super::towards;
 use crate::Result;
-use crate::plan::bounces::dropped;
+use crate::passes::bounces::dropped;
 use crate::scene::{Bounces, Directions, Lobe, Scatter, Scene, Sun};
 
 /// What the scene and the settings leave to be done.

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::View;
+use crate::graph::Owner;
+use crate::graph::bytes_text;
 use crate::passes::terrain_draw::{TILE, tile_indices};
-use crate::plan::Owner;
-use crate::plan::batch::bytes_text;
 
 /// A graphics pass of a [`View`].
 #[derive(Clone, Debug, PartialEq, Eq)]

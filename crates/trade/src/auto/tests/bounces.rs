@@ -1,8 +1,8 @@
 //! Choices of bounces, whose light paths are made up of the quadrature's.
 
 use super::*;
-use ridgelight_cpu::bounce::{self, Fineness};
 use ridgelight::scene::{Albedo, BounceEngine, Bounces};
+use ridgelight_cpu::bounce::{self, Fineness};
 
 /// Two bounces of an albedo of 0.8, by the f64 quadrature, which the paths that are told waver about by 5 % of it. Pictures
 /// are the truth but for what settings of bounces leave: of bounces that are not drawn all, of what azimuths they have

@@ -1,0 +1,88 @@
+use crate::{Error, Result};
+
+/// What a plan may count on: a device's limits and the memory that it may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Largest side of a 2D image.
+    pub image_side: u32,
+    /// Most layers of an image.
+    pub image_layers: u32,
+    /// Largest range of a storage buffer, bytes.
+    pub buffer_bytes: u64,
+    /// Largest single allocation, bytes.
+    pub allocation_bytes: u64,
+    /// Most workgroups of a dispatch along any axis.
+    pub groups: u32,
+    /// Largest texel buffer, texels.
+    pub texels: u32,
+    /// Shared memory of a workgroup, bytes.
+    pub shared_bytes: u32,
+    /// Whether the device is a processor: narrow groups, hulls in private memory.
+    pub is_cpu: bool,
+    /// Memory that all images and buffers of a plan may take together, bytes.
+    pub memory_budget: u64,
+}
+
+impl Limits {
+    /// Lavapipe as Debian 12 has it (Mesa 22.3.6), with 2 GiB to spend: for plans without a device.
+    pub fn lavapipe() -> Self {
+        Self {
+            image_side: 16384,
+            image_layers: 2048,
+            buffer_bytes: 128 << 20,
+            allocation_bytes: 2 << 30,
+            groups: 65_535,
+            texels: 1 << 27,
+            shared_bytes: 32 << 10,
+            is_cpu: true,
+            memory_budget: 2 << 30,
+        }
+    }
+
+    /// No device's: beyond what any field asks for. What cannot be planned for these, in either
+    /// kind of device and within the budget, can be planned for none.
+    pub fn boundless(is_cpu: bool, memory_budget: u64) -> Self {
+        Self {
+            image_side: 1 << 20,
+            image_layers: 1 << 14,
+            buffer_bytes: 1 << 50,
+            allocation_bytes: 1 << 50,
+            groups: 1 << 30,
+            texels: 1 << 30,
+            shared_bytes: 32 << 10,
+            is_cpu,
+            memory_budget,
+        }
+    }
+
+    /// Columns and rows of a field that the device has images for.
+    ///
+    /// # Errors
+    /// A field that no image can hold, or whose heights alone are beyond the budget.
+    pub fn check_size(&self, rows: usize, cols: usize) -> Result<[u32; 2]> {
+        let longest = cols.max(rows);
+        let beyond = |needs: String, limit: String| {
+            Err(Error::Limit { what: format!("a field of {cols} × {rows}"), needs, limit })
+        };
+        if longest > self.image_side as usize {
+            let limit = format!("{} on this device", self.image_side);
+            return beyond(format!("images {longest} texels long"), limit);
+        }
+        let bytes = (4 * rows as u64).saturating_mul(cols as u64);
+        if bytes > self.memory_budget {
+            let limit = format!("{} of --memory-budget", bytes_text(self.memory_budget));
+            return beyond(format!("{} for its heights", bytes_text(bytes)), limit);
+        }
+        Ok([cols as u32, rows as u32])
+    }
+}
+
+/// Bytes as people read them.
+pub(crate) fn bytes_text(bytes: u64) -> String {
+    match bytes {
+        0..10_240 => format!("{bytes} bytes"),
+        10_240..10_485_760 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        10_485_760..10_737_418_240 => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+        _ => format!("{:.2} GiB", bytes as f64 / 1_073_741_824.0),
+    }
+}

@@ -1,0 +1,16 @@
+//! What plans are made of: shaders, resources, passes, limits.
+
+mod builder;
+mod limits;
+mod pass;
+mod reach;
+mod resource;
+pub mod shaders;
+
+pub(crate) use builder::Builder;
+pub use limits::Limits;
+pub(crate) use limits::bytes_text;
+pub(crate) use pass::place_barriers;
+pub use pass::{Pass, ResourceId, missing_barriers};
+pub use reach::{Axis, CELL, Reach, Rectangle};
+pub use resource::{Format, Kind, Owner, Resource};

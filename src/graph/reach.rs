@@ -1,0 +1,117 @@
+//! What part of a pass an edited rectangle asks for.
+
+use super::Pass;
+
+/// One lane cell in the units of `Azimuth::shear`.
+pub const CELL: i32 = 1 << 15;
+
+/// A field seen along one of its axes: lanes side by side, steps along the march.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// Whether marches run along rows' direction (from row to row); else from column to column.
+    pub marches_rows: bool,
+    /// Samples across the march.
+    pub lanes: u32,
+    /// Samples along it.
+    pub steps: u32,
+    /// Steps marched before the first that is kept: whole periods of a periodic field.
+    pub warm_up: u32,
+}
+
+impl Axis {
+    /// Samples of the field.
+    pub fn samples(self) -> u64 {
+        u64::from(self.lanes) * u64::from(self.steps)
+    }
+
+    /// Columns and rows.
+    pub fn size(self) -> [u32; 2] {
+        if self.marches_rows { [self.lanes, self.steps] } else { [self.steps, self.lanes] }
+    }
+
+    /// For labels.
+    pub fn name(self) -> &'static str {
+        if self.marches_rows { "rows" } else { "cols" }
+    }
+}
+
+/// A rectangle of a field's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rectangle {
+    /// The first column.
+    pub col: u32,
+    /// The first row.
+    pub row: u32,
+    /// How many columns, 1 or more.
+    pub cols: u32,
+    /// How many rows, 1 or more.
+    pub rows: u32,
+}
+
+impl Rectangle {
+    /// All samples of a field of `cols` × `rows`.
+    pub(crate) fn whole([cols, rows]: [u32; 2]) -> Self {
+        Self { col: 0, row: 0, cols, rows }
+    }
+
+    /// As shaders are told it: first column and row, last column and row.
+    pub(crate) fn words(self) -> [i32; 4] {
+        let Self { col, row, cols, rows } = self;
+        [col, row, col + cols - 1, row + rows - 1].map(|v| v as i32)
+    }
+
+    /// First lane, lanes, march positions.
+    fn along(self, axis: Axis) -> [u32; 3] {
+        if axis.marches_rows {
+            [self.col, self.cols, self.rows]
+        } else {
+            [self.row, self.rows, self.cols]
+        }
+    }
+}
+
+/// What part of a pass an edited rectangle asks for. The pass is told the rectangle in the last four
+/// words of its push constants: its first column and row, its last column and row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// All its workgroups.
+    Whole,
+    /// Those with samples of the rectangle, 8 × 8 times four lanes each.
+    Quads(Axis),
+    /// Those with lines, 32 each and 2^line_shift / 32768 cells apart, that some sample which sees the
+    /// rectangle may look along.
+    Lines(Axis, u32),
+}
+
+/// Invocations of a group of quads, along either side.
+const QUADS_SIDE: u32 = 8;
+/// Lines of a group.
+const GROUP_LINES: u64 = 32;
+
+impl Pass {
+    /// Workgroups and push constants of the pass where only `rectangle` has been edited.
+    pub(crate) fn for_edit(&self, rectangle: Rectangle) -> ([u32; 3], Vec<u8>) {
+        let mut push = self.push.clone();
+        let Some(reach) = self.reach else { return (self.groups, push) };
+        let at = push.len() - size_of::<[i32; 4]>();
+        push[at..].copy_from_slice(bytemuck::bytes_of(&rectangle.words()));
+        let [x, y, z] = self.groups;
+        let groups = match reach {
+            Reach::Whole => self.groups,
+            Reach::Quads(axis) => {
+                let [lane, lanes, marches] = rectangle.along(axis);
+                let quads = (lane + lanes - 1) / 4 - lane / 4 + 1;
+                [quads.div_ceil(QUADS_SIDE), marches.div_ceil(QUADS_SIDE), z]
+            }
+            Reach::Lines(axis, line_shift) => {
+                let [_, lanes, marches] = rectangle.along(axis).map(u64::from);
+                // A line's distance and a lane to each side, and what the steepest shear brings in;
+                // the first group begins at a multiple of its lines.
+                let cells = (lanes + 1 + marches - 1) * CELL as u64;
+                let lines = (cells >> line_shift) + 3;
+                [x.min(lines.div_ceil(GROUP_LINES) as u32 + 1), y, z]
+            }
+        };
+        (groups, push)
+    }
+}

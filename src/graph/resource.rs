@@ -1,0 +1,161 @@
+use crate::graph::shaders::BindingKind;
+
+/// Pixel formats of images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// One f32.
+    R32Float,
+    /// Four f16.
+    Rgba16Float,
+    /// Four f32.
+    Rgba32Float,
+    /// One u32.
+    R32Uint,
+    /// Two u32: four lines' u16 or f16.
+    Rg32Uint,
+    /// Four u32: four lines' f32 bits.
+    Rgba32Uint,
+    /// One f16: heights in a caller's buffer.
+    R16Float,
+    /// One u16, 0 to 1: heights in a caller's buffer.
+    R16Unorm,
+    /// Four u8, 0 to 1: colours in a caller's buffer.
+    Rgba8Unorm,
+    /// The same, sRGB-encoded but for the last.
+    Rgba8Srgb,
+}
+
+impl Format {
+    /// Bytes a texel.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Format::R16Float | Format::R16Unorm => 2,
+            Format::R32Float | Format::R32Uint => 4,
+            Format::Rgba8Unorm | Format::Rgba8Srgb => 4,
+            Format::Rg32Uint | Format::Rgba16Float => 8,
+            Format::Rgba32Float | Format::Rgba32Uint => 16,
+        }
+    }
+
+    /// Whether texels are unsigned integers.
+    pub fn is_uint(self) -> bool {
+        matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
+    }
+
+    /// SPIR-V's name; of sRGB, which it has none for, Vulkan's in its manner.
+    pub fn spirv(self) -> &'static str {
+        match self {
+            Format::R32Float => "R32f",
+            Format::Rgba16Float => "Rgba16f",
+            Format::Rgba32Float => "Rgba32f",
+            Format::R32Uint => "R32ui",
+            Format::Rg32Uint => "Rg32ui",
+            Format::Rgba32Uint => "Rgba32ui",
+            Format::R16Float => "R16f",
+            Format::R16Unorm => "R16",
+            Format::Rgba8Unorm => "Rgba8",
+            Format::Rgba8Srgb => "Rgba8srgb",
+        }
+    }
+}
+
+/// What a resource is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A 2D image; `layered` where shaders see an array, even of one layer.
+    Image {
+        /// Texels.
+        format: Format,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Layers.
+        layers: u32,
+        /// Seen as an array.
+        layered: bool,
+    },
+    /// A buffer of words; with four f32 a texel where `texels`.
+    Buffer {
+        /// Size.
+        bytes: u64,
+        /// Whether shaders fetch texels from it.
+        texels: bool,
+    },
+}
+
+/// Whose a resource is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// Made and kept by the renderer.
+    Internal,
+    /// Handed in with each frame, left as it came.
+    Input,
+    /// Handed in with each frame as a buffer of texels, left as it came: copied to an image that the renderer
+    /// makes ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)).
+    InputBuffer,
+    /// Handed in with each frame, written.
+    Output,
+}
+
+/// An image or a buffer of a plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Resource {
+    /// By content: "lane_heights_cols".
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Whose it is.
+    pub owner: Owner,
+}
+
+impl Resource {
+    /// An image's.
+    pub fn format(&self) -> Option<Format> {
+        match self.kind {
+            Kind::Image { format, .. } => Some(format),
+            Kind::Buffer { .. } => None,
+        }
+    }
+
+    /// Whether a caller's input may hold its texels in fewer bits than the plan says: [`Format::vk_read`].
+    pub(crate) fn may_be_narrow(&self) -> bool {
+        let is_input = matches!(self.owner, Owner::Input | Owner::InputBuffer);
+        let name = self.name.as_str();
+        is_input && matches!(name, "heights" | "environment" | "albedo" | "light_colours")
+    }
+
+    /// Bytes it takes on the device.
+    pub fn bytes(&self) -> u64 {
+        match self.kind {
+            Kind::Image { format, width, height, layers, .. } => {
+                format.bytes() * u64::from(width) * u64::from(height) * u64::from(layers)
+            }
+            Kind::Buffer { bytes, .. } => bytes,
+        }
+    }
+
+    /// Whether a shader's binding of this kind can be this resource.
+    pub fn fits(&self, binding: BindingKind) -> bool {
+        match (self.kind, binding) {
+            (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,
+            (Kind::Buffer { texels, .. }, BindingKind::TexelBuffer) => texels,
+            (
+                Kind::Image { format, layered, .. },
+                BindingKind::SampledImage { uint, layered: wants },
+            ) => format.is_uint() == uint && layered == wants,
+            (
+                Kind::Image { format, layered, .. },
+                BindingKind::StorageImage { format: wanted, uint, layered: wants },
+            ) => {
+                layered == wants
+                    && if wanted == "Unknown" {
+                        format.is_uint() == uint
+                    } else {
+                        format.spirv() == wanted
+                    }
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! The compiled shaders, what each binds and what it is specialised by, as `build.rs` found by reflection.
+
+/// How a shader uses a binding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BindingKind {
+    /// A buffer of structs or words.
+    StorageBuffer,
+    /// A buffer of texels, fetched from.
+    TexelBuffer,
+    /// An image that is fetched from.
+    SampledImage {
+        /// Unsigned integers, else floats.
+        uint: bool,
+        /// Has layers.
+        layered: bool,
+    },
+    /// An image that is stored to, perhaps loaded from.
+    StorageImage {
+        /// SPIR-V's name of the format; `Unknown` takes any.
+        format: &'static str,
+        /// Unsigned integers, else floats.
+        uint: bool,
+        /// Has layers.
+        layered: bool,
+    },
+}
+
+/// One binding of a shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Binding {
+    /// Binding number in set 0.
+    pub binding: u32,
+    /// The variable's name.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: BindingKind,
+    /// Whether the shader may write it.
+    pub written: bool,
+}
+
+/// One specialisation constant of a shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Constant {
+    /// `constant_id`.
+    pub id: u32,
+    /// Its name in the shader, in lower case.
+    pub name: &'static str,
+}
+
+/// One compiled shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// Its file's name without the extension: also the pass's.
+    pub name: &'static str,
+    /// Size of its push constants.
+    pub push_bytes: u32,
+    /// Its bindings, by number.
+    pub bindings: &'static [Binding],
+    /// Its specialisation constants, by number.
+    pub constants: &'static [Constant],
+    /// SPIR-V.
+    pub words: &'static [u32],
+}
+
+/// A shader and a word for each of its specialisation constants, in their order. Made only from the struct of that
+/// shader, so that no constant is addressed by number.
+#[derive(Clone, Debug)]
+pub(crate) struct Specialised {
+    pub shader: &'static Shader,
+    pub constants: Vec<u32>,
+}
+
+/// SPIR-V of all shaders, one after the other.
+static WORDS: [u32; WORD_COUNT] =
+    words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
+
+#[allow(long_running_const_eval, reason = "a turn for each word of SPIR-V")]
+const fn words_of(bytes: &[u8]) -> [u32; WORD_COUNT] {
+    let (all, _) = bytes.as_chunks();
+    let mut words = [0; WORD_COUNT];
+    let mut i = 0;
+    while i < WORD_COUNT {
+        words[i] = u32::from_le_bytes(all[i]);
+        i += 1;
+    }
+    words
+}
+
+const fn words_at(first: usize, count: usize) -> &'static [u32] {
+    WORDS.split_at(first).1.split_at(count).0
+}
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+/// Checks at compile time that a host struct lies in memory as the shaders read it.
+macro_rules! same_layout {
+    ($host:ty, [$($shader:ident),+ $(,)?], { $($fields:tt)+ }) => {
+        $crate::graph::shaders::same_layout!(@each $host, [$($shader),+], { $($fields)+ });
+    };
+    (@each $host:ty, [$($shader:ident),+], $fields:tt) => {
+        $($crate::graph::shaders::same_layout!(@one $host, $shader, $fields);)+
+    };
+    (@one $host:ty, $shader:ident, { $($fields:tt)+ }) => {
+        $crate::graph::shaders::same_layout!($host, $shader, $($fields)+);
+    };
+    ($host:ty, $shader:ident, $($field:ident = $member:ident),+ $(,)?) => {
+        const _: () = {
+            $(assert!(std::mem::offset_of!($host, $field) == $crate::graph::shaders::offsets::$shader::$member);)+
+        };
+    };
+}
+pub(crate) use same_layout;

@@ -1,0 +1,62 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::least_radius;
+use crate::scene::{Directions, HeightField, VisiblePoints};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct EllipseFitPush {
+    cols: i32,
+    rows: i32,
+    first_direction: i32,
+    end_direction: i32,
+    first_row: i32,
+    least_radius: f32,
+}
+
+same_layout!(
+    EllipseFitPush,
+    ellipse_fit_push,
+    cols = COLS,
+    rows = ROWS,
+    first_direction = FIRST_DIRECTION,
+    end_direction = END_DIRECTION,
+    first_row = FIRST_ROW,
+    least_radius = LEAST_RADIUS,
+);
+
+/// The ellipses of some rows. `bound` are visible points and directions, or those of a curved
+/// base, and what is written; `base` says in the label which base.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    (directions, first): (&Directions, usize),
+    (rows, base): (Range<u32>, &str),
+    bound: &[(&str, ResourceId)],
+) {
+    let [cols, height] = [field.cols() as u32, rows.end - rows.start];
+    let samples = u64::from(cols) * u64::from(height);
+    let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    let is_bent = bound.iter().any(|(name, _)| *name == "bent");
+    let above = directions.vectors().iter().filter(|e| e.z > 0.0).count();
+    builder.pass(
+        shaders::EllipseFit { small: is_small, bent: is_bent },
+        &format!("{base}rows {}..{}", rows.start, rows.end),
+        "the ellipse of directions in which each sample sees the sky",
+        [cols.div_ceil(8), height.div_ceil(8), 1],
+        &EllipseFitPush {
+            cols: cols as i32,
+            rows: rows.end as i32,
+            first_direction: first as i32,
+            end_direction: (first + directions.count()) as i32,
+            first_row: rows.start as i32,
+            least_radius: least_radius(above) as f32,
+        },
+        bound,
+        samples * (4 * directions.count() as u64 + 32),
+        samples,
+    );
+}

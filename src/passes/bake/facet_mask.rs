@@ -1,0 +1,65 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::LandPush;
+use crate::passes::blocks::Blocks;
+use crate::scene::{Border, HeightField};
+
+/// Directions whose bits stand in a word of the device, as in `facets.glsl`.
+pub const DIRECTIONS_A_WORD: usize = 15;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct FacetMaskPush {
+    land: LandPush,
+    highest_m: f32,
+    first_layer: i32,
+    first_direction: i32,
+    end_direction: i32,
+}
+
+same_layout!(
+    FacetMaskPush,
+    facet_mask_push,
+    land = COLS,
+    highest_m = HIGHEST_M,
+    first_layer = FIRST_LAYER,
+    first_direction = FIRST_DIRECTION,
+    end_direction = END_DIRECTION,
+);
+
+/// Some layers of the image: `texels` are those of all directions in the buffer "directions".
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    blocks: &Blocks,
+    (layers, texels): (Range<u32>, Range<usize>),
+    [directions, image]: [ResourceId; 2],
+) {
+    let [cells_x, cells_y] = blocks.cells;
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let words = u64::from(cells_x) * u64::from(cells_y) * u64::from(layers.end - layers.start);
+    builder.pass(
+        shaders::FacetMask { border: border as u32, most_steps: blocks.most_steps() as i32 },
+        &format!("layers {}..{}", layers.start, layers.end),
+        "which triangles are seen from each direction",
+        [cells_x.div_ceil(8), cells_y.div_ceil(8), layers.end - layers.start],
+        &FacetMaskPush {
+            land: LandPush::of(field, blocks),
+            highest_m,
+            first_layer: layers.start as i32,
+            first_direction: texels.start as i32,
+            end_direction: texels.end as i32,
+        },
+        &[
+            ("cells", blocks.images.cells),
+            ("maxima", blocks.images.maxima),
+            ("directions", directions),
+            ("facet_mask", image),
+        ],
+        words * (4 + 16),
+        words * 2 * DIRECTIONS_A_WORD as u64,
+    );
+}

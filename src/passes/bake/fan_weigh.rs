@@ -1,0 +1,53 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::HeightField;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct FanWeighPush {
+    cols: i32,
+    rows: i32,
+    first_fan: i32,
+    first_direction: i32,
+}
+
+same_layout!(
+    FanWeighPush,
+    fan_weigh_push,
+    cols = COLS,
+    rows = ROWS,
+    first_fan = FIRST_FAN,
+    first_direction = FIRST_DIRECTION,
+);
+
+/// Some directions of all samples. `bound` are the directions on the curved base, the fans from texel `first_fan`, and what
+/// is written.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    (directions, part): (Range<u32>, &str),
+    first_fan: usize,
+    bound: &[(&str, ResourceId)],
+) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let count = directions.end - directions.start;
+    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    builder.pass(
+        shaders::FanWeigh,
+        part,
+        "what each direction stands for on the curved base",
+        [cols.div_ceil(8), rows.div_ceil(8), count],
+        &FanWeighPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            first_fan: first_fan as i32,
+            first_direction: directions.start as i32,
+        },
+        bound,
+        looks * (7 * 16 + 4),
+        looks,
+    );
+}

@@ -1,0 +1,65 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::REACH_CELLS;
+use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PointsBendPush {
+    cols: i32,
+    rows: i32,
+    first_texel: i32,
+    first_fan: i32,
+    first_direction: i32,
+    cell_m: [f32; 2],
+    curvature: [f32; 2],
+}
+
+same_layout!(
+    PointsBendPush,
+    points_bend_push,
+    cols = COLS,
+    rows = ROWS,
+    first_texel = FIRST_TEXEL,
+    first_fan = FIRST_FAN,
+    first_direction = FIRST_DIRECTION,
+    cell_m = CELL_X_M,
+    curvature = CURVATURE_X,
+);
+
+/// Some directions of all samples; `texels` are the first of the directions' and of the fans'. `bound` are visible points,
+/// ground, both buffers and what is written.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    (curvature, part): (Curvature, &str),
+    directions: Range<u32>,
+    [first_texel, first_fan]: [usize; 2],
+    bound: &[(&str, ResourceId)],
+) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let count = directions.end - directions.start;
+    let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    builder.pass(
+        shaders::PointsBend { border: border as u32, small: is_small, reach: REACH_CELLS as i32 },
+        part,
+        "where samples see on the curved base what they see on the flat one",
+        [cols.div_ceil(8), rows.div_ceil(8), count],
+        &PointsBendPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            first_texel: first_texel as i32,
+            first_fan: first_fan as i32,
+            first_direction: directions.start as i32,
+            cell_m: field.cell_m().map(|c| c as f32),
+            curvature: curvature.per_m.map(|k| k as f32),
+        },
+        bound,
+        looks * (4 + 4 + 16),
+        looks,
+    );
+}

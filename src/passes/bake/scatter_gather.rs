@@ -1,0 +1,171 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::{Albedo, Curvature, HeightField, Lobe, Phong, VisiblePoints};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ScatterGatherPush {
+    cols: i32,
+    rows: i32,
+    first_link: i32,
+    steps: i32,
+    step: i32,
+    first_path: i32,
+    paths: i32,
+    first_direction: i32,
+    first_sun: i32,
+    suns: i32,
+    weight_sr: f32,
+    exponent: f32,
+    lobe_share: f32,
+    first_view: i32,
+    curvature: [f32; 2],
+    albedo: [f32; 4],
+}
+
+same_layout!(
+    ScatterGatherPush,
+    scatter_gather_push,
+    cols = COLS,
+    rows = ROWS,
+    first_link = FIRST_LINK,
+    steps = STEPS,
+    step = STEP,
+    first_path = FIRST_PATH,
+    paths = PATHS,
+    first_direction = FIRST_DIRECTION,
+    first_sun = FIRST_SUN,
+    suns = SUNS,
+    weight_sr = WEIGHT_SR,
+    exponent = EXPONENT,
+    lobe_share = LOBE_SHARE,
+    first_view = FIRST_VIEW,
+    curvature = CURVATURE_X,
+    albedo = ALBEDO,
+);
+
+/// What the samples that are seen give, as in the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    None,
+    Direct,
+    Carried,
+}
+
+/// What is the same in all steps.
+pub(crate) struct Steps<'a> {
+    pub field: &'a HeightField,
+    pub albedo: &'a Albedo,
+    /// Where it reflects anything.
+    pub lobe: Option<&'a Lobe>,
+    /// That it mirrors.
+    pub suns: usize,
+    /// Texels of the first path's first step, of the first sun, and of the first view.
+    pub texels: [usize; 3],
+    /// Steps of a path.
+    pub count: u32,
+    /// Paths that the output holds before.
+    pub first_path: u32,
+    /// Solid angle of all directions, sr.
+    pub weight_sr: f64,
+    /// Towards which the last step goes, each a layer of what is scattered.
+    pub views: u32,
+    /// Whether views see what the sample's own lobe mirrors of the lights, too.
+    pub own_lobe: bool,
+    pub curvature: Curvature,
+}
+
+/// Step `step` of some paths, which look at one image of visible points, whose first direction is `first_direction`.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    steps: &Steps,
+    (step, paths, source): (u32, Range<u32>, Source),
+    first_direction: u32,
+    bound: &[(&str, ResourceId)],
+) {
+    let field = steps.field;
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let count = paths.end - paths.start;
+    let sums = step == 0;
+    let (albedo, is_map) = match *steps.albedo {
+        Albedo::Constant([r, g, b]) => ([r, g, b, 1.0], false),
+        Albedo::Map(_) => ([0.0; 4], true),
+    };
+    let lobe = match steps.lobe {
+        Some(Lobe::Constant(phong)) => *phong,
+        _ => Phong { exponent: 0.0, scale: 0.0 },
+    };
+    let is_small = VisiblePoints::is_small(field.rows(), field.cols());
+    let part = match sums {
+        true => format!("paths {}..{}", paths.start, paths.end),
+        false => format!("paths {}..{} step {step}", paths.start, paths.end),
+    };
+    let why = match sums {
+        true if steps.views > 1 => {
+            "what each sample scatters towards each view of the light that it sees along its paths"
+        }
+        true => "what each sample scatters of the light that it sees along its paths",
+        false => "what each sample sends back along its paths",
+    };
+    let views = if sums { steps.views } else { 1 };
+    let looks = u64::from(cols) * u64::from(rows) * u64::from(count) * u64::from(views);
+    builder.pass(
+        shaders::ScatterGather {
+            source: source as u32,
+            sums,
+            small: is_small,
+            albedo_is_map: is_map,
+            has_lobe: steps.lobe.is_some(),
+            lobe_is_map: matches!(steps.lobe, Some(Lobe::Map(_))),
+            bent: steps.curvature != Curvature::FLAT,
+            own_lobe: sums && steps.own_lobe,
+        },
+        &part,
+        why,
+        [cols.div_ceil(8), rows.div_ceil(8), if sums { views } else { count }],
+        &ScatterGatherPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            first_link: steps.texels[0] as i32 + (2 * paths.start * steps.count) as i32,
+            steps: steps.count as i32,
+            step: step as i32,
+            first_path: (steps.first_path + paths.start) as i32,
+            paths: count as i32,
+            first_direction: first_direction as i32,
+            first_sun: steps.texels[1] as i32,
+            suns: steps.suns as i32,
+            weight_sr: steps.weight_sr as f32,
+            exponent: lobe.exponent,
+            lobe_share: lobe.scale,
+            first_view: steps.texels[2] as i32,
+            curvature: steps.curvature.per_m.map(|k| k as f32),
+            albedo,
+        },
+        bound,
+        looks * (4 + 16 + 16 + 16),
+        looks,
+    );
+}
+
+/// No light, where nothing is scattered.
+pub(crate) fn plan_nothing(
+    builder: &mut Builder,
+    field: &HeightField,
+    (scattered, views): (ResourceId, u32),
+) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let samples = u64::from(cols) * u64::from(rows);
+    builder.pass(
+        shaders::ScatterGather { source: Source::None as u32, sums: true, ..Default::default() },
+        "nothing",
+        "no light: nothing is scattered",
+        [cols.div_ceil(8), rows.div_ceil(8), views],
+        &ScatterGatherPush { cols: cols as i32, rows: rows as i32, ..bytemuck::Zeroable::zeroed() },
+        &[("scattered", scattered)],
+        16 * samples * u64::from(views),
+        samples * u64::from(views),
+    );
+}

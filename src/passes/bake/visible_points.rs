@@ -1,0 +1,74 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::LandPush;
+use crate::passes::blocks::Blocks;
+use crate::scene::{Border, HeightField};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct VisiblePointsPush {
+    land: LandPush,
+    highest_m: f32,
+    first_layer: i32,
+    first_direction: i32,
+    end_direction: i32,
+}
+
+same_layout!(
+    VisiblePointsPush,
+    visible_points_push,
+    land = COLS,
+    highest_m = HIGHEST_M,
+    first_layer = FIRST_LAYER,
+    first_direction = FIRST_DIRECTION,
+    end_direction = END_DIRECTION,
+);
+
+/// What each sample sees in the directions of some layers of an image. `texels` are those of the image's directions
+/// in the buffer "directions".
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    blocks: &Blocks,
+    (layers, texels, is_small): (Range<u32>, Range<usize>, bool),
+    part: &str,
+    [directions, image]: [ResourceId; 2],
+) {
+    let [cols, rows] = [field.cols() as u32, field.rows() as u32];
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let count = layers.end - layers.start;
+    let words = u64::from(cols) * u64::from(rows) * u64::from(count);
+    let rays = words * if is_small { 2 } else { 1 };
+    builder.pass(
+        shaders::VisiblePoints {
+            border: border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: blocks.most_steps() as i32,
+            small: is_small,
+        },
+        part,
+        "the sample that each sample sees in each direction",
+        [cols.div_ceil(8), rows.div_ceil(8), count],
+        &VisiblePointsPush {
+            land: LandPush::of(field, blocks),
+            highest_m,
+            first_layer: layers.start as i32,
+            first_direction: texels.start as i32,
+            end_direction: texels.end as i32,
+        },
+        &[
+            ("cells", blocks.images.cells),
+            ("maxima", blocks.images.maxima),
+            ("ground", blocks.images.ground),
+            ("directions", directions),
+            ("visible_points", image),
+        ],
+        words * (4 + 16),
+        rays,
+    );
+}

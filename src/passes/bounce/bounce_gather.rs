@@ -1,0 +1,189 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::bounce_nodes::NodeSum;
+use crate::passes::bounces::Bounce;
+use crate::passes::pyramid::Pyramid;
+use crate::passes::pyramid_march;
+use crate::passes::sphere_shade::MOST_TURNS;
+use crate::passes::sweep::warm_up;
+use crate::scene::{HeightField, Levels, Receiver};
+
+/// Of this pass and of `gloss_gather`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct GatherPush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    azimuths: i32,
+    first_azimuth: i32,
+    last_azimuth: i32,
+    warm_up_cols: i32,
+    warm_up_rows: i32,
+    fine_samples: i32,
+    width_shift: i32,
+    growth: f32,
+    shade_fine: i32,
+    shade_shift: i32,
+    step_shade: i32,
+    step_height: i32,
+}
+
+same_layout!(
+    GatherPush,
+    [bounce_gather_push, gloss_gather_push],
+    {
+        cols = COLS,
+        rows = ROWS,
+        cell_x_m = CELL_X_M,
+        cell_y_m = CELL_Y_M,
+        azimuths = AZIMUTHS,
+        first_azimuth = FIRST_AZIMUTH,
+        last_azimuth = LAST_AZIMUTH,
+        warm_up_cols = WARM_UP_COLS,
+        warm_up_rows = WARM_UP_ROWS,
+        fine_samples = FINE_SAMPLES,
+        width_shift = WIDTH_SHIFT,
+        growth = GROWTH,
+        shade_fine = SHADE_FINE,
+        shade_shift = SHADE_SHIFT,
+        step_shade = STEP_SHADE,
+        step_height = STEP_HEIGHT,
+    }
+);
+
+impl GatherPush {
+    /// Of some of so many azimuths.
+    pub fn of(field: &HeightField, of: &Pyramids, azimuths: u32, range: Range<u32>) -> Self {
+        let [cell_x, cell_y] = field.cell_m();
+        let [warm_up_cols, warm_up_rows] =
+            of.heights.size.map(|n| if of.heights.periodic { warm_up(n) as i32 } else { 0 });
+        Self {
+            cols: field.cols() as i32,
+            rows: field.rows() as i32,
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+            azimuths: azimuths as i32,
+            first_azimuth: range.start as i32,
+            last_azimuth: range.end as i32,
+            warm_up_cols,
+            warm_up_rows,
+            fine_samples: of.heights.fine_samples() as i32,
+            width_shift: of.heights.width_shift() as i32,
+            growth: of.heights.growth(),
+            shade_fine: of.shade.fine_samples() as i32,
+            shade_shift: of.shade.width_shift() as i32,
+            step_shade: of.shade.level_step as i32,
+            step_height: of.heights.level_step as i32,
+        }
+    }
+}
+
+/// Levels of exit radiance.
+#[derive(Clone, Copy)]
+pub(crate) struct ShadeImages {
+    pub levels: ResourceId,
+    pub table: ResourceId,
+    pub stack: Option<ResourceId>,
+}
+
+/// The levels that a sample looks at, of heights and of exit radiance; images where there are any.
+pub(crate) struct Pyramids {
+    pub heights: Pyramid,
+    pub height_images: Option<pyramid_march::Images>,
+    /// Whether nothing else has filled them.
+    pub fills_heights: bool,
+    pub shade: Pyramid,
+    pub shade_images: Option<ShadeImages>,
+    pub receiver: Receiver,
+}
+
+impl Pyramids {
+    /// Levels of heights, as shaders call them.
+    pub fn height_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+        match self.height_images {
+            Some(pyramid_march::Images { stack: Some(stack), .. }) => vec![("height_stack", stack)],
+            Some(pyramid_march::Images { levels, table, stack: None }) => {
+                vec![("height_levels", levels), ("level_table", table)]
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// Levels of exit radiance, as shaders call them.
+    pub fn shade_bindings(&self) -> Vec<(&'static str, ResourceId)> {
+        match self.shade_images {
+            Some(ShadeImages { stack: Some(stack), .. }) => vec![("shade_stack", stack)],
+            Some(ShadeImages { levels, table, stack: None }) => {
+                vec![("shade_levels", levels), ("shade_table", table)]
+            }
+            None => Vec::new(),
+        }
+    }
+}
+
+/// What every sample, or every node, sees of the surface by its pyramids, in as many dispatches as its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    of: &Pyramids,
+    azimuths: u32,
+    bounce: &Bounce,
+    [heights, ground]: [ResourceId; 2],
+) {
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let NodeSum { nodes, sum } = bounce.found_at();
+    let [across, along] = nodes.size([cols, rows]);
+    let samples = u64::from(across) * u64::from(along);
+    let is_stack = of.heights.stored == Levels::Stack;
+    let mut bound = vec![
+        ("heights", heights),
+        ("ground", ground),
+        ("exit_radiance", bounce.exit),
+        ("bounce_sum", sum),
+    ];
+    bound.extend(of.height_bindings());
+    bound.extend(of.shade_bindings());
+    // The march, and inside it samples that round to one distance.
+    let at_once = (MOST_TURNS / (2 * of.heights.samples() + 3)).max(1);
+    for first in (0..azimuths).step_by(at_once as usize) {
+        let last = azimuths.min(first + at_once);
+        let count = last - first;
+        let part = match count == azimuths {
+            true => bounce.name.clone(),
+            false => format!("{} azimuths {first}..{last}", bounce.name),
+        };
+        // Of each azimuth every sample's height, and of those that are seen, at most all, radiance.
+        let looked_at = u64::from(of.heights.samples()) * u64::from(count);
+        builder.pass(
+            shaders::BounceGather {
+                periodic: of.heights.periodic,
+                stack: is_stack,
+                levels: of.heights.levels() as i32,
+                shade_levels: of.shade.levels() as i32,
+                grey: bounce.grey,
+                is_plane: of.receiver == Receiver::Plane,
+                node_stride: nodes.stride as i32,
+            },
+            &part,
+            format!(
+                "{} along {count} azimuths, {} samples each, {}",
+                bounce.why,
+                of.heights.samples(),
+                match of.receiver {
+                    Receiver::Plane => "the cosine exact",
+                    Receiver::Lobe => "in Legendre coefficients and three bands of the cosine",
+                }
+            ),
+            [across.div_ceil(8), along.div_ceil(8), 1],
+            &GatherPush::of(field, of, azimuths, first..last),
+            &bound,
+            samples * (2 * 16 + looked_at * (4 + 16)),
+            samples * u64::from(count),
+        );
+    }
+}

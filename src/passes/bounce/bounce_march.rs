@@ -1,0 +1,79 @@
+use crate::graph::Builder;
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::passes::LandPush;
+use crate::passes::blocks::Blocks;
+use crate::passes::bounce_nodes::NodeSum;
+use crate::passes::bounces::Bounce;
+use crate::passes::sphere_shade::MOST_TURNS;
+use crate::scene::Scene;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BounceMarchPush {
+    land: LandPush,
+    azimuths: i32,
+    first_azimuth: i32,
+    last_azimuth: i32,
+}
+
+same_layout!(
+    BounceMarchPush,
+    bounce_march_push,
+    land = COLS,
+    azimuths = AZIMUTHS,
+    first_azimuth = FIRST_AZIMUTH,
+    last_azimuth = LAST_AZIMUTH,
+);
+
+/// What every sample, or every node, sees of the surface, in as many dispatches as its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    azimuths: u32,
+    bounce: &Bounce,
+) {
+    let field = &scene.field;
+    let NodeSum { nodes, sum } = bounce.found_at();
+    let [across, along] = nodes.size([field.cols() as u32, field.rows() as u32]);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let samples = u64::from(across) * u64::from(along);
+    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    for first in (0..azimuths).step_by(at_once as usize) {
+        let last = azimuths.min(first + at_once);
+        let count = last - first;
+        let part = match count == azimuths {
+            true => bounce.name.clone(),
+            false => format!("{} azimuths {first}..{last}", bounce.name),
+        };
+        builder.pass(
+            shaders::BounceMarch {
+                border: scene.surface.border as u32,
+                thin_rows,
+                thin_cols,
+                most_steps: blocks.most_steps() as i32,
+                grey: bounce.grey,
+                node_stride: nodes.stride as i32,
+            },
+            &part,
+            format!("{}, every stretch seen along {count} azimuths", bounce.why),
+            [across.div_ceil(8), along.div_ceil(8), 1],
+            &BounceMarchPush {
+                land: LandPush::of(field, blocks),
+                azimuths: azimuths as i32,
+                first_azimuth: first as i32,
+                last_azimuth: last as i32,
+            },
+            &[
+                ("cells", blocks.images.cells),
+                ("maxima", blocks.images.maxima),
+                ("ground", blocks.images.ground),
+                ("exit_radiance", bounce.exit),
+                ("bounce_sum", sum),
+            ],
+            samples * (3 * 16 + if bounce.grey { 4 } else { 16 }),
+            samples * u64::from(count),
+        );
+    }
+}

@@ -1,0 +1,56 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::bounces::Bounce;
+use crate::scene::HeightField;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct BounceShadePush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+}
+
+same_layout!(
+    BounceShadePush,
+    bounce_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+
+/// What arrives at every sample, of what does at the nodes around it.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    bounce: &Bounce,
+    [ground, sky_share]: [ResourceId; 2],
+) {
+    let at = bounce.found_at();
+    let size = [field.cols() as u32, field.rows() as u32];
+    let [cell_x, cell_y] = field.cell_m();
+    let samples = u64::from(size[0]) * u64::from(size[1]);
+    builder.pass(
+        shaders::BounceShade { node_stride: at.nodes.stride as i32 },
+        &bounce.name,
+        "the radiance that nodes see, by every sample's own share of ground",
+        [size[0].div_ceil(8), size[1].div_ceil(8), 1],
+        &BounceShadePush {
+            cols: size[0] as i32,
+            rows: size[1] as i32,
+            cell_x_m: cell_x as f32,
+            cell_y_m: cell_y as f32,
+        },
+        &[
+            ("ground", ground),
+            ("sky_share", sky_share),
+            ("node_sum", at.sum),
+            ("bounce_sum", bounce.sum),
+        ],
+        samples * (16 + 4 + 16) + at.count(size) * 16,
+        samples,
+    );
+}

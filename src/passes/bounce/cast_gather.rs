@@ -1,0 +1,61 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::bounce_nodes::NodeSum;
+use crate::passes::bounces::Bounce;
+use crate::scene::Border;
+use std::ops::Range;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct CastGatherPush {
+    cols: i32,
+    rows: i32,
+    begin: u32,
+    count: u32,
+}
+
+same_layout!(
+    CastGatherPush,
+    cast_gather_push,
+    cols = COLS,
+    rows = ROWS,
+    begin = BEGIN,
+    count = COUNT,
+);
+
+/// What every node sees of one more bounce, by the casting sets that the first one left along some of the `azimuths`
+/// where it was `walked`, at every second node of it.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (size, border): ([u32; 2], Border),
+    (azimuths, circle): (ResourceId, Range<u32>),
+    (walked, casts): (&NodeSum, ResourceId),
+    bounce: &Bounce,
+) {
+    let at = bounce.found_at();
+    let [nodes_x, nodes_y] = at.nodes.size(size);
+    let count = circle.len() as u32;
+    let seen = at.count(size) * u64::from(count);
+    let pass = builder.pass(
+        shaders::CastGather {
+            border: border as u32,
+            grey: bounce.grey,
+            node_stride: at.nodes.stride as i32,
+        },
+        &bounce.name,
+        format!("{}, by the casting sets of {count} azimuths", bounce.why),
+        [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
+        &CastGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
+        &[
+            ("casting_sets", casts),
+            ("azimuths", azimuths),
+            (if bounce.grey { "exit_grey" } else { "exit_radiance" }, bounce.exit),
+            ("node_sum", walked.sum),
+            ("bounce_sum", at.sum),
+        ],
+        at.count(size) * 32 + seen * (16 + if bounce.grey { 16 } else { 64 }),
+        seen,
+    );
+    pass.azimuths = circle;
+}

@@ -1,0 +1,46 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::bounces::Bounce;
+use crate::passes::pyramid::Pyramid;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ShadeExpandPush {
+    cols: i32,
+    rows: i32,
+    width_shift: i32,
+}
+
+same_layout!(
+    ShadeExpandPush,
+    shade_expand_push,
+    cols = COLS,
+    rows = ROWS,
+    width_shift = WIDTH_SHIFT,
+);
+
+/// Every level of exit radiance at every sample.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    pyramid: &Pyramid,
+    bounce: &Bounce,
+    [levels, table, stack]: [ResourceId; 3],
+) {
+    let [cols, rows] = pyramid.size;
+    let texels = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
+    builder.pass(
+        shaders::ShadeExpand { periodic: pyramid.periodic },
+        &bounce.name,
+        format!("{} levels of radiance at every sample, by B-splines", pyramid.levels()),
+        [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
+        &ShadeExpandPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            width_shift: pyramid.width_shift() as i32,
+        },
+        &[("shade_levels", levels), ("shade_table", table), ("shade_stack", stack)],
+        if bounce.grey { 4 } else { 16 } * texels + 16 * pyramid.all_texels(),
+        texels,
+    );
+}

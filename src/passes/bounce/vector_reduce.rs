@@ -1,0 +1,35 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::ReducePush;
+use crate::passes::glossy::Glossy;
+use crate::passes::pyramid::Pyramid;
+
+/// One level of series of exit radiance from the one an octave finer.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (pyramid, number): (&Pyramid, u32),
+    glossy: &Glossy,
+    name: &str,
+    [exit, levels, table]: [ResourceId; 3],
+) {
+    let from = pyramid.source(number);
+    let (level, source) = (pyramid.level(number), pyramid.level(from));
+    let [cols, rows] = level.size;
+    let apart = (f64::from(number) / f64::from(pyramid.level_step)).exp2();
+    let layers = glossy.layers();
+    builder.pass(
+        shaders::VectorReduce { periodic: pyramid.periodic, from_field: from == 0 },
+        &format!("{name} level {number}"),
+        format!("radiance by direction every {apart:.1} samples"),
+        [cols.div_ceil(8), rows.div_ceil(8), layers],
+        &ReducePush::of(pyramid, number),
+        &[
+            ("exit_vectors", exit),
+            ("vector_source", levels),
+            ("vector_levels", levels),
+            ("shade_table", table),
+        ],
+        glossy.texel_bytes() * u64::from(layers) * (level.texels() + source.texels()),
+        level.texels() * u64::from(layers),
+    );
+}

@@ -1,0 +1,68 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::ShadePush;
+use crate::passes::batch::Batch;
+use crate::passes::dirty_list;
+use crate::passes::sweep::Sweep;
+use crate::scene::Border;
+
+/// What the shading of a batch reads and writes.
+pub(crate) struct Images {
+    pub lane_heights: ResourceId,
+    pub lattice: Option<ResourceId>,
+    pub azimuths: ResourceId,
+    pub sky_sum: Option<ResourceId>,
+    /// The sum, and the tables it is made of.
+    pub environment: Option<[ResourceId; 2]>,
+    /// Marks of the samples that an edit reaches, and their list, where only they are lit.
+    pub edited: Option<[ResourceId; 2]>,
+}
+
+/// Light of a uniform sky and of an environment through the horizons of a batch.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    border: Border,
+    cell_m: [f64; 2],
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    let axis = batch.axis;
+    let mut bound = vec![("lane_heights", images.lane_heights), ("azimuths", images.azimuths)];
+    bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
+    bound.extend(images.sky_sum.map(|s| ("sky_sum", s)));
+    if let Some([sum, tables]) = images.environment {
+        bound.extend([("env_sum", sum), ("env_tables", tables)]);
+    }
+    if let Some([dirty, list]) = images.edited {
+        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+    }
+    let sums = if images.sky_sum.is_some() { 8 } else { 0 }
+        + if images.environment.is_some() { 32 } else { 0 };
+    let pass = builder.pass(
+        shaders::SkyShade {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            has_sky: images.sky_sum.is_some(),
+            has_environment: images.environment.is_some(),
+            marches_rows: axis.marches_rows,
+            relights: images.edited.is_some(),
+        },
+        part,
+        match (images.sky_sum, images.environment) {
+            (Some(_), Some(_)) => "uniform sky in closed form; environment from its tables",
+            (Some(_), None) => "uniform sky in closed form: no table",
+            _ => "environment from its tables",
+        },
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &ShadePush::of(batch, cell_m),
+        &bound,
+        axis.samples() * (4 + sums + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.samples() * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+    pass.indirect = images.edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));
+}

@@ -1,0 +1,170 @@
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, Rectangle, ResourceId};
+use crate::passes::LandPush;
+use crate::passes::blocks::Blocks;
+use crate::passes::spheres::samples_within;
+use crate::scene::{HeightField, Scene, SphereLight};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SphereShadePush {
+    land: LandPush,
+    first: [i32; 2],
+    base: [i32; 2],
+    offset: [f32; 2],
+    up_m: f32,
+    radius_m: f32,
+    reach_m: f32,
+    slices: i32,
+    slices_around: i32,
+    first_slice: i32,
+    last_slice: i32,
+    pads: [i32; 3],
+    radiance: [f32; 4],
+}
+
+same_layout!(
+    SphereShadePush,
+    sphere_shade_push,
+    land = COLS,
+    first = FIRST,
+    base = BASE,
+    offset = OFFSET,
+    up_m = UP_M,
+    radius_m = RADIUS_M,
+    reach_m = REACH_M,
+    slices = SLICES,
+    slices_around = SLICES_AROUND,
+    first_slice = FIRST_SLICE,
+    last_slice = LAST_SLICE,
+    radiance = RADIANCE,
+);
+
+/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+pub(crate) const MOST_TURNS: u32 = 60_000;
+
+/// How a ball is looked at.
+pub(crate) struct Look {
+    /// The setting of how many slices.
+    pub slices: u32,
+    /// Samples that it is looked for at, and how far away they may be.
+    pub rectangle: Rectangle,
+    pub reach_m: f32,
+    /// Whether the sum begins with it.
+    pub begins: bool,
+}
+
+/// Light of one ball, in as many dispatches as its slices need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    name: &str,
+    ball: &SphereLight,
+    look: &Look,
+    sum: ResourceId,
+) {
+    let [narrow, around] = ball.slices(look.slices, scene.field.cell_m());
+    let at_once = (MOST_TURNS / (blocks.most_steps() + 1)).max(1);
+    for first in (0..around).step_by(at_once as usize) {
+        let range = first..around.min(first + at_once);
+        let part = match range.len() as u32 {
+            all if all == around => name.to_owned(),
+            _ => format!("{name} slices {}..{}", range.start, range.end),
+        };
+        // Where the ball is narrower it has no further slices.
+        let half_width = PI * f64::from(first) / f64::from(around);
+        let rectangle = if first < narrow {
+            look.rectangle
+        } else {
+            let within = 1.001 * ball.radius_m / half_width.min(FRAC_PI_2).sin();
+            common(samples_within(&scene.field, ball, within), look.rectangle)
+        };
+        dispatch(builder, scene, blocks, &part, ball, &Look { rectangle, ..*look }, range, sum);
+    }
+}
+
+/// What is in both; where nothing is, one sample, so that plans of a moving ball have the same passes.
+fn common(near: Option<Rectangle>, all: Rectangle) -> Rectangle {
+    let none = Rectangle { cols: 1, rows: 1, ..all };
+    let Some(near) = near else { return none };
+    let along = |[a, n]: [u32; 2], [b, m]: [u32; 2]| {
+        let [first, end] = [a.max(b), (a + n).min(b + m)];
+        (first < end).then(|| [first, end - first])
+    };
+    let cols = along([near.col, near.cols], [all.col, all.cols]);
+    let rows = along([near.row, near.rows], [all.row, all.rows]);
+    match (cols, rows) {
+        (Some([col, cols]), Some([row, rows])) => Rectangle { col, row, cols, rows },
+        _ => none,
+    }
+}
+
+/// Of a ball's middle: whole cells east of the first column and south of the first row, and the rest of a cell.
+pub(crate) fn place_of(field: &HeightField, ball: &SphereLight) -> ([i32; 2], [f32; 2]) {
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = ball.position_m;
+    let place = [x / cell_x, (field.rows() - 1) as f64 - y / cell_y];
+    // Beyond this a whole cell is less than a rounding of the distance.
+    let base = place.map(|p| p.floor().clamp(-1e9, 1e9));
+    (base.map(|b| b as i32), [0, 1].map(|i| (place[i] - base[i]) as f32))
+}
+
+#[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
+fn dispatch(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    part: &str,
+    ball: &SphereLight,
+    look: &Look,
+    slices: Range<u32>,
+    sum: ResourceId,
+) {
+    let field = &scene.field;
+    let [narrow, around] = ball.slices(look.slices, field.cell_m());
+    let (base, offset) = place_of(field, ball);
+    let Rectangle { col, row, cols, rows } = look.rectangle;
+    let samples = u64::from(cols) * u64::from(rows);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let [r, g, b] = ball.radiance;
+    let begins = look.begins && slices.start == 0;
+    builder.pass(
+        shaders::SphereShade {
+            border: scene.surface.border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: blocks.most_steps() as i32,
+        },
+        part,
+        "slices of the ball over what the surface hides of them",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &SphereShadePush {
+            land: LandPush::of(field, blocks),
+            first: [col as i32, row as i32],
+            base,
+            offset,
+            up_m: (ball.position_m[2] - field.base_m()) as f32,
+            radius_m: ball.radius_m as f32,
+            reach_m: look.reach_m,
+            slices: narrow as i32,
+            slices_around: around as i32,
+            first_slice: slices.start as i32,
+            last_slice: slices.end as i32,
+            pads: [0; 3],
+            radiance: [r, g, b, f32::from(u8::from(begins))],
+        },
+        &[
+            ("cells", blocks.images.cells),
+            ("maxima", blocks.images.maxima),
+            ("ground", blocks.images.ground),
+            ("sphere_sum", sum),
+        ],
+        samples * (3 * 16),
+        samples * slices.len() as u64,
+    );
+}

@@ -1,0 +1,55 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::ShadePush;
+use crate::passes::azimuths::Shape;
+use crate::passes::batch::Batch;
+use crate::passes::dirty_list;
+use crate::passes::sweep::Sweep;
+use crate::scene::Border;
+
+/// Light of one sun or key light through the horizons of the azimuths that it covers.
+#[expect(clippy::too_many_arguments, reason = "a pass is its inputs")]
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    border: Border,
+    cell_m: [f64; 2],
+    batch: &Batch,
+    part: &str,
+    shape: Shape,
+    lattice: Option<ResourceId>,
+    [lane_heights, azimuths, sun_sum]: [ResourceId; 3],
+    edited: Option<[ResourceId; 2]>,
+) {
+    let axis = batch.axis;
+    let mut bound =
+        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("sun_sum", sun_sum)];
+    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
+    if let Some([dirty, list]) = edited {
+        bound.extend([("dirty_samples", dirty), ("edit_list", list)]);
+    }
+    let pass = builder.pass(
+        shaders::SunShade {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            shape: shape as u32,
+            marches_rows: axis.marches_rows,
+            relights: edited.is_some(),
+        },
+        part,
+        match shape {
+            Shape::Disc => "the part of each chord of the disc above the horizon",
+            Shape::Point => "a point: lit or not",
+            Shape::Patch => "the part of its elevations above the horizon",
+        },
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &ShadePush::of(batch, cell_m),
+        &bound,
+        axis.samples() * (12 + u64::from(batch.count) * sweep.lattice_bytes()),
+        axis.samples() * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+    pass.indirect = edited.map(|[_, list]| (list, dirty_list::LIGHT_GROUPS_AT));
+}

@@ -1,0 +1,69 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, Reach, Rectangle, ResourceId};
+use crate::passes::batch::Batch;
+use crate::passes::sweep::LineSweep;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HorizonResweepPush {
+    lanes: i32,
+    steps: i32,
+    first_azimuth: u32,
+    height_scale: f32,
+    rectangle: [i32; 4],
+}
+
+same_layout!(
+    HorizonResweepPush,
+    horizon_resweep_push,
+    lanes = LANES,
+    steps = STEPS,
+    first_azimuth = FIRST_AZIMUTH,
+    height_scale = HEIGHT_SCALE,
+    rectangle = FIRST_COL,
+);
+
+/// What a sweep of an edit reads and writes.
+pub(crate) struct Images {
+    pub heights: ResourceId,
+    pub azimuths: ResourceId,
+    pub occluders: ResourceId,
+    pub dirty: ResourceId,
+    pub list: ResourceId,
+}
+
+/// The lines of a batch that an edited rectangle can reach, again.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    let axis = batch.axis;
+    let pass = builder.pass(
+        shaders::HorizonResweep { line_shift: sweep.line_shift as i32, hull_packed: sweep.packed },
+        part,
+        "lines that meet the edit, until it is off their hulls",
+        [batch.most_lines.div_ceil(32), 1, batch.count],
+        &HorizonResweepPush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            first_azimuth: batch.first,
+            height_scale: sweep.height_scale,
+            rectangle: Rectangle::whole(axis.size()).words(),
+        },
+        &[
+            ("heights", images.heights),
+            ("azimuths", images.azimuths),
+            ("occluders", images.occluders),
+            ("dirty_samples", images.dirty),
+            ("edit_list", images.list),
+        ],
+        batch.line_samples * 8,
+        batch.line_samples,
+    );
+    pass.azimuths = batch.azimuths();
+    pass.reach = Some(Reach::Lines(axis, sweep.line_shift));
+}

@@ -1,0 +1,36 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::pyramid::Pyramid;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HeightExpandPush {
+    size: [i32; 2],
+    width_shift: i32,
+}
+
+same_layout!(HeightExpandPush, height_expand_push, size = COLS, width_shift = WIDTH_SHIFT);
+
+/// All levels at the field's own samples.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    pyramid: &Pyramid,
+    [levels, table, stack]: [ResourceId; 3],
+) {
+    let [cols, rows] = pyramid.size;
+    let samples = u64::from(cols) * u64::from(rows) * u64::from(pyramid.levels());
+    builder.pass(
+        shaders::HeightExpand { periodic: pyramid.periodic },
+        "",
+        "a march then reads levels as it reads the field",
+        [cols.div_ceil(8), rows.div_ceil(8), pyramid.levels()],
+        &HeightExpandPush {
+            size: pyramid.size.map(|n| n as i32),
+            width_shift: pyramid.width_shift() as i32,
+        },
+        &[("height_levels", levels), ("level_table", table), ("height_stack", stack)],
+        4 * (samples + pyramid.all_texels()),
+        samples,
+    );
+}

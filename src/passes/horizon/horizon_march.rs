@@ -1,0 +1,34 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::MarchPush;
+use crate::passes::batch::Batch;
+use crate::passes::nodes::Nodes;
+
+/// Brute force: every crossing of every sample's own line.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    batch: &Batch,
+    part: &str,
+    (distances, nodes): (bool, Nodes),
+    [heights, azimuths, slopes]: [ResourceId; 3],
+) {
+    let axis = batch.axis;
+    let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
+    let samples = u64::from(lanes) * u64::from(steps) * u64::from(batch.count);
+    let pass = builder.pass(
+        shaders::HorizonMarch {
+            all_crossings: true,
+            periodic: axis.warm_up > 0,
+            writes_distances: distances,
+            node_stride: nodes.stride as i32,
+        },
+        part,
+        format!("brute-force horizons of {} azimuths along {}", batch.count, axis.name()),
+        [lanes.div_ceil(8), steps.div_ceil(8), batch.count],
+        &MarchPush::of(batch),
+        &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
+        samples * 8,
+        samples,
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,126 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::batch::Batch;
+use crate::passes::sweep::{HullPlace, LineSweep};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HorizonSweepPush {
+    lanes: i32,
+    steps: i32,
+    warm_up: i32,
+    first_azimuth: u32,
+    height_scale: f32,
+}
+
+same_layout!(
+    HorizonSweepPush,
+    horizon_sweep_push,
+    lanes = LANES,
+    steps = STEPS,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    height_scale = HEIGHT_SCALE,
+);
+
+/// What a sweep reads and writes.
+pub(crate) struct Images {
+    pub heights: ResourceId,
+    pub lane_heights: Option<ResourceId>,
+    pub azimuths: ResourceId,
+    pub occluders: Option<ResourceId>,
+    pub slopes: Option<ResourceId>,
+    /// Where lines are marked whose hull was deeper than what it is kept in.
+    pub lost_lines: Option<ResourceId>,
+}
+
+/// Hull sweeps along all lines of a batch of azimuths; and again along those whose hull was deeper
+/// than the memory that it is kept in.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    run(builder, sweep, batch, part, images, false);
+    if images.lost_lines.is_some() {
+        let again = LineSweep { hull: HullPlace::Occluders, hull_depth: 1, ..*sweep };
+        run(builder, &again, batch, format!("{part} again").trim(), images, true);
+    }
+}
+
+fn run(
+    builder: &mut Builder,
+    sweep: &LineSweep,
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+    again: bool,
+) {
+    let axis = batch.axis;
+    let depth = sweep.hull_depth as i32;
+    let private = sweep.hull == HullPlace::Private;
+    let shared_words = 4 * depth * sweep.group_size as i32 * if sweep.packed { 1 } else { 2 };
+    let mut bound = vec![("azimuths", images.azimuths)];
+    // Lines a cell apart share texels of four lanes; all others fetch sample by sample.
+    match images.lane_heights {
+        Some(lanes) => bound.push(("lane_heights", lanes)),
+        None => bound.push(("heights", images.heights)),
+    }
+    if sweep.hull == HullPlace::Occluders && images.lane_heights.is_some() {
+        bound.push(("heights", images.heights));
+    }
+    bound.extend(images.occluders.map(|o| ("occluders", o)));
+    bound.extend(images.slopes.map(|s| ("slopes", s)));
+    bound.extend(images.lost_lines.map(|l| ("lost_lines", l)));
+    let lines = batch.most_lines;
+    let value_bytes = if images.occluders.is_some() { 2 } else { 0 }
+        + if images.slopes.is_some() { u64::from(sweep.slope_format) * 4 % 6 } else { 0 };
+    let pass = builder.pass(
+        shaders::HorizonSweep {
+            local_size_x: sweep.group_size,
+            hull_place: sweep.hull as u32,
+            hull_depth: depth,
+            private_entries: if private && !sweep.packed { depth } else { 1 },
+            private_words: if private && sweep.packed { depth } else { 1 },
+            shared_words: if sweep.hull == HullPlace::Shared { shared_words } else { 1 },
+            hull_holds_line: sweep.holds_line,
+            hull_packed: sweep.packed,
+            writes_occluders: images.occluders.is_some(),
+            slope_format: if images.slopes.is_some() { sweep.slope_format } else { 0 },
+            periodic: axis.warm_up > 0,
+            line_shift: sweep.line_shift as i32,
+            redoes_lost: again,
+        },
+        part,
+        if again {
+            "lines whose hull was deeper than its memory; ends at once where there are none"
+                .to_owned()
+        } else {
+            format!(
+                "horizons of {} azimuths along {}, hull in {}",
+                batch.count,
+                axis.name(),
+                match sweep.hull {
+                    HullPlace::Private => "private memory",
+                    HullPlace::Shared => "shared memory",
+                    HullPlace::Occluders => "the occluders themselves",
+                }
+            )
+        },
+        [lines.div_ceil(4 * sweep.group_size), 1, batch.count],
+        &HorizonSweepPush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            height_scale: sweep.height_scale,
+        },
+        &bound,
+        if again { u64::from(batch.layers) * 32 } else { batch.line_samples * (4 + value_bytes) },
+        if again { 0 } else { batch.line_samples },
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,14 @@
+pub mod azimuths;
+pub mod batch;
+pub(crate) mod height_expand;
+pub(crate) mod height_reduce;
+pub(crate) mod height_transpose;
+pub(crate) mod horizon_march;
+pub(crate) mod horizon_sweep;
+pub mod nodes;
+pub mod pyramid;
+pub(crate) mod pyramid_march;
+pub(crate) mod surface_sweep;
+pub mod sweep;
+pub(crate) mod sweep_fuse;
+pub mod sweeping;

@@ -1,0 +1,167 @@
+//! The levels of a height pyramid: how many a scene needs, how large each is, where it lies.
+
+use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::passes::sweep;
+use crate::passes::{self, pyramid_march::Images};
+use crate::scene::{Border, Levels, Quality};
+
+/// Horizons from a pyramid of filtered heights (Nowrouzezahrai & Snyder 2009, §5.2).
+///
+/// Sample i of a march stands 2^(i/k) march steps away, rounded to whole steps, and looks at level i - k·o, or at the field
+/// itself (level 0) where that is below 1: the paper's f_(i + k o) counts levels from the coarsest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pyramid {
+    /// Levels an octave, k.
+    pub level_step: u32,
+    /// Octaves by which samples look at finer levels, o.
+    pub level_offset: u32,
+    /// What is stored of the levels.
+    pub stored: Levels,
+    /// Columns and rows of the field.
+    pub size: [u32; 2],
+    /// Whether the field repeats.
+    pub periodic: bool,
+}
+
+/// One level beside the field itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Where its texels begin among those of all levels.
+    pub first: u64,
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Texels a sample, along columns' and rows' directions: 0 where there is one texel.
+    pub per_sample: [f32; 2],
+}
+
+impl Level {
+    /// Texels.
+    pub fn texels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
+
+impl Pyramid {
+    /// The pyramid that a quality asks for.
+    pub fn new(quality: &Quality, size: [u32; 2], border: Border) -> Self {
+        Self {
+            level_step: quality.level_step,
+            level_offset: quality.level_offset,
+            stored: quality.levels,
+            size,
+            periodic: border == Border::Periodic,
+        }
+    }
+
+    /// Samples of the longest march: the last stands where the march leaves the field.
+    pub fn samples(&self) -> u32 {
+        let longest = |n: u32| if self.periodic { n + sweep::warm_up(n) } else { n };
+        let reach = self.size.map(longest).into_iter().max().unwrap_or(1) - 1;
+        // As the march counts them.
+        let (mut samples, mut back) = (u32::from(reach > 0), 1.0_f32);
+        while ((back + 0.5) as u32) < reach {
+            back *= self.growth();
+            samples += 1;
+        }
+        samples
+    }
+
+    /// Samples that look at the field itself.
+    pub fn fine_samples(&self) -> u32 {
+        self.level_step * self.level_offset + 1
+    }
+
+    /// Levels beside the field itself: those that some sample of the longest march looks at.
+    pub fn levels(&self) -> u32 {
+        self.samples().saturating_sub(self.fine_samples())
+    }
+
+    /// What distances grow by from sample to sample, 2^(1/k).
+    pub fn growth(&self) -> f32 {
+        (1.0 / f64::from(self.level_step)).exp2() as f32
+    }
+
+    /// The level that `level` is made from: an octave finer, or the field itself (0).
+    pub fn source(&self, level: u32) -> u32 {
+        level.saturating_sub(self.level_step)
+    }
+
+    /// Texels of its source a texel of `level`, along columns' and rows' directions.
+    pub fn ratio(&self, level: u32) -> [f32; 2] {
+        let (size, source) = (self.size_of(level), self.size_of(self.source(level)));
+        [0, 1].map(|axis| {
+            let ends = u32::from(!self.periodic);
+            let [of, to] = [source[axis] - ends, size[axis] - ends].map(f64::from);
+            if to > 0.0 { (of / to) as f32 } else { 1.0 }
+        })
+    }
+
+    /// Level 0 is the field itself, which is not stored again.
+    pub fn level(&self, level: u32) -> Level {
+        let first = (1..level).map(|l| self.size_of(l).map(u64::from)).map(|[w, h]| w * h).sum();
+        let size = self.size_of(level);
+        let per_sample = [0, 1].map(|axis| {
+            let (samples, texels) = (f64::from(self.size[axis]), f64::from(size[axis]));
+            let [gaps, of] =
+                if self.periodic { [texels, samples] } else { [texels - 1.0, samples - 1.0] };
+            if of > 0.0 { (gaps / of) as f32 } else { 0.0 }
+        });
+        Level { first, size, per_sample }
+    }
+
+    /// Texels 2^(l/k) samples apart, as nearly as lets the first and the last stand on the field's
+    /// first and last samples, or a whole number of them make a period.
+    fn size_of(&self, level: u32) -> [u32; 2] {
+        let scale = (-f64::from(level) / f64::from(self.level_step)).exp2();
+        self.size.map(|samples| {
+            let texels = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
+            match (self.periodic, samples) {
+                (true, _) => texels(samples),
+                (false, 1) => 1,
+                (false, _) => texels(samples - 1) + 1,
+            }
+        })
+    }
+
+    /// log2 of the width of the image that holds all levels: as wide as high, nearly.
+    pub fn width_shift(&self) -> u32 {
+        let texels: u64 = self.all_texels();
+        texels.max(1).next_power_of_two().trailing_zeros().div_ceil(2)
+    }
+
+    /// Texels of all levels beside the field itself.
+    pub fn all_texels(&self) -> u64 {
+        let last = self.level(self.levels());
+        if self.levels() == 0 { 0 } else { last.first + last.texels() }
+    }
+
+    /// Images of the levels beside the field itself; none where no march looks at any.
+    pub(crate) fn images(&self, builder: &mut Builder) -> Option<Images> {
+        let count = self.levels();
+        if count == 0 {
+            return None;
+        }
+        let mut image = |name: &str, format: Format, extent: [u32; 3], layered: bool| {
+            builder.image(name, Owner::Internal, format, extent, layered)
+        };
+        let width = 1 << self.width_shift();
+        let height = self.all_texels().div_ceil(u64::from(width)) as u32;
+        let levels = image("height_levels", Format::R32Float, [width, height, 1], false);
+        let table = image("level_table", Format::Rgba32Uint, [count, 1, 1], false);
+        let [cols, rows] = self.size;
+        let stack = (self.stored == Levels::Stack)
+            .then(|| image("height_stack", Format::R32Float, [cols, rows, count], true));
+        Some(Images { levels, table, stack })
+    }
+
+    /// Passes that fill them from the heights.
+    pub(crate) fn record(&self, builder: &mut Builder, heights: ResourceId, images: &Images) {
+        let Images { levels, table, stack } = *images;
+        for level in 1..=self.levels() {
+            passes::height_reduce::plan(builder, self, level, [heights, levels, table]);
+        }
+        if let Some(stack) = stack {
+            passes::height_expand::plan(builder, self, [levels, table, stack]);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::batch::Batch;
+use crate::passes::nodes::Nodes;
+use crate::passes::pyramid::Pyramid;
+use crate::scene::Levels;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PyramidMarchPush {
+    lanes: i32,
+    steps: i32,
+    warm_up: i32,
+    first_azimuth: u32,
+    azimuth_count: u32,
+    fine_samples: i32,
+    width_shift: i32,
+    growth: f32,
+}
+
+same_layout!(
+    PyramidMarchPush,
+    pyramid_march_push,
+    lanes = LANES,
+    steps = STEPS,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    azimuth_count = AZIMUTH_COUNT,
+    fine_samples = FINE_SAMPLES,
+    width_shift = WIDTH_SHIFT,
+    growth = GROWTH,
+);
+
+/// What a pyramid's passes leave; nothing where all samples look at the field itself.
+#[derive(Clone, Copy)]
+pub(crate) struct Images {
+    pub levels: ResourceId,
+    pub table: ResourceId,
+    pub stack: Option<ResourceId>,
+}
+
+/// Horizons from the levels, one sample a level.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (pyramid, nodes): (&Pyramid, Nodes),
+    batch: &Batch,
+    part: &str,
+    [heights, azimuths, slopes]: [ResourceId; 3],
+    images: Option<&Images>,
+) {
+    let axis = batch.axis;
+    let mut bound = vec![("heights", heights), ("azimuths", azimuths), ("slopes", slopes)];
+    match images {
+        Some(Images { stack: Some(stack), .. }) => bound.push(("height_stack", *stack)),
+        Some(Images { levels, table, stack: None }) => {
+            bound.extend([("height_levels", *levels), ("level_table", *table)]);
+        }
+        None => {}
+    }
+    let is_stack = pyramid.stored == Levels::Stack;
+    // A sample of its own at every level, once; then one a level and azimuth.
+    let (own, far) = if is_stack { (1, 2) } else { (16, 16) };
+    let fine = pyramid.fine_samples().min(pyramid.samples());
+    let looked_at = u64::from(2 * fine + far * pyramid.levels());
+    let own = u64::from(1 + own * pyramid.levels());
+    let [lanes, steps] = nodes.size([axis.lanes, axis.steps]);
+    let places = u64::from(lanes) * u64::from(steps);
+    let samples = places * u64::from(batch.count);
+    let pass = builder.pass(
+        shaders::PyramidMarch {
+            periodic: pyramid.periodic,
+            stack: is_stack,
+            levels: pyramid.levels() as i32,
+            node_stride: nodes.stride as i32,
+        },
+        part,
+        format!("horizons of {} azimuths, {} samples each", batch.count, pyramid.samples()),
+        [lanes.div_ceil(8), steps.div_ceil(8), 1],
+        &PyramidMarchPush {
+            lanes: axis.lanes as i32,
+            steps: axis.steps as i32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            azimuth_count: batch.count,
+            fine_samples: pyramid.fine_samples() as i32,
+            width_shift: pyramid.width_shift() as i32,
+            growth: pyramid.growth(),
+        },
+        &bound,
+        4 * (samples * (1 + looked_at) + places * own),
+        samples,
+    );
+    pass.azimuths = batch.azimuths();
+}

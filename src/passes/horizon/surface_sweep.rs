@@ -1,0 +1,33 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::MarchPush;
+use crate::passes::batch::Batch;
+
+/// Exact sweeps along grid vectors: every crossing of every line on its hull.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    batch: &Batch,
+    part: &str,
+    hull_depth: u32,
+    distances: bool,
+    [heights, azimuths, slopes]: [ResourceId; 3],
+) {
+    let axis = batch.axis;
+    let group_size = 8;
+    let pass = builder.pass(
+        shaders::SurfaceSweep {
+            local_size_x: group_size,
+            hull_depth: hull_depth as i32,
+            periodic: axis.warm_up > 0,
+            writes_distances: distances,
+        },
+        part,
+        format!("exact horizons of {} azimuths along {}", batch.count, axis.name()),
+        [batch.most_lines.div_ceil(group_size), 1, batch.count],
+        &MarchPush::of(batch),
+        &[("heights", heights), ("azimuths", azimuths), ("slopes", slopes)],
+        batch.line_samples * 4 + axis.samples() * u64::from(batch.count) * 4,
+        batch.line_samples,
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,399 @@
+//! How horizons of a field are found: which form of sweep, what it stores, how much it takes.
+
+use crate::graph::{Axis, Limits};
+use crate::passes::azimuths::{Azimuth, CELL};
+use crate::passes::pyramid::Pyramid;
+use crate::scene::{Border, Fuse, HeightField, Hull, Lines, Method, Precision, Quality};
+use crate::{Error, Result};
+
+/// Where a line's hull lives; the numbers are the shader's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HullPlace {
+    /// Private memory of the invocation.
+    Private = 0,
+    /// Shared memory of the workgroup.
+    Shared = 1,
+    /// The occluders written so far.
+    Occluders = 2,
+}
+
+impl HullPlace {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            HullPlace::Private => "private",
+            HullPlace::Shared => "shared",
+            HullPlace::Occluders => "list",
+        }
+    }
+}
+
+/// A hull sweep along lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineSweep {
+    /// Where the hull lives.
+    pub hull: HullPlace,
+    /// Entries a line keeps there; a power of two.
+    pub hull_depth: u32,
+    /// Whether that is enough for every sample of the longest line.
+    pub holds_line: bool,
+    /// f16 + u16 entries.
+    pub packed: bool,
+    /// What scales heights to [-1..1] for packed entries.
+    pub height_scale: f32,
+    /// Lines are 2^shift / 32768 cells apart.
+    pub line_shift: u32,
+    /// Invocations a workgroup, each four lines.
+    pub group_size: u32,
+    /// Slopes stored: 0 none, 1 f32, 2 f16.
+    pub slope_format: u32,
+    /// Whether occluders are stored.
+    pub writes_occluders: bool,
+    /// How they come back to the samples.
+    pub fuse: Fuse,
+}
+
+impl LineSweep {
+    /// The distance of lines that is used, where a periodic field did not take another.
+    pub(crate) fn spacing(&self) -> Lines {
+        let all = [Lines::QuarterCell, Lines::HalfCell, Lines::TwoCells, Lines::FourCells];
+        all.into_iter().find(|l| l.shift() == Some(self.line_shift)).unwrap_or(Lines::Cell)
+    }
+
+    /// What is kept, which may be more than what was asked for.
+    pub(crate) fn precision(&self) -> Precision {
+        match (self.packed, self.slope_format) {
+            (true, _) => Precision::Packed,
+            (false, 2) => Precision::F16,
+            (false, _) => Precision::F32,
+        }
+    }
+}
+
+/// How horizons are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// Hull sweeps along lines of even azimuths.
+    Lines(LineSweep),
+    /// Exact hull sweeps along grid vectors; entries that a hull can hold.
+    Surface {
+        /// Entries a line keeps.
+        hull_depth: u32,
+        /// Whether distances are stored beside slopes.
+        distances: bool,
+    },
+    /// None: on a concave field a sample's horizon is the first crossing of its own line.
+    Crossings,
+    /// Brute force, all crossings.
+    March {
+        /// Whether distances are stored beside slopes.
+        distances: bool,
+    },
+    /// Marches over a height pyramid.
+    Pyramid(Pyramid),
+}
+
+/// Samples of a periodic field that are marched before the period whose horizons are kept: whole periods,
+/// two or more, and as many as make 512 samples.
+///
+/// What lies farther is not seen: an error of at most atan(relief / their length).
+pub fn warm_up(steps: u32) -> u32 {
+    LEAST_WARM_UP.div_ceil(steps).max(2) * steps
+}
+
+/// A tile as high as it is wide, of 16 cells, is not seen only where it would rise by a slope of 16/512 at most:
+/// sin² of that angle, 0.1 % of what a sky sends to level ground. Two periods alone would miss a slope of 1/2.
+const LEAST_WARM_UP: u32 = 512;
+
+// Entries kept in private memory. Real terrain needs about 30, smooth hills a thousand; what is
+// deeper is done again with the hull in the occluders. Measured on lavapipe: 128 compile in 0.1 s,
+// 1024 in up to 3 s, 4096 in over 5 s, and run no faster.
+const PRIVATE_DEPTH: u32 = 128;
+// Crossings are up to four a step; llvmpipe ends any loop after 65 535 turns.
+const SURFACE_STEPS_LIMIT: u32 = 4096;
+const MARCH_STEPS_LIMIT: u32 = 65_000;
+
+impl Sweep {
+    /// The form that a quality asks for, or that suits the device.
+    ///
+    /// # Errors
+    /// Combinations that cannot hold what they promise: said in a sentence.
+    pub fn choose(
+        field: &HeightField,
+        border: Border,
+        quality: &Quality,
+        limits: &Limits,
+        distances: bool,
+        notes: &mut Vec<String>,
+    ) -> Result<Self> {
+        let sides = [field.cols() as u32, field.rows() as u32];
+        let marched =
+            |steps| if border == Border::Periodic { steps + warm_up(steps) } else { steps };
+        let total = sides.map(marched).into_iter().max().unwrap_or(1);
+        if border == Border::Periodic {
+            let [cols, rows] = sides.map(warm_up);
+            notes.push(format!(
+                "border periodic: nothing is seen beyond {cols} columns and {rows} rows; at distance d it would \
+                 raise a horizon by atan(relief / d) at most"
+            ));
+        }
+        if quality.method == Method::Pyramid {
+            if distances {
+                return Err(Error::setting(
+                    "distances to the horizon",
+                    "--method pyramid",
+                    "a method that knows its occluders: sweep or brute",
+                ));
+            }
+            return Ok(Sweep::Pyramid(Pyramid::new(quality, sides, border)));
+        }
+        if quality.method == Method::Brute {
+            if total > MARCH_STEPS_LIMIT {
+                return Err(Error::Limit {
+                    what: "--method brute".into(),
+                    needs: format!("{total} steps a sample"),
+                    limit: format!("{MARCH_STEPS_LIMIT} steps"),
+                });
+            }
+            return Ok(Sweep::March { distances });
+        }
+        let Some(shift) = quality.lines.shift() else {
+            if total > SURFACE_STEPS_LIMIT {
+                return Err(Error::Limit {
+                    what: "--lines exact".into(),
+                    needs: format!(
+                        "{total} steps a line (a periodic field is marched three times at least)"
+                    ),
+                    limit: format!("{SURFACE_STEPS_LIMIT} steps"),
+                });
+            }
+            return Ok(Sweep::Surface { hull_depth: (4 * total).next_power_of_two(), distances });
+        };
+        let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
+        let slope_format = match (stores_slopes, quality.precision) {
+            (false, Precision::F16) => {
+                notes.push(
+                    "f16 changes nothing here: this fuse stores u16 steps, not slopes".into(),
+                );
+                0
+            }
+            (false, _) => 0,
+            (true, Precision::F16) => 2,
+            (true, _) => 1,
+        };
+        let packed = quality.precision == Precision::Packed;
+        let place = match quality.hull {
+            // Measured: see the table in README. Processors keep private arrays in their cache;
+            // elsewhere the paper's form, until a device has been measured.
+            Hull::Auto if limits.is_cpu => HullPlace::Private,
+            Hull::Auto | Hull::Shared => HullPlace::Shared,
+            Hull::Private => HullPlace::Private,
+            Hull::List => HullPlace::Occluders,
+        };
+        let group_size: u32 = if limits.is_cpu { 8 } else { 32 };
+        let periodic = border == Border::Periodic;
+        let wanted = total.next_power_of_two();
+        let hull_depth = match place {
+            HullPlace::Private => wanted.min(PRIVATE_DEPTH),
+            HullPlace::Shared => {
+                // Half of what there is, so that two groups fit.
+                let entries =
+                    limits.shared_bytes / 2 / (4 * group_size * if packed { 4 } else { 8 });
+                wanted.min(1 << entries.max(1).ilog2())
+            }
+            HullPlace::Occluders => 1,
+        };
+        let holds_line = place != HullPlace::Occluders && hull_depth >= total;
+        if total > limits.image_side {
+            return Err(Error::Limit {
+                what: "--border periodic".into(),
+                needs: format!("{total} steps a line (three periods at least)"),
+                limit: format!("{} on this device", limits.image_side),
+            });
+        }
+        let spacing = 1_i64 << shift;
+        let divides = |side: usize| (side as i64 * i64::from(CELL)) % spacing == 0;
+        let line_shift = if periodic && !(divides(field.cols()) && divides(field.rows())) {
+            notes.push("lines a cell apart: wider ones do not divide this periodic field".into());
+            15
+        } else {
+            shift
+        };
+        // Of others nothing depends on it, so that edits of the highest are edits.
+        let heights = field.heights_m().iter().filter(|_| packed);
+        let highest = heights.fold(0.0_f32, |m, h| m.max(h.abs()));
+        Ok(Sweep::Lines(LineSweep {
+            hull: place,
+            hull_depth,
+            holds_line,
+            packed,
+            height_scale: if highest > 0.0 { 1.0 / highest } else { 1.0 },
+            line_shift,
+            group_size,
+            slope_format,
+            writes_occluders: !stores_slopes || !holds_line,
+            fuse: quality.fuse,
+        }))
+    }
+
+    /// Has a sweep along lines store what its samples meet, for walks over it.
+    ///
+    /// # Errors
+    /// Other sweeps, which do not know it.
+    pub(crate) fn keep_occluders(&mut self) -> Result<()> {
+        if let Some(way) = self.why_no_lines() {
+            return Err(Error::setting(
+                "--bounce-engine sweep",
+                way,
+                "a sweep along lines, or --bounce-engine brute, which needs none",
+            ));
+        }
+        if let Sweep::Lines(lines) = self {
+            lines.writes_occluders = true;
+        }
+        Ok(())
+    }
+
+    /// The flag of a way that sweeps along no lines.
+    pub(crate) fn why_no_lines(&self) -> Option<&'static str> {
+        match self {
+            Sweep::Lines(_) | Sweep::Crossings => None,
+            Sweep::Surface { .. } => Some("--lines exact"),
+            Sweep::Pyramid(_) => Some("--method pyramid"),
+            Sweep::March { .. } => Some("--method brute"),
+        }
+    }
+
+    /// The lines of a sweep whose occluders an edit can go on from: stored, and in lines that begin
+    /// at an edge.
+    pub(crate) fn editable(&self, border: Border) -> Option<&LineSweep> {
+        match self {
+            // What is looked at around an occluder is not marked.
+            Sweep::Lines(l) if l.fuse == Fuse::AimedAround => None,
+            Sweep::Lines(l) if l.slope_format == 0 && border != Border::Periodic => Some(l),
+            _ => None,
+        }
+    }
+
+    /// Whether a sample's own first crossings are among its candidates.
+    pub(crate) fn sees_own_crossings(&self) -> bool {
+        matches!(self, Sweep::Lines(l) if matches!(l.fuse, Fuse::Aimed | Fuse::AimedNearest | Fuse::AimedAround))
+    }
+
+    /// The shaders' FUSE.
+    pub(crate) fn fuse_mode(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => 1 + lines.fuse as u32,
+            Sweep::Crossings => 7,
+            _ => 0,
+        }
+    }
+
+    /// The shaders' LATTICE: 0 occluders, 1 f32 slopes, 2 f16 slopes.
+    pub(crate) fn lattice_content(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => lines.slope_format,
+            Sweep::Crossings => 0,
+            _ => 1,
+        }
+    }
+
+    /// Which of the shaders' two bindings the lattice is: halves of words, or words.
+    pub(crate) fn lattice_binding(&self) -> &'static str {
+        if self.lattice_content() == 1 { "lattice_words" } else { "lattice" }
+    }
+
+    /// Bytes that a sample reads from the lattice and the field around what it proposes.
+    pub(crate) fn lattice_bytes(&self) -> u64 {
+        match self {
+            Sweep::Lines(lines) => match lines.fuse {
+                Fuse::Nearest => 4,
+                Fuse::Slopes => 8,
+                Fuse::AimedNearest => 2 + 8,
+                Fuse::Own | Fuse::Aimed => 4 + 16,
+                // Six heights of each of four segments a line.
+                Fuse::AimedAround => 4 + 2 * 4 * 24,
+            },
+            Sweep::Crossings => 0,
+            _ => 4,
+        }
+    }
+
+    pub(crate) fn lattice_has_distances(&self) -> bool {
+        match self {
+            Sweep::Lines(_) | Sweep::Crossings | Sweep::Pyramid(_) => false,
+            Sweep::Surface { distances, .. } | Sweep::March { distances } => *distances,
+        }
+    }
+
+    /// The shaders' LINE_SHIFT.
+    pub(crate) fn line_shift(&self) -> u32 {
+        match self {
+            Sweep::Lines(lines) => lines.line_shift,
+            _ => 15,
+        }
+    }
+
+    /// Lines of one azimuth.
+    pub(crate) fn lines(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
+        let periodic = axis.warm_up > 0;
+        let total = u64::from(axis.steps + axis.warm_up);
+        let (unit, shear) = match self {
+            Sweep::Lines(lines) => (1_u64 << lines.line_shift, azimuth.shear as u64),
+            Sweep::Surface { .. } => (1, azimuth.vector_lane as u64),
+            Sweep::March { .. } | Sweep::Pyramid(_) | Sweep::Crossings => return axis.lanes,
+        };
+        let cell = match self {
+            Sweep::Lines(_) => CELL as u64,
+            _ => azimuth.vector_march as u64,
+        };
+        let lanes = u64::from(axis.lanes);
+        let lines = if periodic {
+            lanes * cell / unit
+        } else {
+            (lanes - 1) * cell / unit + 1 + ((total - 1) * shear).div_ceil(unit)
+        };
+        lines as u32
+    }
+
+    /// Samples that the lines of one azimuth touch: those on the field.
+    pub(crate) fn line_samples(&self, azimuth: &Azimuth, axis: Axis) -> u64 {
+        match self {
+            Sweep::Lines(lines) => {
+                ((axis.samples() << 15) >> lines.line_shift)
+                    * u64::from(1 + axis.warm_up / axis.steps)
+            }
+            Sweep::Surface { .. } => axis.samples() * azimuth.vector_march as u64,
+            Sweep::March { .. } | Sweep::Pyramid(_) => axis.samples(),
+            Sweep::Crossings => 0,
+        }
+    }
+
+    /// Layers of the lattice that one azimuth takes.
+    pub(crate) fn layers(&self, azimuth: &Azimuth, axis: Axis) -> u32 {
+        match self {
+            // Whole groups: those of a line beyond the last are swept, too.
+            Sweep::Lines(lines) => {
+                let group_lines = 4 * lines.group_size;
+                self.lines(azimuth, axis).div_ceil(group_lines) * group_lines / 32
+            }
+            Sweep::Crossings => 0,
+            _ => 1 + u32::from(self.lattice_has_distances()),
+        }
+    }
+}
+
+/// Names of settings in messages and metadata.
+impl Lines {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Lines::Exact => "exact",
+            Lines::QuarterCell => "1/4",
+            Lines::HalfCell => "1/2",
+            Lines::Cell => "1",
+            Lines::TwoCells => "2",
+            Lines::FourCells => "4",
+        }
+    }
+}

@@ -1,0 +1,69 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::batch::Batch;
+use crate::passes::sweep::Sweep;
+use crate::scene::Border;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SweepFusePush {
+    cols: i32,
+    rows: i32,
+    warm_up: i32,
+    first_azimuth: u32,
+    first_layer: u32,
+}
+
+same_layout!(
+    SweepFusePush,
+    sweep_fuse_push,
+    cols = COLS,
+    rows = ROWS,
+    warm_up = WARM_UP,
+    first_azimuth = FIRST_AZIMUTH,
+    first_layer = FIRST_LAYER,
+);
+
+/// Horizons of the samples themselves, as elevations.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    border: Border,
+    batch: &Batch,
+    part: &str,
+    [lane_heights, azimuths, angles]: [ResourceId; 3],
+    (lattice, distances): (Option<ResourceId>, Option<ResourceId>),
+) {
+    let axis = batch.axis;
+    let [cols, rows] = axis.size();
+    let mut bound =
+        vec![("lane_heights", lane_heights), ("azimuths", azimuths), ("horizon_angles", angles)];
+    bound.extend(lattice.map(|l| (sweep.lattice_binding(), l)));
+    bound.extend(distances.map(|d| ("horizon_distances", d)));
+    let pass = builder.pass(
+        shaders::SweepFuse {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            writes_distances: distances.is_some(),
+            lattice_has_distances: sweep.lattice_has_distances(),
+            marches_rows: axis.marches_rows,
+        },
+        part,
+        "from the lines back to the samples",
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), batch.count],
+        &SweepFusePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            warm_up: axis.warm_up as i32,
+            first_azimuth: batch.first,
+            first_layer: batch.first,
+        },
+        &bound,
+        axis.samples() * u64::from(batch.count) * (8 + sweep.lattice_bytes()),
+        axis.samples() * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+}

@@ -1,0 +1,96 @@
+use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::passes::{height_bounds, height_cells};
+use crate::scene::{Border, HeightField};
+
+/// What rays over the surface look at: its cells, and the highest of blocks of them to skip by.
+pub(crate) struct Blocks {
+    /// Columns and rows of cells.
+    pub cells: [u32; 2],
+    /// Rows that the places of the levels in their image follow from.
+    pub padded_rows: u32,
+    /// The level of one block that holds all cells.
+    pub top_level: u32,
+    border: Border,
+    pub images: BlockImages,
+}
+
+/// Images of the field's size, and that of all levels.
+#[derive(Clone, Copy)]
+pub(crate) struct BlockImages {
+    pub cells: ResourceId,
+    pub ground: ResourceId,
+    pub maxima: ResourceId,
+}
+
+impl Blocks {
+    /// Levels of 4 by 4 up to one block that holds all cells. A field without cells has one that is not
+    /// looked at.
+    pub fn make(builder: &mut Builder, size: [u32; 2], border: Border) -> Self {
+        let cells = size.map(|n| match border {
+            Border::Periodic => n,
+            Border::Plane | Border::Open => (n - 1).max(1),
+        });
+        let longest = cells[0].max(cells[1]);
+        let top_level = (1..).find(|l| 4_u32.pow(*l) >= longest).expect("up to 4^15");
+        let padded_rows = cells[1].next_multiple_of(4_u32.pow(top_level));
+        let mut image = |name: &str, format: Format, [width, height]: [u32; 2]| {
+            builder.image(name, Owner::Internal, format, [width, height, 1], false)
+        };
+        let images = BlockImages {
+            cells: image("cells", Format::Rgba32Float, size),
+            ground: image("ground", Format::Rgba32Float, size),
+            maxima: image("maxima", Format::R32Float, [cells[0].div_ceil(4), padded_rows / 2]),
+        };
+        Self { cells, padded_rows, top_level, border, images }
+    }
+
+    /// The passes that fill the images; `paths` are the sums of a path tracer that begin with them.
+    pub fn record(
+        &self,
+        builder: &mut Builder,
+        field: &HeightField,
+        heights: ResourceId,
+        paths: Option<[ResourceId; 2]>,
+    ) {
+        self.record_ground(builder, field, heights, paths);
+        let BlockImages { cells, maxima, .. } = self.images;
+        for level in 1..=self.top_level {
+            height_bounds::plan(builder, self.cells, self.padded_rows, level, [cells, maxima]);
+        }
+    }
+
+    /// The same without what rays skip by: for those that need the ground alone.
+    pub fn record_ground(
+        &self,
+        builder: &mut Builder,
+        field: &HeightField,
+        heights: ResourceId,
+        paths: Option<[ResourceId; 2]>,
+    ) {
+        let BlockImages { cells, ground, .. } = self.images;
+        height_cells::plan(builder, (field, self.border), [heights, cells, ground], paths);
+    }
+
+    /// Steps that no ray can ask for: over the field's longest side, or as far as a ray over repetitions
+    /// is followed, two cells a cell along it, and half as many changes of level; and those of the last
+    /// block.
+    pub fn most_steps(&self) -> u32 {
+        let [x, y] = self.cells;
+        3 * if self.border == Border::Periodic { REACH_CELLS } else { x.max(y) } + 64
+    }
+
+    /// Steps that the slowest of eight neighbouring rays asks for in the mean, or less: twice what was measured on
+    /// fractals of 9² to 257², 6 to 13 with two levels, 13 to 50 with three and 25 to 50 with four. To find it
+    /// again: the number of lights with which llvmpipe loses rays of 64 paths in one dispatch, 65,535 / 64 over it.
+    pub fn usual_steps(&self) -> u32 {
+        24 * self.top_level
+    }
+
+    /// Whether the field is one sample wide along rows, along columns: a line, which only rays along it meet.
+    pub fn thin(&self, field: &HeightField) -> [bool; 2] {
+        [field.rows(), field.cols()].map(|n| self.border != Border::Periodic && n == 1)
+    }
+}
+
+/// As in `walk.glsl`.
+pub(crate) const REACH_CELLS: u32 = 16384;

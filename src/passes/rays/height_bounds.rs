@@ -1,0 +1,48 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HeightBoundsPush {
+    cells_x: i32,
+    cells_y: i32,
+    padded_rows: i32,
+    level: i32,
+}
+
+same_layout!(
+    HeightBoundsPush,
+    height_bounds_push,
+    cells_x = CELLS_X,
+    cells_y = CELLS_Y,
+    padded_rows = PADDED_ROWS,
+    level = LEVEL,
+);
+
+/// The highest of each block of 4^level by 4^level cells.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    [cells_x, cells_y]: [u32; 2],
+    padded_rows: u32,
+    level: u32,
+    [cells, maxima]: [ResourceId; 2],
+) {
+    let [across, down] = [cells_x, cells_y].map(|n| n.div_ceil(1 << (2 * level)));
+    let blocks = u64::from(across) * u64::from(down);
+    builder.pass(
+        shaders::HeightBounds,
+        &format!("level {level}"),
+        "rays above all of a block skip it",
+        [across.div_ceil(8), down.div_ceil(8), 1],
+        &HeightBoundsPush {
+            cells_x: cells_x as i32,
+            cells_y: cells_y as i32,
+            padded_rows: padded_rows as i32,
+            level: level as i32,
+        },
+        &[("cells", cells), ("maxima", maxima)],
+        blocks * (4 + 16 * if level == 1 { 16 } else { 4 }),
+        blocks,
+    );
+}

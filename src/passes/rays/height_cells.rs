@@ -1,0 +1,55 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::{Border, HeightField};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct HeightCellsPush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+}
+
+same_layout!(
+    HeightCellsPush,
+    height_cells_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+);
+
+/// Heights as rays look at them; the sums of `paths`, where there are any, begin anew.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (field, border): (&HeightField, Border),
+    [heights, cells, ground]: [ResourceId; 3],
+    paths: Option<[ResourceId; 2]>,
+) {
+    let mut bound = vec![("heights", heights), ("cells", cells), ("ground", ground)];
+    if let Some([batch_mean, lost_rays]) = paths {
+        bound.extend([("batch_mean", batch_mean), ("lost_rays", lost_rays)]);
+    }
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(rows);
+    builder.pass(
+        shaders::HeightCells {
+            periodic: border == Border::Periodic,
+            begins_paths: paths.is_some(),
+        },
+        "",
+        "a ray reads a cell at once; light begins with the samples' normals",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &HeightCellsPush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: field.cell_m()[0] as f32,
+            cell_y_m: field.cell_m()[1] as f32,
+        },
+        &bound,
+        samples * (4 + if paths.is_some() { 3 } else { 2 } * 16),
+        samples,
+    );
+}

@@ -1,0 +1,3 @@
+pub(crate) mod blocks;
+pub(crate) mod height_bounds;
+pub(crate) mod height_cells;

@@ -1,0 +1,172 @@
+use std::ops::Range;
+
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::LandPush;
+use crate::passes::blocks::Blocks;
+use crate::scene::{Albedo, Lobe, Phong, Scene};
+
+/// log2 of the paths a sample of one batch, 8 at most. Fewer: more dispatches. More: a net fills its square
+/// more evenly, but fewer batches tell the standard error.
+const SET_BITS: u32 = 6;
+
+/// Paths a sample that one run of the pass adds.
+pub(crate) const BATCH_PATHS: u32 = 1 << SET_BITS;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PathTracePush {
+    land: LandPush,
+    highest_m: f32,
+    rotation_turns: f32,
+    exponent: f32,
+    lobe_share: f32,
+    bounces: i32,
+    suns: i32,
+    light_count: i32,
+    seed: u32,
+    albedo: [f32; 4],
+    sky: [f32; 4],
+    first_row: i32,
+    keys: i32,
+    first_path: i32,
+    last_path: i32,
+    first_light: i32,
+    last_light: i32,
+}
+
+same_layout!(
+    PathTracePush,
+    path_trace_push,
+    land = COLS,
+    highest_m = HIGHEST_M,
+    rotation_turns = ROTATION_TURNS,
+    exponent = EXPONENT,
+    lobe_share = LOBE_SHARE,
+    bounces = BOUNCES,
+    suns = SUNS,
+    light_count = LIGHT_COUNT,
+    seed = SEED,
+    albedo = ALBEDO,
+    sky = SKY,
+    first_row = FIRST_ROW,
+    keys = KEYS,
+    first_path = FIRST_PATH,
+    last_path = LAST_PATH,
+    first_light = FIRST_LIGHT,
+    last_light = LAST_LIGHT,
+);
+
+/// llvmpipe ends all loops of an invocation together after 65,535 turns.
+const MOST_TURNS: u32 = 60_000;
+
+/// Lights that a part looks at, where there are as many: the scattered ray of each part is one more.
+const LIGHTS_OF_A_PART: u32 = 16;
+
+/// What one dispatch does of a batch: some of its paths, some of the lights at each vertex.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub paths: Range<u32>,
+    pub lights: Range<u32>,
+}
+
+/// The parts of a batch, one where all of it is within what a device may turn. Few paths go on beyond a
+/// few bounces.
+pub(crate) fn parts(scene: &Scene, blocks: &Blocks, bounces: u32) -> Vec<Part> {
+    let lights = &scene.lights;
+    let all = (lights.suns.len() + lights.keys.len() + lights.spheres.len()) as u32;
+    let vertices = bounces.min(3) + 1;
+    let of_ray = blocks.usual_steps();
+    let others = 1 + u32::from(lights.environment.is_some());
+    // One turn more a light, and one where the scattered ray looks for a ball.
+    let most_lights = |paths: u32| {
+        (MOST_TURNS / (paths * vertices)).saturating_sub(others * of_ray) / (of_ray + 2)
+    };
+    let halves = (0..=SET_BITS).rev().map(|bits| 1 << bits);
+    let enough = |paths: &u32| most_lights(*paths) >= all.min(LIGHTS_OF_A_PART);
+    let paths = halves.into_iter().find(enough).unwrap_or(1);
+    let at_once = most_lights(paths).max(1);
+    let sets = (0..BATCH_PATHS).step_by(paths as usize).map(|first| first..first + paths);
+    sets.flat_map(|paths| {
+        (0..all.max(1)).step_by(at_once as usize).map(move |first| Part {
+            paths: paths.clone(),
+            lights: first.min(all)..(first + at_once).min(all),
+        })
+    })
+    .collect()
+}
+
+/// One batch of paths from every sample of some rows, counted in eights; of `listed` samples, their bounced light
+/// alone from some rows of the list.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    scene: &Scene,
+    blocks: &Blocks,
+    (bounces, seed): (u32, u32),
+    (band, part, listed): (Range<u32>, Option<&Part>, Option<u32>),
+    bound: &[(&str, ResourceId)],
+) {
+    let Scene { field, surface, lights } = scene;
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(band.end - band.start);
+    let mut label = Vec::new();
+    let all_rows = listed.map_or(rows, |count| count.div_ceil(cols));
+    if band.end - band.start < all_rows {
+        label.push(format!("rows {}..{}", band.start, band.end));
+    }
+    if let Some(Part { paths, lights }) = part {
+        let [path, light] = [paths, lights].map(|of| format!("{}..{}", of.start, of.end));
+        label.push(format!("paths {path} lights {light}"));
+    }
+    let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
+    let whole = Part { paths: 0..BATCH_PATHS, lights: 0..count as u32 };
+    let Part { paths, lights: looked_at } = part.unwrap_or(&whole);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let four = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
+    let (albedo, is_map) = match surface.albedo {
+        Albedo::Constant(colour) => (colour, false),
+        Albedo::Map(_) => ([0.0; 3], true),
+    };
+    let lobe = match &surface.phong {
+        Some(Lobe::Constant(phong)) => *phong,
+        _ => Phong { exponent: 0.0, scale: 0.0 },
+    };
+    let turns = |e: &crate::scene::Environment| {
+        (e.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32
+    };
+    builder.pass(
+        shaders::PathTrace { border: surface.border as u32, thin_rows, thin_cols, set_bits: SET_BITS, albedo_is_map: is_map, has_environment: lights.environment.is_some(), has_lobe: surface.phong.is_some(), has_lights: count > 0, has_keys: !lights.keys.is_empty(), has_balls: !lights.spheres.is_empty(), has_bounces: bounces > 0, most_steps: blocks.most_steps() as i32, in_parts: part.is_some(), lobe_is_map: matches!(surface.phong, Some(Lobe::Map(_))), at_places: listed.is_some() },
+        &label.join(" "),
+        match listed {
+            None => format!("{BATCH_PATHS} more paths a sample, up to {bounces} bounces"),
+            Some(count) => format!(
+                "{BATCH_PATHS} more paths from each of {count} samples: bounced light of up to {bounces} bounces"
+            ),
+        },
+        [cols.div_ceil(8), (band.end - band.start).div_ceil(8), 1],
+        &PathTracePush {
+            land: LandPush::of(field, blocks),
+            highest_m,
+            rotation_turns: lights.environment.as_ref().map_or(0.0, turns),
+            exponent: lobe.exponent,
+            lobe_share: lobe.scale,
+            bounces: bounces as i32,
+            suns: lights.suns.len() as i32,
+            light_count: count as i32,
+            seed,
+            albedo: four(albedo),
+            sky: four(lights.sky.unwrap_or_default()),
+            first_row: band.start as i32,
+            keys: lights.keys.len() as i32,
+            first_path: paths.start as i32,
+            last_path: paths.end as i32,
+            first_light: looked_at.start as i32,
+            last_light: looked_at.end as i32,
+        },
+        bound,
+        samples * 7 * 16,
+        samples * u64::from(BATCH_PATHS),
+    );
+}

@@ -1,0 +1,49 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::sh_layout::Sh;
+use crate::scene::Environment;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct EnvTurnsPush {
+    width: i32,
+    rows: i32,
+    turns: i32,
+    column_first: i32,
+}
+
+same_layout!(
+    EnvTurnsPush,
+    env_turns_push,
+    width = WIDTH,
+    rows = ROWS,
+    turns = TURNS,
+    column_first = COLUMN_FIRST,
+);
+
+/// The environment summed around each of its rows.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    environment: &Environment,
+    sh: &Sh,
+    [image, constants, turns]: [ResourceId; 3],
+) {
+    let count = 2 * sh.light_order - 1;
+    let texels = (environment.width() * sh.rows) as u64;
+    builder.pass(
+        shaders::EnvTurns,
+        sh.part(),
+        format!("the environment around each row, up to {} turns", sh.light_order - 1),
+        [((sh.rows * count) as u32).div_ceil(32), 1, 1],
+        &EnvTurnsPush {
+            width: environment.width() as i32,
+            rows: sh.rows as i32,
+            turns: count as i32,
+            column_first: sh.column_first as i32,
+        },
+        &[("environment", image), ("constants", constants), ("env_turns", turns)],
+        texels * 16 + (sh.rows * count) as u64 * 16,
+        texels,
+    );
+}

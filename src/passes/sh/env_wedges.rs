@@ -1,0 +1,47 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::scene::{Border, Environment};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct EnvWedgesPush {
+    width: i32,
+    rows: i32,
+    rotation_rad: f32,
+}
+
+same_layout!(
+    EnvWedgesPush,
+    env_wedges_push,
+    width = WIDTH,
+    rows = ROWS,
+    rotation_rad = ROTATION_RAD,
+);
+
+/// The environment summed over each azimuth's wedge, row by row.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (environment, border): (&Environment, Border),
+    azimuths: u32,
+    [image, directions, rows]: [ResourceId; 3],
+) {
+    let width = environment.width() as u32;
+    let kept = environment.rows_above_ground(border) as u32;
+    let texels = u64::from(width) * u64::from(kept);
+    let turn = environment.rotation_rad().rem_euclid(std::f64::consts::TAU);
+    let pass = builder.pass(
+        shaders::EnvWedges,
+        "",
+        format!(
+            "the environment's light in each azimuth's wedge: {kept} of {} rows can be seen",
+            environment.height()
+        ),
+        [kept.div_ceil(8), azimuths, 1],
+        &EnvWedgesPush { width: width as i32, rows: kept as i32, rotation_rad: turn as f32 },
+        &[("environment", image), ("azimuths", directions), ("wedge_rows", rows)],
+        texels * 16 + u64::from(azimuths) * u64::from(kept) * 48,
+        texels,
+    );
+    pass.azimuths = 0..azimuths;
+}

@@ -1,0 +1,63 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::sh_layout::Sh;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LightMatrixPush {
+    rows: i32,
+    light_order: i32,
+    order: i32,
+    receivers: i32,
+    row_first: i32,
+    matrix_first: i32,
+    pads: [i32; 2],
+    sky: [f32; 4],
+}
+
+same_layout!(
+    LightMatrixPush,
+    light_matrix_push,
+    rows = ROWS,
+    light_order = LIGHT_ORDER,
+    order = ORDER,
+    receivers = RECEIVERS,
+    row_first = ROW_FIRST,
+    matrix_first = MATRIX_FIRST,
+    sky = SKY,
+);
+
+/// What the environment, and a sky that is lit by harmonics, make of a series of visibility.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sh: &Sh,
+    sky: Option<[f32; 3]>,
+    turns: Option<ResourceId>,
+    [constants, matrix]: [ResourceId; 2],
+) {
+    let Sh { order, light_order, receivers, rows, .. } = *sh;
+    let entries = (receivers * order * order) as u64;
+    let mut bound = vec![("constants", constants), ("light_matrix", matrix)];
+    bound.extend(turns.map(|t| ("env_turns", t)));
+    let [r, g, b] = sky.unwrap_or_default();
+    builder.pass(
+        shaders::LightMatrix,
+        sh.part(),
+        format!("light of order {light_order} times what is seen: {receivers} × {}", order * order),
+        [1, 1, 1],
+        &LightMatrixPush {
+            rows: rows as i32,
+            light_order: light_order as i32,
+            order: order as i32,
+            receivers: receivers as i32,
+            row_first: sh.row_first as i32,
+            matrix_first: sh.matrix_first as i32,
+            pads: [0; 2],
+            sky: [r, g, b, 0.0],
+        },
+        &bound,
+        (rows * (2 * light_order - 1)) as u64 * 16 + entries * 16,
+        entries,
+    );
+}

@@ -1,0 +1,9 @@
+pub(crate) mod env_turns;
+pub(crate) mod env_wedges;
+pub(crate) mod light_matrix;
+pub mod sh_layout;
+pub(crate) mod sh_shade;
+pub(crate) mod sh_visibility;
+pub(crate) mod sh_wedges;
+pub(crate) mod sphere_sh;
+pub(crate) mod sphere_sh_shade;

@@ -1,0 +1,79 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Axis, Builder, ResourceId};
+use crate::passes::Lobes;
+use crate::passes::sh_layout::{Lit, Sh};
+use crate::scene::Border;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ShShadePush {
+    cols: i32,
+    rows: i32,
+    cell_x_m: f32,
+    cell_y_m: f32,
+    lobe: [f32; 2],
+}
+
+same_layout!(
+    ShShadePush,
+    sh_shade_push,
+    cols = COLS,
+    rows = ROWS,
+    cell_x_m = CELL_X_M,
+    cell_y_m = CELL_Y_M,
+    lobe = LOBE,
+);
+
+/// Light from what is seen and the light's matrix, by normals of full resolution.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (axis, border, cell_m): (Axis, Border, [f64; 2]),
+    sh: &Sh,
+    [lane_heights, visibility, light_matrix, env_sum]: [ResourceId; 4],
+    nodes: Option<ResourceId>,
+    lobes: Option<Lobes>,
+) {
+    let [cols, rows] = axis.size();
+    let mut bound = vec![
+        ("lane_heights", lane_heights),
+        ("visibility", visibility),
+        ("light_matrix", light_matrix),
+        ("env_sum", env_sum),
+    ];
+    bound.extend(nodes.map(|n| ("nodes", n)));
+    let map = lobes.and_then(|lobes| lobes.map);
+    bound.extend(map.map(|map| ("phong_map", map)));
+    let [across, along] = sh.nodes.size([cols, rows]).map(u64::from);
+    let seen = across * along * 16 * (sh.layers() as u64 + u64::from(nodes.is_some()));
+    builder.pass(
+        shaders::ShShade {
+            border: border as u32,
+            marches_rows: axis.marches_rows,
+            order: sh.order as i32,
+            receiver: sh.lit as u32,
+            node_stride: sh.nodes.stride as i32,
+            lobe_is_map: map.is_some(),
+        },
+        match sh.lit {
+            Lit::Plane | Lit::Cosine => "env",
+            Lit::Gloss => "glossy",
+        },
+        match sh.lit {
+            Lit::Plane => "what is seen times the light's matrix; the cosine is exact",
+            Lit::Cosine => "what is seen times the light's matrix; a cosine of three bands",
+            Lit::Gloss => "what is seen times the light's matrix; a Phong lobe of as many bands",
+        },
+        [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
+        &ShShadePush {
+            cols: cols as i32,
+            rows: rows as i32,
+            cell_x_m: cell_m[0] as f32,
+            cell_y_m: cell_m[1] as f32,
+            lobe: lobes.map_or([0.0; 2], |l| [l.constant.exponent, l.constant.scale]),
+        },
+        &bound,
+        axis.samples() * (4 + 16) + seen,
+        axis.samples(),
+    );
+}

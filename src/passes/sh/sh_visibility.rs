@@ -1,0 +1,66 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::ShadePush;
+use crate::passes::batch::Batch;
+use crate::passes::nodes::Nodes;
+use crate::passes::sh_layout::Sh;
+use crate::passes::sweep::Sweep;
+use crate::scene::{Border, Wedges};
+
+/// What a batch adds to what is seen.
+pub(crate) struct Images {
+    pub lane_heights: ResourceId,
+    pub lattice: Option<ResourceId>,
+    pub azimuths: ResourceId,
+    pub visibility: ResourceId,
+    pub nodes: Option<ResourceId>,
+}
+
+/// What samples, or nodes among them, see through the horizons of a batch, as a series.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    sweep: &Sweep,
+    (border, cell_m): (Border, [f64; 2]),
+    (sh, wedges, lattice_of): (&Sh, Wedges, Nodes),
+    batch: &Batch,
+    part: &str,
+    images: &Images,
+) {
+    let axis = batch.axis;
+    let mut bound = vec![
+        ("lane_heights", images.lane_heights),
+        ("azimuths", images.azimuths),
+        ("visibility", images.visibility),
+    ];
+    bound.extend(images.lattice.map(|l| (sweep.lattice_binding(), l)));
+    bound.extend(images.nodes.map(|n| ("nodes", n)));
+    let [lanes, steps] = sh.nodes.size([axis.lanes, axis.steps]);
+    let nodes = u64::from(lanes) * u64::from(steps);
+    let kept = sh.layers() as u64 * 16 * if batch.is_first { 1 } else { 2 };
+    let pass = builder.pass(
+        shaders::ShVisibility {
+            fuse: sweep.fuse_mode(),
+            lattice: sweep.lattice_content(),
+            line_shift: sweep.line_shift() as i32,
+            border: border as u32,
+            order: sh.order as i32,
+            by_nlp: wedges == Wedges::Nlp,
+            marches_rows: axis.marches_rows,
+            own_plane_hides: sh.own_plane_hides,
+            lane_stride: sh.nodes.stride as i32,
+            lattice_stride: lattice_of.stride as i32,
+        },
+        part,
+        match wedges {
+            Wedges::Slices => "what is seen, as harmonics by exact integrals over elevation",
+            Wedges::Nlp => "what is seen, as harmonics by Legendre coefficients",
+            Wedges::Table => unreachable!("sh_wedges looks up two azimuths at once"),
+        },
+        [steps.div_ceil(8), lanes.div_ceil(4 * 16), 1],
+        &ShadePush::of(batch, cell_m),
+        &bound,
+        nodes * (4 + kept + u64::from(batch.count) * sweep.lattice_bytes()),
+        nodes * u64::from(batch.count),
+    );
+    pass.azimuths = batch.azimuths();
+}

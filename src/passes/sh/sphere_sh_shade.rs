@@ -1,0 +1,200 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, Rectangle, ResourceId};
+use crate::passes::blocks::Blocks;
+use crate::passes::sphere_sh::SphereSh;
+use crate::scene::{Border, HeightField, Levels, Receiver, Scene, SphereLight, Wedges};
+use crate::{Error, Result};
+
+use crate::passes::LandPush;
+use crate::passes::sphere_shade::{Look, MOST_TURNS, place_of};
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct SphereShShadePush {
+    land: LandPush,
+    first: [i32; 2],
+    base: [i32; 2],
+    offset: [f32; 2],
+    up_m: f32,
+    radius_m: f32,
+    reach_m: f32,
+    azimuths: i32,
+    first_azimuth: i32,
+    last_azimuth: i32,
+    entry_first: i32,
+    entry_count: i32,
+    table_first: i32,
+    side: i32,
+    fine_samples: i32,
+    width_shift: i32,
+    growth: f32,
+    level_step: f32,
+    radiance: [f32; 4],
+}
+
+same_layout!(
+    SphereShShadePush,
+    sphere_sh_shade_push,
+    land = COLS,
+    first = FIRST,
+    base = BASE,
+    offset = OFFSET,
+    up_m = UP_M,
+    radius_m = RADIUS_M,
+    reach_m = REACH_M,
+    azimuths = AZIMUTHS,
+    first_azimuth = FIRST_AZIMUTH,
+    last_azimuth = LAST_AZIMUTH,
+    entry_first = ENTRY_FIRST,
+    entry_count = ENTRY_COUNT,
+    table_first = TABLE_FIRST,
+    side = SIDE,
+    fine_samples = FINE_SAMPLES,
+    width_shift = WIDTH_SHIFT,
+    growth = GROWTH,
+    level_step = LEVEL_STEP,
+    radiance = RADIANCE,
+);
+
+/// As in `within.glsl`.
+const WITHIN_CELLS: u32 = 8192;
+
+/// Light of one ball, in as many dispatches as its azimuths need.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
+    heights: ResourceId,
+    name: &str,
+    ball: &SphereLight,
+    look: &Look,
+    sum: ResourceId,
+) {
+    // A wedge of a table needs a ray at both of its ends.
+    let more = u32::from(soft.wedges == Wedges::Table);
+    let at_once =
+        (MOST_TURNS / (most_turns(scene.surface.border, &scene.field, soft) + 1)).max(1 + more);
+    let at_once = at_once - more;
+    for first in (0..soft.azimuths).step_by(at_once as usize) {
+        let last = soft.azimuths.min(first + at_once);
+        let part = match last - first {
+            all if all == soft.azimuths => name.to_owned(),
+            _ => format!("{name} azimuths {first}..{last}"),
+        };
+        dispatch(builder, (scene, blocks, soft), heights, (&part, [first, last]), ball, look, sum);
+    }
+}
+
+/// Turns of loops that an azimuth may ask for.
+fn most_turns(border: Border, field: &HeightField, soft: &SphereSh) -> u32 {
+    match &soft.pyramid {
+        // A spline adds up four rows at each look.
+        Some((pyramid, _)) => 5 * pyramid.samples() + 2,
+        None => most_steps(border, field),
+    }
+}
+
+/// As those of [`Blocks::most_steps`], of a ray that ends sooner where the field repeats.
+fn most_steps(border: Border, field: &HeightField) -> u32 {
+    let longest = field.cols().max(field.rows()) as u32;
+    3 * if border == Border::Periodic { WITHIN_CELLS } else { longest } + 64
+}
+
+/// Refuses fields of which two rays of a wedge are longer than what loops may turn on some devices.
+///
+/// # Errors
+/// More samples a side than that.
+pub(crate) fn check(border: Border, field: &HeightField, soft: &SphereSh) -> Result<()> {
+    if soft.wedges == Wedges::Table && 2 * (most_turns(border, field, soft) + 1) > MOST_TURNS {
+        let longest = field.cols().max(field.rows());
+        return Err(Error::setting(
+            "--wedges table with --light-basis sh",
+            format!("a field of {longest} samples a side"),
+            "10,000 a side at most, --wedges slices or --method pyramid",
+        ));
+    }
+    Ok(())
+}
+
+fn dispatch(
+    builder: &mut Builder,
+    (scene, blocks, soft): (&Scene, &Blocks, &SphereSh),
+    heights: ResourceId,
+    (part, [first, last]): (&str, [u32; 2]),
+    ball: &SphereLight,
+    look: &Look,
+    sum: ResourceId,
+) {
+    let field = &scene.field;
+    let (base, offset) = place_of(field, ball);
+    let Rectangle { col, row, cols, rows } = look.rectangle;
+    let samples = u64::from(cols) * u64::from(rows);
+    let [thin_rows, thin_cols] = blocks.thin(field);
+    let [r, g, b] = ball.radiance;
+    let begins = look.begins && first == 0;
+    let mut bound =
+        vec![("ground", blocks.images.ground), ("sphere_sum", sum), ("constants", soft.constants)];
+    let levels = match &soft.pyramid {
+        None => {
+            bound.extend([("cells", blocks.images.cells), ("maxima", blocks.images.maxima)]);
+            None
+        }
+        Some((pyramid, images)) => {
+            bound.push(("heights", heights));
+            match images {
+                Some(images) if pyramid.stored == Levels::Stack => {
+                    bound.extend(images.stack.map(|stack| ("height_stack", stack)));
+                }
+                Some(images) => {
+                    bound.extend([("height_levels", images.levels), ("level_table", images.table)]);
+                }
+                None => {}
+            }
+            Some(pyramid)
+        }
+    };
+    builder.pass(
+        shaders::SphereShShade {
+            border: scene.surface.border as u32,
+            thin_rows,
+            thin_cols,
+            most_steps: most_steps(scene.surface.border, field) as i32,
+            order: soft.order as i32,
+            wedges: soft.wedges as u32,
+            own_plane_hides: soft.receiver == Receiver::Plane,
+            by_pyramid: levels.is_some(),
+            stack: levels.is_some_and(|p| p.stored == Levels::Stack),
+            levels: levels.map_or(0, |p| p.levels()) as i32,
+        },
+        part,
+        match soft.wedges {
+            Wedges::Table => "the ball times what a table of wedges all around sees up to it",
+            Wedges::Slices | Wedges::Nlp => "the ball times what is seen across and up to it",
+        },
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &SphereShShadePush {
+            land: LandPush::of(field, blocks),
+            first: [col as i32, row as i32],
+            base,
+            offset,
+            up_m: (ball.position_m[2] - field.base_m()) as f32,
+            radius_m: ball.radius_m as f32,
+            reach_m: look.reach_m,
+            azimuths: soft.azimuths as i32,
+            first_azimuth: first as i32,
+            last_azimuth: last as i32,
+            entry_first: soft.entry_first as i32,
+            entry_count: soft.entry_count as i32,
+            table_first: soft.table_first as i32,
+            side: soft.side as i32,
+            fine_samples: levels.map_or(1, |p| p.fine_samples() as i32),
+            width_shift: levels.map_or(0, |p| p.width_shift() as i32),
+            growth: levels.map_or(1.0, |p| p.growth()),
+            level_step: levels.map_or(1.0, |p| p.level_step as f32),
+            radiance: [r, g, b, f32::from(u8::from(begins))],
+        },
+        &bound,
+        samples * (3 * 16),
+        samples * u64::from(last - first),
+    );
+}

@@ -1,0 +1,86 @@
+use crate::graph::shaders;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::bounce_gather::{GatherPush, Pyramids};
+use crate::passes::bounces::Bounce;
+use crate::passes::glossy::{Glossy, Thrown, Vectors};
+use crate::passes::sphere_shade::MOST_TURNS;
+use crate::scene::{HeightField, Levels};
+
+/// What every sample sees of the surface by its pyramids, for diffuse ground and for its lobe.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    field: &HeightField,
+    (of, glossy): (&Pyramids, &Glossy),
+    azimuths: u32,
+    bounce: &Bounce,
+    [heights, ground]: [ResourceId; 2],
+) {
+    let (cols, rows) = (field.cols() as u32, field.rows() as u32);
+    let samples = u64::from(cols) * u64::from(rows);
+    let mut bound = vec![
+        ("heights", heights),
+        ("ground", ground),
+        ("bounce_sum", bounce.sum),
+        ("arriving", glossy.arriving),
+    ];
+    bound.extend(of.height_bindings());
+    match glossy.thrown {
+        Thrown::Vectors(Vectors { exit, levels, .. }) => {
+            bound.push(("exit_vectors", exit));
+            let of_levels =
+                levels.into_iter().flat_map(|[l, t]| [("vector_levels", l), ("shade_table", t)]);
+            bound.extend(of_levels);
+        }
+        Thrown::Seen(exit) => {
+            bound.push(("exit_radiance", exit));
+            bound.extend(of.shade_bindings());
+        }
+    }
+    let has_vectors = matches!(glossy.thrown, Thrown::Vectors(_));
+    // The march, and inside it samples that round to one distance; then for each sample that is seen, and for the
+    // end, the sums over its coefficients.
+    let looked_at = of.heights.samples();
+    // Beyond the last distance less than an octave more rounds to it, and two knots end the spline.
+    let knots = looked_at + of.heights.level_step + 2;
+    let layers = glossy.layers();
+    let of_each = glossy.order * glossy.order + if has_vectors { layers + layers } else { 0 };
+    let turns = 3 * knots + 1 + (knots + 1) * of_each;
+    let at_once = ((MOST_TURNS - 8 * layers) / turns).max(1);
+    for first in (0..azimuths).step_by(at_once as usize) {
+        let last = azimuths.min(first + at_once);
+        let count = last - first;
+        let part = match count == azimuths {
+            true => bounce.name.clone(),
+            false => format!("{} azimuths {first}..{last}", bounce.name),
+        };
+        let looks = u64::from(looked_at) * u64::from(count);
+        let of_look = if has_vectors { 4 * glossy.texel_bytes() * u64::from(layers) } else { 16 };
+        builder.pass(
+            shaders::GlossGather {
+                periodic: of.heights.periodic,
+                stack: of.heights.stored == Levels::Stack,
+                levels: of.heights.levels() as i32,
+                shade_levels: of.shade.levels() as i32,
+                grey: bounce.grey,
+                vectors: has_vectors,
+                order: glossy.order as i32,
+                most_knots: knots as i32,
+            },
+            &part,
+            format!(
+                "{} along {count} azimuths, {looked_at} samples each, {}; as a series besides",
+                bounce.why,
+                if has_vectors {
+                    "radiance towards the sample"
+                } else {
+                    "radiance as seen from above"
+                }
+            ),
+            [cols.div_ceil(8), rows.div_ceil(8), 1],
+            &GatherPush::of(field, of, azimuths, first..last),
+            &bound,
+            samples * (2 * 16 + 2 * 16 * u64::from(layers) + looks * (4 + of_look)),
+            samples * u64::from(count),
+        );
+    }
+}

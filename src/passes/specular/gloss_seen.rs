@@ -1,0 +1,38 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::passes::glossy::Glossy;
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct GlossSeenPush {
+    cols: i32,
+    rows: i32,
+}
+
+same_layout!(GlossSeenPush, gloss_seen_push, cols = COLS, rows = ROWS);
+
+/// What arrives of light from all around, as a series.
+pub(crate) fn plan(
+    builder: &mut Builder,
+    [cols, rows]: [u32; 2],
+    glossy: &Glossy,
+    [visibility, light_matrix]: [ResourceId; 2],
+) {
+    let samples = u64::from(cols) * u64::from(rows);
+    let fours = u64::from((glossy.order * glossy.order).div_ceil(4));
+    builder.pass(
+        shaders::GlossSeen { order: glossy.order as i32, grey: glossy.grey },
+        "",
+        "what is seen times the light, to be thrown on",
+        [cols.div_ceil(8), rows.div_ceil(8), 1],
+        &GlossSeenPush { cols: cols as i32, rows: rows as i32 },
+        &[
+            ("visibility", visibility),
+            ("light_matrix", light_matrix),
+            ("arriving", glossy.arriving),
+        ],
+        samples * 16 * (fours + u64::from(glossy.layers())),
+        samples,
+    );
+}

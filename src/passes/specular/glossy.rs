@@ -1,0 +1,159 @@
+//! Light that lobes throw from surface to surface (Nowrouzezahrai & Snyder 2009, §5.3 and §7).
+//!
+//! At every sample light arrives as a series of spherical harmonics: first direct light, then of each bounce what
+//! `gloss_gather` finds. `gloss_exit` makes of it what leaves, diffuse light beside it: a series again, whose pyramid
+//! is looked at in the direction towards each sample that sees it, or one number, the radiance as seen from above.
+
+use crate::basis::harmonics::{evaluate, product_rule};
+use crate::graph::{Builder, Format, Owner, ResourceId};
+use crate::passes::pyramid::Pyramid;
+use crate::passes::sh_layout::by_fours;
+use crate::scene::{BounceGloss, Quality};
+
+/// Series of what arrives, and what is thrown on.
+#[derive(Clone, Copy)]
+pub(crate) struct Glossy {
+    /// Of the series.
+    pub order: u32,
+    /// Radiance of one channel.
+    pub grey: bool,
+    /// Four coefficients a layer, channel after channel.
+    pub arriving: ResourceId,
+    /// What the lobes reflect upwards of all bounces.
+    pub bounced: ResourceId,
+    pub layer: Option<ResourceId>,
+    pub thrown: Thrown,
+}
+
+/// What leaves a sample.
+#[derive(Clone, Copy)]
+pub(crate) enum Thrown {
+    Vectors(Vectors),
+    /// Exit radiance as seen from above.
+    Seen(ResourceId),
+}
+
+/// Exit radiance as series.
+#[derive(Clone, Copy)]
+pub(crate) struct Vectors {
+    /// As those that arrive.
+    pub exit: ResourceId,
+    /// All levels beside, and their table.
+    pub levels: Option<[ResourceId; 2]>,
+    /// f16.
+    pub halves: bool,
+    /// Directions that series are turned by.
+    pub constants: ResourceId,
+    pub first_texel: usize,
+    /// Of four directions each.
+    pub fours: usize,
+}
+
+impl Glossy {
+    /// Images for a field of `size`; `shade` are the levels that exit radiance has.
+    pub fn make(
+        builder: &mut Builder,
+        (size, shade): ([u32; 2], &Pyramid),
+        quality: &Quality,
+        (grey, layers): (bool, bool),
+        notes: &mut Vec<String>,
+    ) -> Self {
+        let [cols, rows] = size;
+        let order = quality.sh_order;
+        let count = layers_of(order, grey);
+        let mut image =
+            |name: &str, owner: Owner, format: Format, extent: [u32; 3], layered: bool| {
+                builder.image(name, owner, format, extent, layered)
+            };
+        let colour = if grey { Format::R32Float } else { Format::Rgba32Float };
+        let flat = [cols, rows, 1];
+        let arriving = [cols, rows, count];
+        let arriving = image("arriving", Owner::Internal, Format::Rgba32Float, arriving, true);
+        let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
+        let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
+        let thrown = if quality.bounces.gloss == BounceGloss::Scalar {
+            Thrown::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
+        } else {
+            let halves = quality.bounces.gloss == BounceGloss::VectorF16;
+            notes.push(memory_note(size, shade, (order, count), halves));
+            let format = if halves { Format::Rgba16Float } else { Format::Rgba32Float };
+            let exit = image("exit_vectors", Owner::Internal, format, [cols, rows, count], true);
+            let levels = (shade.levels() > 0).then(|| {
+                let width = 1 << shade.width_shift();
+                let height = shade.all_texels().div_ceil(u64::from(width)) as u32;
+                let extent = [width, height, count];
+                let table = [shade.levels(), 1, 1];
+                [
+                    image("vector_levels", Owner::Internal, format, extent, true),
+                    image("shade_table", Owner::Internal, Format::Rgba32Uint, table, false),
+                ]
+            });
+            let texels = turning(order as usize);
+            let fours = product_rule(order as usize).len().div_ceil(4);
+            let (constants, first_texel) = builder.constants(&texels);
+            Thrown::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
+        };
+        Self { order, grey, arriving, bounced, layer, thrown }
+    }
+
+    /// Layers of four coefficients of all channels.
+    pub fn layers(&self) -> u32 {
+        layers_of(self.order, self.grey)
+    }
+
+    /// Of the series that leave.
+    pub fn texel_bytes(&self) -> u64 {
+        match self.thrown {
+            Thrown::Vectors(Vectors { halves: true, .. }) => 8,
+            _ => 16,
+        }
+    }
+
+    /// As the command line spells it.
+    pub fn gloss(&self) -> BounceGloss {
+        match self.thrown {
+            Thrown::Seen(_) => BounceGloss::Scalar,
+            Thrown::Vectors(Vectors { halves: true, .. }) => BounceGloss::VectorF16,
+            Thrown::Vectors(_) => BounceGloss::Vector,
+        }
+    }
+}
+
+fn layers_of(order: u32, grey: bool) -> u32 {
+    (order * order).div_ceil(4) * if grey { 1 } else { 3 }
+}
+
+/// What the pyramid of vectors takes, as it is stored and as it could be.
+fn memory_note(
+    [cols, rows]: [u32; 2],
+    shade: &Pyramid,
+    (order, layers): (u32, u32),
+    halves: bool,
+) -> String {
+    let texels = u64::from(cols) * u64::from(rows) + shade.all_texels();
+    let [f32s, f16s] =
+        [16, 8].map(|bytes| crate::graph::bytes_text(texels * u64::from(layers) * bytes));
+    let [here, there] =
+        if halves { [(f16s, "f16"), (f32s, "f32")] } else { [(f32s, "f32"), (f16s, "f16")] };
+    format!(
+        "radiance by direction of order {order}, all levels: {} as {}; {} as {}",
+        here.0, here.1, there.0, there.1
+    )
+}
+
+/// Of four directions each their x, y and z, then each one's Y_lm times its weight. Directions of no weight fill the last.
+fn turning(order: usize) -> Vec<f32> {
+    let mut rule = product_rule(order);
+    rule.resize(rule.len().next_multiple_of(4), (glam::DVec3::Z, 0.0));
+    let mut texels = Vec::new();
+    for four in rule.chunks_exact(4) {
+        for axis in 0..3 {
+            texels.extend(four.iter().map(|(o, _)| o[axis] as f32));
+        }
+        for (o, weight) in four {
+            let weighed: Vec<f64> = evaluate(order, *o).iter().map(|y| weight * y).collect();
+            texels.extend(by_fours(&weighed));
+        }
+    }
+    texels
+}

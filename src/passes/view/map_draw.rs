@@ -1,0 +1,91 @@
+use crate::graph::shaders;
+use crate::graph::shaders::same_layout;
+use crate::graph::{Builder, ResourceId};
+use crate::{Error, Result};
+
+/// What part of a lit field a screen shows from above, north up, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Map {
+    /// Columns and rows of the field.
+    pub field: [u32; 2],
+    /// Whether the radiance has four channels; else it has one.
+    pub has_colour: bool,
+    /// Whether there is an image of samples without data, which are not shown.
+    pub has_voids: bool,
+    /// Columns and rows of the picture, pixels.
+    pub size: [u32; 2],
+    /// Column and row of the field at the picture's upper left corner; 0, 0 is the field's. Within ±1e6.
+    pub corner: [f32; 2],
+    /// Side of a pixel, [1e-3..1e3] samples: a pixel shows the sample that its middle is in.
+    pub samples_per_pixel: f32,
+    /// Whether blue comes first in a pixel's four bytes, not red.
+    pub swaps: bool,
+}
+
+impl Map {
+    /// The four bytes of pixels where there is no field.
+    pub const BEYOND: [u8; 4] = [0x20, 0x20, 0x20, 0xff];
+
+    /// # Errors
+    /// What is out of range, by name.
+    pub fn check(&self) -> Result<()> {
+        if !self.corner.iter().all(|v| v.abs() <= 1e6) {
+            let found = format!("{},{}", self.corner[0], self.corner[1]);
+            return Err(Error::setting("map: corner", found, "numbers within ±1e6"));
+        }
+        if !(1e-3..=1e3).contains(&self.samples_per_pixel) {
+            let found = self.samples_per_pixel.to_string();
+            return Err(Error::setting(
+                "map: samples a pixel",
+                found,
+                "a number from 0.001 to 1000",
+            ));
+        }
+        Ok(())
+    }
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MapDrawPush {
+    size: [i32; 2],
+    field: [i32; 2],
+    corner: [f32; 2],
+    samples_per_pixel: f32,
+    swaps: u32,
+    beyond: u32,
+}
+
+same_layout!(
+    MapDrawPush,
+    map_draw_push,
+    size = WIDTH,
+    field = COLS,
+    corner = FIRST_COL,
+    samples_per_pixel = SAMPLES_PER_PIXEL,
+    swaps = SWAPS,
+    beyond = BEYOND,
+);
+
+/// A pixel a sample, or fewer or more.
+pub(crate) fn plan(builder: &mut Builder, map: &Map, bound: &[(&str, ResourceId)]) {
+    let [width, height] = map.size;
+    let pixels = u64::from(width) * u64::from(height);
+    builder.pass(
+        shaders::MapDraw { grey: !map.has_colour, has_voids: map.has_voids },
+        "",
+        "radiance as a screen shows it",
+        [width.div_ceil(8), height.div_ceil(8), 1],
+        &MapDrawPush {
+            size: map.size.map(|n| n as i32),
+            field: map.field.map(|n| n as i32),
+            corner: map.corner,
+            samples_per_pixel: map.samples_per_pixel,
+            swaps: u32::from(map.swaps),
+            beyond: u32::from_le_bytes(Map::BEYOND),
+        },
+        bound,
+        pixels * if map.has_colour { 20 } else { 8 },
+        pixels,
+    );
+}

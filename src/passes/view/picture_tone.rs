@@ -1,0 +1,10 @@
+use crate::graph::shaders::same_layout;
+
+/// How radiance becomes a picture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct PictureTonePush {
+    pub exposure: f32,
+}
+
+same_layout!(PictureTonePush, picture_tone_push, exposure = EXPOSURE);

@@ -1,0 +1,28 @@
+use crate::graph::shaders::same_layout;
+
+/// What is behind a field.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct SkyDrawPush {
+    pub forward: [f32; 4],
+    /// To the picture's right edge.
+    pub right: [f32; 4],
+    /// To its lower edge.
+    pub down: [f32; 4],
+    /// Radiance of directions above horizontal, without the environment's.
+    pub above: [f32; 4],
+    /// Of others.
+    pub below: [f32; 4],
+    pub rotation_turns: f32,
+}
+
+same_layout!(
+    SkyDrawPush,
+    sky_draw_push,
+    forward = FORWARD,
+    right = RIGHT,
+    down = DOWN,
+    above = ABOVE,
+    below = BELOW,
+    rotation_turns = ROTATION_TURNS,
+);
