@@ -1,5 +1,5 @@
 //! Holds the path tracer to the f64 quadrature and to closed forms, and writes what was found as
-//! `docs/reference.md`. See `tools/reference`.
+//! `docs/measured/reference.md`. See `tools/reference`.
 //!
 //! `cargo run --release --example reference -- DEVICE`; fails where chance does not explain a row.
 
@@ -180,7 +180,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let written = measure(device).and_then(|(page, wrong)| {
-        files::write_text(Path::new("docs/reference.md"), &page).map(|()| wrong)
+        files::write_text(Path::new("docs/measured/reference.md"), &page).map(|()| wrong)
     });
     match written {
         Ok(wrong) => {

@@ -1,4 +1,4 @@
-//! What docs/reference.md says whatever the device: closed forms, and the heads of its rows.
+//! What docs/measured/reference.md says whatever the device: closed forms, and the heads of its rows.
 
 use std::f64::consts::{SQRT_2, TAU};
 
