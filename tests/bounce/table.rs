@@ -24,7 +24,7 @@ fn page() -> String {
 /// the stated errors' rms is below 1 % of the mean. The published page says the same means, and its z hold.
 #[test]
 fn stated_errors_are_small_on_every_scene() {
-    println!("{:34} bounces  mean radiance (sky, sun, ball)      rms of stated error", "scene");
+    println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
     let page = page();
     for (name, scene) in scenes() {
         let truth = truth(&scene, MOST_BOUNCES, FINENESS).unwrap();

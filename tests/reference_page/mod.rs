@@ -15,7 +15,7 @@ pub const MOST_BOUNCES: usize = 2;
 pub fn light_names(scene: &Scene) -> [&'static str; 3] {
     match scene.lights.environment {
         Some(_) => ["environment, red", "environment, green", "environment, blue"],
-        None => ["sky", "sun", "ball"],
+        None => ["sky", "sun", "sphere light"],
     }
 }
 
