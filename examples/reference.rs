@@ -139,8 +139,13 @@ fn measure(device: &str) -> Result<(String, Vec<String>)> {
     let options = HeadlessOptions { device: Some(device.to_owned()), validation: false };
     let mut gpu = Headless::new(&options)?;
     let mut page = ABOUT.to_owned();
-    writeln!(page, "\n{PATHS} paths per grid point on *{}, {}*.", gpu.report().name, gpu.report().driver)
-        .unwrap();
+    writeln!(
+        page,
+        "\n{PATHS} paths per grid point on *{}, {}*.",
+        gpu.report().name,
+        gpu.report().driver
+    )
+    .unwrap();
     let mut wrong = Vec::new();
     let mut add = |page: &mut String, (row, holds): (String, bool)| {
         writeln!(page, "{row}").unwrap();

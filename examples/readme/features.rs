@@ -117,7 +117,7 @@ pub fn features() -> Result<String> {
             "soft_converge",
         ),
         (
-            "sun 0.53° wide, 2 slices, sweep `aimed`",
+            "sun alone, 0.53° wide, 2 slices, sweep `aimed`",
             "approximate",
             format!(
                 "{} %",
