@@ -1,4 +1,4 @@
-//! Measures how far horizons and light are from the truth, and what they cost: the tables of README.
+//! Measures the error and the time of horizons and light: the tables of docs/accuracy.md.
 //!
 //! `cargo run --release --example accuracy -- FIELD [--cell X,Y] [--env FILE] [--samples N] [--pyramids]`
 //!

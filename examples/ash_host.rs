@@ -1,4 +1,4 @@
-//! Ridgelight in a Vulkan program of its own, by `ash`. README.md shows the first half, which is what an
+//! Ridgelight in a Vulkan program of its own, by `ash`. docs/embedding.md shows the first half, which is what an
 //! engine writes; the second stands for the engine. A test runs it under validation.
 
 use ash::vk;

@@ -1,4 +1,4 @@
-//! Bakes the bundled mountain, three times as steep: README's picture of what `ridgelight bake` makes, and what each way
+//! Bakes the bundled mountain, three times as steep: the picture of docs/baking.md, of what `ridgelight bake` makes, and what each way
 //! of packing may be off by and is.
 //!
 //! `cargo run --release --example bake -- -o PICTURE.png --json FIGURES.json`

@@ -1,4 +1,4 @@
-//! Draws README's picture of bounced light: a white floor within a red wall under a low sun and a dim sky, without
+//! Draws docs/pictures/bleed.png: a white floor within a red wall under a low sun and a dim sky, without
 //! bounces, as Ridgelight lights it, and by light paths, side by side; and prints how far off each is.
 //!
 //! `cargo run --release --example bleed -- -o PICTURE.png`

@@ -139,7 +139,7 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Asked)
     Ok(())
 }
 
-/// What README says: shares of all samples that were swept and lit, and the ratio of times, of each edit.
+/// What docs/embedding.md says: shares of all samples that were swept and lit, and the ratio of times, of each edit.
 fn summary(asked: &Asked, costs: &[[f64; 3]]) -> String {
     let Asked { side, brush, edits, .. } = asked;
     let [swept, lit, ratio] = [0, 1, 2].map(|i| {

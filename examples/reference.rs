@@ -1,5 +1,5 @@
 //! Holds the path tracer to the f64 quadrature and to closed forms, and writes what was found as
-//! `docs/reference.md`. See `tools/reference`.
+//! `docs/measured/reference.md`. See `tools/reference`.
 //!
 //! `cargo run --release --example reference -- DEVICE`; fails where chance does not explain a row.
 
@@ -30,40 +30,39 @@ const ROUNDING: f64 = 1e-5;
 const ABOUT: &str = "\
 # The reference against the oracle and closed forms
 
-`ridgelight reference` traces light paths on the device; here it is held to the f64 quadrature of
-`src/cpu/bounce.rs`, which shares no code with it, and to scenes whose radiance is a formula. Made by
-`tools/reference`; the test `reference_truth` of `tests/gpu` asks the same of the driver at hand, and `tests/bounce`
-that the quadrature's figures here are those of the code.
+`ridgelight reference` is a path tracer on the device. This page compares it with an f64 quadrature, which shares no
+code with it, and with scenes whose radiance is a formula. `tools/reference` makes this page. The test
+`reference_truth` makes the same comparison on the driver at hand, and `tests/bounce` checks that the quadrature's
+figures here are those of the code.
 ";
 
 const SCENES: &str = "
 ## Against the quadrature
 
-Scenes of `tests/scenes`, each lit by sky, sun and a ball of light in channels of their own, so that each light
-is judged alone. *paths* is the mean radiance over all samples, *±* one standard error of that mean: σ of each
-sample from the spread between its batches, √(Σσ²)/n. *quadrature* is the same mean in f64, *stated* the mean of
-its stated error, the difference to half the fineness.
+Scenes of `tests/scenes`. Sky, sun and a sphere light each light a colour channel of their own, so each light is judged
+alone. *paths* is the mean radiance over all grid points. *±* is one standard error of that mean: √(Σσ²)/n, with σ of each
+grid point from the spread between its batches. *quadrature* is the same mean in f64. *stated* is the mean of its stated
+error, the difference to half the fineness.
 
-z of a sample = (|paths - quadrature| - stated, at least 0) / σ; z of the mean likewise, with the sums. σ holds
-besides what no spread can know, events too rare to have been met: σ² + W·|difference| / 3N for N paths a
-sample that carry W at most (Bernstein's inequality; W: the brightest sample). Expected of n samples
-of normal noise:
+z of a grid point = (|paths - quadrature| - stated, at least 0) / σ; z of the mean likewise, with the sums. σ also holds
+events too rare to have been sampled, which no spread contains: σ² + W·|difference| / 3N for N paths per grid point that
+carry W at most (Bernstein's inequality; W: the brightest grid point). Expected of n grid points with normal noise:
 
 | | expected | bound |
 |---|---|---|
-| rms z | 1, less where *stated* or rare events are not small beside σ | 1 + 4 / √(2n), four of its own standard deviations |
-| worst z | about √(2 ln n): 2.4 of 16, 3.3 of 200 | 6: of 10,000 samples one in 50,000 tables |
+| rms z | 1, or less where *stated* or rare events are not small beside σ | 1 + 4 / √(2n), four of its own standard deviations |
+| worst z | about √(2 ln n): 2.4 of 16, 3.3 of 200 | 6: one in 50,000 tables of 10,000 grid points |
 | z of the mean | below 1 in two of three rows | 4 |
 
-0 throughout: the light has no noise there, or reaches no sample.
+0 in every column: the light has no noise there, or reaches no grid point.
 ";
 
 const CLOSED: &str = "
 ## Against closed forms
 
-Derived in `tests/reference_page/mod.rs`. *grid* is how far flat triangles may be from what the formula is for:
-the pit's rim is a staircase, and there alone the bound is not 0. *quadrature* is that of the same triangles in f64,
-whose own error is that of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
+Derived in `tests/reference_page/mod.rs`. *grid* bounds the difference between flat triangles and the formula's surface;
+it is 0 except for the pit, whose rim is a staircase. *quadrature* is of the same triangles in f64; its own error is that
+of its 24 azimuths. z = (|paths - value| - grid, at least 0) / ±; bound 4.
 ";
 
 /// Radiance and standard error of all samples.
@@ -142,8 +141,13 @@ fn measure(device: &str) -> Result<(String, Vec<String>)> {
     let options = HeadlessOptions { device: Some(device.to_owned()), validation: false };
     let mut gpu = Headless::new(&options)?;
     let mut page = ABOUT.to_owned();
-    writeln!(page, "\n{PATHS} paths a sample on *{}, {}*.", gpu.report().name, gpu.report().driver)
-        .unwrap();
+    writeln!(
+        page,
+        "\n{PATHS} paths per grid point on *{}, {}*.",
+        gpu.report().name,
+        gpu.report().driver
+    )
+    .unwrap();
     let mut wrong = Vec::new();
     let mut add = |page: &mut String, (row, holds): (String, bool)| {
         writeln!(page, "{row}").unwrap();
@@ -182,7 +186,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let written = measure(device).and_then(|(page, wrong)| {
-        files::write_text(Path::new("docs/reference.md"), &page).map(|()| wrong)
+        files::write_text(Path::new("docs/measured/reference.md"), &page).map(|()| wrong)
     });
     match written {
         Ok(wrong) => {

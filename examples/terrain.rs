@@ -1,4 +1,4 @@
-//! Draws README's first picture: the bundled mountain before a camera, under the bundled sky and a sun, with one
+//! Draws the picture of docs/getting-started.md: the bundled mountain before a camera, under the bundled sky and a sun, with one
 //! bounce; and writes how long each pass took.
 //!
 //! `cargo run --release --example terrain -- -o PICTURE.png --json FIGURES.json`

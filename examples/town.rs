@@ -1,4 +1,4 @@
-//! Draws README's pictures of a town: under a sky, under a key light and under three balls of light, each without
+//! Draws docs/pictures/town.png, a town: under a sky, under a key light and under three balls of light, each without
 //! shadows, as Ridgelight lights it, and its truth, side by side; and prints how far from the truth they are.
 //!
 //! `cargo run --release --example town -- -o PICTURE.png`

@@ -56,8 +56,8 @@
 //!
 //! What the device must be made with, [`gpu::requirements`] says before there is one. States, formats, queue
 //! families, buffers instead of images, lights that change from frame to frame: [`gpu`] has a section on each.
-//! `examples/ash_host.rs` is a whole program by `ash`, `examples/wgpu` one by wgpu, `capi/tests/c/host.c` one in C by
-//! `include/ridgelight.h`.
+//! `examples/ash_host.rs` is a whole program by `ash`, `examples/wgpu` one by wgpu, `crates/capi/tests/c/host.c` one in C by
+//! `crates/capi/include/ridgelight.h`.
 //!
 //! # Modules and crates
 //!

@@ -1,11 +1,11 @@
-//! Fields as geometry beside what is kept of them as seen from afar, of `benches/results/brdf.txt`.
+//! Fields as geometry beside what is kept of them as an aggregate, of `benches/results/brdf.txt`.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use super::Result;
 
-/// A row for each field and light: mean radiance, and how far off each is.
+/// A row for each field and light: mean radiance, and the error of each.
 pub fn brdf() -> Result<String> {
     let path = Path::new("benches/results/brdf.txt");
     let text = super::text(path)?;
@@ -14,8 +14,8 @@ pub fn brdf() -> Result<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
     };
     let mut out = String::from(
-        "| field | light | mean radiance of the geometry | its triangles, % off | by the table, % off | by 8 factors, % off | \
-         reflected, at most % | not reciprocal, % | table between its angles, % | 8 factors, % |\n\
+        "| field | light | mean radiance of the geometry | error of its triangles, % | of the table, % | of 8 factors, % | \
+         reflected, at most % | not reciprocal, % | table between its directions, % | 8 factors between them, % |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     let (mut name, mut first, mut count) = (String::new(), Vec::new(), 0);

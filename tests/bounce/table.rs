@@ -14,17 +14,17 @@ fn figures<const N: usize>(page: &str, head: &str) -> Option<[f64; N]> {
     all?.try_into().ok()
 }
 
-/// docs/reference.md: what stands there.
+/// docs/measured/reference.md: what stands there.
 fn page() -> String {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference.md");
-    std::fs::read_to_string(path).expect("docs/reference.md")
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measured/reference.md");
+    std::fs::read_to_string(path).expect("docs/measured/reference.md")
 }
 
 /// Prints mean radiance and stated error of every scene, and asks that the truth be worth comparing with:
 /// the stated errors' rms is below 1 % of the mean. The published page says the same means, and its z hold.
 #[test]
 fn stated_errors_are_small_on_every_scene() {
-    println!("{:34} bounces  mean radiance (sky, sun, ball)      rms of stated error", "scene");
+    println!("{:34} bounces  mean radiance (sky, sun, sphere)    rms of stated error", "scene");
     let page = page();
     for (name, scene) in scenes() {
         let truth = truth(&scene, MOST_BOUNCES, FINENESS).unwrap();
@@ -32,7 +32,7 @@ fn stated_errors_are_small_on_every_scene() {
             for (channel, light) in light_names(&scene).into_iter().enumerate() {
                 let head = head(name, b, light, &truth, channel);
                 let Some([_, _, mean, rms, worst]) = figures(&page, &head) else {
-                    panic!("run tools/reference: docs/reference.md lacks {head}");
+                    panic!("run tools/reference: docs/measured/reference.md lacks {head}");
                 };
                 let count = truth.radiance[b].len();
                 let published = Agreement { rms, worst, mean, count };
@@ -61,7 +61,7 @@ fn closed_forms_are_published() {
         let samples = closed.scene.field.heights_m().len();
         assert!(!closed.known.is_empty() && closed.known.iter().all(|k| k.0 < samples), "{head}");
         let Some([_, _, _, z]) = figures(&page, &head) else {
-            panic!("run tools/reference: docs/reference.md lacks {head}");
+            panic!("run tools/reference: docs/measured/reference.md lacks {head}");
         };
         assert!(z <= 4.0, "{head}{z}");
         // A row of another value is not this one's.

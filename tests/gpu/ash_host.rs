@@ -1,4 +1,4 @@
-//! `examples/ash_host.rs`, whose first half README.md shows, in a process of its own: its engine knows nothing
+//! `examples/ash_host.rs`, whose first half docs/embedding.md shows, in a process of its own: its engine knows nothing
 //! of this one's.
 
 use std::path::Path;
@@ -36,13 +36,11 @@ fn the_ash_host_gives_the_command_lines_bytes() {
         std::fs::write(path, bytemuck::cast_slice(&lit)).expect("a file");
         return;
     }
-    let readme = include_str!("../../README.md");
-    let section = readme.split("## To record it into your engine").nth(1).expect("its section");
-    let mut blocks = section.split("```");
+    let mut blocks = include_str!("../../docs/embedding.md").split("```");
     let snippet = blocks.find(|block| block.starts_with("rust")).expect("a snippet");
-    let snippet = snippet.split_once('\n').expect("its lines").1;
-    let shown = snippet.trim_end().strip_suffix("fn main() {}").unwrap_or(snippet).trim_end();
-    assert!(include_str!("../../examples/ash_host.rs").contains(shown), "README.md shows another");
+    let shown = snippet.split_once('\n').expect("its lines").1.trim_end();
+    let program = include_str!("../../examples/ash_host.rs");
+    assert!(program.contains(shown), "docs/embedding.md shows another program");
 
     let folder = tempfile::tempdir().expect("a folder");
     let texels = folder.path().join("texels");

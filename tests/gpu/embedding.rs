@@ -9,7 +9,7 @@ use ridgelight::scene::{Albedo, Border, Environment, Quality, Scene, Sun};
 
 use crate::{Device, field, under_sky};
 
-/// A scene with an image of every kind that the README's table lists.
+/// A scene with an image of every kind that the table of docs/embedding.md lists.
 fn scene() -> Scene {
     let heights = field(12, 14, [1.0, 2.0], |r, c| ((r * 31 + c * 17) % 7) as f64);
     let mut scene = under_sky(heights, Border::Plane);
@@ -133,8 +133,8 @@ fn images_are_left_as_the_table_says() {
     let mut device = Device::new();
     let scene = scene();
     let plan = picture(&device, &scene);
-    let readme = include_str!("../../README.md");
-    let row = |begin: &str| readme.lines().find(|l| l.starts_with(begin)).expect("a row");
+    let page = include_str!("../../docs/embedding.md");
+    let row = |begin: &str| page.lines().find(|l| l.starts_with(begin)).expect("a row");
     for (_, input) in plan.inputs() {
         assert!(row("| inputs:").contains(&format!("`{}`", input.name)), "{}", input.name);
     }

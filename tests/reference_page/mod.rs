@@ -1,4 +1,4 @@
-//! What docs/reference.md says whatever the device: closed forms, and the heads of its rows.
+//! What docs/measured/reference.md says whatever the device: closed forms, and the heads of its rows.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -15,7 +15,7 @@ pub const MOST_BOUNCES: usize = 2;
 pub fn light_names(scene: &Scene) -> [&'static str; 3] {
     match scene.lights.environment {
         Some(_) => ["environment, red", "environment, green", "environment, blue"],
-        None => ["sky", "sun", "ball"],
+        None => ["sky", "sun", "sphere light"],
     }
 }
 

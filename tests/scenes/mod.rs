@@ -78,7 +78,7 @@ pub fn scenes() -> Vec<(&'static str, Scene)> {
             },
         ),
         (
-            "cone, open, environment and lobe",
+            "cone, open, environment and specular",
             Scene {
                 field: cone(),
                 surface: Surface {

@@ -5,7 +5,7 @@
 //!
 //! ```no_run
 //! use std::path::Path;
-//! use ridgelight::golden;
+//! use ridgelight_testing as golden;
 //! # use ridgelight::gpu::Pixels;
 //! # fn test(pixels: Pixels) -> ridgelight::Result<()> {
 //! // Of `Headless::pixels`, 64 rows of 64 texels.

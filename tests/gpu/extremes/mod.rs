@@ -1,7 +1,9 @@
-//! DESIGN §4: numbers must hold at the extremes. The table is in `suite`; what it finds is published as
-//! `docs/extremes.md` by `tools/extremes`.
+//! DESIGN §4: numbers must hold at the extremes. The table is in `suite`; `tools/extremes` writes what it
+//! finds to `out/extremes.md`, and docs/accuracy.md counts what is covered.
 
 mod suite;
+
+use std::fmt::Write as _;
 
 use ridgelight::scene::{
     BounceEngine, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
@@ -248,16 +250,20 @@ fn inputs_that_are_no_numbers_are_refused_by_place() {
     }
 }
 
-/// The published page has a figure or a refusal for every case under every method, and a page without
-/// one of its rows is seen.
+/// The page has a figure or a refusal for every case under every method, and a page without one of its rows is seen.
 #[test]
 fn the_page_lacks_nothing() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/extremes.md");
-    let published = std::fs::read_to_string(&path).expect("docs/extremes.md");
     let (cases, methods) = (suite::cases(), methods::all());
+    let of_row = |[case, method]: [usize; 2]| {
+        let refusal = (cases[case].refuses)(&methods[method]).map(str::to_owned);
+        let measured = || suite::outcome(Ok(vec![probe()]));
+        Row { case, method, outcome: refusal.map_or_else(measured, Outcome::Refused) }
+    };
+    let rows = suite::put(&cases, &methods).into_iter().map(of_row).collect();
+    let column = page::Column { name: "a device".into(), driver: "its driver".into(), rows };
+    let published = page::text(&cases, &methods, &[column]);
     let missing = page::missing(&published, &cases, &methods);
-    let all = missing.join("\n");
-    assert!(missing.is_empty(), "run tools/extremes: docs/extremes.md lacks\n{all}");
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
     let lines: Vec<&str> = published.lines().collect();
     // Several in each table, whose own case misses them.
     for i in (0..lines.len()).step_by(5) {
@@ -273,4 +279,45 @@ fn the_page_lacks_nothing() {
         let missing = page::missing(&without, own, &methods);
         assert!(!missing.is_empty(), "nothing is missed without {}", lines[i]);
     }
+}
+
+/// A value that is what it should be.
+fn probe() -> suite::Probe {
+    suite::Probe { found: 1.0, expected: [1.0; 2], bound: 1e-6, at: [0; 3] }
+}
+
+/// The table of docs/accuracy.md: how many scenes, methods and pairs of both each group has.
+fn summary(cases: &[Case], methods: &[methods::Method]) -> String {
+    let groups = [
+        (About::Horizons, "horizons, and direct light shaded from them"),
+        (About::Bounces, "indirect light"),
+        (About::SoftBalls, "sphere lights by spherical harmonics"),
+        (About::Lobes, "direct Phong specular"),
+        (About::Glosses, "indirect Phong specular"),
+        (About::Points, "visible points"),
+        (About::Ellipses, "ellipses of visible sky"),
+        (About::Scattering, "light scattered over visible points"),
+    ];
+    let mut out = "| group | scenes | methods | pairs |\n|---|---|---|---|\n".to_owned();
+    let mut all = [0, 0, 0];
+    for (about, name) in groups {
+        let scenes = cases.iter().filter(|c| c.about == about).count();
+        let tried = methods.iter().filter(|m| m.about == about).count();
+        let row = [scenes, tried, scenes * tried];
+        writeln!(out, "| {name} | {} | {} | {} |", row[0], row[1], row[2]).unwrap();
+        all = [0, 1, 2].map(|i| all[i] + row[i]);
+    }
+    writeln!(out, "| all | {} | {} | {} |", all[0], all[1], all[2]).unwrap();
+    writeln!(out, "| inputs that are refused by name | {} | | |", suite::inputs::ALL.len())
+        .unwrap();
+    out
+}
+
+/// docs/accuracy.md counts the cases as they are.
+#[test]
+fn the_summary_counts_what_is_covered() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/accuracy.md");
+    let page = std::fs::read_to_string(path).expect("docs/accuracy.md");
+    let table = summary(&suite::cases(), &methods::all());
+    assert!(page.contains(&table), "docs/accuracy.md should hold this table:\n{table}");
 }

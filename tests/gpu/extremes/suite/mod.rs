@@ -1,5 +1,5 @@
 //! DESIGN §4 as a table: every case put to every method, each error beside its bound. The tests run
-//! it on the driver at hand; `examples/extremes.rs` prints it for several as `docs/extremes.md`.
+//! it on the driver at hand; `examples/extremes.rs` prints it for several as `out/extremes.md`.
 
 mod balls;
 mod bounces;

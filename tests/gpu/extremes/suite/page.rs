@@ -1,6 +1,15 @@
-//! The published table: what stands on the page, and whether it lacks anything.
+//! The page of all results (`out/extremes.md`), and whether it lacks anything.
 
-use super::{Case, Method, inputs};
+use std::fmt::Write as _;
+
+use super::{Case, Method, Outcome, Row, inputs};
+
+/// What one device found: a row for every case under every method.
+pub struct Column {
+    pub name: String,
+    pub driver: String,
+    pub rows: Vec<Row>,
+}
 
 /// What stands before the tables.
 pub const ABOUT: &str = "\
@@ -53,6 +62,47 @@ pub fn heading(case: &Case) -> String {
 /// The row of a refused input.
 pub fn refused(name: &str, sentence: &str) -> String {
     format!("| {name} | {sentence} |")
+}
+
+/// The whole page.
+pub fn text(cases: &[Case], methods: &[Method], found: &[Column]) -> String {
+    let mut out = ABOUT.to_owned();
+    for device in found {
+        writeln!(out, "\n{}: *{}*", device.name, device.driver).unwrap();
+    }
+    for (c, case) in cases.iter().enumerate() {
+        writeln!(out, "{}", heading(case)).unwrap();
+        out += "| method |";
+        found.iter().for_each(|f| write!(out, " {}: worst | bound | share |", f.name).unwrap());
+        writeln!(out, "\n|---|{}", "---|---|---|".repeat(found.len())).unwrap();
+        let of_case = |(_, m): &(usize, &Method)| m.about == case.about;
+        for (m, method) in methods.iter().enumerate().filter(of_case) {
+            write!(out, "| {} |", method.name).unwrap();
+            for device in found {
+                let row = device.rows.iter().find(|r| (r.case, r.method) == (c, m));
+                let outcome = &row.expect("a row for every case under every method").outcome;
+                out += &cells(outcome, (case.unjudged)(method));
+            }
+            out.push('\n');
+        }
+    }
+    out += INPUTS;
+    for (name, offer, _) in inputs::ALL {
+        writeln!(out, "{}", refused(name, &inputs::said(*offer))).unwrap();
+    }
+    out
+}
+
+fn cells(outcome: &Outcome, unjudged: bool) -> String {
+    match outcome {
+        Outcome::Refused(said) => format!(" refused: *{said}* | | |"),
+        Outcome::Measured { largest_error, .. } if unjudged => {
+            format!(" {largest_error:.2e} | {UNJUDGED} | {UNJUDGED} |")
+        }
+        Outcome::Measured { worst, largest_error, .. } => {
+            format!(" {largest_error:.2e} | {:.2e} | {:.3} |", worst.bound, worst.ratio())
+        }
+    }
 }
 
 /// What a page lacks: cases with what is expected of them, rows of methods with a figure or a refusal in

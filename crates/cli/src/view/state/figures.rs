@@ -8,7 +8,7 @@ use super::{State, Text, Tool};
 use crate::idle;
 use crate::view::brush::Action;
 
-/// The keys, as they are listed on the screen and in README.
+/// The keys, as they are listed on the screen and in docs/viewer.md.
 const KEYS: [&str; 21] = [
     "V                 from above, from a camera",
     "arrows, drag      move the map, turn the camera",
@@ -176,9 +176,9 @@ mod tests {
 
     /// As they stand on the screen, in order.
     #[test]
-    fn readme_lists_the_keys() {
-        let readme = include_str!("../../../../../README.md");
-        let listed: Vec<&str> = readme.lines().filter(|line| KEYS.contains(line)).collect();
+    fn the_viewers_page_lists_the_keys() {
+        let page = include_str!("../../../../../docs/viewer.md");
+        let listed: Vec<&str> = page.lines().filter(|line| KEYS.contains(line)).collect();
         assert_eq!(listed, KEYS);
     }
 
