@@ -16,8 +16,8 @@ use reference_page::{Closed, FINENESS, MOST_BOUNCES, closed_forms, head, light_n
 use ridgelight::gpu::{Headless, HeadlessOptions};
 use ridgelight::scene::Scene;
 use ridgelight::{Error, Result, plan};
-use ridgelight_cpu::bounce;
-use ridgelight_cpu::bounce::Truth;
+use ridgelight_cpu::indirect;
+use ridgelight_cpu::indirect::Truth;
 use ridgelight_io as files;
 use scenes::{Agreement, scenes};
 
@@ -159,7 +159,7 @@ fn measure(device: &str) -> Result<(String, Vec<String>)> {
     page += "\n| scene | bounces | light | n | quadrature | stated | paths | ± | z of the mean | rms z | worst z |\n";
     page += "|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (name, scene) in scenes() {
-        let truth = bounce::truth(&scene, MOST_BOUNCES, FINENESS)?;
+        let truth = indirect::truth(&scene, MOST_BOUNCES, FINENESS)?;
         for bounces in 0..=MOST_BOUNCES {
             let found = traced(&mut gpu, &scene, bounces)?;
             for (channel, light) in light_names(&scene).into_iter().enumerate() {
@@ -172,7 +172,7 @@ fn measure(device: &str) -> Result<(String, Vec<String>)> {
     page += "\n| scene | bounces | n | value | grid | quadrature | paths | ± | z |\n|---|---|---|---|---|---|---|---|---|\n";
     for closed in closed_forms() {
         let found = traced(&mut gpu, &closed.scene, closed.bounces)?;
-        let bounces = bounce::light(&closed.scene, closed.bounces, FINENESS)?;
+        let bounces = indirect::light(&closed.scene, closed.bounces, FINENESS)?;
         let last = bounces.last().map_or(&[][..], Vec::as_slice);
         add(&mut page, closed_row(&closed, &found, last));
     }

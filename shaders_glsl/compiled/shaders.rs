@@ -1,6 +1,6 @@
 // Written by build.rs from the SPIR-V of shaders_glsl/; committed by tools/shaders. Not edited by hand.
 
-/// `shaders_glsl/bounce_gather.comp`.
+/// `shaders_glsl/bounce/bounce_gather.comp`.
 pub const BOUNCE_GATHER: Shader = Shader {
     name: "bounce_gather",
     push_bytes: 64,
@@ -28,7 +28,7 @@ pub const BOUNCE_GATHER: Shader = Shader {
     words: words_at(0, 11633),
 };
 
-/// `shaders_glsl/bounce_gather.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/bounce_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BounceGather {
     /// `PERIODIC`, by default false.
@@ -75,7 +75,7 @@ impl From<BounceGather> for Specialised {
     }
 }
 
-/// `shaders_glsl/bounce_march.comp`.
+/// `shaders_glsl/bounce/bounce_march.comp`.
 pub const BOUNCE_MARCH: Shader = Shader {
     name: "bounce_march",
     push_bytes: 44,
@@ -97,7 +97,7 @@ pub const BOUNCE_MARCH: Shader = Shader {
     words: words_at(11633, 12301),
 };
 
-/// `shaders_glsl/bounce_march.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/bounce_march.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BounceMarch {
     /// `BORDER`, by default 0.
@@ -140,7 +140,7 @@ impl From<BounceMarch> for Specialised {
     }
 }
 
-/// `shaders_glsl/bounce_shade.comp`.
+/// `shaders_glsl/bounce/bounce_shade.comp`.
 pub const BOUNCE_SHADE: Shader = Shader {
     name: "bounce_shade",
     push_bytes: 16,
@@ -156,7 +156,7 @@ pub const BOUNCE_SHADE: Shader = Shader {
     words: words_at(23934, 2676),
 };
 
-/// `shaders_glsl/bounce_shade.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/bounce_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BounceShade {
     /// `NODE_STRIDE`, by default 2.
@@ -179,7 +179,7 @@ impl From<BounceShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/bounce_walk.comp`.
+/// `shaders_glsl/bounce/bounce_walk.comp`.
 pub const BOUNCE_WALK: Shader = Shader {
     name: "bounce_walk",
     push_bytes: 40,
@@ -203,7 +203,7 @@ pub const BOUNCE_WALK: Shader = Shader {
     words: words_at(26610, 13808),
 };
 
-/// `shaders_glsl/bounce_walk.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/bounce_walk.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BounceWalk {
     /// `LINE_SHIFT`, by default 15.
@@ -246,7 +246,7 @@ impl From<BounceWalk> for Specialised {
     }
 }
 
-/// `shaders_glsl/cast_gather.comp`.
+/// `shaders_glsl/bounce/cast_gather.comp`.
 pub const CAST_GATHER: Shader = Shader {
     name: "cast_gather",
     push_bytes: 16,
@@ -266,7 +266,7 @@ pub const CAST_GATHER: Shader = Shader {
     words: words_at(40418, 3633),
 };
 
-/// `shaders_glsl/cast_gather.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/cast_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CastGather {
     /// `BORDER`, by default 0.
@@ -297,7 +297,7 @@ impl From<CastGather> for Specialised {
     }
 }
 
-/// `shaders_glsl/dirty_list.comp`.
+/// `shaders_glsl/edit/dirty_list.comp`.
 pub const DIRTY_LIST: Shader = Shader {
     name: "dirty_list",
     push_bytes: 8,
@@ -310,7 +310,7 @@ pub const DIRTY_LIST: Shader = Shader {
     words: words_at(44051, 875),
 };
 
-/// `shaders_glsl/dirty_list.comp` with its specialisation constants.
+/// `shaders_glsl/edit/dirty_list.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct DirtyList;
 
@@ -321,7 +321,7 @@ impl From<DirtyList> for Specialised {
     }
 }
 
-/// `shaders_glsl/dirty_mark.comp`.
+/// `shaders_glsl/edit/dirty_mark.comp`.
 pub const DIRTY_MARK: Shader = Shader {
     name: "dirty_mark",
     push_bytes: 24,
@@ -334,7 +334,7 @@ pub const DIRTY_MARK: Shader = Shader {
     words: words_at(44926, 1324),
 };
 
-/// `shaders_glsl/dirty_mark.comp` with its specialisation constants.
+/// `shaders_glsl/edit/dirty_mark.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct DirtyMark;
 
@@ -345,7 +345,7 @@ impl From<DirtyMark> for Specialised {
     }
 }
 
-/// `shaders_glsl/ellipse_fit.comp`.
+/// `shaders_glsl/bake/ellipse_fit.comp`.
 pub const ELLIPSE_FIT: Shader = Shader {
     name: "ellipse_fit",
     push_bytes: 24,
@@ -363,7 +363,7 @@ pub const ELLIPSE_FIT: Shader = Shader {
     words: words_at(46250, 5048),
 };
 
-/// `shaders_glsl/ellipse_fit.comp` with its specialisation constants.
+/// `shaders_glsl/bake/ellipse_fit.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EllipseFit {
     /// `SMALL`, by default false.
@@ -381,7 +381,7 @@ impl From<EllipseFit> for Specialised {
     }
 }
 
-/// `shaders_glsl/env_tables.comp`.
+/// `shaders_glsl/direct/env_tables.comp`.
 pub const ENV_TABLES: Shader = Shader {
     name: "env_tables",
     push_bytes: 20,
@@ -394,7 +394,7 @@ pub const ENV_TABLES: Shader = Shader {
     words: words_at(51298, 1463),
 };
 
-/// `shaders_glsl/env_tables.comp` with its specialisation constants.
+/// `shaders_glsl/direct/env_tables.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EnvTables;
 
@@ -405,7 +405,7 @@ impl From<EnvTables> for Specialised {
     }
 }
 
-/// `shaders_glsl/env_turns.comp`.
+/// `shaders_glsl/sh/env_turns.comp`.
 pub const ENV_TURNS: Shader = Shader {
     name: "env_turns",
     push_bytes: 16,
@@ -419,7 +419,7 @@ pub const ENV_TURNS: Shader = Shader {
     words: words_at(52761, 948),
 };
 
-/// `shaders_glsl/env_turns.comp` with its specialisation constants.
+/// `shaders_glsl/sh/env_turns.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EnvTurns;
 
@@ -430,7 +430,7 @@ impl From<EnvTurns> for Specialised {
     }
 }
 
-/// `shaders_glsl/env_wedges.comp`.
+/// `shaders_glsl/sh/env_wedges.comp`.
 pub const ENV_WEDGES: Shader = Shader {
     name: "env_wedges",
     push_bytes: 12,
@@ -444,7 +444,7 @@ pub const ENV_WEDGES: Shader = Shader {
     words: words_at(53709, 2151),
 };
 
-/// `shaders_glsl/env_wedges.comp` with its specialisation constants.
+/// `shaders_glsl/sh/env_wedges.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EnvWedges;
 
@@ -455,7 +455,7 @@ impl From<EnvWedges> for Specialised {
     }
 }
 
-/// `shaders_glsl/facet_mask.comp`.
+/// `shaders_glsl/bake/facet_mask.comp`.
 pub const FACET_MASK: Shader = Shader {
     name: "facet_mask",
     push_bytes: 48,
@@ -472,7 +472,7 @@ pub const FACET_MASK: Shader = Shader {
     words: words_at(55860, 9115),
 };
 
-/// `shaders_glsl/facet_mask.comp` with its specialisation constants.
+/// `shaders_glsl/bake/facet_mask.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacetMask {
     /// `BORDER`, by default 0.
@@ -499,7 +499,7 @@ impl From<FacetMask> for Specialised {
     }
 }
 
-/// `shaders_glsl/fan_weigh.comp`.
+/// `shaders_glsl/bake/fan_weigh.comp`.
 pub const FAN_WEIGH: Shader = Shader {
     name: "fan_weigh",
     push_bytes: 16,
@@ -513,7 +513,7 @@ pub const FAN_WEIGH: Shader = Shader {
     words: words_at(64975, 1842),
 };
 
-/// `shaders_glsl/fan_weigh.comp` with its specialisation constants.
+/// `shaders_glsl/bake/fan_weigh.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FanWeigh;
 
@@ -524,7 +524,7 @@ impl From<FanWeigh> for Specialised {
     }
 }
 
-/// `shaders_glsl/gloss_exit.comp`.
+/// `shaders_glsl/specular/gloss_exit.comp`.
 pub const GLOSS_EXIT: Shader = Shader {
     name: "gloss_exit",
     push_bytes: 28,
@@ -551,7 +551,7 @@ pub const GLOSS_EXIT: Shader = Shader {
     words: words_at(66817, 6432),
 };
 
-/// `shaders_glsl/gloss_exit.comp` with its specialisation constants.
+/// `shaders_glsl/specular/gloss_exit.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GlossExit {
     /// `ORDER`, by default 4.
@@ -598,7 +598,7 @@ impl From<GlossExit> for Specialised {
     }
 }
 
-/// `shaders_glsl/gloss_gather.comp`.
+/// `shaders_glsl/specular/gloss_gather.comp`.
 pub const GLOSS_GATHER: Shader = Shader {
     name: "gloss_gather",
     push_bytes: 64,
@@ -630,7 +630,7 @@ pub const GLOSS_GATHER: Shader = Shader {
     words: words_at(73249, 20111),
 };
 
-/// `shaders_glsl/gloss_gather.comp` with its specialisation constants.
+/// `shaders_glsl/specular/gloss_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GlossGather {
     /// `PERIODIC`, by default false.
@@ -681,7 +681,7 @@ impl From<GlossGather> for Specialised {
     }
 }
 
-/// `shaders_glsl/gloss_seen.comp`.
+/// `shaders_glsl/specular/gloss_seen.comp`.
 pub const GLOSS_SEEN: Shader = Shader {
     name: "gloss_seen",
     push_bytes: 8,
@@ -697,7 +697,7 @@ pub const GLOSS_SEEN: Shader = Shader {
     words: words_at(93360, 1236),
 };
 
-/// `shaders_glsl/gloss_seen.comp` with its specialisation constants.
+/// `shaders_glsl/specular/gloss_seen.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GlossSeen {
     /// `ORDER`, by default 4.
@@ -724,7 +724,7 @@ impl From<GlossSeen> for Specialised {
     }
 }
 
-/// `shaders_glsl/height_bounds.comp`.
+/// `shaders_glsl/rays/height_bounds.comp`.
 pub const HEIGHT_BOUNDS: Shader = Shader {
     name: "height_bounds",
     push_bytes: 16,
@@ -737,7 +737,7 @@ pub const HEIGHT_BOUNDS: Shader = Shader {
     words: words_at(94596, 1109),
 };
 
-/// `shaders_glsl/height_bounds.comp` with its specialisation constants.
+/// `shaders_glsl/rays/height_bounds.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeightBounds;
 
@@ -748,7 +748,7 @@ impl From<HeightBounds> for Specialised {
     }
 }
 
-/// `shaders_glsl/height_cells.comp`.
+/// `shaders_glsl/rays/height_cells.comp`.
 pub const HEIGHT_CELLS: Shader = Shader {
     name: "height_cells",
     push_bytes: 16,
@@ -766,7 +766,7 @@ pub const HEIGHT_CELLS: Shader = Shader {
     words: words_at(95705, 2514),
 };
 
-/// `shaders_glsl/height_cells.comp` with its specialisation constants.
+/// `shaders_glsl/rays/height_cells.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeightCells {
     /// `PERIODIC`, by default false.
@@ -784,7 +784,7 @@ impl From<HeightCells> for Specialised {
     }
 }
 
-/// `shaders_glsl/height_expand.comp`.
+/// `shaders_glsl/horizon/height_expand.comp`.
 pub const HEIGHT_EXPAND: Shader = Shader {
     name: "height_expand",
     push_bytes: 12,
@@ -799,7 +799,7 @@ pub const HEIGHT_EXPAND: Shader = Shader {
     words: words_at(98219, 2495),
 };
 
-/// `shaders_glsl/height_expand.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/height_expand.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeightExpand {
     /// `PERIODIC`, by default false.
@@ -814,7 +814,7 @@ impl From<HeightExpand> for Specialised {
     }
 }
 
-/// `shaders_glsl/height_reduce.comp`.
+/// `shaders_glsl/horizon/height_reduce.comp`.
 pub const HEIGHT_REDUCE: Shader = Shader {
     name: "height_reduce",
     push_bytes: 48,
@@ -830,7 +830,7 @@ pub const HEIGHT_REDUCE: Shader = Shader {
     words: words_at(100714, 2857),
 };
 
-/// `shaders_glsl/height_reduce.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/height_reduce.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeightReduce {
     /// `PERIODIC`, by default false.
@@ -848,7 +848,7 @@ impl From<HeightReduce> for Specialised {
     }
 }
 
-/// `shaders_glsl/height_transpose.comp`.
+/// `shaders_glsl/horizon/height_transpose.comp`.
 pub const HEIGHT_TRANSPOSE: Shader = Shader {
     name: "height_transpose",
     push_bytes: 24,
@@ -863,7 +863,7 @@ pub const HEIGHT_TRANSPOSE: Shader = Shader {
     words: words_at(103571, 978),
 };
 
-/// `shaders_glsl/height_transpose.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/height_transpose.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HeightTranspose {
     /// `MARCHES_ROWS`, by default false.
@@ -881,7 +881,7 @@ impl From<HeightTranspose> for Specialised {
     }
 }
 
-/// `shaders_glsl/horizon_march.comp`.
+/// `shaders_glsl/horizon/horizon_march.comp`.
 pub const HORIZON_MARCH: Shader = Shader {
     name: "horizon_march",
     push_bytes: 16,
@@ -899,7 +899,7 @@ pub const HORIZON_MARCH: Shader = Shader {
     words: words_at(104549, 5454),
 };
 
-/// `shaders_glsl/horizon_march.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/horizon_march.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HorizonMarch {
     /// `ALL_CROSSINGS`, by default true.
@@ -934,7 +934,7 @@ impl From<HorizonMarch> for Specialised {
     }
 }
 
-/// `shaders_glsl/horizon_resweep.comp`.
+/// `shaders_glsl/edit/horizon_resweep.comp`.
 pub const HORIZON_RESWEEP: Shader = Shader {
     name: "horizon_resweep",
     push_bytes: 32,
@@ -952,7 +952,7 @@ pub const HORIZON_RESWEEP: Shader = Shader {
     words: words_at(110003, 8883),
 };
 
-/// `shaders_glsl/horizon_resweep.comp` with its specialisation constants.
+/// `shaders_glsl/edit/horizon_resweep.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HorizonResweep {
     /// `LINE_SHIFT`, by default 15.
@@ -979,7 +979,7 @@ impl From<HorizonResweep> for Specialised {
     }
 }
 
-/// `shaders_glsl/horizon_sweep.comp`.
+/// `shaders_glsl/horizon/horizon_sweep.comp`.
 pub const HORIZON_SWEEP: Shader = Shader {
     name: "horizon_sweep",
     push_bytes: 20,
@@ -1009,7 +1009,7 @@ pub const HORIZON_SWEEP: Shader = Shader {
     words: words_at(118886, 9430),
 };
 
-/// `shaders_glsl/horizon_sweep.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/horizon_sweep.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HorizonSweep {
     /// `LOCAL_SIZE_X`, by default 1.
@@ -1080,7 +1080,7 @@ impl From<HorizonSweep> for Specialised {
     }
 }
 
-/// `shaders_glsl/light_matrix.comp`.
+/// `shaders_glsl/sh/light_matrix.comp`.
 pub const LIGHT_MATRIX: Shader = Shader {
     name: "light_matrix",
     push_bytes: 48,
@@ -1094,7 +1094,7 @@ pub const LIGHT_MATRIX: Shader = Shader {
     words: words_at(128316, 1842),
 };
 
-/// `shaders_glsl/light_matrix.comp` with its specialisation constants.
+/// `shaders_glsl/sh/light_matrix.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightMatrix;
 
@@ -1105,7 +1105,7 @@ impl From<LightMatrix> for Specialised {
     }
 }
 
-/// `shaders_glsl/light_resolve.comp`.
+/// `shaders_glsl/direct/light_resolve.comp`.
 pub const LIGHT_RESOLVE: Shader = Shader {
     name: "light_resolve",
     push_bytes: 32,
@@ -1133,7 +1133,7 @@ pub const LIGHT_RESOLVE: Shader = Shader {
     words: words_at(130158, 1992),
 };
 
-/// `shaders_glsl/light_resolve.comp` with its specialisation constants.
+/// `shaders_glsl/direct/light_resolve.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightResolve {
     /// `SUM_HAS_COLOUR`, by default false.
@@ -1180,7 +1180,7 @@ impl From<LightResolve> for Specialised {
     }
 }
 
-/// `shaders_glsl/map_draw.comp`.
+/// `shaders_glsl/view/map_draw.comp`.
 pub const MAP_DRAW: Shader = Shader {
     name: "map_draw",
     push_bytes: 36,
@@ -1197,7 +1197,7 @@ pub const MAP_DRAW: Shader = Shader {
     words: words_at(132150, 1575),
 };
 
-/// `shaders_glsl/map_draw.comp` with its specialisation constants.
+/// `shaders_glsl/view/map_draw.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MapDraw {
     /// `GREY`, by default false.
@@ -1215,7 +1215,7 @@ impl From<MapDraw> for Specialised {
     }
 }
 
-/// `shaders_glsl/path_trace.comp`.
+/// `shaders_glsl/reference/path_trace.comp`.
 pub const PATH_TRACE: Shader = Shader {
     name: "path_trace",
     push_bytes: 120,
@@ -1256,7 +1256,7 @@ pub const PATH_TRACE: Shader = Shader {
     words: words_at(133725, 22904),
 };
 
-/// `shaders_glsl/path_trace.comp` with its specialisation constants.
+/// `shaders_glsl/reference/path_trace.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathTrace {
     /// `BORDER`, by default 0.
@@ -1335,7 +1335,7 @@ impl From<PathTrace> for Specialised {
     }
 }
 
-/// `shaders_glsl/picture_tone.frag`.
+/// `shaders_glsl/view/picture_tone.frag`.
 pub const PICTURE_TONE_FRAG: Shader = Shader {
     name: "picture_tone_frag",
     push_bytes: 4,
@@ -1348,7 +1348,7 @@ pub const PICTURE_TONE_FRAG: Shader = Shader {
     words: words_at(156629, 455),
 };
 
-/// `shaders_glsl/picture_tone.frag` with its specialisation constants.
+/// `shaders_glsl/view/picture_tone.frag` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PictureToneFrag {
     /// `ENCODES`, by default true.
@@ -1371,7 +1371,7 @@ impl From<PictureToneFrag> for Specialised {
     }
 }
 
-/// `shaders_glsl/picture_tone.vert`.
+/// `shaders_glsl/view/picture_tone.vert`.
 pub const PICTURE_TONE_VERT: Shader = Shader {
     name: "picture_tone_vert",
     push_bytes: 0,
@@ -1382,7 +1382,7 @@ pub const PICTURE_TONE_VERT: Shader = Shader {
     words: words_at(157084, 266),
 };
 
-/// `shaders_glsl/picture_tone.vert` with its specialisation constants.
+/// `shaders_glsl/view/picture_tone.vert` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PictureToneVert;
 
@@ -1393,7 +1393,7 @@ impl From<PictureToneVert> for Specialised {
     }
 }
 
-/// `shaders_glsl/points_bend.comp`.
+/// `shaders_glsl/bake/points_bend.comp`.
 pub const POINTS_BEND: Shader = Shader {
     name: "points_bend",
     push_bytes: 36,
@@ -1412,7 +1412,7 @@ pub const POINTS_BEND: Shader = Shader {
     words: words_at(157350, 8157),
 };
 
-/// `shaders_glsl/points_bend.comp` with its specialisation constants.
+/// `shaders_glsl/bake/points_bend.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointsBend {
     /// `BORDER`, by default 0.
@@ -1443,7 +1443,7 @@ impl From<PointsBend> for Specialised {
     }
 }
 
-/// `shaders_glsl/pyramid_march.comp`.
+/// `shaders_glsl/horizon/pyramid_march.comp`.
 pub const PYRAMID_MARCH: Shader = Shader {
     name: "pyramid_march",
     push_bytes: 32,
@@ -1464,7 +1464,7 @@ pub const PYRAMID_MARCH: Shader = Shader {
     words: words_at(165507, 9022),
 };
 
-/// `shaders_glsl/pyramid_march.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/pyramid_march.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PyramidMarch {
     /// `PERIODIC`, by default false.
@@ -1499,7 +1499,7 @@ impl From<PyramidMarch> for Specialised {
     }
 }
 
-/// `shaders_glsl/scatter_gather.comp`.
+/// `shaders_glsl/bake/scatter_gather.comp`.
 pub const SCATTER_GATHER: Shader = Shader {
     name: "scatter_gather",
     push_bytes: 80,
@@ -1530,7 +1530,7 @@ pub const SCATTER_GATHER: Shader = Shader {
     words: words_at(174529, 4659),
 };
 
-/// `shaders_glsl/scatter_gather.comp` with its specialisation constants.
+/// `shaders_glsl/bake/scatter_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScatterGather {
     /// `SOURCE`, by default 1.
@@ -1581,7 +1581,7 @@ impl From<ScatterGather> for Specialised {
     }
 }
 
-/// `shaders_glsl/sh_shade.comp`.
+/// `shaders_glsl/sh/sh_shade.comp`.
 pub const SH_SHADE: Shader = Shader {
     name: "sh_shade",
     push_bytes: 24,
@@ -1604,7 +1604,7 @@ pub const SH_SHADE: Shader = Shader {
     words: words_at(179188, 12952),
 };
 
-/// `shaders_glsl/sh_shade.comp` with its specialisation constants.
+/// `shaders_glsl/sh/sh_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShShade {
     /// `BORDER`, by default 0.
@@ -1647,7 +1647,7 @@ impl From<ShShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/sh_visibility.comp`.
+/// `shaders_glsl/sh/sh_visibility.comp`.
 pub const SH_VISIBILITY: Shader = Shader {
     name: "sh_visibility",
     push_bytes: 32,
@@ -1676,7 +1676,7 @@ pub const SH_VISIBILITY: Shader = Shader {
     words: words_at(192140, 29805),
 };
 
-/// `shaders_glsl/sh_visibility.comp` with its specialisation constants.
+/// `shaders_glsl/sh/sh_visibility.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShVisibility {
     /// `FUSE`, by default 5.
@@ -1735,7 +1735,7 @@ impl From<ShVisibility> for Specialised {
     }
 }
 
-/// `shaders_glsl/sh_wedges.comp`.
+/// `shaders_glsl/sh/sh_wedges.comp`.
 pub const SH_WEDGES: Shader = Shader {
     name: "sh_wedges",
     push_bytes: 36,
@@ -1756,7 +1756,7 @@ pub const SH_WEDGES: Shader = Shader {
     words: words_at(221945, 7775),
 };
 
-/// `shaders_glsl/sh_wedges.comp` with its specialisation constants.
+/// `shaders_glsl/sh/sh_wedges.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShWedges {
     /// `BORDER`, by default 0.
@@ -1795,7 +1795,7 @@ impl From<ShWedges> for Specialised {
     }
 }
 
-/// `shaders_glsl/shade_expand.comp`.
+/// `shaders_glsl/bounce/shade_expand.comp`.
 pub const SHADE_EXPAND: Shader = Shader {
     name: "shade_expand",
     push_bytes: 12,
@@ -1810,7 +1810,7 @@ pub const SHADE_EXPAND: Shader = Shader {
     words: words_at(229720, 2396),
 };
 
-/// `shaders_glsl/shade_expand.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/shade_expand.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ShadeExpand {
     /// `PERIODIC`, by default false.
@@ -1825,7 +1825,7 @@ impl From<ShadeExpand> for Specialised {
     }
 }
 
-/// `shaders_glsl/shade_reduce.comp`.
+/// `shaders_glsl/bounce/shade_reduce.comp`.
 pub const SHADE_REDUCE: Shader = Shader {
     name: "shade_reduce",
     push_bytes: 48,
@@ -1842,7 +1842,7 @@ pub const SHADE_REDUCE: Shader = Shader {
     words: words_at(232116, 2916),
 };
 
-/// `shaders_glsl/shade_reduce.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/shade_reduce.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ShadeReduce {
     /// `PERIODIC`, by default false.
@@ -1863,7 +1863,7 @@ impl From<ShadeReduce> for Specialised {
     }
 }
 
-/// `shaders_glsl/sky_draw.frag`.
+/// `shaders_glsl/view/sky_draw.frag`.
 pub const SKY_DRAW_FRAG: Shader = Shader {
     name: "sky_draw_frag",
     push_bytes: 84,
@@ -1876,7 +1876,7 @@ pub const SKY_DRAW_FRAG: Shader = Shader {
     words: words_at(235032, 1269),
 };
 
-/// `shaders_glsl/sky_draw.frag` with its specialisation constants.
+/// `shaders_glsl/view/sky_draw.frag` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SkyDrawFrag {
     /// `HAS_ENVIRONMENT`, by default false.
@@ -1891,7 +1891,7 @@ impl From<SkyDrawFrag> for Specialised {
     }
 }
 
-/// `shaders_glsl/sky_draw.vert`.
+/// `shaders_glsl/view/sky_draw.vert`.
 pub const SKY_DRAW_VERT: Shader = Shader {
     name: "sky_draw_vert",
     push_bytes: 0,
@@ -1902,7 +1902,7 @@ pub const SKY_DRAW_VERT: Shader = Shader {
     words: words_at(236301, 289),
 };
 
-/// `shaders_glsl/sky_draw.vert` with its specialisation constants.
+/// `shaders_glsl/view/sky_draw.vert` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SkyDrawVert;
 
@@ -1913,7 +1913,7 @@ impl From<SkyDrawVert> for Specialised {
     }
 }
 
-/// `shaders_glsl/sky_shade.comp`.
+/// `shaders_glsl/direct/sky_shade.comp`.
 pub const SKY_SHADE: Shader = Shader {
     name: "sky_shade",
     push_bytes: 32,
@@ -1941,7 +1941,7 @@ pub const SKY_SHADE: Shader = Shader {
     words: words_at(236590, 22805),
 };
 
-/// `shaders_glsl/sky_shade.comp` with its specialisation constants.
+/// `shaders_glsl/direct/sky_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SkyShade {
     /// `FUSE`, by default 5.
@@ -1992,7 +1992,7 @@ impl From<SkyShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/sphere_sh_shade.comp`.
+/// `shaders_glsl/sh/sphere_sh_shade.comp`.
 pub const SPHERE_SH_SHADE: Shader = Shader {
     name: "sphere_sh_shade",
     push_bytes: 128,
@@ -2022,7 +2022,7 @@ pub const SPHERE_SH_SHADE: Shader = Shader {
     words: words_at(259395, 27587),
 };
 
-/// `shaders_glsl/sphere_sh_shade.comp` with its specialisation constants.
+/// `shaders_glsl/sh/sphere_sh_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereShShade {
     /// `BORDER`, by default 0.
@@ -2081,7 +2081,7 @@ impl From<SphereShShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/sphere_shade.comp`.
+/// `shaders_glsl/direct/sphere_shade.comp`.
 pub const SPHERE_SHADE: Shader = Shader {
     name: "sphere_shade",
     push_bytes: 112,
@@ -2100,7 +2100,7 @@ pub const SPHERE_SHADE: Shader = Shader {
     words: words_at(286982, 14297),
 };
 
-/// `shaders_glsl/sphere_shade.comp` with its specialisation constants.
+/// `shaders_glsl/direct/sphere_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereShade {
     /// `BORDER`, by default 0.
@@ -2135,7 +2135,7 @@ impl From<SphereShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/sun_gloss.comp`.
+/// `shaders_glsl/specular/sun_gloss.comp`.
 pub const SUN_GLOSS: Shader = Shader {
     name: "sun_gloss",
     push_bytes: 56,
@@ -2156,7 +2156,7 @@ pub const SUN_GLOSS: Shader = Shader {
     words: words_at(301279, 7943),
 };
 
-/// `shaders_glsl/sun_gloss.comp` with its specialisation constants.
+/// `shaders_glsl/specular/sun_gloss.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SunGloss {
     /// `BORDER`, by default 0.
@@ -2183,7 +2183,7 @@ impl From<SunGloss> for Specialised {
     }
 }
 
-/// `shaders_glsl/sun_shade.comp`.
+/// `shaders_glsl/direct/sun_shade.comp`.
 pub const SUN_SHADE: Shader = Shader {
     name: "sun_shade",
     push_bytes: 32,
@@ -2208,7 +2208,7 @@ pub const SUN_SHADE: Shader = Shader {
     words: words_at(309222, 22087),
 };
 
-/// `shaders_glsl/sun_shade.comp` with its specialisation constants.
+/// `shaders_glsl/direct/sun_shade.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SunShade {
     /// `FUSE`, by default 5.
@@ -2255,7 +2255,7 @@ impl From<SunShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/surface_sweep.comp`.
+/// `shaders_glsl/horizon/surface_sweep.comp`.
 pub const SURFACE_SWEEP: Shader = Shader {
     name: "surface_sweep",
     push_bytes: 16,
@@ -2273,7 +2273,7 @@ pub const SURFACE_SWEEP: Shader = Shader {
     words: words_at(331309, 6812),
 };
 
-/// `shaders_glsl/surface_sweep.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/surface_sweep.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceSweep {
     /// `LOCAL_SIZE_X`, by default 1.
@@ -2308,7 +2308,7 @@ impl From<SurfaceSweep> for Specialised {
     }
 }
 
-/// `shaders_glsl/sweep_fuse.comp`.
+/// `shaders_glsl/horizon/sweep_fuse.comp`.
 pub const SWEEP_FUSE: Shader = Shader {
     name: "sweep_fuse",
     push_bytes: 20,
@@ -2332,7 +2332,7 @@ pub const SWEEP_FUSE: Shader = Shader {
     words: words_at(338121, 18087),
 };
 
-/// `shaders_glsl/sweep_fuse.comp` with its specialisation constants.
+/// `shaders_glsl/horizon/sweep_fuse.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweepFuse {
     /// `FUSE`, by default 5.
@@ -2379,7 +2379,7 @@ impl From<SweepFuse> for Specialised {
     }
 }
 
-/// `shaders_glsl/terrain_draw.frag`.
+/// `shaders_glsl/view/terrain_draw.frag`.
 pub const TERRAIN_DRAW_FRAG: Shader = Shader {
     name: "terrain_draw_frag",
     push_bytes: 92,
@@ -2394,7 +2394,7 @@ pub const TERRAIN_DRAW_FRAG: Shader = Shader {
     words: words_at(356208, 1130),
 };
 
-/// `shaders_glsl/terrain_draw.frag` with its specialisation constants.
+/// `shaders_glsl/view/terrain_draw.frag` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TerrainDrawFrag {
     /// `IS_GREY`, by default false.
@@ -2412,7 +2412,7 @@ impl From<TerrainDrawFrag> for Specialised {
     }
 }
 
-/// `shaders_glsl/terrain_draw.vert`.
+/// `shaders_glsl/view/terrain_draw.vert`.
 pub const TERRAIN_DRAW_VERT: Shader = Shader {
     name: "terrain_draw_vert",
     push_bytes: 92,
@@ -2424,7 +2424,7 @@ pub const TERRAIN_DRAW_VERT: Shader = Shader {
     words: words_at(357338, 917),
 };
 
-/// `shaders_glsl/terrain_draw.vert` with its specialisation constants.
+/// `shaders_glsl/view/terrain_draw.vert` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TerrainDrawVert;
 
@@ -2435,7 +2435,7 @@ impl From<TerrainDrawVert> for Specialised {
     }
 }
 
-/// `shaders_glsl/vector_reduce.comp`.
+/// `shaders_glsl/bounce/vector_reduce.comp`.
 pub const VECTOR_REDUCE: Shader = Shader {
     name: "vector_reduce",
     push_bytes: 48,
@@ -2452,7 +2452,7 @@ pub const VECTOR_REDUCE: Shader = Shader {
     words: words_at(358255, 2963),
 };
 
-/// `shaders_glsl/vector_reduce.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/vector_reduce.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VectorReduce {
     /// `PERIODIC`, by default false.
@@ -2470,7 +2470,7 @@ impl From<VectorReduce> for Specialised {
     }
 }
 
-/// `shaders_glsl/visible_points.comp`.
+/// `shaders_glsl/bake/visible_points.comp`.
 pub const VISIBLE_POINTS: Shader = Shader {
     name: "visible_points",
     push_bytes: 48,
@@ -2491,7 +2491,7 @@ pub const VISIBLE_POINTS: Shader = Shader {
     words: words_at(361218, 9659),
 };
 
-/// `shaders_glsl/visible_points.comp` with its specialisation constants.
+/// `shaders_glsl/bake/visible_points.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VisiblePoints {
     /// `BORDER`, by default 0.

@@ -1,4 +1,4 @@
-#include "shared/sweep.glsl"
+#include "horizon/sweep.glsl"
 
 // What a sweep leaves behind: one value a line and step. Lines are stored 32 together, step after
 // step, four lines a texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines

@@ -1,4 +1,4 @@
-#include "shared/sweep.glsl"
+#include "horizon/sweep.glsl"
 
 // The levels of a height pyramid: B-spline coefficients on grids whose first and last texels stand
 // on the field's first and last samples (whose texels divide a period, where the field repeats).

@@ -1,4 +1,4 @@
-#include "shared/sweep.glsl"
+#include "horizon/sweep.glsl"
 
 // Four samples side by side along the lane axis, and the samples around them. Lanes and march
 // positions are the field's own here, whatever an azimuth flips, so that all azimuths of an axis

@@ -128,7 +128,7 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// `shaders_glsl/shared/seen.glsl`: adds what is seen along one azimuth to the array `series`, of one sample or
+/// `shaders_glsl/sh/seen.glsl`: adds what is seen along one azimuth to the array `series`, of one sample or
 /// four at a time, for every order that `ORDER` may be.
 ///
 /// `add_slices` has the exact slices, `add_nlps` what n NLP coefficients keep of them ([`from_nlp`]).

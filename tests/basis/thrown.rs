@@ -5,7 +5,7 @@ use crate::glsl::Machine;
 use ridgelight::basis::legendre::{nlp, occlusion};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const SHADER: &str = include_str!("../../shaders_glsl/bounce_gather.comp");
+const SHADER: &str = include_str!("../../shaders_glsl/bounce/bounce_gather.comp");
 
 /// The statements of a function, as the reader of sums takes them: components of what it returns are `out[0]` to `out[3]`.
 fn body(name: &str) -> String {

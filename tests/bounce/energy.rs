@@ -1,7 +1,7 @@
 //! Nothing is gained or lost that should not be.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights};
-use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::indirect::Fineness;
 use ridgelight_cpu::light::sky;
 
 use crate::{BORDERS, COARSE, field, reds, rough, under_sky};
@@ -108,7 +108,7 @@ fn channels_do_not_mix() {
     let of = |map: Vec<[f32; 3]>| {
         let mut scene = under_sky(rough(6, 6, [1.0, 1.0], 4.0), Border::Plane, 1.0);
         scene.surface.albedo = Albedo::Map(map);
-        ridgelight_cpu::bounce::light(&scene, 1, COARSE).unwrap().remove(1)
+        ridgelight_cpu::indirect::light(&scene, 1, COARSE).unwrap().remove(1)
     };
     let together = of(map.clone());
     for i in 0..3 {
@@ -125,7 +125,7 @@ fn no_energy_is_gained() {
             let mut scene = under_sky(rough(5, 6, [1.0, 1.0], relief), border, 1.0);
             scene.surface.albedo =
                 Albedo::Map((0..30).map(|i| [1.0, (i % 5) as f32 / 4.0, 0.5]).collect());
-            let pictures = ridgelight_cpu::bounce::light(&scene, 30, COARSE).unwrap();
+            let pictures = ridgelight_cpu::indirect::light(&scene, 30, COARSE).unwrap();
             for v in pictures.concat().as_flattened() {
                 assert!((0.0..=1.0 + 1e-12).contains(v), "{border:?} {relief} {v}");
             }

@@ -3,7 +3,7 @@
 //! wall's points at t with the kernel of two perpendicular strips, ½ s t / (s² + t²)^(3/2) dt.
 
 use ridgelight::scene::{Border, Lights, Sun};
-use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::indirect::Fineness;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
 use crate::reference_page::{HALF, WALL, groove_parts, grooves};

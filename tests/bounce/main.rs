@@ -15,7 +15,7 @@ mod sources;
 mod table;
 
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
-use ridgelight_cpu::bounce::{Fineness, Picture, light};
+use ridgelight_cpu::indirect::{Fineness, Picture, light};
 
 const BORDERS: [Border; 3] = [Border::Plane, Border::Open, Border::Periodic];
 

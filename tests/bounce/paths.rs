@@ -1,7 +1,7 @@
 //! The quadrature against counting paths, whose lobes are seen from above alone, as the quadrature's.
 
 use ridgelight::scene::{Albedo, Border, Environment, Lights, Lobe, Phong};
-use ridgelight_cpu::bounce::{Fineness, truth};
+use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::light::normal;
 
 use crate::naive::Paths;

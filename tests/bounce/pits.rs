@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use ridgelight::scene::Border;
-use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::indirect::Fineness;
 use ridgelight_cpu::light::slice;
 
 use crate::reference_page::{PITS, pit, pit_bounds, pit_radiance};

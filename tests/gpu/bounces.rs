@@ -10,12 +10,12 @@ use ridgelight::scene::{
     Albedo, Border, BounceEngine, Bounces, HeightField, Levels, Lights, Method, Quality, Receiver,
     Scene, Sun, Surface,
 };
-use ridgelight_cpu::bounce;
-use ridgelight_cpu::bounce::Fineness;
 use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::bounce_march::{bounce_march, stretches_along};
 use ridgelight_cpu::height_expand::height_expand;
 use ridgelight_cpu::height_reduce::height_levels;
+use ridgelight_cpu::indirect;
+use ridgelight_cpu::indirect::Fineness;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shade_reduce::shade_levels;
@@ -316,7 +316,7 @@ fn bounces_come_to_the_quadratures() {
     };
     let truth = scene_of(halved(&steep));
     let fineness = Fineness { azimuths: 32, divisions: 2, strips: 8 };
-    let pictures = bounce::light(&truth, 3, fineness).unwrap();
+    let pictures = indirect::light(&truth, 3, fineness).unwrap();
     let thrown: Vec<[f64; 3]> =
         (0..23 * 23).map(|i| [0, 1, 2].map(|c| pictures[3][i][c] - pictures[0][i][c])).collect();
     let at = |every: usize, of: &[[f64; 3]], side: usize| -> Vec<[f64; 3]> {

@@ -8,7 +8,7 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Albedo, Basis, Border, HeightField, Lights, Lobe, Method, Phong, Quality, Scene, Sun,
 };
-use ridgelight_cpu::bounce::{Fineness, light};
+use ridgelight_cpu::indirect::{Fineness, light};
 use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope, twin_sun_gloss};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;

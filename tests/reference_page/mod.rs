@@ -3,7 +3,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use ridgelight::scene::{Albedo, Border, Environment, HeightField, Lights, Scene, Surface};
-use ridgelight_cpu::bounce::{Fineness, Truth};
+use ridgelight_cpu::indirect::{Fineness, Truth};
 
 /// How finely the page's quadrature is cut, before it is doubled.
 pub const FINENESS: Fineness = Fineness { azimuths: 24, divisions: 1, strips: 12 };

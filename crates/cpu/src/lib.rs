@@ -10,64 +10,35 @@
 
 #![deny(clippy::missing_errors_doc)]
 
-pub mod bounce;
-pub mod bounce_gather;
-pub mod bounce_march;
-pub mod bounce_shade;
-pub mod bounce_walk;
-pub mod cast_gather;
-pub mod dirty_list;
-pub mod dirty_mark;
-pub mod ellipse_fit;
-pub mod env_tables;
-pub mod env_turns;
-pub mod env_wedges;
-pub mod facet_mask;
-pub mod fan_weigh;
-pub mod gloss_exit;
-pub mod gloss_gather;
-pub mod gloss_seen;
-pub mod harmonics;
-pub mod height_bounds;
-pub mod height_cells;
-pub mod height_expand;
-pub mod height_reduce;
-pub mod height_transpose;
-pub mod horizon_march;
-pub mod horizon_resweep;
-pub mod horizon_sweep;
-pub mod key;
-pub mod lattice;
-pub mod light;
-pub mod light_matrix;
-pub mod light_resolve;
-pub mod lit;
-pub mod map_draw;
-pub mod oracle;
-pub mod path_trace;
-pub mod picture_tone;
-pub mod points_bend;
-pub mod profile;
-pub mod pyramid_march;
-pub mod scalar_sweep;
-pub mod scatter_gather;
-pub mod sh_shade;
-pub mod sh_visibility;
-pub mod sh_wedges;
-pub mod shade_expand;
-pub mod shade_reduce;
+mod bake;
+mod bounce;
+mod direct;
+mod edit;
+mod horizon;
+mod rays;
+mod reference;
+mod sh;
 pub mod shared;
-pub mod sky_draw;
-pub mod sky_shade;
-pub mod soft_ball;
-pub mod sphere;
-pub mod sphere_sh_shade;
-pub mod sphere_shade;
-pub mod sun_gloss;
-pub mod sun_shade;
-pub mod surface_sweep;
-pub mod sweep_fuse;
-pub mod terrain_draw;
+mod specular;
 pub mod tolerance;
-pub mod vector_reduce;
-pub mod visible_points;
+mod view;
+
+pub use bake::{ellipse_fit, facet_mask, fan_weigh, points_bend, scatter_gather, visible_points};
+pub use bounce::{
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, shade_expand,
+    shade_reduce, vector_reduce,
+};
+pub use direct::{env_tables, light_resolve, sky_shade, soft_ball, sphere_shade, sun_shade};
+pub use edit::{dirty_list, dirty_mark, horizon_resweep};
+pub use horizon::{
+    height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, lattice,
+    pyramid_march, scalar_sweep, surface_sweep, sweep_fuse,
+};
+pub use rays::{height_bounds, height_cells};
+pub use reference::{indirect, key, light, lit, oracle, path_trace, profile, sphere};
+pub use sh::{
+    env_turns, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
+    sphere_sh_shade,
+};
+pub use specular::{gloss_exit, gloss_gather, gloss_seen, sun_gloss};
+pub use view::{map_draw, picture_tone, sky_draw, terrain_draw};

@@ -2,9 +2,9 @@
 
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Pass, REFERENCE_BATCH, unmet_error};
-use ridgelight_cpu::bounce::{Fineness, truth};
 use ridgelight_cpu::height_bounds as bounds_twin;
 use ridgelight_cpu::height_cells as cells_twin;
+use ridgelight_cpu::indirect::{Fineness, truth};
 use ridgelight_cpu::path_trace::{Traced, Tracer};
 use ridgelight_cpu::tolerance::EPSILON;
 use ridgelight_cpu::tolerance::near::Near;

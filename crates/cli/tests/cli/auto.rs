@@ -1,8 +1,8 @@
 //! Settings that are chosen for an error or a time.
 
 use ridgelight::scene::{Albedo, Border, Lights, Scene, Surface};
-use ridgelight_cpu::bounce;
-use ridgelight_cpu::bounce::Fineness;
+use ridgelight_cpu::indirect;
+use ridgelight_cpu::indirect::Fineness;
 use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_io::HeightOptions;
@@ -162,7 +162,7 @@ fn gpu_a_max_error_holds_with_bounces() {
     let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
     let scene = Scene { field, surface, lights };
     let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
-    let truth = bounce::truth(&scene, 2, fineness).unwrap();
+    let truth = indirect::truth(&scene, 2, fineness).unwrap();
     let root = |of: &dyn Fn(usize) -> f64| {
         ((0..SIDE * SIDE).map(|i| of(i).powi(2)).sum::<f64>() / (SIDE * SIDE) as f64).sqrt()
     };

@@ -2,7 +2,7 @@
 
 use super::*;
 use ridgelight::scene::{Albedo, BounceEngine, Bounces};
-use ridgelight_cpu::bounce::{self, Fineness};
+use ridgelight_cpu::indirect::{self, Fineness};
 
 /// Two bounces of an albedo of 0.8, by the f64 quadrature, which the paths that are told waver about by 5 % of it. Pictures
 /// are the truth but for what settings of bounces leave: of bounces that are not drawn all, of what azimuths they have
@@ -13,7 +13,7 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     let mut scene = scene();
     scene.surface.albedo = Albedo::Constant([0.8; 3]);
     let fineness = Fineness { azimuths: 32, divisions: 1, strips: 1 };
-    let all = bounce::light(&scene, 2, fineness).unwrap();
+    let all = indirect::light(&scene, 2, fineness).unwrap();
     let lit = Lit::of(&scene);
     let direct: Vec<f64> = (0..SIDE * SIDE).map(|i| lit.at(i / SIDE, i % SIDE)[0]).collect();
     let thrown = |i: usize, count: usize| all[count][i][0] - all[0][i][0];

@@ -1,0 +1,130 @@
+//! What a sample sees in a direction, in f64, by looking at every piece of surface along its azimuth: the truth beside
+//! the device's rays, with which it shares no code.
+
+use crate::oracle::Oracle;
+use crate::profile::Stretch;
+use glam::DVec3;
+use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
+use std::f64::consts::FRAC_PI_2;
+
+/// What each sample sees in each direction, direction after direction.
+pub fn visible_points(
+    field: &HeightField,
+    border: Border,
+    directions: &Directions,
+) -> Vec<VisiblePoint> {
+    let oracle = Oracle::new(field, border);
+    let samples = field.rows() * field.cols();
+    let each = directions.vectors().iter().flat_map(|e| (0..samples).map(move |at| (*e, at)));
+    each.map(|(e, at)| visible_point(&oracle, [at / field.cols(), at % field.cols()], e)).collect()
+}
+
+/// What the sample (row, column) sees in one direction.
+///
+/// # Panics
+/// When the sample lies outside the field.
+pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoint {
+    possible_points(oracle, here, e, 0.0, 0.0)[0]
+}
+
+/// All that it may see where the direction's elevation is off by `elevation_rad`: see [`possible_within`].
+///
+/// # Panics
+/// When the sample lies outside the field.
+pub fn possible_points(
+    oracle: &Oracle,
+    here: [usize; 2],
+    e: DVec3,
+    elevation_rad: f64,
+    of_way: f64,
+) -> Vec<VisiblePoint> {
+    possible_within(oracle, here, e, |_| elevation_rad, of_way)
+}
+
+/// All that it may see where the elevation of each stretch's upper end is off by `elevation_rad` and what is met by
+/// `of_way` of the distance to it along either axis: the answer of no error, and of every other within.
+///
+/// What is seen along an azimuth are stretches of the surface one above the other, so that the elevations within the
+/// error see a part of each that they cross, and the sky beyond the last.
+///
+/// # Panics
+/// When the sample lies outside the field.
+pub fn possible_within(
+    oracle: &Oracle,
+    [row, col]: [usize; 2],
+    e: DVec3,
+    elevation_rad: impl Fn(&Stretch) -> f64,
+    of_way: f64,
+) -> Vec<VisiblePoint> {
+    // Straight up or down there is no azimuth: nothing, or the sample itself.
+    if e.x == 0.0 && e.y == 0.0 {
+        let own = VisiblePoint::Sample(row * oracle.field().cols() + col);
+        return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
+    }
+    let elevation = e.z.atan2(e.x.hypot(e.y));
+    let mut seen = Vec::new();
+    oracle.stretches(row, col, e.y.atan2(e.x), &mut seen);
+    let free = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+    let beyond = |elevation: f64| match oracle.border() {
+        Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,
+        _ => VisiblePoint::Sky,
+    };
+    let mut all = Vec::new();
+    let mut add = |point| {
+        if !all.contains(&point) {
+            all.push(point);
+        }
+    };
+    // The answer itself first.
+    match seen.iter().find(|stretch| elevation < stretch.high_rad) {
+        Some(stretch) => add(met(oracle, stretch, stretch.distance_m(elevation), [0.0; 2])),
+        None => add(beyond(elevation)),
+    }
+    // Of the one below, whose upper end is where this one begins.
+    let mut below = 0.0_f64;
+    for stretch in &seen {
+        let above = elevation_rad(stretch);
+        let ends = [stretch.low_rad - below, stretch.high_rad + above];
+        let off = below.max(above);
+        below = above;
+        if off == 0.0 || elevation < ends[0] || elevation > ends[1] {
+            continue;
+        }
+        let [near, far] = [elevation - off, elevation + off]
+            .map(|e| stretch.distance_m(e.clamp(stretch.low_rad, stretch.high_rad)));
+        let [cell_x, cell_y] = oracle.field().cell_m();
+        // Steps of a quarter of a cell pass no sample by.
+        let steps = (4.0 * (far - near).abs() / cell_x.min(cell_y)).ceil().clamp(1.0, 1e5) as usize;
+        for step in 0..=steps {
+            let distance = near + (far - near) * step as f64 / steps as f64;
+            for (down, right) in (0..9).map(|i| (i / 3 - 1, i % 3 - 1)) {
+                let off = of_way * (1.0 + distance / cell_x.min(cell_y));
+                add(met(oracle, stretch, distance, [down, right].map(|n| f64::from(n) * off)));
+            }
+        }
+    }
+    if below > 0.0 && elevation + below >= free {
+        add(beyond(elevation + below));
+        add(beyond((elevation - below).max(free)));
+    }
+    all
+}
+
+/// The sample nearest to a place on a stretch, `off` rows and columns beside it.
+fn met(oracle: &Oracle, stretch: &Stretch, distance_m: f64, off: [f64; 2]) -> VisiblePoint {
+    let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
+    let [_, second, third] = stretch.corner_weights(distance_m);
+    let [[row, col], ..] = oracle.corners(stretch.triangle);
+    let is_lower = !stretch.triangle.is_multiple_of(2);
+    let [down, right] = if is_lower { [second + third, third] } else { [third, second + third] };
+    let nearest = |first: usize, along: f64, off: f64, count: usize| {
+        let place = (first as f64 + along.clamp(0.0, 1.0) + off + 0.5).floor() as i64;
+        match oracle.border() {
+            Border::Periodic => place.rem_euclid(count as i64) as usize,
+            Border::Plane | Border::Open => place.clamp(0, count as i64 - 1) as usize,
+        }
+    };
+    VisiblePoint::Sample(
+        nearest(row, down, off[0], rows) * cols + nearest(col, right, off[1], cols),
+    )
+}

@@ -1,0 +1,101 @@
+//! What the surface throws at every sample, exactly but for the azimuths.
+
+use crate::indirect::mean_distance_m;
+use crate::light::{Receiver, normal};
+use crate::oracle::Oracle;
+use crate::shared::thrown::{Along, Cast, NEARLY_RAD, radiance};
+use ridgelight::scene::Border;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Light of one more bounce at a sample, for albedo 1, from the exit radiance of all samples, in `azimuths` at the
+/// middles of equal parts of the circle. Weights of a whole hemisphere sum to 1.
+///
+/// # Panics
+/// Outside the field, or where `exit` is not one colour a sample.
+pub fn bounce_march(
+    oracle: &Oracle,
+    exit: &[[f64; 3]],
+    azimuths: u32,
+    row: usize,
+    col: usize,
+) -> [f64; 3] {
+    radiance(&stretches_along(oracle, exit, azimuths, [row, col]))
+}
+
+/// The stretches that it is made of, azimuth by azimuth.
+///
+/// # Panics
+/// As [`bounce_march`].
+pub fn stretches_along(
+    oracle: &Oracle,
+    exit: &[[f64; 3]],
+    azimuths: u32,
+    [row, col]: [usize; 2],
+) -> Vec<Along> {
+    let field = oracle.field();
+    assert_eq!(exit.len(), field.rows() * field.cols());
+    let receiver = Receiver::diffuse(normal(field, oracle.border(), row, col));
+    let mut seen = Vec::new();
+    let along = |k: u32| {
+        let azimuth_rad = TAU * (f64::from(k) + 0.5) / f64::from(azimuths);
+        let slice = receiver.slice(azimuth_rad);
+        let whole = slice.light(-FRAC_PI_2, FRAC_PI_2);
+        oracle.nearly_seen(row, col, azimuth_rad, NEARLY_RAD, &mut seen);
+        let casts = seen.iter().filter(|stretch| stretch.high_rad > slice.low - NEARLY_RAD);
+        let cast = |stretch: &crate::profile::Stretch| {
+            let from = oracle.corners(stretch.triangle).map(|[r, c]| exit[r * field.cols() + c]);
+            let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
+            let [rise_m, steepest] = land_around(oracle, stretch.triangle, [row, col]);
+            let of = |c: usize| from.map(|corner| corner[c]);
+            let [low_rad, high_rad] = [stretch.low_rad, stretch.high_rad].map(|w| w.max(slice.low));
+            Cast {
+                low_rad,
+                high_rad,
+                weight: slice.light(stretch.low_rad, stretch.high_rad).max(0.0),
+                facing: slice.at(high_rad) * high_rad.cos(),
+                radiance: [0, 1, 2].map(|c| of(c).iter().zip(shares).map(|(l, s)| l * s).sum()),
+                spread: [0, 1, 2].map(|c| {
+                    of(c).iter().fold(f64::MIN, |m, l| m.max(*l))
+                        - of(c).iter().fold(f64::MAX, |m, l| m.min(*l))
+                }),
+                distance: stretch.end_m(),
+                rise_m,
+                steepest,
+            }
+        };
+        Along { azimuth_rad, low_rad: slice.low, whole, casts: casts.map(cast).collect() }
+    };
+    (0..azimuths).map(along).collect()
+}
+
+/// The largest rise from a sample to the corners of a triangle's cell and of those around it, and the steepest slope
+/// between neighbours there.
+fn land_around(oracle: &Oracle, triangle: usize, [row, col]: [usize; 2]) -> [f64; 2] {
+    let field = oracle.field();
+    let [[r, c], ..] = oracle.corners(triangle);
+    let [cell_x, cell_y] = field.cell_m();
+    let own = oracle.vertex(row as f64, col as f64);
+    let at = |down: usize, right: usize| {
+        let place = |i: usize, more: usize, n: usize| match oracle.border() {
+            Border::Periodic => (i + more + n - 1) % n,
+            Border::Plane | Border::Open => (i + more).saturating_sub(1).min(n - 1),
+        };
+        let (r, c) = (place(r, down, field.rows()), place(c, right, field.cols()));
+        oracle.vertex(r as f64, c as f64)
+    };
+    let (mut rise_m, mut steepest) = (0.0_f64, 0.0_f64);
+    for (down, right) in (0..16).map(|i| (i / 4, i % 4)) {
+        let here = at(down, right);
+        rise_m = rise_m.max((here - own).abs());
+        for (down, right, distance) in [
+            (down, right + 1, cell_x),
+            (down + 1, right, cell_y),
+            (down + 1, right + 1, cell_x.min(cell_y)),
+        ] {
+            if down < 4 && right < 4 {
+                steepest = steepest.max((at(down, right) - here).abs() / distance);
+            }
+        }
+    }
+    [rise_m, steepest]
+}

@@ -1,0 +1,33 @@
+//! What a bounce gives to every sample: the share of its own hemisphere that is ground, times the mean radiance of the
+//! ground that the nodes around it see.
+
+use crate::sh_shade::nodes_around;
+use crate::shared::sweep::Heights;
+use ridgelight::plan::Nodes;
+
+/// Less is nearly none, of which two rules over azimuths know no ratio.
+pub const LEAST_SHARE: f64 = 1.0 / 256.0;
+
+/// Light of one sample, for albedo 1, from that of all nodes and from what a sky of radiance 1 gives to all samples.
+///
+/// # Panics
+/// Outside the field; where a node or a sample has no value.
+pub fn bounce_shade(
+    heights: &Heights,
+    nodes: Nodes,
+    (light, sky_share): (&[[f64; 3]], &[f64]),
+    [col, row]: [i32; 2],
+) -> [f64; 3] {
+    let size = [heights.cols as u32, heights.rows as u32];
+    let across = nodes.count(size[0]);
+    let share = |col: u32, row: u32| {
+        (1.0 - sky_share[row as usize * heights.cols + col as usize]).max(LEAST_SHARE)
+    };
+    let (mut sum, mut shares) = ([0.0; 3], 0.0);
+    for ([x, y], weight) in nodes_around(heights, nodes, [col, row]) {
+        let node = light[(y * across + x) as usize];
+        sum = [0, 1, 2].map(|c| sum[c] + weight * node[c]);
+        shares += weight * share(nodes.place(x, size[0]), nodes.place(y, size[1]));
+    }
+    sum.map(|s| s * share(col as u32, row as u32) / shares)
+}

@@ -1,0 +1,48 @@
+//! What a node sees of one more bounce, by the casting set that the first one has left.
+
+use crate::shared::sweep::{CELL_SHIFT, March, wrapped};
+use ridgelight::plan::azimuths::CELL;
+use std::f64::consts::FRAC_PI_2;
+
+/// What a node sees of a ring around it, along an azimuth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cast {
+    /// The sample where it is in the mean, row-major.
+    pub sample: usize,
+    /// March steps to there.
+    pub steps: i32,
+    /// What it counts for.
+    pub weight: f64,
+}
+
+/// Steps to the ends of rings; the last one has none.
+pub const RING_ENDS: [i32; 3] = [3, 9, 27];
+
+/// What a weight is kept in: of a wedge of so many radians, the 65535th part of the most that there is.
+pub fn cast_part(wedge_rad: f64) -> f64 {
+    wedge_rad * FRAC_PI_2 / 65535.0
+}
+
+/// A word that a walk has kept, of the node at a column and a row.
+pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
+    let (lane, step) = march.of_sample(col, row);
+    let steps = (word & 0xffff) as i32;
+    let inside = |i: i32, n: i32| if march.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) };
+    let nearest = (lane * CELL - steps * march.azimuth.shear + CELL / 2) >> CELL_SHIFT;
+    let lane_at = march.lane_position(inside(nearest, march.lanes));
+    let march_at = march.march_position(inside(step - steps, march.steps));
+    let by_row = march.azimuth.marches_rows();
+    let (col, row) = if by_row { (lane_at, march_at) } else { (march_at, lane_at) };
+    let weight = f64::from(word >> 16) * cast_part(march.azimuth.wedge_rad.into());
+    Cast { sample: row as usize * march.heights.cols + col as usize, steps, weight }
+}
+
+/// Radiance times weight; not yet divided by what whole hemispheres would give.
+///
+/// # Panics
+/// A cast of a sample that is none.
+pub fn cast_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
+    casts
+        .into_iter()
+        .fold([0.0; 3], |sum, cast| [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.sample][c]))
+}

@@ -1,0 +1,66 @@
+//! One level of the pyramid of exit radiance from the level an octave finer, as `height_reduce`, but never
+//! beyond what it is made of.
+
+use crate::shared::sweep::wrapped;
+use ridgelight::plan::pyramid::Pyramid;
+
+/// Two neighbouring texels of an axis, and how far between them; beyond the ends the last as it is.
+fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f64) {
+    let count = count as i32;
+    let cell = place.floor() as i32;
+    if periodic {
+        let two = [cell, cell + 1].map(|i| wrapped(i, count) as usize);
+        return (two, f64::from(place - cell as f32));
+    }
+    let held = cell.clamp(0, (count - 2).max(0));
+    let t = f64::from(place - held as f32).clamp(0.0, 1.0);
+    ([held as usize, (held + 1).min(count - 1) as usize], t)
+}
+
+/// R, G, B of level `number` from the samples' exit radiance and the texels of the levels before it.
+///
+/// # Panics
+/// When there are fewer texels than the source needs.
+pub fn shade_reduce(
+    exit: &[[f64; 3]],
+    pyramid: &Pyramid,
+    number: u32,
+    texels: &[[f64; 3]],
+) -> Vec<[f64; 3]> {
+    let from = pyramid.source(number);
+    let (level, source) = (pyramid.level(number), pyramid.level(from));
+    let ratio = pyramid.ratio(number);
+    let [width, height] = source.size;
+    let source_of = if from == 0 { exit } else { &texels[source.first as usize..] };
+    let bilinear = |place: [f32; 2]| {
+        let (x, t) = between(place[0], width, pyramid.periodic);
+        let (y, u) = between(place[1], height, pyramid.periodic);
+        let row = |y: usize| {
+            let [low, high] = x.map(|x| source_of[y * width as usize + x]);
+            [0, 1, 2].map(|c| low[c] + t * (high[c] - low[c]))
+        };
+        let [low, high] = y.map(row);
+        [0, 1, 2].map(|c| low[c] + u * (high[c] - low[c]))
+    };
+    let [cols, rows] = level.size;
+    let texel = |i: u32| {
+        let place = [(i % cols) as f32 * ratio[0], (i / cols) as f32 * ratio[1]];
+        let mut sum = [0.0; 3];
+        for side in [[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]] {
+            let four = bilinear([0, 1].map(|i| place[i] + side[i] * (ratio[i] - 1.0)));
+            sum = [0, 1, 2].map(|c| sum[c] + 0.25 * four[c]);
+        }
+        sum
+    };
+    (0..cols * rows).map(texel).collect()
+}
+
+/// The texels of all levels beside the samples themselves.
+pub fn shade_levels(exit: &[[f64; 3]], pyramid: &Pyramid) -> Vec<[f64; 3]> {
+    let mut all = Vec::new();
+    for number in 1..=pyramid.levels() {
+        let made = shade_reduce(exit, pyramid, number, &all);
+        all.extend(made);
+    }
+    all
+}

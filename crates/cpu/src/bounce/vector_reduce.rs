@@ -1,0 +1,23 @@
+//! One level of the pyramid of exit radiance's series, coefficient by coefficient as
+//! [`shade_reduce`](crate::shade_reduce) makes one of radiance.
+
+use crate::gloss_gather::Series;
+use crate::shade_reduce::shade_reduce;
+use ridgelight::plan::pyramid::Pyramid;
+
+/// Series of level `number` from those of the samples and of the texels of the levels before it.
+///
+/// # Panics
+/// When there are fewer texels than the source needs; when there are no samples.
+pub fn vector_reduce(
+    exit: &[Series],
+    pyramid: &Pyramid,
+    number: u32,
+    texels: &[Series],
+) -> Vec<Series> {
+    let count = exit[0].len();
+    let of = |all: &[Series], i: usize| all.iter().map(|s| s[i]).collect::<Vec<_>>();
+    let each: Vec<_> =
+        (0..count).map(|i| shade_reduce(&of(exit, i), pyramid, number, &of(texels, i))).collect();
+    (0..each[0].len()).map(|texel| each.iter().map(|c| c[texel]).collect()).collect()
+}

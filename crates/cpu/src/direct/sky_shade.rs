@@ -1,0 +1,51 @@
+//! What a uniform sky and an environment give to every sample through its horizons.
+
+use crate::env_tables::EnvTables;
+use crate::shared::gather::{Swept, elevation_moments};
+use glam::DVec3;
+use ridgelight::plan::Azimuth;
+use std::f64::consts::PI;
+
+/// Exit radiance of one sample of albedo 1 under a sky of radiance 1.
+///
+/// # Panics
+/// Outside the field.
+pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
+    let mut sky = 0.0;
+    swept.add_all(col, row, |_, azimuth, lowest, normal| {
+        sky += wedge_of_sky(azimuth, lowest, normal);
+    });
+    sky
+}
+
+/// What a wedge of it gives from a slope up.
+pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
+    // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
+    let moments = elevation_moments(lowest);
+    let flat_part =
+        normal.x * f64::from(azimuth.wedge_cos) + normal.y * f64::from(azimuth.wedge_sin);
+    let wedge = f64::from(azimuth.wedge_rad);
+    (flat_part * moments[0] + normal.z * wedge * moments[1]) / PI
+}
+
+/// Exit radiance of one sample of albedo 1 under an environment, RGB.
+///
+/// # Panics
+/// Outside the field.
+pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> [f64; 3] {
+    let mut environment = DVec3::ZERO;
+    swept.add_all(col, row, |index, _, lowest, normal| {
+        environment += tables.light(index, lowest, normal);
+    });
+    environment.to_array()
+}
+
+/// `sky_sum` of all azimuths: [`sky_at`] for every sample, row-major.
+pub fn sky_shade(swept: &Swept) -> Vec<f64> {
+    swept.per_sample(|col, row| sky_at(swept, col, row))
+}
+
+/// `env_sum` of all azimuths: [`environment_at`] for every sample, row-major.
+pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<[f64; 3]> {
+    swept.per_sample(|col, row| environment_at(swept, tables, col, row))
+}

@@ -1,0 +1,115 @@
+//! How far a device may be from the twin of a ball of light by spherical harmonics: all that f32 does, whatever
+//! the order, the ball and the field. What harmonics themselves miss is not in it.
+
+use glam::DVec3;
+use std::f64::consts::PI;
+
+use crate::light_matrix::light_matrix;
+use crate::sphere_sh_shade::BEYOND;
+use crate::tolerance::{ARC_TANGENT, BallSeen, EPSILON, ShadeError};
+use ridgelight::basis::bands;
+use ridgelight::basis::light::receiver;
+use ridgelight::scene::{Quality, Receiver, Wedges};
+
+/// The shares that coefficients of what is seen and of a ball have in the light, of a quality.
+#[derive(Clone, Debug)]
+pub struct SoftBall {
+    quality: Quality,
+    /// `[coefficient of the ball][row of the receiver][coefficient of what is seen]`, magnitudes.
+    shares: Vec<Vec<Vec<f64>>>,
+}
+
+impl SoftBall {
+    /// Of a quality.
+    pub fn new(quality: &Quality) -> Self {
+        let count = quality.light_order().pow(2);
+        let of_one = |i: usize| {
+            let mut unit = vec![DVec3::ZERO; count];
+            unit[i] = DVec3::ONE;
+            let rows = light_matrix(quality, &unit);
+            rows.iter().map(|row| row.iter().map(|v| v.x.abs()).collect()).collect()
+        };
+        Self { quality: *quality, shares: (0..count).map(of_one).collect() }
+    }
+
+    /// Of a series `seen` through horizons whose slopes err by `slope_error`, on a surface of this normal, of a
+    /// ball of radiance 1.
+    ///
+    /// A coefficient of what is seen errs as [`ShadeError::series`] says, of azimuths across the ball and beyond;
+    /// the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
+    /// at both. One of the ball as `coefficient` says. Products sum as many terms as there are, each of four
+    /// factors, whose polynomials of the normal are 2 at most and change by 6 a radian.
+    pub fn twin(&self, ball: &BallSeen, slope_error: f64, normal: DVec3, seen: &[f64]) -> f64 {
+        let order = self.quality.sh_order as usize;
+        let beyond = if self.quality.wedges == Wedges::Table { 0 } else { BEYOND };
+        let count = self.quality.sun_azimuths as usize + beyond;
+        let error = ShadeError::new(slope_error, ball.relief_m, ball.cell_m, count);
+        let end = 2.0 * (ARC_TANGENT + 24.0 * EPSILON);
+        let of_seen: Vec<f64> = bands(order)
+            .map(|(l, _)| {
+                let jump = 2.0_f64.sqrt() * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
+                error.series(l, self.quality.wedges) + end * jump
+            })
+            .collect();
+        let all = receiver(normal.to_array());
+        let first = usize::from(self.quality.receiver == Receiver::Plane);
+        let terms = self.shares.iter().flatten().flatten().filter(|share| **share > 1e-9).count();
+        let mut sum = 0.0;
+        for ((l, _), rows) in bands(self.quality.light_order()).zip(&self.shares) {
+            let [light, off] = coefficient(ball, l);
+            for (row, shares) in rows.iter().enumerate() {
+                let polynomial = all[first + row].abs() + 6.0 * error.normal();
+                let turned = 6.0 * error.normal() + (8.0 + terms as f64) * EPSILON * polynomial;
+                for (k, share) in shares.iter().enumerate() {
+                    let (value, of_seen) = (seen[k].abs(), of_seen[k]);
+                    let of_parts = light * of_seen + off * (value + of_seen);
+                    sum += share * (polynomial * of_parts + turned * light * value);
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// The largest that a coefficient of band l of a ball may be, and how far it may err.
+///
+/// A cap of half-angle a has 2π √((2l+1)/4π) sin²a P_l'(cos a)/(l(l+1)) about its axis, P_l' ≤ l(l+1)/2. Its sine
+/// errs by δ = 6 ε + 4 ε (1 + H/d) of itself (as [`BallSeen::twin`] has the place), its cosine by
+/// min(sin² δ/cos, √(2 δ)), by which P_l' moves (l-1)(l+2)/4 of its largest, or band 0 by its own; recurrences by
+/// 40 ε. Turned to an axis that errs by the place it changes by l of itself, whose harmonics err by 30 ε.
+fn coefficient(ball: &BallSeen, l: usize) -> [f64; 2] {
+    let BallSeen { distance_m: d, radius_m: r, largest_m, .. } = *ball;
+    let band = 2.0 * PI * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
+    let place = 4.0 * EPSILON * (1.0 + largest_m / d.max(1e-3 * r));
+    let (sin, of_sin) = ((r / d).min(1.0), 6.0 * EPSILON + place);
+    if d < r {
+        // The whole sphere, in band 0 alone.
+        let whole = if l == 0 { 2.0 * band } else { 0.0 };
+        return [whole, 40.0 * EPSILON * whole];
+    }
+    let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
+    let of_cos = (sin * sin * of_sin / cos.max(1e-30)).min((2.0 * of_sin).sqrt());
+    let largest = band * sin * sin * if l == 0 { 1.0 } else { 0.5 };
+    let moved = if l == 0 { 1.0 } else { ((l - 1) * (l + 2)) as f64 / 4.0 + 1.0 };
+    let relative = 2.0 * of_sin + moved * of_cos + l as f64 * place + 70.0 * EPSILON;
+    [largest, largest * relative]
+}
+
+/// Slope of the surface's horizon up to a ball, against its twin: as [`BallSeen::twin`] has it, and an end that
+/// errs by 16 ε, and by what a difference of distance and radius leaves of its own, of itself, across which it
+/// changes by two slopes of R / c at most.
+pub fn twin_surface_within(ball: &BallSeen) -> f64 {
+    let BallSeen { distance_m: d, radius_m: r, largest_m, .. } = *ball;
+    let left = 4.0 * EPSILON * (d + largest_m) / (d - r).abs().max(1e-30);
+    (108.0 * EPSILON + 2.0 * (16.0 * EPSILON + left).min(1.0)) * ball.relief_m / ball.cell_m
+}
+
+/// The same of a pyramid's, whose march errs by `pyramid` from given levels: a direction, places and an end as of
+/// the surface; and the end in samples of k an octave by k times 3 ulp of a logarithm of 16 at most and 2⁻²¹, across
+/// each of which a spline of angles changes by π at most.
+pub fn twin_pyramid_within(ball: &BallSeen, pyramid: f64, slope: f64, level_step: u32) -> f64 {
+    let end = f64::from(level_step) * (3.0 * 16.0 * EPSILON + 2.0_f64.powi(-21)) * PI;
+    let slopes = pyramid + twin_surface_within(ball);
+    let steepest = slope.abs() + slopes;
+    slopes + end * (1.0 + steepest * steepest)
+}

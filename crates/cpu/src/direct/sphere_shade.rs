@@ -1,0 +1,38 @@
+//! What a ball of light gives to every sample: the shader's own slices, each by the oracle's profile in f64
+//! where the shader marches over blocks of cells.
+
+use crate::light::{Receiver, normal};
+use crate::oracle::Oracle;
+use crate::sphere::{away_m, sphere_on};
+use ridgelight::scene::SphereLight;
+use std::f64::consts::PI;
+
+/// Exit radiance of a sample for a ball of radiance 1 and albedo 1; `slices` is the setting.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sphere_at(
+    oracle: &Oracle,
+    sphere: &SphereLight,
+    slices: u32,
+    row: usize,
+    col: usize,
+) -> f64 {
+    let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
+    let [narrow, around] = sphere.slices(slices, oracle.field().cell_m());
+    let away = away_m(oracle, row, col, sphere);
+    let count = if sphere.radius_m < away {
+        let wide = f64::from(around) * (sphere.radius_m / away).asin() / PI;
+        narrow.max((wide - 0.001).ceil() as u32)
+    } else {
+        around
+    };
+    sphere_on(oracle, row, col, &receivers, sphere, count as usize)[0]
+}
+
+/// [`sphere_at`] of every sample, row-major.
+pub fn sphere_shade(oracle: &Oracle, sphere: &SphereLight, slices: u32) -> Vec<f64> {
+    let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
+    let of = |i: usize| sphere_at(oracle, sphere, slices, i / cols, i % cols);
+    (0..rows * cols).map(of).collect()
+}

@@ -1,0 +1,3 @@
+pub mod dirty_list;
+pub mod dirty_mark;
+pub mod horizon_resweep;

@@ -1,0 +1,17 @@
+//! Levels of a height pyramid at the field's own samples, by their B-splines.
+
+use crate::shared::levels::LevelTexels;
+
+/// Level `number` at every sample, row after row.
+///
+/// # Panics
+/// When there are fewer texels than the level needs.
+pub fn height_expand(levels: &LevelTexels, number: u32) -> Vec<f32> {
+    let level = levels.pyramid.level(number);
+    let [cols, rows] = levels.pyramid.size;
+    let sample = |i: u32| {
+        let at = [(i % cols) as f32, (i / cols) as f32];
+        levels.spline_at(&level, [at[0] * level.per_sample[0], at[1] * level.per_sample[1]])
+    };
+    (0..cols * rows).map(sample).collect()
+}

@@ -1,0 +1,49 @@
+//! Horizons by testing everything a sample's own line meets: the baseline of every speed claim and,
+//! with all crossings, the truth on the device.
+
+use crate::lattice::Lattice;
+use crate::shared::fuse::{Found, NOTHING};
+use crate::shared::segment::met_within;
+use crate::shared::sweep::{Heights, March};
+use ridgelight::plan::azimuths::Azimuth;
+
+/// The settings of a march, as the shader's constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MarchOptions {
+    /// All crossings with grid lines and diagonals, or only those with grid lines across the march.
+    pub all_crossings: bool,
+    /// Steps marched beyond the field: whole periods, or 0.
+    pub warm_up: i32,
+}
+
+/// What the sample (lane, step) meets highest.
+pub fn marched(march: &March, lane: i32, step: i32, options: MarchOptions) -> Found {
+    let mut best = NOTHING;
+    for back in 1..=step + options.warm_up {
+        if !met_within(march, (lane, step), back, options.all_crossings, &mut best) {
+            break;
+        }
+    }
+    best
+}
+
+/// Marches every sample in one azimuth: `slopes` and `distances` of its layer, one slot a lane.
+///
+/// # Panics
+/// When the lattice is not one slot a lane.
+pub fn horizon_march(
+    heights: Heights,
+    azimuth: &Azimuth,
+    options: MarchOptions,
+    lattice: &mut Lattice,
+) {
+    let march = March::new(heights, azimuth);
+    for step in 0..march.steps {
+        for lane in 0..march.lanes {
+            let found = marched(&march, lane, step, options);
+            let texel = lattice.texel(lane, march.march_position(step), azimuth.layer);
+            lattice.slopes[texel] = found.slope;
+            lattice.distances[texel] = found.steps;
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! For every sample of every line of an azimuth, the earlier sample of the line that rises highest
+//! (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
+//!
+//! The shader's forms differ only in where the hull lives; here it is a vector.
+
+use crate::lattice::Lattice;
+use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, on_field, wrapped};
+use half::f16;
+use ridgelight::plan::azimuths::{Azimuth, CELL};
+
+/// The settings of a sweep, as the shader's constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweepOptions {
+    /// Lines are 2^line_shift / 32768 cells apart: 13 (a quarter of a cell) to 17 (four cells).
+    pub line_shift: u32,
+    /// Steps marched before the first that is written: whole periods, or 0.
+    pub warm_up: i32,
+    /// Hull entries as f16 height, times this, and u16 step.
+    pub packed: Option<f32>,
+    /// Slopes written as f16.
+    pub slopes_f16: bool,
+}
+
+impl Default for SweepOptions {
+    /// A line a cell, nothing packed.
+    fn default() -> Self {
+        Self { line_shift: CELL_SHIFT, warm_up: 0, packed: None, slopes_f16: false }
+    }
+}
+
+/// What brings the largest |height| to 1, for packed entries.
+pub fn height_scale(heights: &[f32]) -> f32 {
+    let largest = heights.iter().fold(0.0_f32, |m, h| m.max(h.abs()));
+    if largest > 0.0 { 1.0 / largest } else { 1.0 }
+}
+
+/// The height of the surface at a lane position and a step of the march.
+pub fn line_height(march: &March, y: i32, step: i32) -> f32 {
+    let cell = y >> CELL_SHIFT;
+    let (step, lane, next) = if march.periodic() {
+        (step % march.steps, wrapped(cell, march.lanes), wrapped(cell + 1, march.lanes))
+    } else {
+        let lane = cell.clamp(0, march.lanes - 1);
+        (step, lane, (lane + 1).min(march.lanes - 1))
+    };
+    let t = (y & (CELL - 1)) as f32 * PER_CELL;
+    let h = march.height_at(lane, step);
+    h + t * (march.height_at(next, step) - h)
+}
+
+/// What a height becomes by being packed.
+pub(crate) fn stored(h: f32, packed: Option<f32>) -> f32 {
+    packed.map_or(h, |scale| f16::from_f32(h * scale).to_f32() / scale)
+}
+
+/// Sweeps one azimuth into its layer of its march axis's lattice: `occluders` and `slopes`.
+///
+/// # Panics
+/// When the lattice is too small for the field and the options.
+pub fn horizon_sweep(
+    heights: Heights,
+    azimuth: &Azimuth,
+    options: &SweepOptions,
+    lattice: &mut Lattice,
+) {
+    let march = March::new(heights, azimuth);
+    let (lanes, steps, periodic) = (march.lanes, march.steps, march.periodic());
+    let line_shift = options.line_shift;
+    let total = options.warm_up + steps;
+    let shear = azimuth.shear;
+    let spacing = 1_i32 << line_shift;
+    let lead = if periodic { 0 } else { ((total - 1) * shear + spacing - 1) >> line_shift };
+    let width = if periodic { lanes * CELL - 1 } else { (lanes - 1) * CELL };
+    let line_count = (width >> line_shift) + 1 + lead;
+    let mut hull: Vec<(f32, f32)> = Vec::new();
+    for line in 0..line_count {
+        let mut y = (line - lead) * spacing;
+        hull.clear();
+        for step in 0..total {
+            if periodic || on_field(y, lanes) {
+                let h = line_height(&march, y, step);
+                let x = step as f32;
+                // Pop while the deeper vertex looks at least as high as the newer one.
+                while let [.., under, top] = hull[..] {
+                    let deeper = (under.0 - h) * (x - top.1);
+                    let newer = (top.0 - h) * (x - under.1);
+                    if deeper < newer {
+                        break;
+                    }
+                    hull.pop();
+                }
+                if step >= options.warm_up {
+                    let slots = lattice.width as i32;
+                    let slot = y >> line_shift;
+                    let texel = lattice.texel(
+                        if periodic { wrapped(slot, slots) } else { slot },
+                        march.march_position(if periodic { step % steps } else { step }),
+                        azimuth.layer,
+                    );
+                    let met = hull
+                        .last()
+                        .map_or(NO_SLOPE, |top| (top.0 - h) / ((x - top.1) * azimuth.step_m));
+                    lattice.occluders[texel] =
+                        hull.last().map_or(0, |top| (step - top.1 as i32) as u16);
+                    lattice.slopes[texel] = if options.slopes_f16 {
+                        f16::from_f32(met.clamp(-65504.0, 65504.0)).to_f32()
+                    } else {
+                        met
+                    };
+                }
+                hull.push((stored(h, options.packed), x));
+            }
+            y += shear;
+        }
+    }
+}

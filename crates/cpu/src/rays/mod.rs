@@ -1,0 +1,2 @@
+pub mod height_bounds;
+pub mod height_cells;

@@ -1,0 +1,331 @@
+//! Brute-force truth: the horizon of one sample over the triangulated surface, in f64.
+//!
+//! Along any line the surface is piecewise linear between the line's crossings with grid columns,
+//! grid rows and cell diagonals. Over one such piece the slope seen from the receiver,
+//! (h₀ + g·(d - d₀) - h_receiver) / d, is monotonic in d (its derivative keeps the sign of
+//! h_receiver - h₀ + g·d₀), so its maximum stands at an end of the piece: the crossings hold every
+//! candidate, and visiting all of them is exact. Nothing is shared with the sweep that this judges.
+
+use ridgelight::scene::{Border, HeightField};
+use std::f64::consts::FRAC_PI_2;
+
+/// Periods of the longer side of a periodic field after which a ray is given up, where they are a
+/// thousand cells or more ([`cap_m`]).
+///
+/// A slope s > 0 can only be met within D = (highest - own height) / s, so a ray ends by itself once
+/// two places are known that nothing beyond can beat. What never ends so are rays that have met
+/// nothing above their own height; past this cap they can only miss an elevation of at most
+/// atan((highest - own height) / (64 · longer side)).
+pub const PERIOD_CAP: usize = 64;
+
+/// The distance after which a ray over a periodic field is given up, in metres: farther than any march goes
+/// ([`ridgelight::plan::sweep::warm_up`]).
+pub fn cap_m(field: &HeightField) -> f64 {
+    let [cell_x, cell_y] = field.cell_m();
+    let side_m = (field.cols() as f64 * cell_x).max(field.rows() as f64 * cell_y);
+    (PERIOD_CAP as f64 * side_m).max(1024.0 * cell_x.max(cell_y))
+}
+
+/// Two vertices of the profile closer than this are one place, in cells: a ray a hair beside a
+/// sample crosses its column, its row and its diagonal at almost one point.
+pub const ONE_PLACE_CELLS: f64 = 1e-3;
+
+/// Margin, relative to the largest |slope| on the profile, below which the occluder is ambiguous.
+///
+/// A slope carries a few roundings of f64 (1e-15 of the scale of the heights involved); 1e-9 is far
+/// above them and far below what any f32 sweep can tell apart.
+pub const TIE_TOLERANCE: f64 = 1e-9;
+
+/// What a ray over the surface meets highest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon {
+    /// Tangent of the elevation: rise over world distance. May be negative whatever the border.
+    pub slope: f64,
+    /// Horizontal distance to the occluder, metres.
+    pub distance_m: f64,
+    /// Column of the occluder, in samples; beyond the field's columns in a repetition.
+    pub col: f64,
+    /// Row of the occluder, in samples; beyond the field's rows in a repetition.
+    pub row: f64,
+    /// Slope by which the occluder beats every vertex at another place; infinite when it is alone.
+    pub margin: f64,
+    /// Whether `margin` exceeds [`TIE_TOLERANCE`] times the largest |slope| of the profile: the
+    /// occluder is where this says, and not one of several in line.
+    pub unique: bool,
+}
+
+/// The truth about one field: holds the highest sample, so that rays end where nothing can win.
+#[derive(Clone, Copy, Debug)]
+pub struct Oracle<'a> {
+    field: &'a HeightField,
+    border: Border,
+    pub(crate) highest_m: f64,
+}
+
+impl<'a> Oracle<'a> {
+    /// Looks once over all samples for the highest.
+    pub fn new(field: &'a HeightField, border: Border) -> Self {
+        let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        Self { field, border, highest_m: f64::from(highest_m) }
+    }
+
+    /// For one place: a scan of all samples only where a ray would not end without it.
+    pub(crate) fn for_one_place(field: &'a HeightField, border: Border) -> Self {
+        match border {
+            Border::Periodic => Self::new(field, border),
+            Border::Plane | Border::Open => Self { field, border, highest_m: f64::INFINITY },
+        }
+    }
+
+    /// The field this answers for.
+    pub fn field(&self) -> &'a HeightField {
+        self.field
+    }
+
+    /// What lies beyond the field's edge.
+    pub fn border(&self) -> Border {
+        self.border
+    }
+
+    /// What is met highest along an azimuth (radians, counter-clockwise from east).
+    ///
+    /// `None` when the ray leaves the field at once.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn horizon(&self, row: usize, col: usize, azimuth_rad: f64) -> Option<Horizon> {
+        self.horizon_along(row, col, grid_direction(self.field, azimuth_rad))
+    }
+
+    /// What is met highest along (columns, rows) of any length: small integers stay exact.
+    ///
+    /// `None` when the ray leaves the field at once, or has no direction (0, infinite, NaN).
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn horizon_along(&self, row: usize, col: usize, direction: [f64; 2]) -> Option<Horizon> {
+        let [cols_per_t, rows_per_t] = direction;
+        let [cell_x, cell_y] = self.field.cell_m();
+        let metres_per_t = (cols_per_t * cell_x).hypot(rows_per_t * cell_y);
+        if !(metres_per_t > 0.0 && metres_per_t.is_finite()) {
+            return None;
+        }
+        assert!(
+            row < self.field.rows() && col < self.field.cols(),
+            "sample (row {row}, column {col}) of a field of {} × {}",
+            self.field.rows(),
+            self.field.cols()
+        );
+        let (row, col) = (row as f64, col as f64);
+        let own_m = self.vertex(row, col);
+        let cap_m = cap_m(self.field);
+        let mut best = Best::default();
+        // Columns, rows, diagonals: crossing j of a family lies at t = j / |its lines per t|.
+        // Multiplying before dividing keeps crossings of integer directions on their vertices.
+        for (family, lines_per_t) in
+            [cols_per_t, rows_per_t, rows_per_t - cols_per_t].into_iter().enumerate()
+        {
+            if lines_per_t == 0.0 {
+                continue;
+            }
+            let per_t = lines_per_t.abs();
+            let metres_per_line = metres_per_t / per_t;
+            for j in 1_u64.. {
+                let j = j as f64;
+                let signed = j * lines_per_t.signum();
+                // A diagonal is the line row = column + k, k whole: its rows follow from its columns.
+                let k = row - col + signed;
+                let (r, c) = match family {
+                    0 => (row + rows_per_t * j / per_t, col + signed),
+                    1 => (row + signed, col + cols_per_t * j / per_t),
+                    _ => (col + cols_per_t * j / per_t + k, col + cols_per_t * j / per_t),
+                };
+                let distance_m = j * metres_per_line;
+                if self.border == Border::Periodic {
+                    if distance_m > cap_m {
+                        break;
+                    }
+                } else if !self.inside(r, c) {
+                    break;
+                }
+                if (self.highest_m - own_m) / distance_m < best.runner_up {
+                    break;
+                }
+                let (last_r, last_c) = self.last();
+                let h = match family {
+                    0 => self.between(r, 0.0, last_r, |r| self.vertex(r, c)),
+                    1 => self.between(c, 0.0, last_c, |c| self.vertex(r, c)),
+                    _ => self.between(c, (-k).max(0.0), last_c.min(last_r - k), |c| {
+                        self.vertex(c + k, c)
+                    }),
+                };
+                best.offer((h - own_m) / distance_m, distance_m, r, c);
+            }
+        }
+        best.horizon()
+    }
+
+    /// The elevation above which this sample sees the sky along an azimuth, radians in [-π/2, π/2].
+    ///
+    /// `plane`: at least 0, the ground goes on at horizontal. `open`: -π/2 where nothing is met.
+    /// `periodic`: at least 0, because the repetitions' slopes (h - own height) / D reach 0 in the
+    /// limit D → ∞ whatever their heights.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn elevation_rad(&self, row: usize, col: usize, azimuth_rad: f64) -> f64 {
+        elevation_of(self.border, self.horizon(row, col, azimuth_rad))
+    }
+
+    /// The last row and column as coordinates.
+    fn last(&self) -> (f64, f64) {
+        ((self.field.rows() - 1) as f64, (self.field.cols() - 1) as f64)
+    }
+
+    /// Whether a point belongs to the field, the edge included.
+    ///
+    /// A crossing is computed with two roundings of its coordinate; four units in the last place of
+    /// the field's size keep one that is aimed exactly at a corner or along the edge inside.
+    fn inside(&self, row: f64, col: f64) -> bool {
+        let (last_r, last_c) = self.last();
+        let hair = 4.0 * f64::EPSILON * (last_r + last_c);
+        (-hair..=last_r + hair).contains(&row) && (-hair..=last_c + hair).contains(&col)
+    }
+
+    /// Height at a sample given by whole numbers, repeated under `periodic`.
+    pub(crate) fn vertex(&self, row: f64, col: f64) -> f64 {
+        let (rows, cols) = (self.field.rows(), self.field.cols());
+        let at = |x: f64, count: usize| match self.border {
+            Border::Periodic => (x as i64).rem_euclid(count as i64) as usize,
+            Border::Plane | Border::Open => x as usize,
+        };
+        f64::from(self.field.heights_m()[at(row, rows) * cols + at(col, cols)])
+    }
+
+    /// Linear interpolation at `x` between the whole numbers around it; exact on a whole number.
+    /// Where the field ends, `x` is brought back into [first, last] from the hair of [`Self::inside`].
+    fn between(&self, x: f64, first: f64, last: f64, height: impl Fn(f64) -> f64) -> f64 {
+        let x = if self.border == Border::Periodic { x } else { x.min(last).max(first) };
+        let whole = x.floor();
+        let share = x - whole;
+        let here = height(whole);
+        if share == 0.0 { here } else { here + share * (height(whole + 1.0) - here) }
+    }
+}
+
+/// The best vertex so far and the best slope at any other place.
+struct Best {
+    slope: f64,
+    distance_m: f64,
+    row: f64,
+    col: f64,
+    runner_up: f64,
+    largest_slope: f64,
+}
+
+impl Default for Best {
+    fn default() -> Self {
+        let none = f64::NEG_INFINITY;
+        Self {
+            slope: none,
+            distance_m: 0.0,
+            row: 0.0,
+            col: 0.0,
+            runner_up: none,
+            largest_slope: 0.0,
+        }
+    }
+}
+
+impl Best {
+    /// Order of offers does not matter: a beaten best is at least the runner-up, and stays so
+    /// unless the winner stands at the same place.
+    fn offer(&mut self, slope: f64, distance_m: f64, row: f64, col: f64) {
+        self.largest_slope = self.largest_slope.max(slope.abs());
+        let elsewhere = (row - self.row).abs() + (col - self.col).abs() > ONE_PLACE_CELLS;
+        let beaten = if slope > self.slope {
+            let beaten = self.slope;
+            (self.slope, self.distance_m, self.row, self.col) = (slope, distance_m, row, col);
+            beaten
+        } else {
+            slope
+        };
+        if elsewhere {
+            self.runner_up = self.runner_up.max(beaten);
+        }
+    }
+
+    fn horizon(&self) -> Option<Horizon> {
+        let Self { slope, distance_m, row, col, runner_up, largest_slope } = *self;
+        (slope > f64::NEG_INFINITY).then(|| {
+            let margin = slope - runner_up;
+            let unique = margin > TIE_TOLERANCE * largest_slope;
+            Horizon { slope, distance_m, col, row, margin, unique }
+        })
+    }
+}
+
+/// The azimuth's direction in (columns, rows): (cos φ / cell x, -sin φ / cell y).
+///
+/// A component below 1e-15 of the other is taken as 0: it is the rounding of π in the azimuth
+/// (sin of the f64 next to π is 1.2e-16), not a direction, and along the field's edge its sign would
+/// decide between everything and nothing. Over 16 384 cells it moves the ray by 2e-11 of a cell.
+pub fn grid_direction(field: &HeightField, azimuth_rad: f64) -> [f64; 2] {
+    let [cell_x, cell_y] = field.cell_m();
+    let (sin, cos) = azimuth_rad.sin_cos();
+    let cos = if cos.abs() < 1e-15 { 0.0 } else { cos };
+    let sin = if sin.abs() < 1e-15 { 0.0 } else { sin };
+    [cos / cell_x, -sin / cell_y]
+}
+
+/// [`Oracle::horizon`] for one ray.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn horizon(
+    field: &HeightField,
+    border: Border,
+    row: usize,
+    col: usize,
+    azimuth_rad: f64,
+) -> Option<Horizon> {
+    Oracle::for_one_place(field, border).horizon(row, col, azimuth_rad)
+}
+
+/// [`Oracle::horizon_along`] for one ray.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn horizon_along(
+    field: &HeightField,
+    border: Border,
+    row: usize,
+    col: usize,
+    grid_direction: [f64; 2],
+) -> Option<Horizon> {
+    Oracle::for_one_place(field, border).horizon_along(row, col, grid_direction)
+}
+
+/// [`Oracle::elevation_rad`] for one ray.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn elevation_rad(
+    field: &HeightField,
+    border: Border,
+    row: usize,
+    col: usize,
+    azimuth_rad: f64,
+) -> f64 {
+    elevation_of(border, horizon(field, border, row, col, azimuth_rad))
+}
+
+/// The elevation that an answer of the oracle stands for under a border; see
+/// [`Oracle::elevation_rad`].
+pub fn elevation_of(border: Border, horizon: Option<Horizon>) -> f64 {
+    let met = horizon.map_or(-FRAC_PI_2, |h| h.slope.atan());
+    match border {
+        Border::Open => met,
+        Border::Plane | Border::Periodic => met.max(0.0),
+    }
+}

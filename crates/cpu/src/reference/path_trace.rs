@@ -1,0 +1,294 @@
+//! Light paths one by one, as `path_trace` follows them: the same random numbers, the same maths in f64, and what f32 may be off
+//! by beside every value.
+//!
+//! Rounding decides some things: whether a ray passes over an edge, which of two triangles it meets, lobe or not. The twin knows
+//! where ([`Near`]): what such a decision may bring or not bring is added to what the sum may be off by. Where the path goes on
+//! differently afterwards, that is the most which any path may bring from there on.
+
+mod environment;
+mod lights;
+mod place;
+mod traced;
+
+use std::ops::Range;
+
+use crate::shared::random::{net_point, shuffled, words_of};
+use crate::shared::trace::{What, trace};
+use crate::shared::walk::{Ground, ray_from};
+use crate::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
+use environment::Environment;
+use place::Place;
+use ridgelight::plan::{REFERENCE_BATCH, most_light, reference_inputs};
+use ridgelight::scene::{Albedo, Lobe, Scene};
+pub use traced::Traced;
+
+const BITS: u32 = REFERENCE_BATCH.ilog2();
+
+/// Below this f32 may have nothing where f64 has something: whether a ray is sent at all is in doubt.
+const FAINTEST: f64 = 1e-30;
+
+/// All that the shader is given.
+pub struct Tracer<'a> {
+    scene: &'a Scene,
+    ground: Ground,
+    samples: Vec<[f32; 3]>,
+    /// Two texels a light: suns, key lights, balls.
+    lights: Vec<[f32; 4]>,
+    environment: Option<Environment>,
+    albedo: Vec<[f32; 3]>,
+    lobes: Vec<[f32; 2]>,
+    bounces: u32,
+    seed: u32,
+    /// Light that has not been reflected counts.
+    counts_direct: bool,
+    /// The most that a path brings which is reflected so many times.
+    most: Vec<[f64; 3]>,
+    /// Radiance of what a ray sees that leaves the ground, sky and environment; and of all balls, which it passes on its way,
+    /// wherever that ends.
+    far: [f64; 3],
+    balls: [f64; 3],
+}
+
+fn given<const N: usize>(of: [f32; N]) -> [Near; N] {
+    of.map(Near::given)
+}
+
+fn colour(of: [f32; 4]) -> Near3 {
+    given([of[0], of[1], of[2]])
+}
+
+fn largest(of: Near3) -> Near {
+    of[0].max(of[1]).max(of[2])
+}
+
+fn one() -> Near {
+    Near::of(1.0)
+}
+
+/// Where brought light is so faint that f32 may have none, no ray may be sent.
+fn is_some(of: Near3) -> Option<bool> {
+    let of = largest(of);
+    let is_faint = of.v > 0.0 && of.v < FAINTEST;
+    of.above(Near::ZERO).filter(|_| !is_faint)
+}
+
+impl<'a> Tracer<'a> {
+    /// Of a scene, with height and slopes of every sample's ground as the device has them. `counts_direct`: of a list of samples
+    /// what has not been reflected does not count.
+    pub fn of(
+        scene: &'a Scene,
+        samples: Vec<[f32; 3]>,
+        (bounces, seed): (u32, u32),
+        counts_direct: bool,
+    ) -> Self {
+        let Scene { field, surface, lights } = scene;
+        let mut inputs = reference_inputs(scene).into_iter().skip(1);
+        let four = |texels: Vec<f32>| -> Vec<[f32; 4]> {
+            texels.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect()
+        };
+        let environment = lights.environment.as_ref().map(|of| Environment {
+            size: [of.width() as i32, of.height() as i32],
+            texels: four(inputs.next().expect("texels")),
+            cdf: inputs.next().expect("shares"),
+            rotation_turns: Near::given(
+                (of.rotation_rad() / std::f64::consts::TAU).rem_euclid(1.0) as f32,
+            ),
+        });
+        let count = samples.len();
+        let lobe = |phong: ridgelight::scene::Phong| [phong.exponent, phong.scale];
+        let sky = lights.sky.unwrap_or_default();
+        let texels = lights.environment.iter().flat_map(|e| e.texels());
+        let brightest = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
+        let balls = |c: usize| lights.spheres.iter().map(|ball| f64::from(ball.radiance[c])).sum();
+        Self {
+            far: [0, 1, 2].map(|c| f64::from(sky[c]) + f64::from(brightest[c])),
+            balls: [0, 1, 2].map(balls),
+            ground: Ground::of(field, surface.border),
+            lights: four(inputs.next().expect("lights")),
+            environment,
+            albedo: match &surface.albedo {
+                Albedo::Constant(colour) => vec![*colour; count],
+                Albedo::Map(map) => map.clone(),
+            },
+            lobes: match &surface.phong {
+                None => Vec::new(),
+                Some(Lobe::Constant(phong)) => vec![lobe(*phong); count],
+                Some(Lobe::Map(map)) => map.iter().map(|p| lobe(*p)).collect(),
+            },
+            most: (0..=bounces).map(|b| most_light(scene, b)).collect(),
+            scene,
+            samples,
+            bounces,
+            seed,
+            counts_direct,
+        }
+    }
+
+    /// The most that a scattered ray sees where so many more may follow: balls that it leaves, and then what is far or ground.
+    fn most_seen(&self, left: u32) -> [f64; 3] {
+        let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
+        [0, 1, 2].map(|c| self.balls[c] + self.far[c].max(later[c]))
+    }
+
+    /// Suns, key lights, balls.
+    fn counts(&self) -> [usize; 3] {
+        let lights = &self.scene.lights;
+        [lights.suns.len(), lights.keys.len(), lights.spheres.len()]
+    }
+
+    /// What some of a batch's paths bring to a sample with some of the lights, `slot` being its place among the sums.
+    ///
+    /// # Panics
+    /// When the sample lies outside the field.
+    pub fn traced(
+        &self,
+        sample: usize,
+        (slot, batch): (u32, u32),
+        (paths, lights): (Range<u32>, Range<u32>),
+    ) -> Traced {
+        let mut all = Traced::default();
+        for path in paths {
+            let words = [slot, batch, self.seed];
+            self.path_light(self.first(sample), path, words, &lights, &mut all);
+        }
+        all
+    }
+
+    /// Adds what one path brings.
+    fn path_light(
+        &self,
+        mut place: Place,
+        index: u32,
+        [slot, batch, seed]: [u32; 3],
+        lights: &Range<u32>,
+        sum: &mut Traced,
+    ) {
+        let count: u32 = self.counts().iter().sum::<usize>() as u32;
+        let mut carried = [one(); 3];
+        for bounce in 0..=self.bounces {
+            let is_first = bounce == 0;
+            sum.reflected = bounce.min(2) as usize;
+            let counts = Some(self.counts_direct || !is_first);
+            let first_ray = bounce * (count + 2);
+            let points = |r: u32| {
+                let of_u = words_of([slot, batch, 2 * r, seed]);
+                let of_v = words_of([slot, batch, 2 * r + 1, seed]);
+                let order = if is_first { index } else { shuffled(index, BITS, of_u[2]) };
+                let u = net_point(order, BITS, of_u);
+                [u, net_point(shuffled(index, BITS, of_v[2]), BITS, of_v)].map(given)
+            };
+            // What a path that goes on differently may bring, and its rays.
+            let left = self.bounces - bounce;
+            let most = |carried: Near3, left: u32| {
+                [0, 1, 2].map(|c| carried[c].most() * self.most[left as usize][c])
+            };
+            let parts = |sum: &mut Traced, carried: Near3, left: u32| {
+                sum.doubt(most(carried, left));
+                sum.rays.off += f64::from((left + 1) * (lights.end - lights.start + 2));
+            };
+            let Some(centre) = self.centre(&place) else { return parts(sum, carried, left) };
+            for r in lights.clone() {
+                let [u, _] = points(first_ray + r);
+                let Some(light) = self.light(&place, centre, r as usize, u) else {
+                    return parts(sum, carried, left);
+                };
+                let is_sent = all([counts, light.shines, light.reflected, is_some(light.brought)]);
+                if is_sent == Some(false) {
+                    continue;
+                }
+                sum.ray(is_sent);
+                let ray = ray_from(&self.ground, place.base, place.offset, place.own, light.e);
+                let far = Near::of(1e30);
+                let t_end = light.end_m.map_or(far, |end| end * ray.scale.min(Near::of(1e6)));
+                let met = trace(&self.ground, &ray, t_end);
+                sum.crossed[sum.reflected] += met.crossed;
+                let is_free = met.what.map(|what| what == What::Free);
+                let in_view = match light.end_m {
+                    None => is_free,
+                    Some(_) => match met.what {
+                        Some(What::Hit) => t_end.at_most(met.t),
+                        Some(_) => Some(true),
+                        None => None,
+                    },
+                };
+                let brought = product(carried, light.brought);
+                sum.add(brought, all([is_sent, in_view]), most(carried, 0));
+            }
+            let has_sky = lights.start == 0;
+            if let Some(environment) = self.environment.as_ref().filter(|_| has_sky) {
+                let [u, v] = points(first_ray + count);
+                let (e, from_there) = environment.towards_light(u, v);
+                let of = self.reflected(&place, e);
+                let chosen = (Near::given(from_there[3]) + of.density).max(Near::of(1e-30));
+                let brought = product(of.light, colour(from_there)).map(|l| l / chosen);
+                let is_sent = all([counts, of.facing.above(Near::ZERO), is_some(brought)]);
+                if is_sent != Some(false) {
+                    sum.ray(is_sent);
+                    let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
+                    let met = trace(&self.ground, &ray, Near::of(1e30));
+                    sum.crossed[sum.reflected] += met.crossed;
+                    let is_free = met.what.map(|what| what == What::Free);
+                    let brought = product(carried, brought);
+                    sum.add(brought, all([is_sent, is_free]), most(carried, 0));
+                }
+            }
+            let [u, v] = points(first_ray + count + 1);
+            let Some(e) = self.scattered(&place, u, v) else { return parts(sum, carried, left) };
+            let of = self.reflected(&place, e);
+            match all([of.facing.above(Near::ZERO), is_some(of.scattered)]) {
+                Some(false) => return,
+                None => return parts(sum, carried, left),
+                // What is scattered is no more than arrives.
+                Some(true) if of.scattered.iter().any(|s| s.off > 1.0) => {
+                    return parts(sum, carried, left);
+                }
+                Some(true) => sum.ray(Some(true)),
+            }
+            let ray = ray_from(&self.ground, place.base, place.offset, place.own, e);
+            let met = trace(&self.ground, &ray, Near::of(1e30));
+            sum.crossed[sum.reflected] += met.crossed;
+            let scattered = product(carried, of.scattered);
+            let Some(what) = met.what else {
+                let (seen, all) = (self.most_seen(left), most(carried, left));
+                sum.doubt([0, 1, 2].map(|c| (scattered[c].most() * seen[c]).min(all[c])));
+                sum.rays.off += f64::from(left * (lights.end - lights.start + 2));
+                return;
+            };
+            let mut seen = Traced::default();
+            if has_sky && what == What::Free {
+                let sky = self.scene.lights.sky.unwrap_or_default();
+                seen.light = given(sky);
+                if let Some(environment) = &self.environment {
+                    environment.towards(e, of.density, &mut seen);
+                }
+            }
+            let [suns, keys, _] = self.counts();
+            for i in (suns + keys).max(lights.start as usize)..lights.end as usize {
+                let ball = given(self.lights[2 * i]);
+                let to = minus([ball[0], ball[1], ball[2]], centre);
+                let ahead = dot(to, e);
+                let inside = ball[3] * ball[3] - dot(to, to);
+                let exit_m = ahead + (ahead * ahead + inside).max(Near::ZERO).sqrt();
+                let is_before = any([Some(what != What::Hit), (exit_m * ray.scale).at_most(met.t)]);
+                let in_view = all([Near::ZERO.at_most(inside), is_before]);
+                let radiance = colour(self.lights[2 * i + 1]);
+                seen.add(radiance, in_view, radiance.map(Near::most));
+            }
+            if counts == Some(true) {
+                let light = product(scattered, seen.light);
+                sum.light = plus(sum.light, light);
+                sum.doubts[sum.reflected] += seen.doubts[0];
+                (0..3).for_each(|c| sum.in_doubt[c] += scattered[c].most() * seen.in_doubt[c]);
+            }
+            if left == 0 || what != What::Hit {
+                return;
+            }
+            carried = scattered;
+            let Some(is_lower) = met.lower else { return parts(sum, carried, left - 1) };
+            place = self.place_of(&met, is_lower, e);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

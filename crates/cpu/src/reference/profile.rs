@@ -1,0 +1,208 @@
+//! What a sample sees of the surface along one azimuth: every visible stretch, exactly, in f64.
+//!
+//! Along an azimuth the surface is a chain of straight pieces, one a triangle. Seen from the sample a
+//! piece's slope is monotonic in the distance (see the oracle's page), so what is visible of it is what
+//! rises above the largest slope so far: one interval of elevations a piece, and the intervals of all
+//! pieces fill the elevations from straight down to the horizon without gap or overlap.
+
+use crate::oracle::{Oracle, cap_m, grid_direction};
+use ridgelight::scene::Border;
+use std::f64::consts::FRAC_PI_2;
+
+/// The visible part of one triangle along an azimuth.
+///
+/// The first one a ray meets holds the sample itself. Directions below it lead into the ground at
+/// once; they are its too, met at distance 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Elevations between which it is seen, radians.
+    pub low_rad: f64,
+    /// The upper one.
+    pub high_rad: f64,
+    /// Which triangle: see [`Oracle::corners`].
+    pub triangle: usize,
+    /// The piece's height above the sample is `rise_m` + `slope`·distance.
+    pub rise_m: f64,
+    /// Tangent of the piece's own inclination.
+    pub slope: f64,
+    /// Horizontal distances at which the piece begins and ends, metres.
+    span_m: [f64; 2],
+    /// Weights of the triangle's corners at distance 0 and their change a metre.
+    weights: [[f64; 3]; 2],
+}
+
+impl Stretch {
+    /// Horizontal distance to the piece along an elevation, metres.
+    pub fn distance_m(&self, elevation_rad: f64) -> f64 {
+        let [near, far] = self.span_m;
+        // rise + slope D = D tan ω; a piece seen edge on is met where it begins.
+        let distance = self.rise_m / (elevation_rad.tan() - self.slope);
+        if distance.is_finite() { distance.clamp(near, far) } else { near }
+    }
+
+    /// Horizontal distance at which the piece ends, metres.
+    pub fn end_m(&self) -> f64 {
+        self.span_m[1]
+    }
+
+    /// Weights of the triangle's corners at a horizontal distance; they sum to 1.
+    pub fn corner_weights(&self, distance_m: f64) -> [f64; 3] {
+        let [at_0, per_m] = self.weights;
+        [0, 1, 2].map(|k| at_0[k] + per_m[k] * distance_m)
+    }
+}
+
+impl Oracle<'_> {
+    /// Cells of the surface: rows, columns. Under `periodic` the last sample's cell leads to the first.
+    pub fn cells(&self) -> [usize; 2] {
+        let count = |samples| match self.border() {
+            Border::Periodic => samples,
+            Border::Plane | Border::Open => samples - 1,
+        };
+        [count(self.field().rows()), count(self.field().cols())]
+    }
+
+    /// The samples (row, col) at a triangle's corners. Cell i holds the triangles 2i, with the corners
+    /// (r, c), (r, c+1), (r+1, c+1), and 2i + 1, with (r, c), (r+1, c), (r+1, c+1).
+    pub fn corners(&self, triangle: usize) -> [[usize; 2]; 3] {
+        let [_, across] = self.cells();
+        let (row, col) = (triangle / 2 / across, triangle / 2 % across);
+        let (below, right) = ((row + 1) % self.field().rows(), (col + 1) % self.field().cols());
+        let between = if triangle.is_multiple_of(2) { [row, right] } else { [below, col] };
+        [[row, col], between, [below, right]]
+    }
+
+    /// Writes what is seen along an azimuth into `seen`, from below upwards.
+    ///
+    /// Nothing where the ray leaves the field at once. Under `periodic` a ray that has met nothing at
+    /// its own height after [`cap_m`] goes on seeing its last stretch up to horizontal.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn stretches(&self, row: usize, col: usize, azimuth_rad: f64, seen: &mut Vec<Stretch>) {
+        self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
+    }
+
+    /// The same with all that is hidden by less than `nearly_rad`, seen between two equal elevations.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn nearly_seen(
+        &self,
+        row: usize,
+        col: usize,
+        azimuth_rad: f64,
+        nearly_rad: f64,
+        seen: &mut Vec<Stretch>,
+    ) {
+        seen.clear();
+        let field = self.field();
+        let (rows, cols) = (field.rows(), field.cols());
+        assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
+        let [cols_per_m, rows_per_m] = grid_direction(field, azimuth_rad);
+        let here = [row as f64, col as f64];
+        let above_m = self.highest_m - self.vertex(here[0], here[1]);
+        let periodic = self.border() == Border::Periodic;
+        let cap_m = cap_m(field);
+        // Crossing j with columns, rows, diagonals lies at j metres a line.
+        let per_line = [cols_per_m, rows_per_m, rows_per_m - cols_per_m].map(|p| 1.0 / p.abs());
+        let mut lines = [1.0; 3];
+        let (mut near, mut reached) = (0.0, -FRAC_PI_2);
+        loop {
+            let lowest = f64::max(reached - nearly_rad, -FRAC_PI_2);
+            let nothing_higher = near > 0.0 && above_m / near <= lowest.tan();
+            if nothing_higher || (periodic && near > cap_m) {
+                break;
+            }
+            let crossings = [0, 1, 2].map(|i| lines[i] * per_line[i]);
+            let far = crossings.into_iter().fold(f64::INFINITY, f64::min);
+            for i in 0..3 {
+                // Crossings a few roundings apart are one vertex.
+                if crossings[i] <= far * (1.0 + 1e-13) {
+                    lines[i] += 1.0;
+                }
+            }
+            let Some(piece) = self.piece(here, [rows_per_m, cols_per_m], [near, far]) else {
+                break;
+            };
+            // The surface is continuous: no piece begins above the largest slope before it.
+            if piece.high_rad > lowest {
+                let high_rad = piece.high_rad.max(reached);
+                seen.push(Stretch { low_rad: reached, high_rad, ..piece });
+                reached = high_rad;
+            }
+            near = far;
+        }
+        if let Some(last) = seen.last_mut()
+            && periodic
+        {
+            last.high_rad = last.high_rad.max(0.0);
+        }
+    }
+
+    /// Slope of the lowest direction that the surface up to a distance leaves free along an azimuth; what the
+    /// sample's own piece hides it does from however near. -∞ where the ray leaves the field at once.
+    ///
+    /// # Panics
+    /// When `row` or `col` lies outside the field.
+    pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
+        let mut seen = Vec::new();
+        self.stretches(row, col, azimuth_rad, &mut seen);
+        let slope = |stretch: &Stretch| {
+            let [near, far] = stretch.span_m;
+            let end = if near == 0.0 { far } else { far.min(within_m) };
+            (near == 0.0 || near < within_m).then(|| stretch.slope + stretch.rise_m / end)
+        };
+        seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The piece of surface between two distances from a sample, all of it taken as visible; none
+    /// outside the field. Between them lies no crossing.
+    fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<Stretch> {
+        let [near, far] = span_m;
+        let middle = 0.5 * (near + far);
+        let samples = [self.field().rows(), self.field().cols()];
+        let cells = self.cells();
+        // Along the last row or column lies the last cell.
+        let is_last = [0, 1].map(|i| {
+            let is_edge = self.border() != Border::Periodic && here[i] == cells[i] as f64;
+            is_edge && per_m[i] == 0.0
+        });
+        let cell =
+            [0, 1].map(|i| (here[i] + per_m[i] * middle).floor() - f64::from(u8::from(is_last[i])));
+        let [down, right] = [0, 1].map(|i| here[i] + per_m[i] * middle - cell[i]);
+        let lower = down > right;
+        let at = match self.border() {
+            Border::Periodic => [0, 1].map(|i| (cell[i] as i64).rem_euclid(samples[i] as i64)),
+            Border::Plane | Border::Open => [0, 1].map(|i| cell[i] as i64),
+        };
+        if (0..2).any(|i| !(0..cells[i] as i64).contains(&at[i])) {
+            return None;
+        }
+        let triangle = 2 * (at[0] as usize * cells[1] + at[1] as usize) + usize::from(lower);
+        let weights_at = |down: f64, right: f64| {
+            if lower {
+                [1.0 - down, down - right, right]
+            } else {
+                [1.0 - right, right - down, down]
+            }
+        };
+        let at_0 = weights_at(here[0] - cell[0], here[1] - cell[1]);
+        let ahead = weights_at(per_m[0], per_m[1]);
+        let change = [ahead[0] - 1.0, ahead[1], ahead[2]];
+        let heights = self.corners(triangle).map(|[r, c]| self.vertex(r as f64, c as f64));
+        let sum = |w: [f64; 3]| w[0] * heights[0] + w[1] * heights[1] + w[2] * heights[2];
+        let slope = sum(change);
+        // The first piece holds the sample: no rounding may lift it off.
+        let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - self.vertex(here[0], here[1]) };
+        Some(Stretch {
+            low_rad: -FRAC_PI_2,
+            high_rad: (slope + rise_m / far).atan(),
+            triangle,
+            rise_m,
+            slope,
+            span_m,
+            weights: [at_0, change],
+        })
+    }
+}

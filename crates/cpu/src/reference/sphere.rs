@@ -1,0 +1,155 @@
+//! Light of a ball at one sample, in f64: a quadrature over azimuths, exact within each.
+//!
+//! The vertical plane of an azimuth cuts the ball in a disc. Of the disc's elevations those count at
+//! which the ball is entered (or, from inside, left) nearer than the surface is met. Both change sides
+//! only where the disc's circle crosses the profile, so between those elevations one test decides.
+
+use crate::light::{Receiver, normal};
+use crate::oracle::Oracle;
+use crate::profile::Stretch;
+use ridgelight::scene::SphereLight;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Exit radiance of receivers at a sample under a ball of radiance 1.
+///
+/// `strips` azimuths over the ball: over its width, spaced so that the disc's square root is smooth, or
+/// over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sphere_on(
+    oracle: &Oracle,
+    row: usize,
+    col: usize,
+    receivers: &[Receiver],
+    sphere: &SphereLight,
+    strips: usize,
+) -> Vec<f64> {
+    let field = oracle.field();
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, z] = sphere.position_m;
+    let east = x - col as f64 * cell_x;
+    let north = y - (field.rows() - 1 - row) as f64 * cell_y;
+    let up = z - field.base_m() - oracle.vertex(row as f64, col as f64);
+    let (away, middle) = (east.hypot(north), north.atan2(east));
+    let widest = (sphere.radius_m / away).asin();
+    let mut sums = vec![0.0; receivers.len()];
+    let mut seen = Vec::new();
+    for i in 0..strips {
+        let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
+        let (offset, weight) = if sphere.radius_m < away {
+            let u = FRAC_PI_2 * centre;
+            // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+            let alone = if strips > 1 { 1.0 } else { 0.5 };
+            (widest * u.sin(), alone * widest * u.cos() * PI / strips as f64)
+        } else {
+            (PI * centre, TAU / strips as f64)
+        };
+        let azimuth = middle + offset;
+        let across = away * offset.sin();
+        let squared = sphere.radius_m * sphere.radius_m - across * across;
+        if squared <= 0.0 {
+            continue;
+        }
+        let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
+        oracle.stretches(row, col, azimuth, &mut seen);
+        let visible = disc.visible(&seen);
+        for (receiver, sum) in receivers.iter().zip(&mut sums) {
+            let slice = receiver.slice(azimuth);
+            *sum +=
+                visible.iter().map(|[low, high]| weight * slice.light(*low, *high)).sum::<f64>();
+        }
+    }
+    sums.iter().map(|s| s / PI).collect()
+}
+
+/// Exit radiance of a diffuse sample of albedo 1 under a ball of radiance 1, by `strips` azimuths over the
+/// ball, or four times as many over the circle.
+///
+/// # Panics
+/// When `row` or `col` lies outside the field.
+pub fn sphere_of(
+    oracle: &Oracle,
+    row: usize,
+    col: usize,
+    sphere: &SphereLight,
+    strips: usize,
+) -> f64 {
+    let receivers = [Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))];
+    let is_narrow = away_m(oracle, row, col, sphere) > 2.0 * sphere.radius_m;
+    let strips = if is_narrow { strips } else { 4 * strips };
+    sphere_on(oracle, row, col, &receivers, sphere, strips)[0]
+}
+
+/// From a sample to a ball's middle in the plane.
+pub(crate) fn away_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> f64 {
+    let field = oracle.field();
+    let [cell_x, cell_y] = field.cell_m();
+    let [x, y, _] = sphere.position_m;
+    (x - col as f64 * cell_x).hypot(y - (field.rows() - 1 - row) as f64 * cell_y)
+}
+
+/// The ball's cut with a vertical plane through the sample, the sample at the origin.
+struct Disc {
+    along: f64,
+    up: f64,
+    radius: f64,
+}
+
+impl Disc {
+    /// The elevations at which the disc is seen.
+    fn visible(&self, seen: &[Stretch]) -> Vec<[f64; 2]> {
+        let distance = self.along.hypot(self.up);
+        let (low, high) = if distance > self.radius {
+            let (middle, half) = (self.up.atan2(self.along), (self.radius / distance).asin());
+            ((middle - half).max(-FRAC_PI_2), (middle + half).min(FRAC_PI_2))
+        } else {
+            (-FRAC_PI_2, FRAC_PI_2)
+        };
+        let mut visible = Vec::new();
+        for stretch in seen {
+            let mut cuts = vec![stretch.low_rad, stretch.high_rad, low, high];
+            cuts.extend(self.crossings(stretch));
+            cuts.sort_unstable_by(f64::total_cmp);
+            for ends in cuts.windows(2) {
+                let middle = 0.5 * (ends[0] + ends[1]);
+                let within = |a: f64, b: f64| a < middle && middle < b;
+                let hit_m = stretch.distance_m(middle) / middle.cos();
+                if within(stretch.low_rad, stretch.high_rad)
+                    && within(low, high)
+                    && self.met_m(middle) < hit_m
+                {
+                    visible.push([ends[0], ends[1]]);
+                }
+            }
+        }
+        let horizon = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
+        if high > horizon.max(low) {
+            visible.push([horizon.max(low), high]);
+        }
+        visible
+    }
+
+    /// Distance along an elevation within the disc to where it is entered, or left from inside.
+    fn met_m(&self, elevation_rad: f64) -> f64 {
+        let (sin, cos) = elevation_rad.sin_cos();
+        let ahead = self.along * cos + self.up * sin;
+        let beside = self.along * sin - self.up * cos;
+        let half = (self.radius * self.radius - beside * beside).max(0.0).sqrt();
+        if self.along.hypot(self.up) > self.radius { ahead - half } else { ahead + half }
+    }
+
+    /// Elevations at which the circle crosses the line of a stretch, rise + slope·D.
+    fn crossings(&self, stretch: &Stretch) -> impl Iterator<Item = f64> {
+        let Stretch { rise_m, slope, .. } = *stretch;
+        // (D - along)² + (rise + slope D - up)² = radius².
+        let (a, below) = (1.0 + slope * slope, self.up - rise_m);
+        let b = self.along + slope * below;
+        let c = self.along * self.along + below * below - self.radius * self.radius;
+        let root = (b * b - a * c).max(0.0).sqrt();
+        [(b - root) / a, (b + root) / a]
+            .into_iter()
+            .filter(|d| *d > 0.0)
+            .map(move |d| (rise_m + slope * d).atan2(d))
+    }
+}

@@ -1,0 +1,214 @@
+//! Light by spherical harmonics in f64 from given horizons, and how far a device may be from it: all that
+//! f32 does between the two, whatever the order, the environment and the field. What harmonics themselves
+//! miss is in neither.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use crate::env_turns::env_turns;
+use crate::light_matrix::{add_sky, gloss_matrix, is_fitted, light_matrix, row_weights, series};
+use crate::sh_shade::{gloss_on, light_on};
+use crate::sh_visibility::{Series, seen_above};
+use crate::sh_wedges::sh_wedges;
+use crate::tolerance::{ShadeError, twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
+use ridgelight::basis::bands;
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::basis::light::receiver;
+use ridgelight::basis::wedge::WedgeTable;
+use ridgelight::basis::zonal::phong_bands;
+use ridgelight::plan::Azimuth;
+use ridgelight::plan::lowest_rad;
+use ridgelight::scene::{Border, Environment, Phong, Quality, Wedges};
+
+/// What a sample sees: coefficients, and how far a device's may be from each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// n² of them.
+    pub values: Vec<f64>,
+    /// As many.
+    pub errors: Vec<f64>,
+}
+
+impl Seen {
+    /// What a sample sees from what nodes see, each with what it counts for.
+    pub fn between<'a>(
+        nodes: impl Iterator<Item = (&'a Seen, f64)> + Clone,
+        error: &ShadeError,
+    ) -> Self {
+        let counted = error.node_weight();
+        let sum = |of: &dyn Fn(&Seen, usize) -> f64, k: usize| {
+            nodes.clone().map(|(node, weight)| weight * of(node, k)).sum()
+        };
+        let count = nodes.clone().next().map_or(0, |(node, _)| node.values.len());
+        let off = |node: &Seen, k: usize| node.errors[k] + counted * node.values[k].abs();
+        Self {
+            values: (0..count).map(|k| sum(&|node, k| node.values[k], k)).collect(),
+            errors: (0..count).map(|k| sum(&off, k)).collect(),
+        }
+    }
+}
+
+/// An environment by spherical harmonics, in f64.
+#[derive(Clone, Debug)]
+pub struct Harmonics {
+    series: Series,
+    table: Option<WedgeTable>,
+    /// `[row of the receiver][coefficient]`, and how far a device's may be from each.
+    matrix: Vec<Vec<DVec3>>,
+    errors: Vec<Vec<DVec3>>,
+}
+
+impl Harmonics {
+    /// The light's matrix of a quality.
+    pub fn new(environment: &Environment, border: Border, quality: &Quality) -> Self {
+        Self::of(Some(environment), None, border, quality)
+    }
+
+    /// The same for lobes, by all bands of what is seen of an environment and a sky.
+    pub fn of_lobes(
+        environment: Option<&Environment>,
+        sky: [f32; 3],
+        border: Border,
+        quality: &Quality,
+    ) -> Self {
+        Self::of(environment, Some(sky), border, quality)
+    }
+
+    fn of(
+        environment: Option<&Environment>,
+        gloss: Option<[f32; 3]>,
+        border: Border,
+        quality: &Quality,
+    ) -> Self {
+        let order = quality.sh_order as usize;
+        let light_order = if gloss.is_some() { order } else { quality.light_order() };
+        let (height, fitted) =
+            (environment.map_or(1, Environment::height), is_fitted(quality, border));
+        let rows = match environment {
+            Some(_) if fitted => height.div_ceil(2),
+            Some(_) => height,
+            None => 0,
+        };
+        let turns = environment.map_or(Vec::new(), |e| env_turns(e, rows, light_order));
+        let mut light = series(&turns, height, light_order, fitted);
+        let matrix = match gloss {
+            None => light_matrix(quality, &light),
+            Some(sky) => {
+                add_sky(&mut light, sky);
+                gloss_matrix(quality, &light)
+            }
+        };
+        let turned = |environment: &Environment| -> Vec<Vec<DVec3>> {
+            let width = environment.width();
+            let of_row = |row: usize| {
+                let texels = environment.texels()[row * width..].iter().take(width);
+                let sum: DVec3 = texels.map(|l| DVec3::from_array(l.map(f64::from))).sum();
+                vec![twin_turn(width) * sum / width as f64; 2 * light_order - 1]
+            };
+            (0..rows).map(of_row).collect()
+        };
+        let turned = environment.map_or(Vec::new(), turned);
+        let summed = matrix_magnitudes(quality, border, height, &turns, gloss);
+        let turned = matrix_magnitudes(quality, border, height, &turned, gloss.map(|_| [0.0; 3]));
+        let rounded = twin_light_matrix(height);
+        let entry = |(s, t): (&DVec3, &DVec3)| rounded * *s + *t;
+        let row = |(s, t): (&Vec<DVec3>, &Vec<DVec3>)| s.iter().zip(t).map(entry).collect();
+        let series = Series { order, wedges: quality.wedges, receiver: quality.receiver };
+        let [side, azimuths] = [quality.wedge_side, quality.azimuths].map(|n| n as usize);
+        let table = (quality.wedges == Wedges::Table)
+            .then(|| WedgeTable::new(order, side, lowest_rad(border), TAU / azimuths as f64));
+        Self { table, series, matrix, errors: summed.iter().zip(&turned).map(row).collect() }
+    }
+
+    /// What is seen above slopes that err as `error` says, each that of the lowest direction that is free:
+    /// above the horizon, and for [`Receiver::Plane`](ridgelight::scene::Receiver::Plane) above the sample's own plane.
+    pub fn seen(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Seen {
+        let Series { order, wedges, .. } = self.series;
+        let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
+        let errors = bands(order).map(|(l, _)| of_band[l]).collect();
+        let values = match &self.table {
+            Some(table) => sh_wedges(table, lowest),
+            None => seen_above(self.series, lowest),
+        };
+        Seen { values, errors }
+    }
+
+    /// Exit radiance of albedo 1, 0 where harmonics ring below it, and how far a device's may be from it.
+    pub fn light(&self, normal: DVec3, seen: &Seen, error: &ShadeError) -> [DVec3; 2] {
+        let all = receiver(normal.to_array());
+        let rows = if self.matrix.len() == 3 { &all[1..4] } else { &all[..self.matrix.len()] };
+        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
+        for ((polynomial, row), errors) in rows.iter().zip(&self.matrix).zip(&self.errors) {
+            for (k, (entry, error)) in row.iter().zip(errors).enumerate() {
+                let (value, of_seen) = (seen.values[k].abs(), seen.errors[k]);
+                off += polynomial.abs() * (entry.abs() * of_seen + *error * (value + of_seen));
+                summed += entry.abs() * value;
+            }
+        }
+        let tolerance = off + twin_sh_shade(self.series.order, error.normal()) * summed;
+        let light = light_on(normal, &seen.values, &self.matrix);
+        [light.max(DVec3::ZERO), tolerance]
+    }
+
+    /// What a lobe mirrors straight upwards, of the matrix [`of_lobes`](Self::of_lobes), and how far a device's may be from
+    /// it.
+    pub fn mirrored(
+        &self,
+        normal: DVec3,
+        phong: Phong,
+        seen: &Seen,
+        error: &ShadeError,
+    ) -> [DVec3; 2] {
+        let order = self.series.order;
+        let (mut off, mut summed) = (DVec3::ZERO, DVec3::ZERO);
+        let mirrored = evaluate(order, 2.0 * normal.z * normal - DVec3::Z);
+        let kept = phong_bands(order, phong.exponent.into());
+        for (k, (l, _)) in bands(order).enumerate() {
+            let share = (kept[l] * mirrored[k]).abs();
+            for (j, (entry, error)) in self.matrix[k].iter().zip(&self.errors[k]).enumerate() {
+                let (value, of_seen) = (seen.values[j].abs(), seen.errors[j]);
+                off += share * (entry.abs() * of_seen + *error * (value + of_seen));
+                summed += kept[l] * entry.abs() * value;
+            }
+        }
+        let tolerance = off + twin_sh_gloss(order, error.normal()) * summed;
+        let light = gloss_on(normal, phong, &seen.values, &self.matrix);
+        [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
+    }
+}
+
+/// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with every
+/// product that they sum taken by its magnitude. `gloss`: of what arrives at a lobe, beside a sky.
+pub fn matrix_magnitudes(
+    quality: &Quality,
+    border: Border,
+    height: usize,
+    turns: &[Vec<DVec3>],
+    gloss: Option<[f32; 3]>,
+) -> Vec<Vec<DVec3>> {
+    let order = quality.sh_order as usize;
+    let light_order = turns.first().map_or(order, |row| row.len().div_ceil(2));
+    let fitted = is_fitted(quality, border);
+    let weights = row_weights((height, turns.len()), light_order, fitted);
+    let mut all: Vec<Vec<DVec3>> = Vec::new();
+    for (i, ((_, m), weights)) in bands(light_order).zip(weights).enumerate() {
+        let turn = (light_order - 1).wrapping_add_signed(m);
+        let mut sum = [weights.iter().zip(turns).map(|(w, t)| w.abs() * t[turn].abs()).sum()];
+        if let Some(sky) = gloss.filter(|_| i == 0) {
+            add_sky(&mut sum, sky);
+        }
+        // Light of 1 in this coefficient alone.
+        let mut unit = vec![DVec3::ZERO; light_order * light_order];
+        unit[i] = DVec3::ONE;
+        let shares = match gloss {
+            None => light_matrix(quality, &unit),
+            Some(_) => gloss_matrix(quality, &unit),
+        };
+        all.resize(shares.len(), vec![DVec3::ZERO; shares[0].len()]);
+        for (row, shares) in all.iter_mut().zip(&shares) {
+            row.iter_mut().zip(shares).for_each(|(entry, s)| *entry += s.abs() * sum[0]);
+        }
+    }
+    all
+}

@@ -1,0 +1,85 @@
+//! The light of an environment from what is seen of it.
+
+use crate::shared::field::{field_slope, normal_of};
+use crate::shared::sweep::Heights;
+use glam::{DVec2, DVec3};
+use ridgelight::basis::bands;
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::basis::light::receiver;
+use ridgelight::basis::zonal::phong_bands;
+use ridgelight::plan::Nodes;
+use ridgelight::scene::Phong;
+
+/// How far off each other's planes, over their distance, a sample and a node are where it counts half:
+/// the shader's, fitted there.
+pub const OFF_PLANE: f64 = 0.25;
+
+/// The nodes that a sample lies between, as (column, row) among them, and what each counts: bilinear
+/// weights, less where node and sample lie off each other's planes. They sum to 1.
+///
+/// # Panics
+/// Outside the field.
+pub fn nodes_around(heights: &Heights, nodes: Nodes, [col, row]: [i32; 2]) -> [([u32; 2], f64); 4] {
+    let size = [heights.cols as u32, heights.rows as u32];
+    let [cell_x, cell_y] = heights.cell_m.map(f64::from);
+    let (cols, x) = nodes.around(col as u32, size[0]);
+    let (rows, y) = nodes.around(row as u32, size[1]);
+    let h = f64::from(heights.at(col, row));
+    let slope = field_slope(heights, col, row);
+    let mut all = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
+        let node = [cols[i], rows[j]];
+        let [c, r] = [0, 1].map(|axis| nodes.place(node[axis], size[axis]) as i32);
+        let offset = DVec2::new(f64::from(c - col) * cell_x, f64::from(row - r) * cell_y);
+        let rise = f64::from(heights.at(c, r)) - h;
+        let theirs = field_slope(heights, c, r);
+        let off = (rise - slope.dot(offset)).abs() + (rise - theirs.dot(offset)).abs();
+        let distance = offset.length().max(cell_x.min(cell_y));
+        let near = [1.0 - x, x][i] * [1.0 - y, y][j];
+        (node, near / (1.0 + (off / (OFF_PLANE * distance)).powi(2)))
+    });
+    let sum: f64 = all.iter().map(|(_, weight)| weight).sum();
+    all.iter_mut().for_each(|(_, weight)| *weight /= sum);
+    all
+}
+
+/// Exit radiance of one sample of albedo 1, before what is below 0 is set to 0; `matrix` is
+/// [`crate::light_matrix`]'s.
+///
+/// # Panics
+/// Outside the field, or a matrix of neither receiver.
+pub fn light_at(
+    heights: &Heights,
+    seen: &[f64],
+    matrix: &[Vec<DVec3>],
+    [col, row]: [i32; 2],
+) -> DVec3 {
+    light_on(normal_of(field_slope(heights, col, row)), seen, matrix)
+}
+
+/// The same on a surface of this normal.
+///
+/// # Panics
+/// A matrix of neither receiver.
+pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+    let all = receiver(normal.to_array());
+    let rows = if matrix.len() == 3 { &all[1..4] } else { &all[..matrix.len()] };
+    times(rows, seen, matrix)
+}
+
+/// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
+/// [`crate::light_matrix::gloss_matrix`]'s.
+///
+/// # Panics
+/// A matrix of no order.
+pub fn gloss_on(normal: DVec3, phong: Phong, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+    let mirror = 2.0 * normal.z * normal - DVec3::Z;
+    let order = matrix.len().isqrt();
+    let kept = phong_bands(order, phong.exponent.into());
+    let rows = bands(order).zip(evaluate(order, mirror)).map(|((l, _), y)| kept[l] * y);
+    f64::from(phong.scale) * times(&rows.collect::<Vec<_>>(), seen, matrix)
+}
+
+fn times(rows: &[f64], seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+    let share = |row: &[DVec3]| row.iter().zip(seen).map(|(m, v)| *v * *m).sum::<DVec3>();
+    rows.iter().zip(matrix).map(|(r, row)| *r * share(row)).sum()
+}

@@ -1,0 +1,120 @@
+//! What the surface throws at every sample, for diffuse ground as [`bounce_gather`](crate::bounce_gather) with an exact
+//! cosine finds it, and as a series of spherical harmonics for the sample's lobe.
+
+use crate::bounce_gather::{BounceGather, March};
+use crate::shared::sweep::wrapped;
+use crate::shared::thrown::{Along, radiance};
+use glam::DVec3;
+use ridgelight::basis::azimuth::around;
+use ridgelight::basis::bands;
+use ridgelight::basis::harmonics::evaluate;
+use ridgelight::basis::slice::{Slices, slice_index};
+use std::f64::consts::TAU;
+
+/// Coefficients of a series, R, G, B.
+pub type Series = Vec<[f64; 3]>;
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct GlossGather<'a> {
+    /// Samples and levels; radiance where there are no series.
+    pub gather: BounceGather<'a>,
+    /// Of what arrives.
+    pub order: usize,
+    /// Series of exit radiance of the samples, and of the texels of all levels.
+    pub vectors: Option<[&'a [Series]; 2]>,
+}
+
+/// What arrives at a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arriving {
+    /// Light of one more bounce of a diffuse sample, for albedo 1.
+    pub diffuse: [f64; 3],
+    /// n² coefficients.
+    pub series: Series,
+}
+
+impl GlossGather<'_> {
+    /// What arrives at a sample.
+    ///
+    /// # Panics
+    /// Outside the field; when levels lack texels.
+    pub fn arriving(&self, place: [usize; 2]) -> Arriving {
+        self.of(&self.casts_along(place))
+    }
+
+    /// What it is made of, azimuth by azimuth, as [`BounceGather::casts_along`].
+    ///
+    /// # Panics
+    /// As [`Self::arriving`].
+    pub fn casts_along(&self, place: [usize; 2]) -> Vec<Along> {
+        self.gather.casts_of(place, |march, e, of| self.radiance(march, -e, of))
+    }
+
+    /// From what is cast.
+    pub fn of(&self, all: &[Along]) -> Arriving {
+        let Self { gather, order, .. } = self;
+        let slices = Slices::new(*order);
+        let width = TAU / f64::from(gather.azimuths);
+        let mut series = vec![[0.0; 3]; order * order];
+        for along in all {
+            let turns = around(*order, along.azimuth_rad);
+            for cast in &along.casts {
+                let between = slices.between(cast.low_rad, cast.high_rad);
+                for ((l, m), coefficient) in bands(*order).zip(&mut series) {
+                    let turn = turns[(order - 1).wrapping_add_signed(m)];
+                    let share = width * turn * between[slice_index(l, m.unsigned_abs())];
+                    *coefficient = [0, 1, 2].map(|c| coefficient[c] + share * cast.radiance[c]);
+                }
+            }
+        }
+        Arriving { diffuse: radiance(all), series }
+    }
+
+    /// Radiance that leaves a place in a direction; what is below 0 is 0.
+    fn radiance(&self, march: &March, towards: DVec3, of: ([f64; 2], u32)) -> [f64; 3] {
+        let Some([exit, levels]) = self.vectors else { return self.gather.radiance(march, of) };
+        let values = evaluate(self.order, towards);
+        let of_texel = |series: &Series| {
+            let terms = series.iter().zip(&values);
+            terms.fold([0.0; 3], |sum, (s, y)| [0, 1, 2].map(|c| sum[c] + s[c] * y))
+        };
+        let mut sum = [0.0; 3];
+        for (texel, weight) in self.taps(march, of) {
+            let series = if of.1 == 0 { &exit[texel] } else { &levels[texel] };
+            let light = of_texel(series);
+            sum = [0, 1, 2].map(|c| sum[c] + weight * light[c]);
+        }
+        sum.map(|v| v.max(0.0))
+    }
+
+    /// Texels of a level around a place, with their bilinear weights.
+    fn taps(&self, march: &March, (place, number): ([f64; 2], u32)) -> Vec<(usize, f64)> {
+        if number == 0 {
+            let ([low, high], t) = self.gather.beside(march, place);
+            return vec![(low, 1.0 - t), (high, t)];
+        }
+        let shade = self.gather.shade;
+        let level = shade.level(number);
+        let [cols, rows] = level.size.map(|n| n as i32);
+        let at = [0, 1].map(|i| place[i] as f32 * level.per_sample[i]);
+        let two = |place: f32, count: i32| {
+            let cell = place.floor() as i32;
+            if shade.periodic {
+                let at = [cell, cell + 1].map(|i| wrapped(i, count));
+                return (at, f64::from(place - cell as f32));
+            }
+            let held = cell.clamp(0, (count - 2).max(0));
+            ([held, (held + 1).min(count - 1)], f64::from(place - held as f32).clamp(0.0, 1.0))
+        };
+        let ((x, t), (y, u)) = (two(at[0], cols), two(at[1], rows));
+        let texel = |i: usize, j: usize| level.first as usize + (y[j] * cols + x[i]) as usize;
+        let mut taps = Vec::new();
+        for j in 0..2 {
+            for i in 0..2 {
+                taps.push((texel(i, j), [1.0 - t, t][i] * [1.0 - u, u][j]));
+            }
+        }
+        taps
+    }
+}

@@ -1,0 +1,4 @@
+pub mod gloss_exit;
+pub mod gloss_gather;
+pub mod gloss_seen;
+pub mod sun_gloss;

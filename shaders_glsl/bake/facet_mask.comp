@@ -1,0 +1,63 @@
+// Computes: from which of some directions each flat triangle of the field is seen, asked at its middle.
+// Reads: cells, maxima, directions (east, north, up). Writes: facet_mask (see bake/facets.glsl).
+// One invocation is one cell and fifteen directions.
+#version 460
+#extension GL_KHR_shader_subgroup_vote : require
+
+#include "shared/conventions.glsl"
+#include "bake/facets.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+// As in path_trace.
+layout(constant_id = 1) const int MOST_STEPS = 60000;
+// A field one sample wide that does not repeat has no triangles.
+const bool THIN_ROWS = false;
+const bool THIN_COLS = false;
+
+layout(binding = 0) uniform texture2D cells;
+layout(binding = 1) uniform texture2D maxima;
+layout(binding = 2) uniform textureBuffer directions;
+layout(binding = 3, r32ui) uniform writeonly uimage2DArray facet_mask;
+
+layout(push_constant) uniform FacetMaskPush {
+    int cols;
+    int rows;
+    int cells_x;
+    int cells_y;
+    int padded_rows;
+    int top_level;
+    float cell_x_m;
+    float cell_y_m;
+    float highest_m;
+    int first_layer;
+    int first_direction;  // among the texels of directions
+    int end_direction;    // there are no more from here on
+};
+
+#include "rays/trace.glsl"
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    int layer = first_layer + int(gl_WorkGroupID.z);
+    bool alive = at.x < cells_x && at.y < cells_y;
+    ivec2 here = min(at, ivec2(cells_x, cells_y) - 1);
+    vec4 corners = texelFetch(cells, here, 0);
+    uint word = 0u;
+    for (int bit = 0; bit < 2 * FACET_DIRECTIONS; bit++) {
+        int i = first_direction + FACET_DIRECTIONS * layer + (bit >> 1);
+        bool asked = alive && i < end_direction;
+        vec3 e = texelFetch(directions, min(i, end_direction - 1)).xyz;
+        bool is_south = (bit & 1) == 1;
+        vec2 middle = is_south ? vec2(1.0, 2.0) / 3.0 : vec2(2.0, 1.0) / 3.0;
+        float third = is_south ? corners.z : corners.y;
+        float own = third + ((corners.x - third) + (corners.w - third)) / 3.0;
+        Met met = trace(ray_from(here, middle, own, e, vec2(cell_x_m, cell_y_m)), 1e30, asked);
+        word |= asked && met.what == RAY_FREE ? 1u << bit : 0u;
+        word |= asked && met.what == RAY_LOST ? FACET_LOST : 0u;
+    }
+    if (alive) {
+        imageStore(facet_mask, ivec3(at, layer), uvec4(word));
+    }
+}

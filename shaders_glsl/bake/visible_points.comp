@@ -1,0 +1,70 @@
+// Computes: which sample each sample sees in each of some directions: that nearest to where a ray meets the surface.
+// Reads: cells, maxima, ground, directions (east, north, up). Writes: visible_points (see bake/points.glsl).
+// One invocation is one sample and one layer: one direction, or two of a small field.
+#version 460
+#extension GL_KHR_shader_subgroup_vote : require
+
+#include "shared/conventions.glsl"
+#include "bake/points.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+// A field one sample wide that does not repeat is a line: only rays along it meet it.
+layout(constant_id = 1) const bool THIN_ROWS = false;
+layout(constant_id = 2) const bool THIN_COLS = false;
+// As in path_trace.
+layout(constant_id = 3) const int MOST_STEPS = 60000;
+// Two directions in a word.
+layout(constant_id = 4) const bool SMALL = false;
+
+layout(binding = 0) uniform texture2D cells;
+layout(binding = 1) uniform texture2D maxima;
+layout(binding = 2) uniform texture2D ground;
+layout(binding = 3) uniform textureBuffer directions;
+layout(binding = 4, r32ui) uniform writeonly uimage2DArray visible_points;
+
+layout(push_constant) uniform VisiblePointsPush {
+    int cols;
+    int rows;
+    int cells_x;
+    int cells_y;
+    int padded_rows;
+    int top_level;
+    float cell_x_m;
+    float cell_y_m;
+    float highest_m;
+    int first_layer;      // of the image
+    int first_direction;  // the image's first, among the texels of directions
+    int end_direction;    // there are no more from here on
+};
+
+#include "rays/trace.glsl"
+
+uint seen_along(int i, ivec2 here, float own, bool alive) {
+    vec3 e = texelFetch(directions, min(i, end_direction - 1)).xyz;
+    Met met = trace(ray_from(here, vec2(0.0), own, e, vec2(cell_x_m, cell_y_m)), 1e30, alive && i < end_direction);
+    ivec2 size = ivec2(cols, rows);
+    ivec2 near = met.cell + ivec2(floor(met.offset + 0.5));
+    near = BORDER == BORDER_PERIODIC ? near - ivec2(near.x >= cols ? cols : 0, near.y >= rows ? rows : 0)
+                                     : min(near, size - 1);
+    uint seen = met.what == RAY_HIT ? uint(near.y << 16 | near.x) : SEES_SKY;
+    seen = met.what == RAY_GROUND ? SEES_GROUND : seen;
+    return met.what == RAY_LOST ? SEES_LOST : seen;
+}
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    int layer = first_layer + int(gl_WorkGroupID.z);
+    bool alive = at.x < cols && at.y < rows;
+    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    float own = texelFetch(ground, here, 0).x;
+    uint word = 0u;
+    for (int k = 0; k < (SMALL ? 2 : 1); k++) {
+        int i = SMALL ? 2 * layer + k : layer;
+        word |= word_of(seen_along(first_direction + i, here, own, alive), i, SMALL);
+    }
+    if (alive) {
+        imageStore(visible_points, ivec3(at, layer), uvec4(word));
+    }
+}

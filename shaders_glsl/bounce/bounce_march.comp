@@ -1,0 +1,209 @@
+// Computes: what the surface throws at every sample, exactly but for the azimuths: along each the stretches
+// of surface that the sample sees, each with its cosine-weighted part of the slice in closed form
+// and its radiance where the weighted mean of its distances lies.
+// Reads: cells, maxima, ground, exit_radiance. Reads and writes: bounce_sum (exit radiance for albedo 1; until
+// the last azimuths not yet divided by its A, what whole hemispheres would have given).
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
+#version 460
+#extension GL_KHR_shader_subgroup_vote : require
+
+#include "shared/angle.glsl"
+#include "bounce/cosine.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+// A field one sample wide that does not repeat is a line: it throws nothing.
+layout(constant_id = 1) const bool THIN_ROWS = false;
+layout(constant_id = 2) const bool THIN_COLS = false;
+// More than a ray of this field can ask for; llvmpipe ends all loops together after 65,535 turns.
+layout(constant_id = 3) const int MOST_STEPS = 60000;
+// Radiance of one channel.
+layout(constant_id = 4) const bool GREY = false;
+// Samples from node to node: 1, 2, 4 or 8.
+layout(constant_id = 5) const int NODE_STRIDE = 1;
+
+layout(binding = 0) uniform texture2D cells;
+layout(binding = 1) uniform texture2D maxima;
+layout(binding = 2) uniform texture2D ground;
+layout(binding = 3) uniform texture2D exit_radiance;
+layout(binding = 4, rgba32f) uniform image2D bounce_sum;
+
+layout(push_constant) uniform BounceMarchPush {
+    int cols;
+    int rows;
+    int cells_x;
+    int cells_y;
+    int padded_rows;
+    int top_level;
+    float cell_x_m;
+    float cell_y_m;
+    int azimuths;       // of the circle, at the middles of equal parts
+    int first_azimuth;  // of this dispatch
+    int last_azimuth;   // not itself
+};
+
+#include "rays/walk.glsl"
+#include "shared/nodes.glsl"
+
+// The slice.
+Facing facing;
+// So far: up to which slope the surface is seen, what it throws, and what the last stretch radiates.
+float reached;
+vec3 thrown;
+vec3 last_radiance;
+
+vec3 radiance_at(ivec2 at) {
+    vec4 texel = texelFetch(exit_radiance, at, 0);
+    return GREY ? texel.xxx : texel.rgb;
+}
+
+// Radiance of a cell's corners: north-west, north-east, south-west, south-east.
+vec3 corners_of[4];
+
+// Linear on each of the cell's triangles.
+vec3 radiance_within(vec2 at) {
+    vec3 north = corners_of[0] + at.x * (corners_of[1] - corners_of[0]) + at.y * (corners_of[3] - corners_of[1]);
+    vec3 south = corners_of[0] + at.y * (corners_of[2] - corners_of[0]) + at.x * (corners_of[3] - corners_of[2]);
+    return at.y <= at.x ? north : south;
+}
+
+// How far along a piece of surface, between two (distance, height) with shares 0 and 1, an elevation meets it.
+float share_at(vec2 begin, vec2 end, vec2 direction) {
+    float under = begin.y * direction.x - direction.y * begin.x;
+    float over = end.y * direction.x - direction.y * end.x;
+    return clamp(under / min(under - over, -1e-30), 0.0, 1.0);
+}
+
+// Takes a piece in: from `reached` up to where it ends, if that is higher. `place` and `advance` are where in
+// the cell it begins, and its way through it.
+void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
+    float slope = end.y / max(end.x, 1e-30);
+    bool rises = end.x > begin.x && slope > reached;
+    vec2 low = direction_of(reached);
+    vec2 high = direction_of(max(slope, reached));
+    float weight = max(light_between(facing, low, high), 0.0);
+    // Gauss' rule of two points over the stretch's elevations: at 1/sqrt(3) of its half width beside its middle.
+    vec2 middle = normalize(low + high);
+    float beside = 0.5773502691896258 * half_width(low, high);
+    vec2 turn = vec2(cosine(beside), sine(beside));
+    vec2 before = vec2(middle.x * turn.x + middle.y * turn.y, middle.y * turn.x - middle.x * turn.y);
+    vec2 after = vec2(middle.x * turn.x - middle.y * turn.y, middle.y * turn.x + middle.x * turn.y);
+    float weight_before = max(facing_of(facing, before), 0.0) * before.x;
+    float weight_after = max(facing_of(facing, after), 0.0) * after.x;
+    float both = max(weight_before + weight_after, 1e-30);
+    float share = (weight_before * share_at(begin, end, before) + weight_after * share_at(begin, end, after)) / both;
+    // No rounding makes it less than nothing.
+    vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
+    float counts = rises ? weight : 0.0;
+    thrown += counts * radiance;
+    last_radiance = rises ? radiance : last_radiance;
+    reached = rises ? slope : reached;
+}
+
+// The surface as far as any of it may be seen.
+void march(Ray ray, bool going) {
+    ivec2 cells_of = ivec2(cells_x, cells_y);
+    float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
+    float step_m = 1.0 / ray.scale;
+    Walk walk = walk_from(ray);
+    going = going && !walk.leaves;
+    for (int turn = 0; turn < MOST_STEPS; turn++) {
+        // Left by all lanes together, as in horizon_sweep.
+        if (!subgroupAny(going)) {
+            break;
+        }
+        Block block = block_of(walk, ray);
+        ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
+        vec4 corners = texelFetch(cells, fetched, 0);
+        int shown = max(walk.level, 1);
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float rise = reached * step_m;
+        bool is_cell = walk.level == 0;
+        bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
+        // The cell: where the ray enters it, its diagonal, and where it leaves.
+        vec2 from = ray.offset + vec2(ray.base - walk.cell);
+        float apart = ray.advance.x - ray.advance.y;
+        float t_split = abs(apart) < 1e-30 ? -1.0 : (from.y - from.x) / apart;
+        bool is_split = t_split > walk.t && t_split < block.ahead;
+        float t_middle = is_split ? t_split : walk.t;
+        vec2 at_entry = clamp(from + walk.t * ray.advance, 0.0, 1.0);
+        vec2 at_middle = clamp(from + t_middle * ray.advance, 0.0, 1.0);
+        vec2 at_exit = clamp(from + block.ahead * ray.advance, 0.0, 1.0);
+        vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, at_entry));
+        vec2 middle = vec2(t_middle * step_m, (corners.x - ray.own) + at_middle.x * (corners.w - corners.x));
+        middle.y = is_split ? middle.y : entry.y;
+        vec2 exit = vec2(block.ahead * step_m, cell_rise(corners, ray.own, at_exit));
+        // No rounding lifts the sample off the surface.
+        entry.y = walk.t > 0.0 ? entry.y : 0.0;
+        middle.y = t_middle > 0.0 ? middle.y : 0.0;
+        float middle_slope = middle.y / max(middle.x, 1e-30);
+        float exit_slope = exit.y / max(exit.x, 1e-30);
+        // Not split, the middle is the entry, whose slope was taken in before.
+        float split_slope = max(middle_slope, exit_slope);
+        float steepest = is_split ? split_slope : exit_slope;
+        bool looks = going && is_cell && block.ahead > walk.t && steepest > reached;
+        if (subgroupAny(looks)) {
+            ivec2 size = ivec2(cols, rows);
+            ivec2 next = fetched + 1;
+            next *= ivec2(lessThan(next, size));
+            corners_of[0] = radiance_at(fetched);
+            corners_of[1] = radiance_at(ivec2(next.x, fetched.y));
+            corners_of[2] = radiance_at(ivec2(fetched.x, next.y));
+            corners_of[3] = radiance_at(next);
+            float reached_before = reached;
+            vec3 thrown_before = thrown;
+            vec3 last_before = last_radiance;
+            see(entry, middle, at_entry, at_middle - at_entry);
+            see(middle, exit, at_middle, at_exit - at_middle);
+            reached = looks ? reached : reached_before;
+            thrown = looks ? thrown : thrown_before;
+            last_radiance = looks ? last_radiance : last_before;
+        }
+        walk_on(walk, ray, block, going, clear, top_level);
+        bool is_over = reached >= 0.0 && walk.t > 0.0 && walk.t * reached * step_m >= highest;
+        going = going && !walk.leaves && !is_over && (BORDER != BORDER_PERIODIC || walk.t < REACH_CELLS);
+    }
+}
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 nodes = ivec2(node_count(cols, NODE_STRIDE), node_count(rows, NODE_STRIDE));
+    bool exists = at.x < nodes.x && at.y < nodes.y;
+    ivec2 here = min(at * NODE_STRIDE, ivec2(cols, rows) - 1);
+    vec4 own = texelFetch(ground, here, 0);
+    float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
+    bool is_line = THIN_ROWS || THIN_COLS;
+    vec4 sum = vec4(0.0);
+    for (int k = first_azimuth; k < last_azimuth; k++) {
+        // Half a turn counted from west, in halves: the sines' range.
+        float half_turn = PI * ((float(k) + 0.5) / float(azimuths) - 0.5);
+        vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
+        vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
+                       2.0 * half_direction.x * half_direction.y);
+        // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+        e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
+        // The sample's own plane rises towards the azimuth with the field's slope.
+        float own_slope = own.y * e.x + own.z * e.y;
+        facing = Facing(-own_slope * up, up);
+        reached = own_slope;
+        thrown = vec3(0.0);
+        last_radiance = vec3(0.0);
+        march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
+        if (BORDER == BORDER_PERIODIC) {
+            // What has met nothing up to horizontal goes on over the same land for ever.
+            float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);
+            thrown += rest * last_radiance;
+        }
+        sum += vec4(thrown, light_between(facing, direction_of(own_slope), vec2(0.0, 1.0)));
+    }
+    if (exists) {
+        vec4 before = imageLoad(bounce_sum, at);
+        vec4 both = before + sum;
+        sum = first_azimuth > 0 ? both : sum;
+        // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is.
+        vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), 1.0);
+        bool is_whole = last_azimuth == azimuths;
+        imageStore(bounce_sum, at, is_whole ? light : sum);
+    }
+}

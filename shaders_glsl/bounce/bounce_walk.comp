@@ -1,0 +1,350 @@
+// Computes: what the ground around every sample throws onto it in the azimuths of a batch, added to what
+// earlier ones gave: the visible stretches of the sample's own lines, nearest first, each with its own
+// radiance and weighed in closed form. What a swept line met at its samples is a hull tree of it
+// (Timonen 2012): all between a sample and what it meets lies below the straight line between the two.
+// Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey). Reads and writes: bounce_sum (exit
+// radiance for albedo 1; until the last dispatch not yet divided by its A, what whole hemispheres would give). Writes:
+// casting_sets (of every second node).
+// One invocation is one sample, or one node: bounce_sum has a texel for each.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Side by side along the march, as the steps of a line lie in the lattice.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const int LINE_SHIFT = 15;
+layout(constant_id = 1) const uint BORDER = 0u;
+layout(constant_id = 2) const bool MARCHES_ROWS = false;
+// Radiance of one channel.
+layout(constant_id = 3) const bool GREY = false;
+// Samples from node to node: 1, 2, 4 or 8.
+layout(constant_id = 4) const int NODE_STRIDE = 1;
+// From which nodes: all, or those of every second lane and of the last, of which every second along and the last keep
+// what is seen for later bounces, or those of the other lanes. Whole lanes, as steps side by side walk alike.
+layout(constant_id = 5) const uint FROM = 0u;
+const uint FROM_KEPT = 1u;
+const uint FROM_REST = 2u;
+const bool KEEPS_CASTS = FROM == FROM_KEPT;
+const int LANE_STRIDE = 1;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+layout(binding = 1) uniform textureBuffer azimuths;
+layout(binding = 2, rg32ui) uniform readonly uimage2DArray occluders;
+layout(binding = 3, rgba32f) uniform readonly image2D exit_radiance;
+layout(binding = 4, r32f) uniform readonly image2D exit_grey;
+layout(binding = 5, rgba32f) uniform image2D bounce_sum;
+layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray casting_sets;
+
+#include "shared/angle.glsl"
+#include "shared/lattice.glsl"
+#include "shared/quad.glsl"
+#include "shared/nodes.glsl"
+#include "bounce/casting_set.glsl"
+
+layout(push_constant) uniform BounceWalkPush {
+    int cols;
+    int rows;
+    float cell_x_m;
+    float cell_y_m;
+    int warm_up;
+    uint first_azimuth;
+    uint azimuth_count;
+    uint clears;  // 1 in the first dispatch of a bounce
+    uint is_last; // 1 in the last
+    uint begin;   // of the bounces' azimuths
+};
+
+// The sample, in the lanes and steps of the azimuth that is walked.
+Azimuth azimuth;
+uint azimuth_index;
+int lanes;
+int steps;
+int own_lane;
+int own_step;
+float own_height;
+ivec2 own_node;      // where its sum lies
+ivec2 own_kept_node; // and its casting sets, where they are kept
+bool own_is_kept;
+
+// A place of the sample's own line: two lanes and how far it lies between them.
+struct Place {
+    int lane;
+    int next;
+    int march;
+    float t;
+};
+
+// Both ends of each choice are computed: SwiftShader's compiler takes minutes over branches here.
+Place place_at(int back) {
+    int y = own_lane * CELL - back * azimuth.shear;
+    int step = own_step - back;
+    int cell = y >> CELL_SHIFT;
+    int lane_round = wrapped(cell, lanes);
+    int lane_held = clamp(cell, 0, lanes - 1);
+    int lane = BORDER == BORDER_PERIODIC ? lane_round : lane_held;
+    int next_round = wrapped(lane + 1, lanes);
+    int next_held = min(lane + 1, lanes - 1);
+    int next = BORDER == BORDER_PERIODIC ? next_round : next_held;
+    int step_round = wrapped(step, steps);
+    int step_held = max(step, 0);
+    int on = BORDER == BORDER_PERIODIC ? step_round : step_held;
+    float t = float(y & (CELL - 1)) * (1.0 / float(CELL));
+    int first = lane_position(azimuth, lane, lanes);
+    int second = lane_position(azimuth, next, lanes);
+    return Place(first, second, march_position(azimuth, on, steps), t);
+}
+
+// As quad.glsl's, chosen without branches.
+float height_of(int lane, int march) {
+    vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
+    vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
+    return mix(two.x, two.y, (lane & 1) != 0);
+}
+
+float slope_at(int back) {
+    Place p = place_at(back);
+    float h = height_of(p.lane, p.march);
+    precise float rise = p.t * (height_of(p.next, p.march) - h);
+    precise float above = (h + rise) - own_height;
+    return above / (float(back) * azimuth.step_m);
+}
+
+vec3 leaving(int lane, int march) {
+    ivec2 by_row = ivec2(lane, march);
+    ivec2 by_col = ivec2(march, lane);
+    ivec2 at = MARCHES_ROWS ? by_row : by_col;
+    // Not left early: that makes loops of functions, which SwiftShader's compiler takes gigabytes over.
+    vec3 colour;
+    if (GREY) {
+        colour = imageLoad(exit_grey, at).xxx;
+    } else {
+        colour = imageLoad(exit_radiance, at).rgb;
+    }
+    return colour;
+}
+
+vec3 light_at(int back) {
+    Place p = place_at(back);
+    return mix(leaving(p.lane, p.march), leaving(p.next, p.march), p.t);
+}
+
+// Steps from a place of the own line to what the nearest swept line meets there; 0 where that meets nothing.
+int occluder_at(int back) {
+    bool wraps = BORDER == BORDER_PERIODIC;
+    int spacing = 1 << LINE_SHIFT;
+    int lead = lattice_lead(azimuth.shear, warm_up + steps, LINE_SHIFT, wraps);
+    int lines = lattice_lines(lanes, lead, LINE_SHIFT, wraps);
+    int step = own_step - back;
+    int step_round = wrapped(step, steps);
+    int step_held = max(step, 0);
+    int on = (wraps ? step_round : step_held) + warm_up;
+    int origin = on * azimuth.shear - lead * spacing;
+    int from_origin = own_lane * CELL - back * azimuth.shear - origin;
+    // The nearer one; of two, the one before.
+    int nearest = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
+    int first = (spacing - 1 - origin) >> LINE_SHIFT;
+    int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
+    bool stands = wraps || first <= last;
+    int line_round = wrapped(nearest, lines);
+    int line_held = clamp(nearest, max(first, 0), max(last, 0));
+    int line = wraps ? line_round : line_held;
+    uvec2 texel = imageLoad(occluders, lattice_texel(azimuth, line, on)).xy;
+    uint word = mix(texel.x, texel.y, (line & 2) != 0);
+    uint low = word & 0xffffu;
+    uint high = word >> 16;
+    int found = int(mix(low, high, (line & 1) != 0));
+    return stands ? found : 0;
+}
+
+// Whether the own line crosses the diagonal of the sample's cell within its first step: (1, 0) to (0, 1), by
+// (u, u * shear) at u = 1 / (1 + shear).
+bool crosses_split() {
+    bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
+    bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
+    return flips_march != flips_lanes && (BORDER == BORDER_PERIODIC || own_lane > 0);
+}
+
+// The ends of that diagonal: the sample's neighbours across the lanes, and ahead.
+ivec4 split_ends() {
+    int low_round = wrapped(own_lane - 1, lanes);
+    int low_held = max(own_lane - 1, 0);
+    int low = BORDER == BORDER_PERIODIC ? low_round : low_held;
+    int ahead_round = wrapped(own_step - 1, steps);
+    int ahead_held = max(own_step - 1, 0);
+    int ahead = BORDER == BORDER_PERIODIC ? ahead_round : ahead_held;
+    return ivec4(lane_position(azimuth, low, lanes), march_position(azimuth, own_step, steps),
+                 lane_position(azimuth, own_lane, lanes), march_position(azimuth, ahead, steps));
+}
+
+vec2 moments_above(float slope) {
+    Moments moments = elevation_moments(vec4(slope));
+    return vec2(moments.flat_part.x, moments.vertical.x);
+}
+
+// How far a walk has come: what is reached is seen up to `reached`, the slope of its last place that rose.
+vec2 faces;
+vec2 passed;
+float reached;
+vec3 thrown;
+
+void throw_light(vec2 opened, vec3 light) {
+    thrown += dot(faces, opened) * light;
+}
+
+// The casting set so far, ring by ring: weights, and those times the distance in steps.
+vec4 ring_weights;
+vec4 ring_moments;
+
+// A stretch, with the middle of what is seen of it.
+void take_cast(float middle, vec2 opened, bool on) {
+    float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
+    vec3 within = vec3(lessThan(vec3(middle), RING_ENDS));
+    vec4 of_rings = weight * (vec4(within, 1.0) - vec4(0.0, within));
+    ring_weights += of_rings;
+    ring_moments += middle * of_rings;
+}
+
+// What is thrown along the azimuth, on a surface with this normal that rises by `plane` along it; and what
+// radiance 1 from all of its directions would give.
+vec4 walked(vec3 normal, float plane) {
+    int reach = own_step + warm_up;
+    if (BORDER != BORDER_PERIODIC && azimuth.shear > 0) {
+        reach = min(reach, own_lane * CELL / azimuth.shear);
+    }
+    // Behind what the nearest line meets nothing rises.
+    int limit = min(max(occluder_at(0), 1), reach);
+    bool walking = limit > 0;
+
+    faces = vec2(normal.x * azimuth.wedge_cos + normal.y * azimuth.wedge_sin, normal.z * azimuth.wedge_rad);
+    passed = moments_above(plane);
+    float whole = dot(faces, passed);
+    thrown = vec3(0.0);
+    ring_weights = vec4(0.0);
+    ring_moments = vec4(0.0);
+    reached = plane;
+    // The triangle that holds the sample: what leads into it meets it at once. Its end is the cell's diagonal,
+    // where that is crossed, else the first step.
+    bool split = crosses_split();
+    ivec4 ends = split_ends();
+    float u = 1.0 / (1.0 + float(azimuth.shear) * (1.0 / float(CELL)));
+    float side = height_of(ends.x, ends.y);
+    precise float rise = (side - own_height) + u * (height_of(ends.z, ends.w) - side);
+    precise float split_slope = rise / (u * azimuth.step_m);
+    vec3 own_light = leaving(lane_position(azimuth, own_lane, lanes), ends.y);
+    vec3 split_light = mix(leaving(ends.x, ends.y), leaving(ends.z, ends.w), u);
+    bool sees_split = walking && split && split_slope > reached;
+    vec2 split_moments = moments_above(split_slope);
+    vec2 split_opened = mix(vec2(0.0), passed - split_moments, bvec2(sees_split));
+    throw_light(split_opened, own_light);
+    if (KEEPS_CASTS) {
+        take_cast(0.0, split_opened, sees_split);
+    }
+    passed = mix(passed, split_moments, bvec2(sees_split));
+    reached = sees_split ? split_slope : reached;
+    // Where the next piece begins: its distance in steps, slope, and radiance.
+    int at = 0;
+    float from = split ? u : 0.0;
+    float slope = split ? split_slope : plane;
+    vec3 light = mix(own_light, split_light, bvec3(split));
+    // At most one turn a step. Neither branch nor vote stands in it: llvmpipe (Mesa 22.3) goes through both sides of the
+    // one and makes eight branches of the other. As it also lets a lane that has left the loop go on computing, what a
+    // turn finds counts where the lane is still walking, of which `turns_on` tells the compiler nothing.
+    int turns_on = int(walking);
+    while (turns_on > 0) {
+        int met = occluder_at(at);
+        int back = at == 0 ? 1 : met;
+        walking = walking && back > 0;
+        int next = min(at + 1, max(limit, 1));
+        int to = clamp(at + back, next, max(limit, 1));
+        float to_slope = slope_at(to);
+        // What lies between may rise as well.
+        bool searches = walking && to_slope > reached && to > next;
+        float next_slope = slope_at(next);
+        to = searches ? next : to;
+        to_slope = searches ? next_slope : to_slope;
+        bool sees = walking && to_slope > reached;
+        bool is_own = at == 0 && !split;
+        vec3 there = light_at(to);
+        vec3 far = mix(there, own_light, bvec3(is_own));
+        // Where the piece comes up over what is before it: radiance is linear.
+        float under = max(reached - slope, 0.0) * from;
+        float over = (to_slope - reached) * float(to);
+        float hidden = under / max(under + over, 1e-30);
+        vec3 begins = mix(light, far, hidden);
+        vec2 now = moments_above(to_slope);
+        vec2 opened = mix(vec2(0.0), passed - now, bvec2(sees));
+        throw_light(opened, mix(vec3(0.0), 0.5 * (begins + far), bvec3(sees)));
+        if (KEEPS_CASTS) {
+            float begin_of = mix(from, float(to), hidden);
+            float middle = mix(0.5 * (begin_of + float(to)), 0.0, is_own);
+            take_cast(middle, opened, sees);
+        }
+        passed = mix(passed, now, bvec2(sees));
+        reached = sees ? to_slope : reached;
+        light = mix(light, there, bvec3(walking));
+        at = walking ? to : at;
+        from = walking ? float(to) : from;
+        slope = walking ? to_slope : slope;
+        walking = walking && at < limit;
+        turns_on = int(walking);
+    }
+    if (KEEPS_CASTS) {
+        vec4 steps_to = ring_moments / max(ring_weights, vec4(1e-30));
+        uvec4 kept = casts_of(steps_to, ring_weights / azimuth.wedge_rad);
+        if (own_is_kept) {
+            imageStore(casting_sets, ivec3(own_kept_node, int(azimuth_index - begin)), kept);
+        }
+    }
+    return vec4(thrown, whole);
+}
+
+void main() {
+    lanes = MARCHES_ROWS ? cols : rows;
+    steps = MARCHES_ROWS ? rows : cols;
+    int along = int(gl_GlobalInvocationID.x);
+    int across = int(gl_GlobalInvocationID.y);
+    int nodes_across = node_count(lanes, NODE_STRIDE);
+    int nodes_along = node_count(steps, NODE_STRIDE);
+    if (FROM == FROM_KEPT) {
+        if (across >= node_count(lanes, 2 * NODE_STRIDE)) {
+            return;
+        }
+        own_is_kept = is_second(along, nodes_along);
+        own_kept_node = texel_at(across, (along + 1) / 2);
+        across = second_node(across, nodes_across);
+    } else if (FROM == FROM_REST) {
+        across = 2 * across + 1;
+        if (is_second(across, nodes_across)) {
+            return;
+        }
+    }
+    if (across >= nodes_across || along >= nodes_along) {
+        return;
+    }
+    own_node = texel_at(across, along);
+    int lane = node_place(across, lanes, NODE_STRIDE);
+    int march = node_place(along, steps, NODE_STRIDE);
+    Quad q = quad_at(lane & ~3, march, lanes, steps);
+    vec4 easts;
+    vec4 norths;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), easts, norths);
+    float east = easts[lane & 3];
+    float north = norths[lane & 3];
+    vec3 normal = vec3(-east, -north, 1.0) * inversesqrt(1.0 + east * east + north * north);
+    own_height = height_of(lane, march);
+    vec4 sum = vec4(0.0);
+    if (clears == 0u) {
+        sum = imageLoad(bounce_sum, own_node);
+    }
+    for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
+        azimuth = azimuth_at(azimuths, k);
+        azimuth_index = k;
+        own_lane = lane_position(azimuth, lane, lanes);
+        own_step = march_position(azimuth, march, steps);
+        sum += walked(normal, east * azimuth.cos_phi + north * azimuth.sin_phi);
+    }
+    // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is. Later bounces of
+    // casting sets divide by the same.
+    vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), sum.a);
+    imageStore(bounce_sum, own_node, mix(sum, light, bvec4(is_last != 0u)));
+}

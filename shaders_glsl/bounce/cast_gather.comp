@@ -1,0 +1,81 @@
+// Computes: what every node sees of one more bounce: the radiance of each ring of its casting sets, which the first
+// bounce has left, times its weight.
+// Reads: casting_sets, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce, whose every second node
+// this one's are: in A what whole hemispheres would give, which divides). Writes: bounce_sum (exit radiance for albedo 1).
+// One invocation is one node.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+// Radiance of one channel.
+layout(constant_id = 1) const bool GREY = false;
+// Samples from node to node: 4 or 8.
+layout(constant_id = 2) const int NODE_STRIDE = 4;
+
+layout(binding = 0, rgba32ui) uniform readonly uimage2DArray casting_sets;
+layout(binding = 1) uniform textureBuffer azimuths;
+layout(binding = 2, rgba32f) uniform readonly image2D exit_radiance;
+layout(binding = 3, r32f) uniform readonly image2D exit_grey;
+layout(binding = 4, rgba32f) uniform readonly image2D node_sum;
+layout(binding = 5, rgba32f) uniform writeonly image2D bounce_sum;
+
+layout(push_constant) uniform CastGatherPush {
+    int cols;
+    int rows;
+    uint begin;  // of the bounces' azimuths
+    uint count;
+};
+
+#include "horizon/sweep.glsl"
+#include "shared/nodes.glsl"
+#include "bounce/casting_set.glsl"
+
+vec3 leaving(ivec2 at) {
+    vec3 colour;
+    if (GREY) {
+        colour = imageLoad(exit_grey, at).xxx;
+    } else {
+        colour = imageLoad(exit_radiance, at).rgb;
+    }
+    return colour;
+}
+
+// The sample nearest to a place of a sample's own line, so many steps away.
+ivec2 sample_at(Azimuth azimuth, ivec2 here, int back) {
+    bool by_rows = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
+    ivec2 swapped_here = here.yx;
+    ivec2 own = by_rows ? here : swapped_here;
+    ivec2 size = by_rows ? ivec2(cols, rows) : ivec2(rows, cols);
+    int lane = (lane_position(azimuth, own.x, size.x) * CELL - back * azimuth.shear + CELL / 2) >> CELL_SHIFT;
+    int step = march_position(azimuth, own.y, size.y) - back;
+    ivec2 wraps = ivec2(wrapped(lane, size.x), wrapped(step, size.y));
+    ivec2 holds = clamp(ivec2(lane, step), ivec2(0), size - 1);
+    ivec2 at = BORDER == BORDER_PERIODIC ? wraps : holds;
+    ivec2 straight = ivec2(lane_position(azimuth, at.x, size.x), march_position(azimuth, at.y, size.y));
+    ivec2 swapped = straight.yx;
+    return by_rows ? straight : swapped;
+}
+
+void main() {
+    ivec2 node = ivec2(gl_GlobalInvocationID.xy);
+    if (node.x >= node_count(cols, NODE_STRIDE) || node.y >= node_count(rows, NODE_STRIDE)) {
+        return;
+    }
+    ivec2 here = ivec2(node_place(node.x, cols, NODE_STRIDE), node_place(node.y, rows, NODE_STRIDE));
+    vec3 thrown = vec3(0.0);
+    for (uint k = 0u; k < count; k++) {
+        Azimuth azimuth = azimuth_at(azimuths, begin + k);
+        uvec4 kept = imageLoad(casting_sets, ivec3(node, int(k)));
+        ivec4 steps_to = cast_steps(kept);
+        vec4 weights = azimuth.wedge_rad * cast_weights(kept);
+        for (int ring = 0; ring < 4; ring++) {
+            thrown += weights[ring] * leaving(sample_at(azimuth, here, steps_to[ring]));
+        }
+    }
+    ivec2 walked = ivec2(second_node(node.x, node_count(cols, NODE_STRIDE / 2)),
+                         second_node(node.y, node_count(rows, NODE_STRIDE / 2)));
+    float whole = imageLoad(node_sum, walked).a;
+    imageStore(bounce_sum, node, vec4(thrown / max(whole, 1e-30), whole));
+}

@@ -1,0 +1,66 @@
+#include "horizon/fuse.glsl"
+#include "edit/dirty.glsl"
+
+// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
+// constants RELIGHTS and OWN_PLANE_HIDES, and defines add_light and dark_slope, from which on a horizon leaves
+// no light in an azimuth.
+
+layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
+layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
+
+layout(push_constant) uniform ShadePush {
+    int cols;
+    int rows;
+    float cell_x_m;
+    float cell_y_m;
+    int warm_up;
+    uint first_azimuth;  // of the batch
+    uint azimuth_count;
+    uint clears;         // 1 in the first batch
+};
+
+// The first lane and the march position of this invocation's four samples: its place in the field, or
+// after an edit one of the eight fours of a word of the list. Beyond the list none is on the field.
+ivec2 place_of_four() {
+    if (!RELIGHTS) {
+        return ivec2(gl_GlobalInvocationID.yx) * ivec2(4, 1);
+    }
+    uint group = gl_WorkGroupID.y * GROUPS_ACROSS + gl_WorkGroupID.x;
+    uint four = group * (8u * LIGHT_GROUP_WORDS) + gl_LocalInvocationIndex;
+    ivec2 corner = word_corner(dirty_words[min(four >> 3, word_count - 1u)], cols);
+    int i = int(four & 7u);
+    ivec2 place = MARCHES_ROWS ? corner + ivec2((i & 1) * 4, i >> 1) : ivec2(corner.y, corner.x + i);
+    return (four >> 3) < word_count ? place : ivec2(0x7fffffff);
+}
+
+// Which of the four samples from a lane on are lit: after an edit only those that it reaches. Every
+// batch decides alike, so that sums begin and end whole.
+bvec4 lit_samples(int lane, int march) {
+    if (!RELIGHTS) {
+        return bvec4(true);
+    }
+    uint word = dirty_samples[dirty_word(texel_at(lane, march), cols)];
+    uvec4 bits = uvec4(dirty_bit(texel_at(lane, march)), dirty_bit(texel_at(lane + 1, march)),
+                       dirty_bit(texel_at(lane + 2, march)), dirty_bit(texel_at(lane + 3, march)));
+    return notEqual(word & bits, uvec4(0));
+}
+
+// `east` and `north` are the field's slopes at the samples.
+void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
+    for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
+        Azimuth azimuth = azimuth_at(azimuths, k);
+        vec4 lowest = vec4(NO_SLOPE);
+        if (OWN_PLANE_HIDES) {
+            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+            lowest = east * azimuth.cos_phi + north * azimuth.sin_phi;
+        }
+        // What the own plane hides already needs no horizon.
+        float dark = dark_slope(azimuth);
+        vec4 enough = mix(vec4(dark), vec4(NO_SLOPE), greaterThanEqual(lowest, vec4(dark)));
+        lowest = max(fused(azimuth, q, lanes, steps, warm_up, enough).slope, lowest);
+        if (BORDER != BORDER_OPEN) {
+            lowest = max(lowest, vec4(0.0));
+        }
+        add_light(k, azimuth, lowest);
+    }
+}

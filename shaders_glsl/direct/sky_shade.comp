@@ -1,0 +1,134 @@
+// Computes: what a uniform sky and an environment give to every sample through its horizons in the
+// azimuths of a batch, added to what earlier batches gave.
+// Reads: lane_heights, azimuths, lattice, env_tables, dirty_samples,
+// edit_list. Reads and writes: sky_sum (exit
+// radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
+// One invocation is four samples side by side along the lane axis, at one march position.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
+// fetched together.
+layout(local_size_x = 8, local_size_y = 16) in;
+
+layout(constant_id = 0) const uint FUSE = 5u;
+layout(constant_id = 1) const uint LATTICE = 0u;
+layout(constant_id = 2) const int LINE_SHIFT = 15;
+layout(constant_id = 3) const uint BORDER = 0u;
+const bool LATTICE_HAS_DISTANCES = false;
+const int LATTICE_STRIDE = 1;
+const int LANE_STRIDE = 1;
+const bool OWN_PLANE_HIDES = true;
+layout(constant_id = 4) const bool HAS_SKY = true;
+layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
+layout(constant_id = 6) const bool MARCHES_ROWS = false;
+// Only the samples marked in dirty_samples, by the list of their words.
+layout(constant_id = 7) const bool RELIGHTS = false;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
+
+#include "shared/angle.glsl"
+
+layout(binding = 2) uniform textureBuffer azimuths;
+layout(binding = 3, r32f) uniform image2D sky_sum;
+layout(binding = 4, rgba32f) uniform image2D env_sum;
+// x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
+layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
+
+// Sums of the four samples, and their normals.
+vec4 sky;
+vec4 env_red;
+vec4 env_green;
+vec4 env_blue;
+vec4 normal_east;
+vec4 normal_north;
+vec4 normal_up;
+
+// Light of azimuth `index`: `lowest` is the slope of the lowest direction that both the horizon and
+// the sample's own plane leave free.
+void add_light(uint index, Azimuth azimuth, vec4 lowest) {
+    if (HAS_SKY) {
+        // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
+        Moments moments = elevation_moments(lowest);
+        vec4 flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
+        sky += (flat_part * moments.flat_part + normal_up * azimuth.wedge_rad * moments.vertical) * (1.0 / PI);
+    }
+    if (HAS_ENVIRONMENT) {
+        int nodes = imageSize(env_tables).x;
+        float bottom = BORDER == BORDER_OPEN ? -HALF_PI : 0.0;
+        vec4 place = (arc_tangent(lowest) - bottom) / (HALF_PI - bottom) * float(nodes - 1);
+        ivec4 node = clamp(ivec4(place), 0, nodes - 2);
+        vec4 t = clamp(place - vec4(node), 0.0, 1.0);
+        for (int k = 0; k < 4; k++) {
+            vec3 normal = vec3(normal_east[k], normal_north[k], normal_up[k]);
+            vec3 sum = vec3(0.0);
+            for (int m = 0; m < 3; m++) {
+                vec3 low = imageLoad(env_tables, ivec3(node[k], m, index)).rgb;
+                vec3 high = imageLoad(env_tables, ivec3(node[k] + 1, m, index)).rgb;
+                sum += normal[m] * mix(low, high, t[k]);
+            }
+            env_red[k] += sum.r;
+            env_green[k] += sum.g;
+            env_blue[k] += sum.b;
+        }
+    }
+}
+
+float dark_slope(Azimuth azimuth) {
+    return -NO_SLOPE;
+}
+
+#include "direct/gather.glsl"
+
+void main() {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    ivec2 place = place_of_four();
+    int lane = place.x;
+    int march = place.y;
+    if (lane >= lanes || march >= steps) {
+        return;
+    }
+    bvec4 lit = lit_samples(lane, march);
+    if (!any(lit)) {
+        return;
+    }
+    Quad q = quad_at(lane, march, lanes, steps);
+    vec4 east;
+    vec4 north;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
+    normal_up = inversesqrt(1.0 + east * east + north * north);
+    normal_east = -east * normal_up;
+    normal_north = -north * normal_up;
+    sky = vec4(0.0);
+    env_red = vec4(0.0);
+    env_green = vec4(0.0);
+    env_blue = vec4(0.0);
+    if (clears == 0u) {
+        for (int k = 0; k < 4; k++) {
+            ivec2 at = texel_at(min(lane + k, lanes - 1), march);
+            if (HAS_SKY) {
+                sky[k] = imageLoad(sky_sum, at).x;
+            }
+            if (HAS_ENVIRONMENT) {
+                vec3 sum = imageLoad(env_sum, at).rgb;
+                env_red[k] = sum.r;
+                env_green[k] = sum.g;
+                env_blue[k] = sum.b;
+            }
+        }
+    }
+    add_all(q, lanes, steps, east, north);
+    for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        ivec2 at = texel_at(lane + k, march);
+        if (HAS_SKY && lit[k]) {
+            imageStore(sky_sum, at, vec4(sky[k]));
+        }
+        if (HAS_ENVIRONMENT && lit[k]) {
+            imageStore(env_sum, at, vec4(env_red[k], env_green[k], env_blue[k], 0.0));
+        }
+    }
+}

@@ -1,0 +1,282 @@
+// Computes: what a ball of light gives to samples: some of the vertical slices that it is cut into, each in
+// closed form where the surface lets it be seen, added to what other slices and balls gave.
+// Reads: cells, maxima, ground. Reads and writes: sphere_sum (exit radiance for albedo 1).
+// One invocation is one sample.
+//
+// Of its slice, a disc, a sample sees the elevations at which the disc is entered (or, from inside, left)
+// nearer than the surface is met. The surface up to the disc hides what is below its highest slope.
+// Between the disc's near and far ends each piece of surface that is seen has disc behind it, or not.
+#version 460
+#extension GL_KHR_shader_subgroup_vote : require
+
+#include "shared/angle.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+// A field one sample wide that does not repeat is a line: only slices along it meet it.
+layout(constant_id = 1) const bool THIN_ROWS = false;
+layout(constant_id = 2) const bool THIN_COLS = false;
+// More than a ray of this field can ask for; llvmpipe ends all loops together after 65,535 turns.
+layout(constant_id = 3) const int MOST_STEPS = 60000;
+
+layout(binding = 0) uniform texture2D cells;
+layout(binding = 1) uniform texture2D maxima;
+layout(binding = 2) uniform texture2D ground;
+layout(binding = 3, rgba32f) uniform image2D sphere_sum;
+
+layout(push_constant) uniform SphereShadePush {
+    int cols;
+    int rows;
+    int cells_x;
+    int cells_y;
+    int padded_rows;
+    int top_level;
+    float cell_x_m;
+    float cell_y_m;
+    ivec2 first;       // sample of the dispatch: column, row
+    ivec2 base;        // of the ball's middle: whole cells east of the first column, south of the first row
+    vec2 offset;       // and the rest of a cell
+    float up_m;        // of the ball's middle over the base height
+    float radius_m;
+    float reach_m;     // farther samples get nothing
+    int slices;        // of a ball that is narrow as seen from the sample
+    int slices_around; // of one that is all around; of wide ones as many a radian
+    int first_slice;
+    int last_slice;    // not itself
+    vec4 radiance;     // w: 1 where the sum begins
+};
+
+#include "rays/walk.glsl"
+
+// The slice: its distance axis is horizontal, the sample is its origin; metres.
+vec2 disc;           // middle
+float disc_radius;
+float tangent2;      // square of a tangent's length; not above 0 from inside the ball
+vec2 axis;           // a unit vector that elevations are counted from: towards the disc's middle
+float high_slope;    // of the disc's upper end
+// The normal within the slice.
+float flat_part;
+float normal_up;
+// Of the slice, so far: up to which slope the surface hides it, and the light of what is seen below.
+float reached;
+float seen_light;
+
+// A direction of the slice, counted from the axis: cosine and sine.
+vec2 from_axis(float slope) {
+    vec2 direction = vec2(1.0, slope) * inversesqrt(1.0 + slope * slope);
+    return vec2(dot(axis, direction), axis.x * direction.y - axis.y * direction.x);
+}
+
+vec2 turned(vec2 a, vec2 b) {
+    return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+}
+
+// Integral over elevations between two directions of the slice of (A cos + B sin) cos, with A, B the normal's
+// parts: D = high - low and S = high + low in  A/2 (D + cos S sin D) + B/2 sin S sin D.
+float light_between(vec2 low, vec2 high) {
+    vec2 sum = low + high;
+    vec2 difference = high - low;
+    // tan(D/2); small discs keep their width's digits, as both are counted from their middle.
+    float half_tangent = sqrt(dot(difference, difference) / max(dot(sum, sum), 1e-20));
+    float width = 2.0 * arc_tangent(vec4(half_tangent)).x;
+    float sine_of = low.x * high.y - low.y * high.x;
+    vec2 twice = turned(turned(axis, axis), turned(low, high));
+    return 0.5 * (flat_part * (width + twice.x * sine_of) + normal_up * twice.y * sine_of);
+}
+
+// Takes a piece of surface in, from a distance and height to a farther one: what of the disc is seen behind
+// it, where some of the piece itself is seen.
+void see(vec2 begin, vec2 end) {
+    float slope = (end.y - begin.y) / (end.x - begin.x);
+    float end_slope = end.y / end.x;
+    float top_slope = min(end_slope, high_slope);
+    // The piece is seen from where it crosses `reached`; what is above the disc does not count.
+    float under = begin.y - reached * begin.x;
+    float over = end.y - reached * end.x;
+    float seen_from = begin.x + (end.x - begin.x) * clamp(under / min(under - over, -1e-30), 0.0, 1.0);
+    float below_top = begin.y - high_slope * begin.x;
+    float above_top = end.y - high_slope * end.x;
+    float cut = begin.x + (end.x - begin.x) * clamp(below_top / min(below_top - above_top, -1e-30), 0.0, 1.0);
+    float seen_to = end_slope > high_slope ? cut : end.x;
+    // The circle on the piece's line: within its half chord of the foot of the perpendicular.
+    float a = 1.0 + slope * slope;
+    vec2 to_middle = disc - begin;
+    float beside = to_middle.y - slope * to_middle.x;
+    float chord2 = (disc_radius * disc_radius - beside * beside / a) / a;
+    float foot = begin.x + (to_middle.x + slope * to_middle.y) / a;
+    float half_chord = sqrt(max(chord2, 0.0));
+    bool is_met = chord2 > 0.0;
+    float enters = clamp(foot - half_chord, seen_from, seen_to);
+    float leaves = clamp(foot + half_chord, seen_from, seen_to);
+    enters = is_met ? enters : seen_to;
+    leaves = is_met ? leaves : seen_to;
+    // Outside the disc, but between its tangents: behind it, if beyond the line through where they touch.
+    float before_at = 0.5 * (seen_from + enters);
+    float after_at = 0.5 * (leaves + seen_to);
+    float before = before_at * disc.x + (begin.y + slope * (before_at - begin.x)) * disc.y;
+    float after = after_at * disc.x + (begin.y + slope * (after_at - begin.x)) * disc.y;
+    float from_outside = before > tangent2 ? seen_from : enters;
+    float to_outside = after > tangent2 ? seen_to : leaves;
+    // From inside, what is met within the ball hides.
+    float from_inside = is_met ? leaves : seen_from;
+    bool is_inside = tangent2 <= 0.0;
+    float from = is_inside ? from_inside : from_outside;
+    float to = is_inside ? seen_to : to_outside;
+    float low = (begin.y + slope * (from - begin.x)) / from;
+    float high = min((begin.y + slope * (to - begin.x)) / to, top_slope);
+    low = max(low, reached);
+    float light = light_between(from_axis(low), from_axis(high));
+    bool counts = begin.x > 0.0 && end.x > begin.x && end_slope > reached && reached < high_slope && to > from && high > low;
+    seen_light += counts ? light : 0.0;
+}
+
+// The surface from the sample up to the disc's far end.
+void march(Ray ray, bool going) {
+    ivec2 cells_of = ivec2(cells_x, cells_y);
+    float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
+    float step_m = 1.0 / ray.scale;
+    float near_m = tangent2 > 0.0 ? disc.x - disc_radius : -1.0;
+    float t_end = (disc.x + disc_radius) * ray.scale;
+    if (BORDER == BORDER_PERIODIC) {
+        t_end = min(t_end, REACH_CELLS);
+    }
+    Walk walk = walk_from(ray);
+    going = going && !walk.leaves && t_end > 0.0;
+    for (int turn = 0; turn < MOST_STEPS; turn++) {
+        // Left by all lanes together, as in horizon_sweep.
+        if (!subgroupAny(going)) {
+            break;
+        }
+        Block block = block_of(walk, ray);
+        ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
+        vec4 corners = texelFetch(cells, fetched, 0);
+        int shown = max(walk.level, 1);
+        float top = texelFetch(maxima, (fetched >> (LEVEL_BITS * shown)) + ivec2(0, level_top(shown, padded_rows)), 0).x - ray.own;
+        float rise = reached * step_m;
+        bool is_cell = walk.level == 0;
+        bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
+        // The cell: where the ray enters it, its diagonal, and where it leaves.
+        vec2 from = ray.offset + vec2(ray.base - walk.cell);
+        float apart = ray.advance.x - ray.advance.y;
+        float t_split = abs(apart) < 1e-30 ? -1.0 : (from.y - from.x) / apart;
+        bool is_split = t_split > walk.t && t_split < block.ahead;
+        float t_middle = is_split ? t_split : walk.t;
+        vec2 at_middle = clamp(from + t_middle * ray.advance, 0.0, 1.0);
+        // Not split, the middle is the entry, whose slope was taken in before.
+        vec2 middle = vec2(t_middle * step_m, (corners.x - ray.own) + at_middle.x * (corners.w - corners.x));
+        vec2 exit = vec2(block.ahead * step_m, cell_rise(corners, ray.own, clamp(from + block.ahead * ray.advance, 0.0, 1.0)));
+        bool in_cell = going && is_cell;
+        bool has_piece = in_cell && block.ahead > walk.t;
+        float middle_slope = middle.y / max(middle.x, 1e-30);
+        float exit_slope = exit.y / max(exit.x, 1e-30);
+        float steepest = is_split ? max(middle_slope, exit_slope) : exit_slope;
+        bool looks = has_piece && exit.x > near_m && steepest > reached && reached < high_slope;
+        if (subgroupAny(looks)) {
+            float kept = seen_light;
+            float reached_before = reached;
+            vec2 entry = vec2(walk.t * step_m, cell_rise(corners, ray.own, clamp(from + walk.t * ray.advance, 0.0, 1.0)));
+            middle.y = is_split ? middle.y : entry.y;
+            see(entry, middle);
+            reached = is_split ? max(reached, middle_slope) : reached;
+            see(middle, exit);
+            seen_light = looks ? seen_light : kept;
+            reached = reached_before;
+        }
+        reached = has_piece ? max(reached, steepest) : reached;
+        walk_on(walk, ray, block, going, clear, top_level);
+        bool is_over = reached >= high_slope || (reached > 0.0 && walk.t * reached * step_m >= highest);
+        going = going && !walk.leaves && walk.t < t_end && !is_over;
+    }
+}
+
+// Light of the slice at an azimuth `turn` from the ball's middle (half of it: cosine, sine), per radian.
+float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2 half_turn, bool alive) {
+    vec2 turn = turned(half_turn, half_turn);
+    vec2 e = turned(towards, turn);
+    float across = away * turn.y;
+    float chord2 = (radius_m - across) * (radius_m + across);
+    disc = vec2(away * turn.x, up);
+    disc_radius = sqrt(max(chord2, 0.0));
+    bool is_inside = tangent2 <= 0.0;
+    float tangent_m = sqrt(max(tangent2, 0.0));
+    float distance_m = sqrt(max(dot(disc, disc), 1e-30));
+    axis = is_inside ? vec2(1.0, 0.0) : disc / distance_m;
+    float sine_half = is_inside ? 1.0 : min(disc_radius / distance_m, 1.0);
+    float cosine_half = is_inside ? 0.0 : tangent_m / distance_m;
+    // The disc's ends, counted from the axis and from horizontal; none beyond the vertical.
+    vec2 low = vec2(cosine_half, -sine_half);
+    vec2 high = vec2(cosine_half, sine_half);
+    vec2 low_end = turned(axis, low);
+    vec2 high_end = turned(axis, high);
+    bool low_ahead = low_end.x > 0.0;
+    bool high_ahead = high_end.x > 0.0;
+    float low_slope = clamp(low_end.y / max(low_end.x, 1e-30), NO_SLOPE, -NO_SLOPE);
+    high_slope = clamp(high_end.y / max(high_end.x, 1e-30), NO_SLOPE, -NO_SLOPE);
+    low_slope = low_ahead ? low_slope : NO_SLOPE;
+    high_slope = high_ahead ? high_slope : -NO_SLOPE;
+    low = low_ahead ? low : vec2(-axis.y, -axis.x);
+    high = high_ahead ? high : vec2(axis.y, axis.x);
+    alive = alive && chord2 > 0.0 && (is_inside || low_ahead || high_ahead);
+    normal_up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
+    // The sample's own plane rises towards the azimuth with the field's slope.
+    float own_slope = own.y * e.x + own.z * e.y;
+    flat_part = -own_slope * normal_up;
+    reached = max(low_slope, own_slope);
+    seen_light = 0.0;
+    march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), alive && reached < high_slope);
+    vec2 seen_from = from_axis(reached);
+    vec2 lowest = reached > low_slope ? seen_from : low;
+    float rest = light_between(lowest, high);
+    float light = max(seen_light + (reached < high_slope ? rest : 0.0), 0.0);
+    return alive ? light : 0.0;
+}
+
+void main() {
+    ivec2 at = first + ivec2(gl_GlobalInvocationID.xy);
+    bool exists = at.x < cols && at.y < rows;
+    ivec2 here = min(at, ivec2(cols, rows) - 1);
+    vec4 own = texelFetch(ground, here, 0);
+    vec2 cells_to = vec2(base - here) + offset;
+    vec2 flat_m = vec2(cells_to.x * cell_x_m, -cells_to.y * cell_y_m);
+    float up = up_m - own.x;
+    float away = length(flat_m);
+    float distance_m = length(vec2(away, up));
+    tangent2 = (distance_m - radius_m) * (distance_m + radius_m);
+    vec2 towards = away > 0.0 ? flat_m / away : vec2(1.0, 0.0);
+    // Nothing of the ball stands over the sample's own plane.
+    float plane_m = up - own.y * flat_m.x - own.z * flat_m.y;
+    bool faces = plane_m + radius_m * sqrt(1.0 + own.y * own.y + own.z * own.z) > 0.0;
+    bool alive = exists && faces && distance_m <= reach_m;
+    bool around = away <= radius_m;
+    float sine_widest = min(radius_m / max(away, 1e-30), 1.0);
+    float widest = arc_tangent(vec4(sine_widest / sqrt(max((1.0 - sine_widest) * (1.0 + sine_widest), 1e-20)))).x;
+    // A hair less, so that rounding decides nothing at widths that divide the circle.
+    int wide = max(int(ceil(float(slices_around) * widest / PI - 0.001)), slices);
+    int count = around ? slices_around : wide;
+    float light = 0.0;
+    for (int i = first_slice; i < last_slice; i++) {
+        bool has_slice = alive && i < count;
+        if (!subgroupAny(has_slice)) {
+            break;
+        }
+        // From -1 to 1. All around: even. Else spaced so that the disc's width is smooth.
+        float centre = (2.0 * float(i) + 1.0) / float(count) - 1.0;
+        float u = HALF_PI * centre;
+        float spaced = 0.5 * widest * sine(u);
+        float half_turn = around ? u : spaced;
+        float weight_around = 2.0 * PI / float(count);
+        // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+        float alone = count > 1 ? 1.0 : 0.5;
+        float weight_ahead = alone * widest * cosine(u) * PI / float(count);
+        float weight = around ? weight_around : weight_ahead;
+        float slice = slice_light(here, own, towards, away, up, vec2(cosine(half_turn), sine(half_turn)), has_slice);
+        light += has_slice ? weight * slice : 0.0;
+    }
+    if (exists) {
+        vec4 before = imageLoad(sphere_sum, at);
+        bool begins = radiance.w > 0.0;
+        vec4 sum = vec4(begins ? vec3(0.0) : before.rgb, 1.0);
+        imageStore(sphere_sum, at, sum + vec4(radiance.rgb * (light / PI), 0.0));
+    }
+}

@@ -1,0 +1,105 @@
+// Computes: what a sun or a key light gives to every sample through its horizons in the azimuths that it
+// covers, added to what earlier batches gave.
+// Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list. Reads and writes: sun_sum (exit radiance for
+// irradiance 1 of a sun, radiance 1 of a key light, and albedo 1).
+// One invocation is four samples side by side along the lane axis, at one march position.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
+// fetched together.
+layout(local_size_x = 8, local_size_y = 16) in;
+
+layout(constant_id = 0) const uint FUSE = 5u;
+layout(constant_id = 1) const uint LATTICE = 0u;
+layout(constant_id = 2) const int LINE_SHIFT = 15;
+layout(constant_id = 3) const uint BORDER = 0u;
+const bool LATTICE_HAS_DISTANCES = false;
+const int LATTICE_STRIDE = 1;
+const int LANE_STRIDE = 1;
+const bool OWN_PLANE_HIDES = true;
+const uint SHAPE_DISC = 0u;   // the part of each chord that the horizon leaves free
+const uint SHAPE_POINT = 1u;  // lit or not
+const uint SHAPE_PATCH = 2u;  // the part of its elevations that the horizon leaves free, over each wedge
+layout(constant_id = 4) const uint SHAPE = 0u;
+layout(constant_id = 5) const bool MARCHES_ROWS = false;
+// Only the samples marked in dirty_samples, by the list of their words.
+layout(constant_id = 6) const bool RELIGHTS = false;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+// One of these, by LATTICE.
+layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
+layout(binding = 7) uniform utexture2DArray lattice_words;
+
+#include "shared/angle.glsl"
+
+layout(binding = 2) uniform textureBuffer azimuths;
+layout(binding = 3, r32f) uniform image2D sun_sum;
+
+// Sums of the four samples, and their normals.
+vec4 sun;
+vec4 normal_east;
+vec4 normal_north;
+vec4 normal_up;
+
+// Light of azimuth `index`: `lowest` is the slope of the lowest direction that both the horizon and
+// the sample's own plane leave free.
+void add_light(uint index, Azimuth azimuth, vec4 lowest) {
+    vec4 flat_part = normal_east * azimuth.cos_phi + normal_north * azimuth.sin_phi;
+    vec4 vertical = normal_up;
+    if (SHAPE == SHAPE_PATCH) {
+        flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
+        vertical = normal_up * azimuth.wedge_rad;
+    }
+    bvec4 lit = lessThan(lowest, vec4(azimuth.high_slope));
+    vec4 light;
+    if (SHAPE == SHAPE_POINT) {
+        float cos_elevation = inversesqrt(1.0 + azimuth.high_slope * azimuth.high_slope);
+        light = max((flat_part + vertical * azimuth.high_slope) * cos_elevation, 0.0);
+    } else {
+        Moments above = elevation_moments(max(lowest, azimuth.low_slope));
+        Moments top = elevation_moments(vec4(azimuth.high_slope));
+        light = flat_part * (above.flat_part - top.flat_part) + vertical * (above.vertical - top.vertical);
+    }
+    sun += mix(vec4(0.0), light * azimuth.weight * (1.0 / PI), lit);
+}
+
+float dark_slope(Azimuth azimuth) {
+    return azimuth.high_slope;
+}
+
+#include "direct/gather.glsl"
+
+void main() {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    ivec2 place = place_of_four();
+    int lane = place.x;
+    int march = place.y;
+    if (lane >= lanes || march >= steps) {
+        return;
+    }
+    bvec4 lit = lit_samples(lane, march);
+    if (!any(lit)) {
+        return;
+    }
+    Quad q = quad_at(lane, march, lanes, steps);
+    vec4 east;
+    vec4 north;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
+    normal_up = inversesqrt(1.0 + east * east + north * north);
+    normal_east = -east * normal_up;
+    normal_north = -north * normal_up;
+    sun = vec4(0.0);
+    if (clears == 0u) {
+        for (int k = 0; k < 4; k++) {
+            sun[k] = imageLoad(sun_sum, texel_at(min(lane + k, lanes - 1), march)).x;
+        }
+    }
+    add_all(q, lanes, steps, east, north);
+    for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        if (lit[k]) {
+            imageStore(sun_sum, texel_at(lane + k, march), vec4(sun[k]));
+        }
+    }
+}

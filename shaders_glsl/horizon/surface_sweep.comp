@@ -1,0 +1,132 @@
+// Computes: exact horizons of the triangulated surface in azimuths along grid vectors (a, b): every
+// sample lies on a line, and every crossing of a line with grid lines and diagonals is on its hull.
+// Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][step][lane], and in the
+// next layer, where asked, the march steps to what is met (f32 bits).
+// One invocation is one line, from the horizon's side to the other end.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_vote : require
+
+#include "horizon/surface.glsl"
+
+layout(local_size_x_id = 0) in;
+// Every crossing of a line: a hull can be no deeper.
+layout(constant_id = 1) const int HULL_DEPTH = 1;
+layout(constant_id = 2) const bool PERIODIC = false;
+layout(constant_id = 3) const bool WRITES_DISTANCES = false;
+
+layout(binding = 0) uniform texture2D heights;
+layout(binding = 1) uniform textureBuffer azimuths;
+layout(binding = 2) uniform writeonly uimage2DArray slopes;
+
+#include "horizon/march.glsl"
+
+// Rise over `own` of the surface `u` past step `step`, for a line at lane position y (in 1/march
+// of a cell) at that step.
+float rise_over(float own, int y, int step, float u) {
+    int march = azimuth.vector_march;
+    int cell = (y + march * 65536) / march - 65536;
+    float f = float(y - cell * march) / float(march) + u * float(azimuth.vector_lane) / float(march);
+    bool over = f > 1.0;
+    f -= over ? 1.0 : 0.0;
+    cell += over ? 1 : 0;
+    bool split_along = splits_along();
+    return surface_rise(height_at(cell, step), height_at(cell, step + 1), height_at(cell + 1, step),
+                        height_at(cell + 1, step + 1), own, u, f, split_along);
+}
+
+// Hull vertices: height, and place as whole step and the rest of one, so that differences of near
+// places keep their digits.
+float hull_h[HULL_DEPTH];
+float hull_step[HULL_DEPTH];
+float hull_rest[HULL_DEPTH];
+int depth;
+
+// Pops what a point at height h, `rest` past `step`, sees over.
+void pop_under(float h, float step, float rest, bool exists) {
+    // Left by all lanes together, as in horizon_sweep.
+    bool pops = exists;
+    do {
+        int newest = max(depth - 1, 0);
+        int older = max(depth - 2, 0);
+        float to_newest = (step - hull_step[newest]) + (rest - hull_rest[newest]);
+        float to_older = (step - hull_step[older]) + (rest - hull_rest[older]);
+        precise float deeper = (hull_h[older] - h) * to_newest;
+        precise float newer = (hull_h[newest] - h) * to_older;
+        pops = pops && depth > 1 && deeper >= newer;
+        depth -= pops ? 1 : 0;
+    } while (subgroupAny(pops));
+}
+
+void push(float h, float step, float rest, bool exists) {
+    if (exists) {
+        hull_h[depth] = h;
+        hull_step[depth] = step;
+        hull_rest[depth] = rest;
+        depth++;
+    }
+}
+
+// A crossing of the line that is at lane position y0 at `step`: on the hull where it is on the field.
+void cross_at(float u, int y0, int step, bool on) {
+    // Not before the first step, nor before the line entered across the first lane.
+    bool exists = on && u <= 1.0 && step >= 0
+               && (PERIODIC || float(y0) + u * float(azimuth.vector_lane) >= -1e-3);
+    float h = rise_over(0.0, y0, step, u);
+    pop_under(h, float(step), u, exists);
+    push(h, float(step), u, exists);
+}
+
+void main() {
+    azimuth = azimuth_at(azimuths, first_azimuth + gl_GlobalInvocationID.z);
+    int march = azimuth.vector_march;
+    int shear = azimuth.vector_lane;
+    int total = warm_up + steps;
+    int width = PERIODIC ? lanes * march - 1 : (lanes - 1) * march;
+    int lead = PERIODIC ? 0 : (total - 1) * shear;
+    int line = int(gl_GlobalInvocationID.x);
+    bool split_along = splits_along();
+    float advance = float(shear) / float(march);
+    // All lines of a group march together, over the steps at which any of them is on the field.
+    int first = int(gl_WorkGroupID.x * gl_WorkGroupSize.x) - lead;
+    int last = first + int(gl_WorkGroupSize.x) - 1;
+    int begin = shear > 0 && !PERIODIC ? max(0, (-last + shear - 1) / shear) : 0;
+    int end = shear > 0 && !PERIODIC ? min(total, (width - first) / shear + 1) : total;
+
+    depth = 0;
+    for (int step = begin; step < end; step++) {
+        int y = line - lead + step * shear;
+        bool on = PERIODIC ? line <= width : y >= 0 && y <= width;
+        // The segment that ends here, from its crossings to the step itself.
+        int y0 = y - shear;
+        int cell0 = (y0 + march * 65536) / march - 65536;
+        float f0 = float(y0 - cell0 * march) / float(march);
+        vec3 places = segment_crossings(f0, advance, split_along);
+        cross_at(places.x, y0, step - 1, on);
+        cross_at(places.y, y0, step - 1, on);
+        cross_at(places.z, y0, step - 1, on);
+        int cell = (y + march * 65536) / march - 65536;
+        float f = float(y - cell * march) / float(march);
+        float h = height_at(cell, step);
+        h += f > 0.0 ? f * (height_at(cell + 1, step) - h) : 0.0;
+        // As the end of its segment: places of one step are told apart by their rests.
+        pop_under(h, float(step - 1), 1.0, on);
+        if (on && y == cell * march && step >= warm_up) {
+            float slope = NO_SLOPE;
+            float back = 0.0;
+            if (depth > 0) {
+                int met_step = int(hull_step[depth - 1]);
+                float met_rest = hull_rest[depth - 1];
+                back = float(step - met_step) - met_rest;
+                slope = rise_over(h, y - (step - met_step) * shear, met_step, met_rest) / (back * azimuth.step_m);
+            }
+            ivec2 texel = ivec2(PERIODIC ? wrapped(cell, lanes) : cell, PERIODIC ? step - warm_up : step);
+            int layer = int(azimuth.layer);
+            imageStore(slopes, ivec3(texel, layer), uvec4(floatBitsToUint(slope)));
+            if (WRITES_DISTANCES) {
+                imageStore(slopes, ivec3(texel, layer + 1), uvec4(floatBitsToUint(back)));
+            }
+        }
+        push(h, float(step - 1), 1.0, on);
+    }
+}

@@ -1,0 +1,128 @@
+// How a ray walks over the field's cells, skipping blocks of them. Needs constants BORDER, THIN_ROWS, THIN_COLS
+// and push constants cells_x, cells_y before it.
+//
+// A ray starts at a place on the surface: cell `base` (counted past the edge in neither direction),
+// `offset` in it (0 .. 1 towards east and south), height `own`. Everything is counted from there, so a
+// short ray keeps its digits however large the field. Positions along the ray are t, in cells of the
+// axis along which it runs faster. The surface along the ray is linear between its crossings with
+// columns, rows and diagonals.
+
+#include "rays/bounds.glsl"
+
+// A ray over a field that repeats is given up after this many cells. What goes on so long is within
+// relief / REACH_CELLS of horizontal; what falls there counts as ground.
+const float REACH_CELLS = 16384.0;
+
+struct Ray {
+    ivec2 base;
+    vec2 offset;
+    float own;
+    vec2 advance;  // cells a unit of t, towards east and south; the larger is 1 or -1
+    float rise;    // height a unit of t
+    float scale;   // t a metre
+};
+
+Ray ray_from(ivec2 base, vec2 offset, float own, vec3 e, vec2 cell_m) {
+    vec2 direction = vec2(e.x, -e.y) / cell_m;
+    // Steeper than this, a ray is over all heights before it has left its first cell: 1e-9 m a metre.
+    float along = max(max(abs(direction.x), abs(direction.y)), 1e-9 / max(cell_m.x, cell_m.y));
+    vec2 advance = direction / along;
+    // What moves by less than this never leaves its column.
+    advance = mix(advance, vec2(0.0), lessThan(abs(advance), vec2(1e-20)));
+    return Ray(base, offset, own, advance, e.z / along, along);
+}
+
+// Height over `own` at a place (u, v) of a cell with these corners.
+float cell_rise(vec4 corners, float own, vec2 at) {
+    float north = (corners.x - own) + at.x * (corners.y - corners.x) + at.y * (corners.w - corners.y);
+    float south = (corners.x - own) + at.y * (corners.z - corners.x) + at.x * (corners.w - corners.z);
+    return at.y <= at.x ? north : south;
+}
+
+// Where a ray has got to.
+struct Walk {
+    ivec2 cell;   // counted on where the field repeats
+    ivec2 at;     // the same within the field
+    float t;      // where it entered the block
+    int level;    // of the block that it looks at; 0 is the cell
+    bool leaves;  // has left the field
+};
+
+// The block that it looks at.
+struct Block {
+    ivec2 low;
+    ivec2 high;
+    ivec2 seen;    // how far the field's repetition is away
+    float ahead;   // t at which the ray leaves it
+    bool by_x;     // across an edge to the east or west
+};
+
+Walk walk_from(Ray ray) {
+    ivec2 cells_of = ivec2(cells_x, cells_y);
+    bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
+    // On a grid line a ray belongs to the cell that it runs into; along the last line, to the last cell.
+    ivec2 cell = ray.base;
+    cell.x -= ray.offset.x == 0.0 && !onward.x ? 1 : 0;
+    cell.y -= ray.offset.y == 0.0 && !onward.y ? 1 : 0;
+    ivec2 at = cell;
+    bool leaves = false;
+    if (BORDER == BORDER_PERIODIC) {
+        at.x += at.x < 0 ? cells_of.x : 0;
+        at.y += at.y < 0 ? cells_of.y : 0;
+    } else {
+        at.x -= ray.advance.x == 0.0 && at.x == cells_of.x ? 1 : 0;
+        at.y -= ray.advance.y == 0.0 && at.y == cells_of.y ? 1 : 0;
+        cell = at;
+        leaves = (THIN_ROWS && ray.advance.y != 0.0) || (THIN_COLS && ray.advance.x != 0.0)
+              || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, cells_of));
+    }
+    return Walk(cell, at, 0.0, 0, leaves);
+}
+
+Block block_of(Walk walk, Ray ray) {
+    ivec2 cells_of = ivec2(cells_x, cells_y);
+    bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
+    bvec2 along_line = equal(ray.advance, vec2(0.0));
+    vec2 inverse = mix(1.0 / ray.advance, vec2(1e30), along_line);
+    int bits = LEVEL_BITS * walk.level;
+    ivec2 low = (walk.at >> bits) << bits;
+    ivec2 high = min(low + (1 << bits), cells_of);
+    ivec2 seen = BORDER == BORDER_PERIODIC ? walk.at - walk.cell : ivec2(0);
+    ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - seen - ray.base;
+    // Along a grid line the edges beside it are never reached, not even where it is one of them.
+    vec2 to_edge = mix((vec2(edge) - ray.offset) * inverse, vec2(1e30), along_line);
+    float ahead = max(min(to_edge.x, to_edge.y), walk.t);
+    return Block(low, high, seen, ahead, to_edge.x <= to_edge.y);
+}
+
+// On to the next block of the level, exactly across the edge and never back along the other axis, where
+// this one is `clear`; a coarser one where that is entered, else a finer look at this one.
+void walk_on(inout Walk walk, Ray ray, Block block, bool going, bool clear, int top_level) {
+    ivec2 cells_of = ivec2(cells_x, cells_y);
+    bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
+    int bits = LEVEL_BITS * walk.level;
+    ivec2 low = block.low - block.seen;
+    ivec2 high = block.high - block.seen;
+    ivec2 other = ivec2(floor(ray.offset + block.ahead * ray.advance)) + ray.base;
+    other = clamp(other, low, high - 1);
+    other = ivec2(onward.x ? max(other.x, walk.cell.x) : min(other.x, walk.cell.x),
+                  onward.y ? max(other.y, walk.cell.y) : min(other.y, walk.cell.y));
+    ivec2 across = ivec2(onward.x ? high.x : low.x - 1, onward.y ? high.y : low.y - 1);
+    ivec2 onto = ivec2(block.by_x ? across.x : other.x, block.by_x ? other.y : across.y);
+    bool moves = going && clear;
+    ivec2 next = moves ? onto : walk.cell;
+    ivec2 at_next = BORDER == BORDER_PERIODIC ? walk.at + (next - walk.cell) : next;
+    if (BORDER == BORDER_PERIODIC) {
+        at_next.x += at_next.x < 0 ? cells_of.x : (at_next.x >= cells_of.x ? -cells_of.x : 0);
+        at_next.y += at_next.y < 0 ? cells_of.y : (at_next.y >= cells_of.y ? -cells_of.y : 0);
+    }
+    ivec2 changed = (walk.at ^ at_next) >> (bits + LEVEL_BITS);
+    int coarser = min(walk.level + (changed.x != 0 || changed.y != 0 ? 1 : 0), top_level);
+    int level = clear ? coarser : walk.level - 1;
+    walk.level = going ? level : walk.level;
+    walk.t = moves ? block.ahead : walk.t;
+    bool out_now = BORDER != BORDER_PERIODIC && (any(lessThan(at_next, ivec2(0))) || any(greaterThanEqual(at_next, cells_of)));
+    walk.leaves = walk.leaves || (moves && out_now);
+    walk.cell = next;
+    walk.at = at_next;
+}

@@ -1,0 +1,162 @@
+// Computes: what leaves every sample of the light that arrives there: what its lobe mirrors straight upwards, and
+// what it throws on, diffuse light beside it: as a series of spherical harmonics, or as one number, seen from above.
+// Reads: arriving, ground, exit_radiance (diffuse), gloss_direct, phong_map, constants. Reads and writes: gloss_bounced
+// (RGB, of all bounces so far). Writes: exit_vectors or exit_seen.
+// One invocation is one sample.
+//
+// A lobe about the mirror direction r of o reflects towards o what the light, smoothed by the lobe, is at r. r is o
+// turned by half a turn about the normal, so exit radiance is that smoothed series turned so: its coefficients are
+// integrals over directions, by a rule that is exact for such products.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const int ORDER = 4;
+// Radiance of one channel.
+layout(constant_id = 1) const bool GREY = false;
+layout(constant_id = 2) const bool LOBE_IS_MAP = false;
+// Of direct light: its lobe has been seen already.
+layout(constant_id = 3) const bool IS_DIRECT = false;
+// Whether it is thrown on, and as what.
+layout(constant_id = 4) const bool THROWS = true;
+layout(constant_id = 5) const bool VECTORS = true;
+// Vectors of f16, whose largest number is 65504.
+layout(constant_id = 6) const bool HALVES = false;
+
+layout(binding = 0) uniform texture2DArray arriving;
+layout(binding = 1) uniform texture2D ground;
+layout(binding = 2) uniform texture2D exit_radiance;
+layout(binding = 3) uniform texture2D gloss_direct;
+layout(binding = 4) uniform texture2D phong_map;
+layout(binding = 5) uniform textureBuffer constants;
+layout(binding = 6, rgba32f) uniform image2D gloss_bounced;
+layout(binding = 7) uniform writeonly image2DArray exit_vectors;
+layout(binding = 8) uniform writeonly image2D exit_seen;
+
+layout(push_constant) uniform GlossExitPush {
+    int cols;
+    int rows;
+    uint begins;      // 1 for the first bounce
+    int first_texel;  // in constants: of four directions their x, y and z, then each one's Y_lm times its weight
+    int fours;        // of directions
+    float exponent;   // of the lobe, where it is constant
+    float scale;
+};
+
+const int COUNT = ORDER * ORDER;
+const int FOURS = (COUNT + 3) / 4;
+const int CHANNELS = GREY ? 1 : 3;
+
+vec4 harmonics[36];
+#include "shared/harmonics.glsl"
+#include "specular/lobe_bands.glsl"
+
+// What arrives, smoothed by the lobe and scaled.
+vec3 smoothed[36];
+// What leaves.
+vec4 leaving[27];
+
+void find_smoothed(ivec2 at, vec2 lobe) {
+    for (int i = 0; i < 36; i++) {
+        harmonics[i] = vec4(1.0);
+    }
+    keep_bands(vec4(lobe.x), vec4(lobe.y));
+    for (int i = 0; i < FOURS; i++) {
+        mat3x4 four = mat3x4(0.0);
+        for (int c = 0; c < CHANNELS; c++) {
+            four[c] = texelFetch(arriving, ivec3(at, c * FOURS + i), 0);
+        }
+        for (int k = 0; k < 4 && 4 * i + k < COUNT; k++) {
+            smoothed[4 * i + k] = harmonics[4 * i + k].x * vec3(four[0][k], four[1][k], four[2][k]);
+        }
+    }
+}
+
+vec3 mirrored(vec3 normal) {
+    vec3 mirror = 2.0 * normal.z * normal - vec3(0.0, 0.0, 1.0);
+    find_harmonics(vec4(mirror.x), vec4(mirror.y), vec4(mirror.z));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < COUNT; i++) {
+        sum += harmonics[i].x * smoothed[i];
+    }
+    // Series ring; what is seen is not below 0.
+    vec3 light = max(sum, vec3(0.0));
+    return GREY ? light.xxx : light;
+}
+
+void throw_vectors(ivec2 at, vec3 normal, vec3 diffuse) {
+    for (int i = 0; i < CHANNELS * FOURS; i++) {
+        leaving[i] = vec4(0.0);
+    }
+    int texel = first_texel;
+    for (int four = 0; four < fours; four++) {
+        vec4 x = texelFetch(constants, texel);
+        vec4 y = texelFetch(constants, texel + 1);
+        vec4 z = texelFetch(constants, texel + 2);
+        vec4 twice = 2.0 * (normal.x * x + normal.y * y + normal.z * z);
+        find_harmonics(twice * normal.x - x, twice * normal.y - y, twice * normal.z - z);
+        texel += 3;
+        vec4 red = vec4(0.0);
+        vec4 green = vec4(0.0);
+        vec4 blue = vec4(0.0);
+        for (int i = 0; i < COUNT; i++) {
+            red += harmonics[i] * smoothed[i].r;
+            green += harmonics[i] * smoothed[i].g;
+            blue += harmonics[i] * smoothed[i].b;
+        }
+        mat3x4 colours = mat3x4(red, green, blue);
+        for (int k = 0; k < 4; k++) {
+            for (int i = 0; i < FOURS; i++) {
+                vec4 weighed = texelFetch(constants, texel + k * FOURS + i);
+                for (int c = 0; c < CHANNELS; c++) {
+                    leaving[c * FOURS + i] += colours[c][k] * weighed;
+                }
+            }
+        }
+        texel += 4 * FOURS;
+    }
+    for (int c = 0; c < CHANNELS; c++) {
+        // A constant has Y_00 alone, sqrt(4 pi) of it.
+        leaving[c * FOURS].x += 3.5449077018110318 * diffuse[c];
+        for (int i = 0; i < FOURS; i++) {
+            vec4 four = leaving[c * FOURS + i];
+            vec4 held = clamp(four, vec4(-65504.0), vec4(65504.0));
+            imageStore(exit_vectors, ivec3(at, c * FOURS + i), HALVES ? held : four);
+        }
+    }
+}
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= cols || at.y >= rows) {
+        return;
+    }
+    vec4 own = texelFetch(ground, at, 0);
+    vec3 normal = vec3(-own.y, -own.z, 1.0) * inversesqrt(1.0 + own.y * own.y + own.z * own.z);
+    vec2 lobe = vec2(exponent, scale);
+    if (LOBE_IS_MAP) {
+        lobe = texelFetch(phong_map, at, 0).xy;
+    }
+    vec3 seen = vec3(0.0);
+    if (VECTORS || !IS_DIRECT) {
+        find_smoothed(at, lobe);
+    }
+    if (IS_DIRECT) {
+        seen = texelFetch(gloss_direct, at, 0).rgb;
+    } else {
+        seen = mirrored(normal);
+        vec4 before = imageLoad(gloss_bounced, at);
+        vec4 own_light = vec4(seen, 1.0);
+        vec4 both = vec4(before.rgb + seen, 1.0);
+        imageStore(gloss_bounced, at, begins > 0u ? own_light : both);
+    }
+    if (THROWS) {
+        vec4 texel = texelFetch(exit_radiance, at, 0);
+        vec3 diffuse = GREY ? texel.xxx : texel.rgb;
+        if (VECTORS) {
+            throw_vectors(at, normal, diffuse);
+        } else {
+            imageStore(exit_seen, at, vec4(diffuse + seen, 1.0));
+        }
+    }
+}

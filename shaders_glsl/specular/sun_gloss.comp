@@ -1,0 +1,101 @@
+// Computes: what a lobe about the mirror direction of the view from straight above reflects of a sun at every
+// sample: the lobe towards the sun's middle, times the part of the sun that is seen. That part is what it gives to
+// diffuse ground over what all of it would.
+// Where light is thrown on, what arrives of the sun as a series besides: all of it from its middle.
+// Reads: lane_heights, sun_sum, phong_map. Reads and writes: gloss_sum (exit radiance, RGB), arriving (four coefficients
+// a layer, channel after channel).
+// One invocation is four samples side by side along the lane axis, at one march position.
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 8, local_size_y = 16) in;
+
+layout(constant_id = 0) const uint BORDER = 0u;
+layout(constant_id = 1) const bool MARCHES_ROWS = false;
+layout(constant_id = 2) const bool LOBE_IS_MAP = false;
+// Of the series; 0 for none. Radiance of one channel.
+layout(constant_id = 3) const int ORDER = 0;
+layout(constant_id = 4) const bool GREY = false;
+const int LANE_STRIDE = 1;
+
+layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
+layout(binding = 1) uniform texture2D sun_sum;
+layout(binding = 2, rgba32f) uniform image2D gloss_sum;
+// Exponent and scale of the lobe.
+layout(binding = 3) uniform texture2D phong_map;
+layout(binding = 4, rgba32f) uniform image2DArray arriving;
+
+layout(push_constant) uniform SunGlossPush {
+    int cols;
+    int rows;
+    float cell_x_m;
+    float cell_y_m;
+    vec4 towards;  // the sun's middle
+    vec4 colour;   // irradiance; w: 1 where the sum begins
+    vec2 lobe;     // exponent and scale, where they are constant
+};
+
+#include "shared/quad.glsl"
+#include "specular/lobe.glsl"
+
+vec4 harmonics[36];
+#include "shared/harmonics.glsl"
+
+const int FOURS = (ORDER * ORDER + 3) / 4;
+const int CHANNELS = GREY ? 1 : 3;
+
+void add_arriving(ivec2 at, float seen) {
+    for (int i = 0; i < FOURS; i++) {
+        vec4 y = vec4(harmonics[4 * i].x, harmonics[4 * i + 1].x, harmonics[4 * i + 2].x, harmonics[4 * i + 3].x);
+        for (int c = 0; c < CHANNELS; c++) {
+            ivec3 layer = ivec3(at, c * FOURS + i);
+            vec4 before = imageLoad(arriving, layer);
+            vec4 light = (seen * colour[c]) * y;
+            vec4 both = before + light;
+            imageStore(arriving, layer, colour.w > 0.0 ? light : both);
+        }
+    }
+}
+
+void main() {
+    int lanes = MARCHES_ROWS ? cols : rows;
+    int steps = MARCHES_ROWS ? rows : cols;
+    int lane = int(gl_GlobalInvocationID.y) * 4;
+    int march = int(gl_GlobalInvocationID.x);
+    if (lane >= lanes || march >= steps) {
+        return;
+    }
+    Quad q = quad_at(lane, march, lanes, steps);
+    vec4 east;
+    vec4 north;
+    quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
+    if (ORDER > 0) {
+        // Beyond the last coefficient: none.
+        for (int i = 0; i < 36; i++) {
+            harmonics[i] = vec4(0.0);
+        }
+        find_harmonics(vec4(towards.x), vec4(towards.y), vec4(towards.z));
+    }
+    vec4 z = inversesqrt(1.0 + east * east + north * north);
+    for (int k = 0; k < 4 && lane + k < lanes; k++) {
+        ivec2 at = texel_at(lane + k, march);
+        vec3 normal = vec3(-east[k], -north[k], 1.0) * z[k];
+        vec3 mirror = 2.0 * normal.z * normal - vec3(0.0, 0.0, 1.0);
+        vec2 of = lobe;
+        if (LOBE_IS_MAP) {
+            of = texelFetch(phong_map, at, 0).xy;
+        }
+        float facing = dot(normal, towards.xyz);
+        // Of a disc that the sample's own plane cuts, more may be seen than faces it in the mean.
+        float seen = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
+        float density = facing > 0.0 ? of.y * lobe_density(towards.xyz - mirror, of.x) : 0.0;
+        // A: what harmonics have left there.
+        vec4 before = imageLoad(gloss_sum, at);
+        vec4 light = vec4(colour.rgb * (seen * density), 0.0);
+        vec4 sum = before + light;
+        imageStore(gloss_sum, at, colour.w > 0.0 ? light : sum);
+        if (ORDER > 0) {
+            add_arriving(at, facing > 0.0 ? seen : 0.0);
+        }
+    }
+}
