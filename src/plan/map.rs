@@ -1,7 +1,7 @@
 use super::Plan;
 use crate::graph::{Builder, Format, Limits, Owner};
 use crate::passes::map_draw::Map;
-use crate::{Error, Result, passes};
+use crate::{Result, passes};
 
 /// The pass that draws a [`Map`].
 ///

@@ -3,9 +3,9 @@
 //! A twin has its shader's name and reads like it. Geometry (sweeps, fusing) does the shader's own
 //! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
 //! bits; light is summed in f64 and compared within a tolerance. [`path_trace`]'s follows the same paths, and carries along
-//! what f32 may be off by; [`bounce`] finds the same light without chance.
+//! what f32 may be off by; [`indirect`] finds the same light without chance.
 //!
-//! To be judged by: [`oracle`], brute force over every triangle, and [`bounce`]. To read a shader with its twin
+//! To be judged by: [`oracle`], brute force over every triangle, and [`indirect`]. To read a shader with its twin
 //! beside it: `shaders_glsl/NAME.comp` and `cpu::NAME`, the same names in both.
 
 #![deny(clippy::missing_errors_doc)]
