@@ -21,14 +21,14 @@ use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 use ridgelight_trade::error::{HorizonError, ImageError};
 
-struct Asked {
+struct Request {
     field: HeightField,
     environment: Option<Environment>,
     samples: usize,
     pyramids_alone: bool,
 }
 
-fn asked() -> Result<Asked> {
+fn asked() -> Result<Request> {
     let mut options = HeightOptions::default();
     let (mut path, mut env, mut samples, mut pyramids_alone) = (None, None, 4000, false);
     let mut args = std::env::args().skip(1);
@@ -56,7 +56,7 @@ fn asked() -> Result<Asked> {
     }
     let path = path.ok_or_else(|| Error::setting("FIELD", "nothing", "a height field"))?;
     let environment = env.map(|e| files::read_environment(&e, 0.0)).transpose()?;
-    Ok(Asked {
+    Ok(Request {
         field: files::read_heights(&path, &options)?,
         environment,
         samples: samples.max(40),
@@ -239,7 +239,7 @@ fn pyramids(
 }
 
 fn main() -> Result<()> {
-    let Asked { field, environment, samples, pyramids_alone } = asked()?;
+    let Request { field, environment, samples, pyramids_alone } = asked()?;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let oracle = Oracle::new(&field, Border::Plane);
     let picks = pick(&field, samples);

@@ -21,7 +21,7 @@ use ridgelight_io::HeightOptions;
 /// A file without a cell size gets one that makes its relief this share of its side.
 const RELIEF: f64 = 0.1;
 
-struct Asked {
+struct Request {
     folder: PathBuf,
     fit: bool,
     side: usize,
@@ -30,8 +30,8 @@ struct Asked {
     json: Option<PathBuf>,
 }
 
-fn asked() -> Result<Asked> {
-    let mut asked = Asked {
+fn asked() -> Result<Request> {
+    let mut asked = Request {
         folder: PathBuf::new(),
         fit: false,
         side: 256,
@@ -118,7 +118,7 @@ fn lights(folder: &Path) -> Result<Vec<(String, Lights)>> {
 }
 
 /// The scenes of the half that is asked for, by name.
-fn scenes(asked: &Asked) -> Result<Vec<(String, Scene)>> {
+fn scenes(asked: &Request) -> Result<Vec<(String, Scene)>> {
     let lights = lights(&asked.folder)?;
     let mut all = Vec::new();
     let fields = listed(&asked.folder.join("height"))?;

@@ -38,7 +38,7 @@ use ridgelight_cpu::oracle::Oracle;
 const ENGINES: [BounceEngine; 3] =
     [BounceEngine::Brute, BounceEngine::Sweep, BounceEngine::Pyramid];
 
-struct Asked {
+struct Request {
     is_table: bool,
     folder: Option<PathBuf>,
     side: Option<usize>,
@@ -48,8 +48,8 @@ struct Asked {
     output: Option<PathBuf>,
 }
 
-fn asked() -> Result<Asked> {
-    let mut asked = Asked {
+fn asked() -> Result<Request> {
+    let mut asked = Request {
         is_table: false,
         folder: None,
         side: None,

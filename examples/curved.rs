@@ -33,9 +33,9 @@ use ridgelight::scene::{
 };
 use ridgelight::{Error, Result};
 use ridgelight_bake::CurvedEllipses;
+use ridgelight_cpu::bent_directions::{Draped, Fans};
 use ridgelight_cpu::ellipse_fit::{Ellipse, fit, seen_bent};
-use ridgelight_cpu::fan_weigh::weight;
-use ridgelight_cpu::points_bend::{Draped, Fans};
+use ridgelight_cpu::fan_weights::weight;
 
 const LIGHTS: usize = 200;
 const DIRECTIONS: usize = 1024;

@@ -43,14 +43,14 @@ fn brush(heights: &mut [f32], side: usize, at: Rectangle, sign: f32) {
     }
 }
 
-struct Asked {
+struct Request {
     side: usize,
     brush: usize,
     edits: usize,
     seed: u64,
 }
 
-fn asked() -> Result<Asked> {
+fn asked() -> Result<Request> {
     let mut values = [4096, 64, 10, 1];
     for (value, text) in values.iter_mut().zip(std::env::args().skip(1)) {
         *value = text.parse().map_err(|_| Error::setting("edits", &text, "a whole number"))?;
@@ -62,7 +62,7 @@ fn asked() -> Result<Asked> {
     if edits == 0 {
         return Err(Error::setting("EDITS", "0", "1 or more"));
     }
-    Ok(Asked { side, brush, edits, seed: seed as u64 })
+    Ok(Request { side, brush, edits, seed: seed as u64 })
 }
 
 fn planned(gpu: &Headless, side: usize, seed: u64) -> Result<(Scene, Plan)> {
@@ -77,7 +77,7 @@ fn planned(gpu: &Headless, side: usize, seed: u64) -> Result<(Scene, Plan)> {
 
 fn run() -> Result<()> {
     let asked = asked()?;
-    let Asked { side, brush: width, seed, .. } = asked;
+    let Request { side, brush: width, seed, .. } = asked;
     let mut gpu = Headless::new(&HeadlessOptions::default())?;
     let (scene, plan) = planned(&gpu, side, seed)?;
     println!("{}: {side}², {width}² brush, {AZIMUTHS} azimuths", gpu.report().name);
@@ -88,8 +88,8 @@ fn run() -> Result<()> {
 }
 
 /// Draws a frame, then edits it again and again, and holds each edit against drawing it all.
-fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Asked) -> Result<()> {
-    let Asked { side, brush: width, edits, seed } = *asked;
+fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Request) -> Result<()> {
+    let Request { side, brush: width, edits, seed } = *asked;
     let all = f64::from(AZIMUTHS) * (side * side) as f64;
     gpu.draw(frame)?;
     // Drivers compile when a pass first runs: an edit of nothing new.
@@ -140,8 +140,8 @@ fn edit_all(gpu: &mut Headless, frame: &mut Frame, scene: &Scene, asked: &Asked)
 }
 
 /// What docs/embedding.md says: shares of all samples that were swept and lit, and the ratio of times, of each edit.
-fn summary(asked: &Asked, costs: &[[f64; 3]]) -> String {
-    let Asked { side, brush, edits, .. } = asked;
+fn summary(asked: &Request, costs: &[[f64; 3]]) -> String {
+    let Request { side, brush, edits, .. } = asked;
     let [swept, lit, ratio] = [0, 1, 2].map(|i| {
         let mut all: Vec<f64> = costs.iter().map(|c| c[i]).collect();
         all.sort_by(f64::total_cmp);

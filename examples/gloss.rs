@@ -46,14 +46,14 @@ const GAP: usize = 4;
 /// Linear RGB of all samples.
 type Colours = Vec<[f64; 3]>;
 
-struct Asked {
+struct Request {
     side: usize,
     paths: u32,
     output: Option<PathBuf>,
 }
 
-fn asked() -> Result<Asked> {
-    let mut asked = Asked { side: 64, paths: 1024, output: None };
+fn asked() -> Result<Request> {
+    let mut asked = Request { side: 64, paths: 1024, output: None };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         match arg.as_str() {

@@ -21,7 +21,7 @@ const ERROR: f64 = 0.01;
 /// Of this length at least is the run whose rates are told, seconds.
 const LEAST_S: f64 = 2.0;
 
-struct Asked {
+struct Request {
     field: PathBuf,
     options: HeightOptions,
     environment: PathBuf,
@@ -29,7 +29,7 @@ struct Asked {
     truth: u32,
 }
 
-fn asked() -> Result<Asked> {
+fn asked() -> Result<Request> {
     let (mut field, mut environment) = (None, None);
     let mut options = HeightOptions::default();
     let (mut side, mut truth) = (512, 4096);
@@ -56,7 +56,7 @@ fn asked() -> Result<Asked> {
         }
     }
     let missing = |what: &str| Error::setting(what, "nothing", "a file");
-    Ok(Asked {
+    Ok(Request {
         field: field.ok_or_else(|| missing("FIELD"))?,
         environment: environment.ok_or_else(|| missing("--env"))?,
         options,

@@ -37,7 +37,7 @@ use ridgelight::{Error, Result};
 /// Linear RGB of all samples.
 type Colours = Vec<[f32; 3]>;
 
-struct Asked {
+struct Request {
     part: String,
     folder: Option<PathBuf>,
     side: usize,
@@ -45,8 +45,9 @@ struct Asked {
     output: Option<PathBuf>,
 }
 
-fn asked() -> Result<Asked> {
-    let mut asked = Asked { part: "all".into(), folder: None, side: 32, paths: 2048, output: None };
+fn asked() -> Result<Request> {
+    let mut asked =
+        Request { part: "all".into(), folder: None, side: 32, paths: 2048, output: None };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         let mut whole = || {

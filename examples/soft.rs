@@ -38,7 +38,7 @@ use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_trade::error::ImageError;
 
-struct Asked {
+struct Request {
     what: String,
     path: PathBuf,
     env: PathBuf,
@@ -49,8 +49,8 @@ struct Asked {
     output: Option<PathBuf>,
 }
 
-fn asked() -> Result<Asked> {
-    let mut asked = Asked {
+fn asked() -> Result<Request> {
+    let mut asked = Request {
         what: String::new(),
         path: PathBuf::new(),
         env: "assets/sky_512x256.hdr".into(),

@@ -8,7 +8,7 @@ use ridgelight_trade::error::ImageError;
 use ridgelight_trade::trade::start;
 
 use super::device::draw;
-use super::{Asked, scenes};
+use super::{Request, scenes};
 
 /// Added to the squares of the normal equations' features (not of bias and power): as if each weight
 /// had been seen to be 0 once, with a spread of 1. Features are of order 1, scenes 24.
@@ -117,7 +117,7 @@ fn least_squares(seen: &[Seen], known: Option<f64>) -> (Vec<f64>, f64) {
     (weights, left.sqrt())
 }
 
-pub fn fit(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+pub fn fit(gpu: &mut Headless, asked: &Request) -> Result<()> {
     let all = scenes(asked)?;
     println!(
         "// {}, middle {}² of each field, the half that is fitted",

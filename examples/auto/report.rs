@@ -8,11 +8,11 @@ use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 use ridgelight_trade::auto::{Chosen, Goal, Measured, Probes, apart, choose, flags};
-use ridgelight_trade::trade::{Rule, Search, Value as Point, knobs, places, recommend, start};
+use ridgelight_trade::trade::{Rule, Search, Value as Point, ladders, places, recommend, start};
 use serde_json::{Value, json};
 
 use super::device::{draw, ratio};
-use super::{Asked, scenes};
+use super::{Request, scenes};
 
 const ERRORS: [f64; 5] = [0.05, 0.02, 0.01, 0.005, 0.002];
 /// Samples that true errors are told by: others than those that choose, more, and beside a frame that is
@@ -77,11 +77,11 @@ fn walked(
     seconds: f64,
 ) -> Result<Vec<(Quality, Point)>> {
     let start = start();
-    let knobs = knobs(scene, 0);
+    let ladders = ladders(scene, 0);
     let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
     let is_walked = |q: &Quality| truth.needs_exact || !is_exact(q);
     let places: Vec<_> =
-        places(&knobs, &start).into_iter().filter(|p| is_walked(&p.quality)).collect();
+        places(&ladders, &start).into_iter().filter(|p| is_walked(&p.quality)).collect();
     let first = places.iter().position(|p| p.quality == start).expect("the defaults are a place");
     let mut search = Search::new(places.iter().map(|p| p.steps.clone()).collect(), first, 0.0);
     let (begun, mut all) = (Instant::now(), Vec::new());
@@ -288,7 +288,7 @@ fn kept(path: &Path, about: &Value) -> Result<Vec<Value>> {
     Ok(old["rows"].as_array().cloned().unwrap_or_default())
 }
 
-fn write(asked: &Asked, about: &mut Value, rows: &[Value]) -> Result<()> {
+fn write(asked: &Request, about: &mut Value, rows: &[Value]) -> Result<()> {
     let Some(path) = &asked.json else { return Ok(()) };
     about["pairs"] = (rows.len() / ERRORS.len()).into();
     about["summary"] = summary(rows);
@@ -296,7 +296,7 @@ fn write(asked: &Asked, about: &mut Value, rows: &[Value]) -> Result<()> {
     files::write_json(path, about)
 }
 
-pub fn report(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+pub fn report(gpu: &mut Headless, asked: &Request) -> Result<()> {
     let scenes = scenes(asked)?;
     let mut about = json!({
         "device": gpu.report().name, "driver": gpu.report().driver, "side": asked.side,

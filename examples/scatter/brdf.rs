@@ -13,10 +13,10 @@ use ridgelight::scene::{
     VisiblePoints,
 };
 use ridgelight::{Error, Result};
-use ridgelight_bake::{Angles, Brdf, BrdfHarmonics, Facets, Factors, Leaving, pairs};
+use ridgelight_bake::{Angles, Brdf, BrdfHarmonics, ExitRadiance, Facets, Factors, pairs};
 
 use crate::geometry::{Geometry, sun};
-use crate::{Asked, bent, moss};
+use crate::{Request, bent, moss};
 
 pub const ANGLES: Angles = Angles { zeniths: 8, azimuths: 16 };
 /// Pairs between the angles, and pairs whose geometry is drawn.
@@ -70,7 +70,7 @@ impl Seen<'_> {
         facets: &Facets,
         lights: usize,
         is_scattered: bool,
-        mut take: impl FnMut(usize, &Leaving),
+        mut take: impl FnMut(usize, &ExitRadiance),
     ) -> Result<()> {
         let scatter = is_scattered.then_some((&self.around, &SCATTER));
         // What is diffuse leaves towards all views alike.
@@ -152,7 +152,7 @@ fn left(found: &[[f64; 3]], known: &[[f64; 3]]) -> f64 {
     100.0 * f64::sqrt(apart / f64::max(all, f64::MIN_POSITIVE))
 }
 
-pub fn run(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+pub fn run(gpu: &mut Headless, asked: &Request) -> Result<()> {
     println!(
         "Seen from afar: a table of {} × {} angles for lights and for views, {} bounces by {} directions and {} paths\n",
         ANGLES.zeniths, ANGLES.azimuths, SCATTER.bounces, DIRECTIONS, SCATTER.paths

@@ -13,7 +13,7 @@ use ridgelight_io as files;
 use crate::seen::points;
 use crate::table::bumps;
 use crate::traced::traced;
-use crate::{Asked, Colours, colours, grooves, lights, mean, moss, rms, scattered};
+use crate::{Colours, Request, colours, grooves, lights, mean, moss, rms, scattered};
 
 const BOUNCES: u32 = 3;
 /// Of what samples see by their own normals.
@@ -34,7 +34,7 @@ fn middle(field: &HeightField, side: usize) -> Result<HeightField> {
     HeightField::new(rows, cols, &heights, field.cell_m(), None)
 }
 
-fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
+fn scenes(asked: &Request) -> Result<Vec<(&'static str, Scene)>> {
     let on = |field| {
         let surface = Surface { albedo: Albedo::Constant([0.8, 0.7, 0.6]), ..Surface::default() };
         Scene { field, surface, lights: lights() }
@@ -51,7 +51,7 @@ fn scenes(asked: &Asked) -> Result<Vec<(&'static str, Scene)>> {
     Ok(all)
 }
 
-pub fn run(gpu: &mut Headless, asked: &Asked) -> Result<()> {
+pub fn run(gpu: &mut Headless, asked: &Request) -> Result<()> {
     let mut rows: Vec<[Colours; 3]> = Vec::new();
     for (name, scene) in scenes(asked)? {
         rows.push(one(gpu, asked, name, &scene)?);
@@ -100,7 +100,7 @@ fn by_own_normals(scene: &Scene, direct: &Colours) -> Colours {
 }
 
 /// Direct light, with scattered light, and light paths.
-fn one(gpu: &mut Headless, asked: &Asked, name: &str, scene: &Scene) -> Result<[Colours; 3]> {
+fn one(gpu: &mut Headless, asked: &Request, name: &str, scene: &Scene) -> Result<[Colours; 3]> {
     let (field, border) = (&scene.field, scene.surface.border);
     let batches = asked.paths.div_ceil(REFERENCE_BATCH);
     let [direct, _] = traced(gpu, scene, 0, batches)?.map(|v| colours(&v));

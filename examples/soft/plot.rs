@@ -17,7 +17,7 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// Told apart without red and green.
+/// FileNotes apart without red and green.
 const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#444444"];
 const SIZE: [f64; 2] = [430.0, 420.0];
 /// Left, top, right, bottom: names stand below.

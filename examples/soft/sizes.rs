@@ -46,7 +46,7 @@ fn stages(plan: &Plan, whole: &[Vec<Timing>], relit: &[Vec<Timing>]) -> [f64; 6]
     let of: [&[&str]; 4] = [
         &horizons,
         &["sh_visibility", "sweep_fuse", "sh_wedges"],
-        &["env_turns", "light_matrix"],
+        &["env_rotation", "light_matrix"],
         &["sh_shade", "light_resolve"],
     ];
     let sum = |run: &Vec<Timing>, names: &[&str]| -> f64 {

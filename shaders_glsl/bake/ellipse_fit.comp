@@ -1,6 +1,6 @@
 // Computes: the ellipse in the plan of the hemisphere that holds the directions in which a sample sees the sky (Heidrich et
 // al. 2000, §4). Reads: visible_points (see bake/points.glsl), directions (east, north, up), or on a curved base bent (see
-// points_bend), of which those above horizontal count. Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
+// bent_directions), of which those above horizontal count. Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
 // One invocation is one sample.
 #version 460
 

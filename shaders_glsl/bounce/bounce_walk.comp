@@ -39,7 +39,7 @@ layout(binding = 6, rgba32ui) uniform writeonly uimage2DArray casting_sets;
 #include "shared/lattice.glsl"
 #include "shared/quad.glsl"
 #include "shared/nodes.glsl"
-#include "bounce/casting_set.glsl"
+#include "bounce/visibility_cache.glsl"
 
 layout(push_constant) uniform BounceWalkPush {
     int cols;

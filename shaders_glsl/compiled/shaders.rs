@@ -1,5 +1,55 @@
 // Written by build.rs from the SPIR-V of shaders_glsl/; committed by tools/shaders. Not edited by hand.
 
+/// `shaders_glsl/bake/bent_directions.comp`.
+pub const BENT_DIRECTIONS: Shader = Shader {
+    name: "bent_directions",
+    push_bytes: 36,
+    bindings: &[
+        Binding { binding: 0, name: "visible_points", kind: BindingKind::SampledImage { uint: true, layered: true }, written: false },
+        Binding { binding: 1, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 2, name: "directions", kind: BindingKind::TexelBuffer, written: false },
+        Binding { binding: 3, name: "fans", kind: BindingKind::TexelBuffer, written: false },
+        Binding { binding: 4, name: "bent", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
+    ],
+    constants: &[
+        Constant { id: 0, name: "border" },
+        Constant { id: 1, name: "small" },
+        Constant { id: 2, name: "reach" },
+    ],
+    words: words_at(0, 8158),
+};
+
+/// `shaders_glsl/bake/bent_directions.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BentDirections {
+    /// `BORDER`, by default 0.
+    pub border: u32,
+    /// `SMALL`, by default false.
+    pub small: bool,
+    /// `REACH`, by default 16384.
+    pub reach: i32,
+}
+
+impl Default for BentDirections {
+    fn default() -> Self {
+        Self {
+            border: 0,
+            small: false,
+            reach: 16384,
+        }
+    }
+}
+
+impl From<BentDirections> for Specialised {
+    fn from(of: BentDirections) -> Self {
+        Self { shader: &BENT_DIRECTIONS, constants: vec![
+            of.border,
+            u32::from(of.small),
+            of.reach as u32,
+        ] }
+    }
+}
+
 /// `shaders_glsl/bounce/bounce_gather.comp`.
 pub const BOUNCE_GATHER: Shader = Shader {
     name: "bounce_gather",
@@ -25,7 +75,7 @@ pub const BOUNCE_GATHER: Shader = Shader {
         Constant { id: 5, name: "is_plane" },
         Constant { id: 6, name: "node_stride" },
     ],
-    words: words_at(0, 11633),
+    words: words_at(8158, 11633),
 };
 
 /// `shaders_glsl/bounce/bounce_gather.comp` with its specialisation constants.
@@ -94,7 +144,7 @@ pub const BOUNCE_MARCH: Shader = Shader {
         Constant { id: 4, name: "grey" },
         Constant { id: 5, name: "node_stride" },
     ],
-    words: words_at(11633, 12301),
+    words: words_at(19791, 12301),
 };
 
 /// `shaders_glsl/bounce/bounce_march.comp` with its specialisation constants.
@@ -153,7 +203,7 @@ pub const BOUNCE_SHADE: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "node_stride" },
     ],
-    words: words_at(23934, 2676),
+    words: words_at(32092, 2676),
 };
 
 /// `shaders_glsl/bounce/bounce_shade.comp` with its specialisation constants.
@@ -200,7 +250,7 @@ pub const BOUNCE_WALK: Shader = Shader {
         Constant { id: 4, name: "node_stride" },
         Constant { id: 5, name: "from" },
     ],
-    words: words_at(26610, 13808),
+    words: words_at(34768, 13808),
 };
 
 /// `shaders_glsl/bounce/bounce_walk.comp` with its specialisation constants.
@@ -246,9 +296,9 @@ impl From<BounceWalk> for Specialised {
     }
 }
 
-/// `shaders_glsl/bounce/cast_gather.comp`.
-pub const CAST_GATHER: Shader = Shader {
-    name: "cast_gather",
+/// `shaders_glsl/bounce/cache_gather.comp`.
+pub const CACHE_GATHER: Shader = Shader {
+    name: "cache_gather",
     push_bytes: 16,
     bindings: &[
         Binding { binding: 0, name: "casting_sets", kind: BindingKind::StorageImage { format: "Rgba32ui", uint: true, layered: true }, written: false },
@@ -263,12 +313,12 @@ pub const CAST_GATHER: Shader = Shader {
         Constant { id: 1, name: "grey" },
         Constant { id: 2, name: "node_stride" },
     ],
-    words: words_at(40418, 3633),
+    words: words_at(48576, 3633),
 };
 
-/// `shaders_glsl/bounce/cast_gather.comp` with its specialisation constants.
+/// `shaders_glsl/bounce/cache_gather.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CastGather {
+pub(crate) struct CacheGather {
     /// `BORDER`, by default 0.
     pub border: u32,
     /// `GREY`, by default false.
@@ -277,7 +327,7 @@ pub(crate) struct CastGather {
     pub node_stride: i32,
 }
 
-impl Default for CastGather {
+impl Default for CacheGather {
     fn default() -> Self {
         Self {
             border: 0,
@@ -287,9 +337,9 @@ impl Default for CastGather {
     }
 }
 
-impl From<CastGather> for Specialised {
-    fn from(of: CastGather) -> Self {
-        Self { shader: &CAST_GATHER, constants: vec![
+impl From<CacheGather> for Specialised {
+    fn from(of: CacheGather) -> Self {
+        Self { shader: &CACHE_GATHER, constants: vec![
             of.border,
             u32::from(of.grey),
             of.node_stride as u32,
@@ -307,7 +357,7 @@ pub const DIRTY_LIST: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(44051, 875),
+    words: words_at(52209, 875),
 };
 
 /// `shaders_glsl/edit/dirty_list.comp` with its specialisation constants.
@@ -331,7 +381,7 @@ pub const DIRTY_MARK: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(44926, 1324),
+    words: words_at(53084, 1324),
 };
 
 /// `shaders_glsl/edit/dirty_mark.comp` with its specialisation constants.
@@ -360,7 +410,7 @@ pub const ELLIPSE_FIT: Shader = Shader {
         Constant { id: 0, name: "small" },
         Constant { id: 1, name: "bent" },
     ],
-    words: words_at(46250, 5048),
+    words: words_at(54408, 5048),
 };
 
 /// `shaders_glsl/bake/ellipse_fit.comp` with its specialisation constants.
@@ -381,6 +431,31 @@ impl From<EllipseFit> for Specialised {
     }
 }
 
+/// `shaders_glsl/sh/env_rotation.comp`.
+pub const ENV_ROTATION: Shader = Shader {
+    name: "env_rotation",
+    push_bytes: 16,
+    bindings: &[
+        Binding { binding: 0, name: "environment", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 1, name: "constants", kind: BindingKind::TexelBuffer, written: false },
+        Binding { binding: 2, name: "env_rotation", kind: BindingKind::StorageBuffer, written: true },
+    ],
+    constants: &[
+    ],
+    words: words_at(59456, 949),
+};
+
+/// `shaders_glsl/sh/env_rotation.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct EnvRotation;
+
+impl From<EnvRotation> for Specialised {
+    fn from(_: EnvRotation) -> Self {
+        Self { shader: &ENV_ROTATION, constants: vec![
+        ] }
+    }
+}
+
 /// `shaders_glsl/direct/env_tables.comp`.
 pub const ENV_TABLES: Shader = Shader {
     name: "env_tables",
@@ -391,7 +466,7 @@ pub const ENV_TABLES: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(51298, 1463),
+    words: words_at(60405, 1463),
 };
 
 /// `shaders_glsl/direct/env_tables.comp` with its specialisation constants.
@@ -401,31 +476,6 @@ pub(crate) struct EnvTables;
 impl From<EnvTables> for Specialised {
     fn from(_: EnvTables) -> Self {
         Self { shader: &ENV_TABLES, constants: vec![
-        ] }
-    }
-}
-
-/// `shaders_glsl/sh/env_turns.comp`.
-pub const ENV_TURNS: Shader = Shader {
-    name: "env_turns",
-    push_bytes: 16,
-    bindings: &[
-        Binding { binding: 0, name: "environment", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 1, name: "constants", kind: BindingKind::TexelBuffer, written: false },
-        Binding { binding: 2, name: "env_turns", kind: BindingKind::StorageBuffer, written: true },
-    ],
-    constants: &[
-    ],
-    words: words_at(52761, 948),
-};
-
-/// `shaders_glsl/sh/env_turns.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct EnvTurns;
-
-impl From<EnvTurns> for Specialised {
-    fn from(_: EnvTurns) -> Self {
-        Self { shader: &ENV_TURNS, constants: vec![
         ] }
     }
 }
@@ -441,7 +491,7 @@ pub const ENV_WEDGES: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(53709, 2151),
+    words: words_at(61868, 2151),
 };
 
 /// `shaders_glsl/sh/env_wedges.comp` with its specialisation constants.
@@ -469,7 +519,7 @@ pub const FACET_MASK: Shader = Shader {
         Constant { id: 0, name: "border" },
         Constant { id: 1, name: "most_steps" },
     ],
-    words: words_at(55860, 9115),
+    words: words_at(64019, 9115),
 };
 
 /// `shaders_glsl/bake/facet_mask.comp` with its specialisation constants.
@@ -499,9 +549,9 @@ impl From<FacetMask> for Specialised {
     }
 }
 
-/// `shaders_glsl/bake/fan_weigh.comp`.
-pub const FAN_WEIGH: Shader = Shader {
-    name: "fan_weigh",
+/// `shaders_glsl/bake/fan_weights.comp`.
+pub const FAN_WEIGHTS: Shader = Shader {
+    name: "fan_weights",
     push_bytes: 16,
     bindings: &[
         Binding { binding: 0, name: "bent", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
@@ -510,216 +560,16 @@ pub const FAN_WEIGH: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(64975, 1842),
+    words: words_at(73134, 1842),
 };
 
-/// `shaders_glsl/bake/fan_weigh.comp` with its specialisation constants.
+/// `shaders_glsl/bake/fan_weights.comp` with its specialisation constants.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct FanWeigh;
+pub(crate) struct FanWeights;
 
-impl From<FanWeigh> for Specialised {
-    fn from(_: FanWeigh) -> Self {
-        Self { shader: &FAN_WEIGH, constants: vec![
-        ] }
-    }
-}
-
-/// `shaders_glsl/specular/gloss_exit.comp`.
-pub const GLOSS_EXIT: Shader = Shader {
-    name: "gloss_exit",
-    push_bytes: 28,
-    bindings: &[
-        Binding { binding: 0, name: "arriving", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 1, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "exit_radiance", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 3, name: "gloss_direct", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 4, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 5, name: "constants", kind: BindingKind::TexelBuffer, written: false },
-        Binding { binding: 6, name: "gloss_bounced", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
-        Binding { binding: 7, name: "exit_vectors", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: true }, written: true },
-        Binding { binding: 8, name: "exit_seen", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: false }, written: true },
-    ],
-    constants: &[
-        Constant { id: 0, name: "order" },
-        Constant { id: 1, name: "grey" },
-        Constant { id: 2, name: "lobe_is_map" },
-        Constant { id: 3, name: "is_direct" },
-        Constant { id: 4, name: "throws" },
-        Constant { id: 5, name: "vectors" },
-        Constant { id: 6, name: "halves" },
-    ],
-    words: words_at(66817, 6432),
-};
-
-/// `shaders_glsl/specular/gloss_exit.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GlossExit {
-    /// `ORDER`, by default 4.
-    pub order: i32,
-    /// `GREY`, by default false.
-    pub grey: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
-    /// `IS_DIRECT`, by default false.
-    pub is_direct: bool,
-    /// `THROWS`, by default true.
-    pub throws: bool,
-    /// `VECTORS`, by default true.
-    pub vectors: bool,
-    /// `HALVES`, by default false.
-    pub halves: bool,
-}
-
-impl Default for GlossExit {
-    fn default() -> Self {
-        Self {
-            order: 4,
-            grey: false,
-            lobe_is_map: false,
-            is_direct: false,
-            throws: true,
-            vectors: true,
-            halves: false,
-        }
-    }
-}
-
-impl From<GlossExit> for Specialised {
-    fn from(of: GlossExit) -> Self {
-        Self { shader: &GLOSS_EXIT, constants: vec![
-            of.order as u32,
-            u32::from(of.grey),
-            u32::from(of.lobe_is_map),
-            u32::from(of.is_direct),
-            u32::from(of.throws),
-            u32::from(of.vectors),
-            u32::from(of.halves),
-        ] }
-    }
-}
-
-/// `shaders_glsl/specular/gloss_gather.comp`.
-pub const GLOSS_GATHER: Shader = Shader {
-    name: "gloss_gather",
-    push_bytes: 64,
-    bindings: &[
-        Binding { binding: 0, name: "heights", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 1, name: "height_levels", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "level_table", kind: BindingKind::SampledImage { uint: true, layered: false }, written: false },
-        Binding { binding: 3, name: "height_stack", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 4, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 5, name: "exit_radiance", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 6, name: "shade_levels", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 7, name: "shade_table", kind: BindingKind::SampledImage { uint: true, layered: false }, written: false },
-        Binding { binding: 8, name: "bounce_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
-        Binding { binding: 9, name: "shade_stack", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 10, name: "exit_vectors", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 11, name: "vector_levels", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 12, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
-    ],
-    constants: &[
-        Constant { id: 0, name: "periodic" },
-        Constant { id: 1, name: "stack" },
-        Constant { id: 2, name: "levels" },
-        Constant { id: 3, name: "shade_levels" },
-        Constant { id: 4, name: "grey" },
-        Constant { id: 5, name: "vectors" },
-        Constant { id: 6, name: "order" },
-        Constant { id: 7, name: "most_knots" },
-    ],
-    words: words_at(73249, 20111),
-};
-
-/// `shaders_glsl/specular/gloss_gather.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GlossGather {
-    /// `PERIODIC`, by default false.
-    pub periodic: bool,
-    /// `STACK`, by default false.
-    pub stack: bool,
-    /// `LEVELS`, by default 0.
-    pub levels: i32,
-    /// `SHADE_LEVELS`, by default 0.
-    pub shade_levels: i32,
-    /// `GREY`, by default false.
-    pub grey: bool,
-    /// `VECTORS`, by default true.
-    pub vectors: bool,
-    /// `ORDER`, by default 4.
-    pub order: i32,
-    /// `MOST_KNOTS`, by default 64.
-    pub most_knots: i32,
-}
-
-impl Default for GlossGather {
-    fn default() -> Self {
-        Self {
-            periodic: false,
-            stack: false,
-            levels: 0,
-            shade_levels: 0,
-            grey: false,
-            vectors: true,
-            order: 4,
-            most_knots: 64,
-        }
-    }
-}
-
-impl From<GlossGather> for Specialised {
-    fn from(of: GlossGather) -> Self {
-        Self { shader: &GLOSS_GATHER, constants: vec![
-            u32::from(of.periodic),
-            u32::from(of.stack),
-            of.levels as u32,
-            of.shade_levels as u32,
-            u32::from(of.grey),
-            u32::from(of.vectors),
-            of.order as u32,
-            of.most_knots as u32,
-        ] }
-    }
-}
-
-/// `shaders_glsl/specular/gloss_seen.comp`.
-pub const GLOSS_SEEN: Shader = Shader {
-    name: "gloss_seen",
-    push_bytes: 8,
-    bindings: &[
-        Binding { binding: 0, name: "visibility", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
-        Binding { binding: 1, name: "light_matrix", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
-    ],
-    constants: &[
-        Constant { id: 0, name: "order" },
-        Constant { id: 1, name: "grey" },
-    ],
-    words: words_at(93360, 1236),
-};
-
-/// `shaders_glsl/specular/gloss_seen.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GlossSeen {
-    /// `ORDER`, by default 4.
-    pub order: i32,
-    /// `GREY`, by default false.
-    pub grey: bool,
-}
-
-impl Default for GlossSeen {
-    fn default() -> Self {
-        Self {
-            order: 4,
-            grey: false,
-        }
-    }
-}
-
-impl From<GlossSeen> for Specialised {
-    fn from(of: GlossSeen) -> Self {
-        Self { shader: &GLOSS_SEEN, constants: vec![
-            of.order as u32,
-            u32::from(of.grey),
+impl From<FanWeights> for Specialised {
+    fn from(_: FanWeights) -> Self {
+        Self { shader: &FAN_WEIGHTS, constants: vec![
         ] }
     }
 }
@@ -734,7 +584,7 @@ pub const HEIGHT_BOUNDS: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(94596, 1109),
+    words: words_at(74976, 1109),
 };
 
 /// `shaders_glsl/rays/height_bounds.comp` with its specialisation constants.
@@ -763,7 +613,7 @@ pub const HEIGHT_CELLS: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "begins_paths" },
     ],
-    words: words_at(95705, 2514),
+    words: words_at(76085, 2514),
 };
 
 /// `shaders_glsl/rays/height_cells.comp` with its specialisation constants.
@@ -796,7 +646,7 @@ pub const HEIGHT_EXPAND: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "periodic" },
     ],
-    words: words_at(98219, 2495),
+    words: words_at(78599, 2495),
 };
 
 /// `shaders_glsl/horizon/height_expand.comp` with its specialisation constants.
@@ -827,7 +677,7 @@ pub const HEIGHT_REDUCE: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "from_field" },
     ],
-    words: words_at(100714, 2857),
+    words: words_at(81094, 2857),
 };
 
 /// `shaders_glsl/horizon/height_reduce.comp` with its specialisation constants.
@@ -860,7 +710,7 @@ pub const HEIGHT_TRANSPOSE: Shader = Shader {
         Constant { id: 0, name: "marches_rows" },
         Constant { id: 1, name: "periodic" },
     ],
-    words: words_at(103571, 978),
+    words: words_at(83951, 978),
 };
 
 /// `shaders_glsl/horizon/height_transpose.comp` with its specialisation constants.
@@ -896,7 +746,7 @@ pub const HORIZON_MARCH: Shader = Shader {
         Constant { id: 2, name: "writes_distances" },
         Constant { id: 3, name: "node_stride" },
     ],
-    words: words_at(104549, 5454),
+    words: words_at(84929, 5454),
 };
 
 /// `shaders_glsl/horizon/horizon_march.comp` with its specialisation constants.
@@ -949,7 +799,7 @@ pub const HORIZON_RESWEEP: Shader = Shader {
         Constant { id: 0, name: "line_shift" },
         Constant { id: 1, name: "hull_packed" },
     ],
-    words: words_at(110003, 8883),
+    words: words_at(90383, 8883),
 };
 
 /// `shaders_glsl/edit/horizon_resweep.comp` with its specialisation constants.
@@ -1006,7 +856,7 @@ pub const HORIZON_SWEEP: Shader = Shader {
         Constant { id: 11, name: "line_shift" },
         Constant { id: 12, name: "redoes_lost" },
     ],
-    words: words_at(118886, 9430),
+    words: words_at(99266, 9430),
 };
 
 /// `shaders_glsl/horizon/horizon_sweep.comp` with its specialisation constants.
@@ -1085,13 +935,13 @@ pub const LIGHT_MATRIX: Shader = Shader {
     name: "light_matrix",
     push_bytes: 48,
     bindings: &[
-        Binding { binding: 0, name: "env_turns", kind: BindingKind::StorageBuffer, written: false },
+        Binding { binding: 0, name: "env_rotation", kind: BindingKind::StorageBuffer, written: false },
         Binding { binding: 1, name: "constants", kind: BindingKind::TexelBuffer, written: false },
         Binding { binding: 2, name: "light_matrix", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
     ],
     constants: &[
     ],
-    words: words_at(128316, 1842),
+    words: words_at(108696, 1843),
 };
 
 /// `shaders_glsl/sh/light_matrix.comp` with its specialisation constants.
@@ -1130,7 +980,7 @@ pub const LIGHT_RESOLVE: Shader = Shader {
         Constant { id: 5, name: "relights" },
         Constant { id: 6, name: "colour_is_texel" },
     ],
-    words: words_at(130158, 1992),
+    words: words_at(110539, 1992),
 };
 
 /// `shaders_glsl/direct/light_resolve.comp` with its specialisation constants.
@@ -1194,7 +1044,7 @@ pub const MAP_DRAW: Shader = Shader {
         Constant { id: 0, name: "grey" },
         Constant { id: 1, name: "has_voids" },
     ],
-    words: words_at(132150, 1575),
+    words: words_at(112531, 1575),
 };
 
 /// `shaders_glsl/view/map_draw.comp` with its specialisation constants.
@@ -1253,7 +1103,7 @@ pub const PATH_TRACE: Shader = Shader {
         Constant { id: 13, name: "lobe_is_map" },
         Constant { id: 14, name: "at_places" },
     ],
-    words: words_at(133725, 22904),
+    words: words_at(114106, 22904),
 };
 
 /// `shaders_glsl/reference/path_trace.comp` with its specialisation constants.
@@ -1345,7 +1195,7 @@ pub const PICTURE_TONE_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "encodes" },
     ],
-    words: words_at(156629, 455),
+    words: words_at(137010, 455),
 };
 
 /// `shaders_glsl/view/picture_tone.frag` with its specialisation constants.
@@ -1379,7 +1229,7 @@ pub const PICTURE_TONE_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(157084, 266),
+    words: words_at(137465, 266),
 };
 
 /// `shaders_glsl/view/picture_tone.vert` with its specialisation constants.
@@ -1389,56 +1239,6 @@ pub(crate) struct PictureToneVert;
 impl From<PictureToneVert> for Specialised {
     fn from(_: PictureToneVert) -> Self {
         Self { shader: &PICTURE_TONE_VERT, constants: vec![
-        ] }
-    }
-}
-
-/// `shaders_glsl/bake/points_bend.comp`.
-pub const POINTS_BEND: Shader = Shader {
-    name: "points_bend",
-    push_bytes: 36,
-    bindings: &[
-        Binding { binding: 0, name: "visible_points", kind: BindingKind::SampledImage { uint: true, layered: true }, written: false },
-        Binding { binding: 1, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "directions", kind: BindingKind::TexelBuffer, written: false },
-        Binding { binding: 3, name: "fans", kind: BindingKind::TexelBuffer, written: false },
-        Binding { binding: 4, name: "bent", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
-    ],
-    constants: &[
-        Constant { id: 0, name: "border" },
-        Constant { id: 1, name: "small" },
-        Constant { id: 2, name: "reach" },
-    ],
-    words: words_at(157350, 8157),
-};
-
-/// `shaders_glsl/bake/points_bend.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PointsBend {
-    /// `BORDER`, by default 0.
-    pub border: u32,
-    /// `SMALL`, by default false.
-    pub small: bool,
-    /// `REACH`, by default 16384.
-    pub reach: i32,
-}
-
-impl Default for PointsBend {
-    fn default() -> Self {
-        Self {
-            border: 0,
-            small: false,
-            reach: 16384,
-        }
-    }
-}
-
-impl From<PointsBend> for Specialised {
-    fn from(of: PointsBend) -> Self {
-        Self { shader: &POINTS_BEND, constants: vec![
-            of.border,
-            u32::from(of.small),
-            of.reach as u32,
         ] }
     }
 }
@@ -1461,7 +1261,7 @@ pub const PYRAMID_MARCH: Shader = Shader {
         Constant { id: 2, name: "levels" },
         Constant { id: 3, name: "node_stride" },
     ],
-    words: words_at(165507, 9022),
+    words: words_at(137731, 9022),
 };
 
 /// `shaders_glsl/horizon/pyramid_march.comp` with its specialisation constants.
@@ -1527,7 +1327,7 @@ pub const SCATTER_GATHER: Shader = Shader {
         Constant { id: 6, name: "bent" },
         Constant { id: 7, name: "own_lobe" },
     ],
-    words: words_at(174529, 4659),
+    words: words_at(146753, 4659),
 };
 
 /// `shaders_glsl/bake/scatter_gather.comp` with its specialisation constants.
@@ -1601,7 +1401,7 @@ pub const SH_SHADE: Shader = Shader {
         Constant { id: 4, name: "node_stride" },
         Constant { id: 5, name: "lobe_is_map" },
     ],
-    words: words_at(179188, 12952),
+    words: words_at(151412, 12952),
 };
 
 /// `shaders_glsl/sh/sh_shade.comp` with its specialisation constants.
@@ -1673,7 +1473,7 @@ pub const SH_VISIBILITY: Shader = Shader {
         Constant { id: 8, name: "lane_stride" },
         Constant { id: 9, name: "lattice_stride" },
     ],
-    words: words_at(192140, 29805),
+    words: words_at(164364, 29805),
 };
 
 /// `shaders_glsl/sh/sh_visibility.comp` with its specialisation constants.
@@ -1753,7 +1553,7 @@ pub const SH_WEDGES: Shader = Shader {
         Constant { id: 3, name: "own_plane_hides" },
         Constant { id: 4, name: "lane_stride" },
     ],
-    words: words_at(221945, 7775),
+    words: words_at(194169, 7775),
 };
 
 /// `shaders_glsl/sh/sh_wedges.comp` with its specialisation constants.
@@ -1807,7 +1607,7 @@ pub const SHADE_EXPAND: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "periodic" },
     ],
-    words: words_at(229720, 2396),
+    words: words_at(201944, 2396),
 };
 
 /// `shaders_glsl/bounce/shade_expand.comp` with its specialisation constants.
@@ -1839,7 +1639,7 @@ pub const SHADE_REDUCE: Shader = Shader {
         Constant { id: 1, name: "from_field" },
         Constant { id: 2, name: "grey" },
     ],
-    words: words_at(232116, 2916),
+    words: words_at(204340, 2916),
 };
 
 /// `shaders_glsl/bounce/shade_reduce.comp` with its specialisation constants.
@@ -1873,7 +1673,7 @@ pub const SKY_DRAW_FRAG: Shader = Shader {
     constants: &[
         Constant { id: 0, name: "has_environment" },
     ],
-    words: words_at(235032, 1269),
+    words: words_at(207256, 1269),
 };
 
 /// `shaders_glsl/view/sky_draw.frag` with its specialisation constants.
@@ -1899,7 +1699,7 @@ pub const SKY_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(236301, 289),
+    words: words_at(208525, 289),
 };
 
 /// `shaders_glsl/view/sky_draw.vert` with its specialisation constants.
@@ -1938,7 +1738,7 @@ pub const SKY_SHADE: Shader = Shader {
         Constant { id: 6, name: "marches_rows" },
         Constant { id: 7, name: "relights" },
     ],
-    words: words_at(236590, 22805),
+    words: words_at(208814, 22805),
 };
 
 /// `shaders_glsl/direct/sky_shade.comp` with its specialisation constants.
@@ -1992,6 +1792,206 @@ impl From<SkyShade> for Specialised {
     }
 }
 
+/// `shaders_glsl/specular/specular_exit.comp`.
+pub const SPECULAR_EXIT: Shader = Shader {
+    name: "specular_exit",
+    push_bytes: 28,
+    bindings: &[
+        Binding { binding: 0, name: "arriving", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 1, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 2, name: "exit_radiance", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 3, name: "gloss_direct", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 4, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 5, name: "constants", kind: BindingKind::TexelBuffer, written: false },
+        Binding { binding: 6, name: "gloss_bounced", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
+        Binding { binding: 7, name: "exit_vectors", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: true }, written: true },
+        Binding { binding: 8, name: "exit_seen", kind: BindingKind::StorageImage { format: "Unknown", uint: false, layered: false }, written: true },
+    ],
+    constants: &[
+        Constant { id: 0, name: "order" },
+        Constant { id: 1, name: "grey" },
+        Constant { id: 2, name: "lobe_is_map" },
+        Constant { id: 3, name: "is_direct" },
+        Constant { id: 4, name: "throws" },
+        Constant { id: 5, name: "vectors" },
+        Constant { id: 6, name: "halves" },
+    ],
+    words: words_at(231619, 6433),
+};
+
+/// `shaders_glsl/specular/specular_exit.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpecularExit {
+    /// `ORDER`, by default 4.
+    pub order: i32,
+    /// `GREY`, by default false.
+    pub grey: bool,
+    /// `LOBE_IS_MAP`, by default false.
+    pub lobe_is_map: bool,
+    /// `IS_DIRECT`, by default false.
+    pub is_direct: bool,
+    /// `THROWS`, by default true.
+    pub throws: bool,
+    /// `VECTORS`, by default true.
+    pub vectors: bool,
+    /// `HALVES`, by default false.
+    pub halves: bool,
+}
+
+impl Default for SpecularExit {
+    fn default() -> Self {
+        Self {
+            order: 4,
+            grey: false,
+            lobe_is_map: false,
+            is_direct: false,
+            throws: true,
+            vectors: true,
+            halves: false,
+        }
+    }
+}
+
+impl From<SpecularExit> for Specialised {
+    fn from(of: SpecularExit) -> Self {
+        Self { shader: &SPECULAR_EXIT, constants: vec![
+            of.order as u32,
+            u32::from(of.grey),
+            u32::from(of.lobe_is_map),
+            u32::from(of.is_direct),
+            u32::from(of.throws),
+            u32::from(of.vectors),
+            u32::from(of.halves),
+        ] }
+    }
+}
+
+/// `shaders_glsl/specular/specular_gather.comp`.
+pub const SPECULAR_GATHER: Shader = Shader {
+    name: "specular_gather",
+    push_bytes: 64,
+    bindings: &[
+        Binding { binding: 0, name: "heights", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 1, name: "height_levels", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 2, name: "level_table", kind: BindingKind::SampledImage { uint: true, layered: false }, written: false },
+        Binding { binding: 3, name: "height_stack", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 4, name: "ground", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 5, name: "exit_radiance", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 6, name: "shade_levels", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 7, name: "shade_table", kind: BindingKind::SampledImage { uint: true, layered: false }, written: false },
+        Binding { binding: 8, name: "bounce_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
+        Binding { binding: 9, name: "shade_stack", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 10, name: "exit_vectors", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 11, name: "vector_levels", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 12, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
+    ],
+    constants: &[
+        Constant { id: 0, name: "periodic" },
+        Constant { id: 1, name: "stack" },
+        Constant { id: 2, name: "levels" },
+        Constant { id: 3, name: "shade_levels" },
+        Constant { id: 4, name: "grey" },
+        Constant { id: 5, name: "vectors" },
+        Constant { id: 6, name: "order" },
+        Constant { id: 7, name: "most_knots" },
+    ],
+    words: words_at(238052, 20112),
+};
+
+/// `shaders_glsl/specular/specular_gather.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpecularGather {
+    /// `PERIODIC`, by default false.
+    pub periodic: bool,
+    /// `STACK`, by default false.
+    pub stack: bool,
+    /// `LEVELS`, by default 0.
+    pub levels: i32,
+    /// `SHADE_LEVELS`, by default 0.
+    pub shade_levels: i32,
+    /// `GREY`, by default false.
+    pub grey: bool,
+    /// `VECTORS`, by default true.
+    pub vectors: bool,
+    /// `ORDER`, by default 4.
+    pub order: i32,
+    /// `MOST_KNOTS`, by default 64.
+    pub most_knots: i32,
+}
+
+impl Default for SpecularGather {
+    fn default() -> Self {
+        Self {
+            periodic: false,
+            stack: false,
+            levels: 0,
+            shade_levels: 0,
+            grey: false,
+            vectors: true,
+            order: 4,
+            most_knots: 64,
+        }
+    }
+}
+
+impl From<SpecularGather> for Specialised {
+    fn from(of: SpecularGather) -> Self {
+        Self { shader: &SPECULAR_GATHER, constants: vec![
+            u32::from(of.periodic),
+            u32::from(of.stack),
+            of.levels as u32,
+            of.shade_levels as u32,
+            u32::from(of.grey),
+            u32::from(of.vectors),
+            of.order as u32,
+            of.most_knots as u32,
+        ] }
+    }
+}
+
+/// `shaders_glsl/specular/specular_visibility.comp`.
+pub const SPECULAR_VISIBILITY: Shader = Shader {
+    name: "specular_visibility",
+    push_bytes: 8,
+    bindings: &[
+        Binding { binding: 0, name: "visibility", kind: BindingKind::SampledImage { uint: false, layered: true }, written: false },
+        Binding { binding: 1, name: "light_matrix", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 2, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
+    ],
+    constants: &[
+        Constant { id: 0, name: "order" },
+        Constant { id: 1, name: "grey" },
+    ],
+    words: words_at(258164, 1238),
+};
+
+/// `shaders_glsl/specular/specular_visibility.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpecularVisibility {
+    /// `ORDER`, by default 4.
+    pub order: i32,
+    /// `GREY`, by default false.
+    pub grey: bool,
+}
+
+impl Default for SpecularVisibility {
+    fn default() -> Self {
+        Self {
+            order: 4,
+            grey: false,
+        }
+    }
+}
+
+impl From<SpecularVisibility> for Specialised {
+    fn from(of: SpecularVisibility) -> Self {
+        Self { shader: &SPECULAR_VISIBILITY, constants: vec![
+            of.order as u32,
+            u32::from(of.grey),
+        ] }
+    }
+}
+
 /// `shaders_glsl/sh/sphere_sh_shade.comp`.
 pub const SPHERE_SH_SHADE: Shader = Shader {
     name: "sphere_sh_shade",
@@ -2019,7 +2019,7 @@ pub const SPHERE_SH_SHADE: Shader = Shader {
         Constant { id: 8, name: "stack" },
         Constant { id: 9, name: "levels" },
     ],
-    words: words_at(259395, 27587),
+    words: words_at(259402, 27587),
 };
 
 /// `shaders_glsl/sh/sphere_sh_shade.comp` with its specialisation constants.
@@ -2097,7 +2097,7 @@ pub const SPHERE_SHADE: Shader = Shader {
         Constant { id: 2, name: "thin_cols" },
         Constant { id: 3, name: "most_steps" },
     ],
-    words: words_at(286982, 14297),
+    words: words_at(286989, 14297),
 };
 
 /// `shaders_glsl/direct/sphere_shade.comp` with its specialisation constants.
@@ -2135,54 +2135,6 @@ impl From<SphereShade> for Specialised {
     }
 }
 
-/// `shaders_glsl/specular/sun_gloss.comp`.
-pub const SUN_GLOSS: Shader = Shader {
-    name: "sun_gloss",
-    push_bytes: 56,
-    bindings: &[
-        Binding { binding: 0, name: "lane_heights", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: false },
-        Binding { binding: 1, name: "sun_sum", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 2, name: "gloss_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
-        Binding { binding: 3, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
-        Binding { binding: 4, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
-    ],
-    constants: &[
-        Constant { id: 0, name: "border" },
-        Constant { id: 1, name: "marches_rows" },
-        Constant { id: 2, name: "lobe_is_map" },
-        Constant { id: 3, name: "order" },
-        Constant { id: 4, name: "grey" },
-    ],
-    words: words_at(301279, 7943),
-};
-
-/// `shaders_glsl/specular/sun_gloss.comp` with its specialisation constants.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SunGloss {
-    /// `BORDER`, by default 0.
-    pub border: u32,
-    /// `MARCHES_ROWS`, by default false.
-    pub marches_rows: bool,
-    /// `LOBE_IS_MAP`, by default false.
-    pub lobe_is_map: bool,
-    /// `ORDER`, by default 0.
-    pub order: i32,
-    /// `GREY`, by default false.
-    pub grey: bool,
-}
-
-impl From<SunGloss> for Specialised {
-    fn from(of: SunGloss) -> Self {
-        Self { shader: &SUN_GLOSS, constants: vec![
-            of.border,
-            u32::from(of.marches_rows),
-            u32::from(of.lobe_is_map),
-            of.order as u32,
-            u32::from(of.grey),
-        ] }
-    }
-}
-
 /// `shaders_glsl/direct/sun_shade.comp`.
 pub const SUN_SHADE: Shader = Shader {
     name: "sun_shade",
@@ -2205,7 +2157,7 @@ pub const SUN_SHADE: Shader = Shader {
         Constant { id: 5, name: "marches_rows" },
         Constant { id: 6, name: "relights" },
     ],
-    words: words_at(309222, 22087),
+    words: words_at(301286, 22087),
 };
 
 /// `shaders_glsl/direct/sun_shade.comp` with its specialisation constants.
@@ -2255,6 +2207,54 @@ impl From<SunShade> for Specialised {
     }
 }
 
+/// `shaders_glsl/specular/sun_specular.comp`.
+pub const SUN_SPECULAR: Shader = Shader {
+    name: "sun_specular",
+    push_bytes: 56,
+    bindings: &[
+        Binding { binding: 0, name: "lane_heights", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: false },
+        Binding { binding: 1, name: "sun_sum", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 2, name: "gloss_sum", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: false }, written: true },
+        Binding { binding: 3, name: "phong_map", kind: BindingKind::SampledImage { uint: false, layered: false }, written: false },
+        Binding { binding: 4, name: "arriving", kind: BindingKind::StorageImage { format: "Rgba32f", uint: false, layered: true }, written: true },
+    ],
+    constants: &[
+        Constant { id: 0, name: "border" },
+        Constant { id: 1, name: "marches_rows" },
+        Constant { id: 2, name: "lobe_is_map" },
+        Constant { id: 3, name: "order" },
+        Constant { id: 4, name: "grey" },
+    ],
+    words: words_at(323373, 7943),
+};
+
+/// `shaders_glsl/specular/sun_specular.comp` with its specialisation constants.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SunSpecular {
+    /// `BORDER`, by default 0.
+    pub border: u32,
+    /// `MARCHES_ROWS`, by default false.
+    pub marches_rows: bool,
+    /// `LOBE_IS_MAP`, by default false.
+    pub lobe_is_map: bool,
+    /// `ORDER`, by default 0.
+    pub order: i32,
+    /// `GREY`, by default false.
+    pub grey: bool,
+}
+
+impl From<SunSpecular> for Specialised {
+    fn from(of: SunSpecular) -> Self {
+        Self { shader: &SUN_SPECULAR, constants: vec![
+            of.border,
+            u32::from(of.marches_rows),
+            u32::from(of.lobe_is_map),
+            of.order as u32,
+            u32::from(of.grey),
+        ] }
+    }
+}
+
 /// `shaders_glsl/horizon/surface_sweep.comp`.
 pub const SURFACE_SWEEP: Shader = Shader {
     name: "surface_sweep",
@@ -2270,7 +2270,7 @@ pub const SURFACE_SWEEP: Shader = Shader {
         Constant { id: 2, name: "periodic" },
         Constant { id: 3, name: "writes_distances" },
     ],
-    words: words_at(331309, 6812),
+    words: words_at(331316, 6812),
 };
 
 /// `shaders_glsl/horizon/surface_sweep.comp` with its specialisation constants.
@@ -2329,7 +2329,7 @@ pub const SWEEP_FUSE: Shader = Shader {
         Constant { id: 5, name: "lattice_has_distances" },
         Constant { id: 6, name: "marches_rows" },
     ],
-    words: words_at(338121, 18087),
+    words: words_at(338128, 18087),
 };
 
 /// `shaders_glsl/horizon/sweep_fuse.comp` with its specialisation constants.
@@ -2391,7 +2391,7 @@ pub const TERRAIN_DRAW_FRAG: Shader = Shader {
         Constant { id: 0, name: "is_grey" },
         Constant { id: 1, name: "has_voids" },
     ],
-    words: words_at(356208, 1130),
+    words: words_at(356215, 1130),
 };
 
 /// `shaders_glsl/view/terrain_draw.frag` with its specialisation constants.
@@ -2421,7 +2421,7 @@ pub const TERRAIN_DRAW_VERT: Shader = Shader {
     ],
     constants: &[
     ],
-    words: words_at(357338, 917),
+    words: words_at(357345, 917),
 };
 
 /// `shaders_glsl/view/terrain_draw.vert` with its specialisation constants.
@@ -2449,7 +2449,7 @@ pub const VECTOR_REDUCE: Shader = Shader {
         Constant { id: 0, name: "periodic" },
         Constant { id: 1, name: "from_field" },
     ],
-    words: words_at(358255, 2963),
+    words: words_at(358262, 2963),
 };
 
 /// `shaders_glsl/bounce/vector_reduce.comp` with its specialisation constants.
@@ -2488,7 +2488,7 @@ pub const VISIBLE_POINTS: Shader = Shader {
         Constant { id: 3, name: "most_steps" },
         Constant { id: 4, name: "small" },
     ],
-    words: words_at(361218, 9659),
+    words: words_at(361225, 9659),
 };
 
 /// `shaders_glsl/bake/visible_points.comp` with its specialisation constants.
@@ -2532,22 +2532,20 @@ impl From<VisiblePoints> for Specialised {
 
 /// Every compute shader, by name.
 pub static ALL: &[Shader] = &[
+    BENT_DIRECTIONS,
     BOUNCE_GATHER,
     BOUNCE_MARCH,
     BOUNCE_SHADE,
     BOUNCE_WALK,
-    CAST_GATHER,
+    CACHE_GATHER,
     DIRTY_LIST,
     DIRTY_MARK,
     ELLIPSE_FIT,
+    ENV_ROTATION,
     ENV_TABLES,
-    ENV_TURNS,
     ENV_WEDGES,
     FACET_MASK,
-    FAN_WEIGH,
-    GLOSS_EXIT,
-    GLOSS_GATHER,
-    GLOSS_SEEN,
+    FAN_WEIGHTS,
     HEIGHT_BOUNDS,
     HEIGHT_CELLS,
     HEIGHT_EXPAND,
@@ -2560,7 +2558,6 @@ pub static ALL: &[Shader] = &[
     LIGHT_RESOLVE,
     MAP_DRAW,
     PATH_TRACE,
-    POINTS_BEND,
     PYRAMID_MARCH,
     SCATTER_GATHER,
     SH_SHADE,
@@ -2569,10 +2566,13 @@ pub static ALL: &[Shader] = &[
     SHADE_EXPAND,
     SHADE_REDUCE,
     SKY_SHADE,
+    SPECULAR_EXIT,
+    SPECULAR_GATHER,
+    SPECULAR_VISIBILITY,
     SPHERE_SH_SHADE,
     SPHERE_SHADE,
-    SUN_GLOSS,
     SUN_SHADE,
+    SUN_SPECULAR,
     SURFACE_SWEEP,
     SWEEP_FUSE,
     VECTOR_REDUCE,
@@ -2591,6 +2591,27 @@ pub static GRAPHICS: &[Shader] = &[
 
 /// Byte offsets of struct members as the shaders see them.
 pub mod offsets {
+    /// `BentDirectionsPush`.
+    pub mod bent_directions_push {
+        /// Bytes.
+        pub const CELL_X_M: usize = 20;
+        /// Bytes.
+        pub const CELL_Y_M: usize = 24;
+        /// Bytes.
+        pub const COLS: usize = 0;
+        /// Bytes.
+        pub const CURVATURE_X: usize = 28;
+        /// Bytes.
+        pub const CURVATURE_Y: usize = 32;
+        /// Bytes.
+        pub const FIRST_DIRECTION: usize = 16;
+        /// Bytes.
+        pub const FIRST_FAN: usize = 12;
+        /// Bytes.
+        pub const FIRST_TEXEL: usize = 8;
+        /// Bytes.
+        pub const ROWS: usize = 4;
+    }
     /// `BounceGatherPush`.
     pub mod bounce_gather_push {
         /// Bytes.
@@ -2685,8 +2706,8 @@ pub mod offsets {
         /// Bytes.
         pub const WARM_UP: usize = 16;
     }
-    /// `CastGatherPush`.
-    pub mod cast_gather_push {
+    /// `CacheGatherPush`.
+    pub mod cache_gather_push {
         /// Bytes.
         pub const BEGIN: usize = 8;
         /// Bytes.
@@ -2751,6 +2772,22 @@ pub mod offsets {
         /// Bytes.
         pub const ROWS: usize = 4;
     }
+    /// `EnvRotation`.
+    pub mod env_rotation {
+        /// Bytes.
+        pub const ENV_ROTATION: usize = 0;
+    }
+    /// `EnvRotationPush`.
+    pub mod env_rotation_push {
+        /// Bytes.
+        pub const COLUMN_FIRST: usize = 12;
+        /// Bytes.
+        pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const TURNS: usize = 8;
+        /// Bytes.
+        pub const WIDTH: usize = 0;
+    }
     /// `EnvTablesPush`.
     pub mod env_tables_push {
         /// Bytes.
@@ -2763,22 +2800,6 @@ pub mod offsets {
         pub const NODES: usize = 8;
         /// Bytes.
         pub const ROWS: usize = 4;
-    }
-    /// `EnvTurns`.
-    pub mod env_turns {
-        /// Bytes.
-        pub const ENV_TURNS: usize = 0;
-    }
-    /// `EnvTurnsPush`.
-    pub mod env_turns_push {
-        /// Bytes.
-        pub const COLUMN_FIRST: usize = 12;
-        /// Bytes.
-        pub const ROWS: usize = 4;
-        /// Bytes.
-        pub const TURNS: usize = 8;
-        /// Bytes.
-        pub const WIDTH: usize = 0;
     }
     /// `EnvWedgesPush`.
     pub mod env_wedges_push {
@@ -2816,73 +2837,14 @@ pub mod offsets {
         /// Bytes.
         pub const TOP_LEVEL: usize = 20;
     }
-    /// `FanWeighPush`.
-    pub mod fan_weigh_push {
+    /// `FanWeightsPush`.
+    pub mod fan_weights_push {
         /// Bytes.
         pub const COLS: usize = 0;
         /// Bytes.
         pub const FIRST_DIRECTION: usize = 12;
         /// Bytes.
         pub const FIRST_FAN: usize = 8;
-        /// Bytes.
-        pub const ROWS: usize = 4;
-    }
-    /// `GlossExitPush`.
-    pub mod gloss_exit_push {
-        /// Bytes.
-        pub const BEGINS: usize = 8;
-        /// Bytes.
-        pub const COLS: usize = 0;
-        /// Bytes.
-        pub const EXPONENT: usize = 20;
-        /// Bytes.
-        pub const FIRST_TEXEL: usize = 12;
-        /// Bytes.
-        pub const FOURS: usize = 16;
-        /// Bytes.
-        pub const ROWS: usize = 4;
-        /// Bytes.
-        pub const SCALE: usize = 24;
-    }
-    /// `GlossGatherPush`.
-    pub mod gloss_gather_push {
-        /// Bytes.
-        pub const AZIMUTHS: usize = 16;
-        /// Bytes.
-        pub const CELL_X_M: usize = 8;
-        /// Bytes.
-        pub const CELL_Y_M: usize = 12;
-        /// Bytes.
-        pub const COLS: usize = 0;
-        /// Bytes.
-        pub const FINE_SAMPLES: usize = 36;
-        /// Bytes.
-        pub const FIRST_AZIMUTH: usize = 20;
-        /// Bytes.
-        pub const GROWTH: usize = 44;
-        /// Bytes.
-        pub const LAST_AZIMUTH: usize = 24;
-        /// Bytes.
-        pub const ROWS: usize = 4;
-        /// Bytes.
-        pub const SHADE_FINE: usize = 48;
-        /// Bytes.
-        pub const SHADE_SHIFT: usize = 52;
-        /// Bytes.
-        pub const STEP_HEIGHT: usize = 60;
-        /// Bytes.
-        pub const STEP_SHADE: usize = 56;
-        /// Bytes.
-        pub const WARM_UP_COLS: usize = 28;
-        /// Bytes.
-        pub const WARM_UP_ROWS: usize = 32;
-        /// Bytes.
-        pub const WIDTH_SHIFT: usize = 40;
-    }
-    /// `GlossSeenPush`.
-    pub mod gloss_seen_push {
-        /// Bytes.
-        pub const COLS: usize = 0;
         /// Bytes.
         pub const ROWS: usize = 4;
     }
@@ -3119,27 +3081,6 @@ pub mod offsets {
         /// Bytes.
         pub const EXPOSURE: usize = 0;
     }
-    /// `PointsBendPush`.
-    pub mod points_bend_push {
-        /// Bytes.
-        pub const CELL_X_M: usize = 20;
-        /// Bytes.
-        pub const CELL_Y_M: usize = 24;
-        /// Bytes.
-        pub const COLS: usize = 0;
-        /// Bytes.
-        pub const CURVATURE_X: usize = 28;
-        /// Bytes.
-        pub const CURVATURE_Y: usize = 32;
-        /// Bytes.
-        pub const FIRST_DIRECTION: usize = 16;
-        /// Bytes.
-        pub const FIRST_FAN: usize = 12;
-        /// Bytes.
-        pub const FIRST_TEXEL: usize = 8;
-        /// Bytes.
-        pub const ROWS: usize = 4;
-    }
     /// `PyramidMarchPush`.
     pub mod pyramid_march_push {
         /// Bytes.
@@ -3300,6 +3241,65 @@ pub mod offsets {
         /// Bytes.
         pub const ROTATION_TURNS: usize = 80;
     }
+    /// `SpecularExitPush`.
+    pub mod specular_exit_push {
+        /// Bytes.
+        pub const BEGINS: usize = 8;
+        /// Bytes.
+        pub const COLS: usize = 0;
+        /// Bytes.
+        pub const EXPONENT: usize = 20;
+        /// Bytes.
+        pub const FIRST_TEXEL: usize = 12;
+        /// Bytes.
+        pub const FOURS: usize = 16;
+        /// Bytes.
+        pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const SCALE: usize = 24;
+    }
+    /// `SpecularGatherPush`.
+    pub mod specular_gather_push {
+        /// Bytes.
+        pub const AZIMUTHS: usize = 16;
+        /// Bytes.
+        pub const CELL_X_M: usize = 8;
+        /// Bytes.
+        pub const CELL_Y_M: usize = 12;
+        /// Bytes.
+        pub const COLS: usize = 0;
+        /// Bytes.
+        pub const FINE_SAMPLES: usize = 36;
+        /// Bytes.
+        pub const FIRST_AZIMUTH: usize = 20;
+        /// Bytes.
+        pub const GROWTH: usize = 44;
+        /// Bytes.
+        pub const LAST_AZIMUTH: usize = 24;
+        /// Bytes.
+        pub const ROWS: usize = 4;
+        /// Bytes.
+        pub const SHADE_FINE: usize = 48;
+        /// Bytes.
+        pub const SHADE_SHIFT: usize = 52;
+        /// Bytes.
+        pub const STEP_HEIGHT: usize = 60;
+        /// Bytes.
+        pub const STEP_SHADE: usize = 56;
+        /// Bytes.
+        pub const WARM_UP_COLS: usize = 28;
+        /// Bytes.
+        pub const WARM_UP_ROWS: usize = 32;
+        /// Bytes.
+        pub const WIDTH_SHIFT: usize = 40;
+    }
+    /// `SpecularVisibilityPush`.
+    pub mod specular_visibility_push {
+        /// Bytes.
+        pub const COLS: usize = 0;
+        /// Bytes.
+        pub const ROWS: usize = 4;
+    }
     /// `SphereShShadePush`.
     pub mod sphere_sh_shade_push {
         /// Bytes.
@@ -3396,8 +3396,8 @@ pub mod offsets {
         /// Bytes.
         pub const UP_M: usize = 56;
     }
-    /// `SunGlossPush`.
-    pub mod sun_gloss_push {
+    /// `SunSpecularPush`.
+    pub mod sun_specular_push {
         /// Bytes.
         pub const CELL_X_M: usize = 8;
         /// Bytes.
@@ -3513,4 +3513,4 @@ pub mod offsets {
 }
 
 /// Words of all shaders together.
-const WORD_COUNT: usize = 370877;
+const WORD_COUNT: usize = 370884;

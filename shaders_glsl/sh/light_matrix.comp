@@ -1,14 +1,14 @@
 // Computes: what the environment makes of what is seen: the matrix that takes a series of visibility to
 // exit radiance. First the environment's own series, from the sums of its rows, and a uniform sky's beside it;
 // then the matrix, which is linear in it.
-// Reads: env_turns (where there are rows), constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
+// Reads: env_rotation (where there are rows), constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
 // One group is all; one invocation is a coefficient of the series, then some entries.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 64) in;
 
-layout(binding = 0) readonly buffer EnvTurns { vec4 env_turns[]; };
+layout(binding = 0) readonly buffer EnvRotation { vec4 env_rotation[]; };
 layout(binding = 1) uniform textureBuffer constants;
 layout(binding = 2, rgba32f) uniform writeonly image2D light_matrix;
 
@@ -46,7 +46,7 @@ vec3 coefficient(int place) {
             vec4 weight = texelFetch(constants, first + i);
             // Weights beyond the last row are 0.
             for (int k = 0; k < 4; k++) {
-                part += weight[k] * env_turns[min(4 * i + k, rows - 1) * turns + turn].rgb;
+                part += weight[k] * env_rotation[min(4 * i + k, rows - 1) * turns + turn].rgb;
             }
         }
         sum += part;

@@ -12,9 +12,9 @@ pub(crate) mod specular;
 pub(crate) mod view;
 
 pub use bake::facet_mask;
-pub(crate) use bake::{ellipse_fit, fan_weigh, points_bend, scatter_gather, visible_points};
+pub(crate) use bake::{bent_directions, ellipse_fit, fan_weights, scatter_gather, visible_points};
 pub(crate) use bounce::{
-    bounce_gather, bounce_march, bounce_nodes, bounce_shade, bounce_walk, bounces, cast_gather,
+    bounce_gather, bounce_march, bounce_nodes, bounce_shade, bounce_walk, bounces, cache_gather,
     shade_expand, shade_reduce, vector_reduce,
 };
 pub(crate) use direct::{env_tables, light_resolve, sky_shade, sphere_shade, spheres, sun_shade};
@@ -27,10 +27,12 @@ pub(crate) use horizon::{
 pub(crate) use rays::{blocks, height_bounds, height_cells};
 pub(crate) use reference::path_trace;
 pub(crate) use sh::{
-    env_turns, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges, sphere_sh,
-    sphere_sh_shade,
+    env_rotation, env_wedges, light_matrix, sh_layout, sh_shade, sh_visibility, sh_wedges,
+    sphere_sh, sphere_sh_shade,
 };
-pub(crate) use specular::{gloss_exit, gloss_gather, gloss_seen, glossy, sun_gloss};
+pub(crate) use specular::{
+    glossy, specular_exit, specular_gather, specular_visibility, sun_specular,
+};
 pub use view::map_draw;
 pub(crate) use view::{picture_tone, sky_draw, terrain_draw};
 

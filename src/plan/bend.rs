@@ -3,7 +3,7 @@
 use super::visible_points::texels;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 
-use crate::passes::{fan_weigh, points_bend};
+use crate::passes::{bent_directions, fan_weights};
 use crate::scene::{Border, Curvature, Directions, Fans, HeightField};
 use crate::{Error, Result};
 
@@ -68,7 +68,7 @@ impl Bends {
         for band in self.bands(field) {
             let part = format!("curvature {x} {y}, directions {}..{}", band.start, band.end);
             let of = (curvature, part.as_str());
-            points_bend::plan(builder, (field, border), of, band, self.texels, &bound);
+            bent_directions::plan(builder, (field, border), of, band, self.texels, &bound);
         }
     }
 
@@ -79,7 +79,7 @@ impl Bends {
         let bound = [("bent", self.bent), ("fans", self.buffer), ("fan_weights", weights)];
         for band in self.bands(field) {
             let part = format!("directions {}..{}", band.start, band.end);
-            fan_weigh::plan(builder, field, (band, &part), self.texels[1], &bound);
+            fan_weights::plan(builder, field, (band, &part), self.texels[1], &bound);
         }
         weights
     }

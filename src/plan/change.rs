@@ -133,7 +133,7 @@ mod tests {
         scene.lights.environment = Some(Environment::new(32, 16, texels, 0.1).unwrap());
         let after = plan(&scene);
         let needed = names(&after, &after.passes_after(&before, &[]));
-        assert_eq!(needed, ["env_turns", "light_matrix", "sh_shade", "light_resolve"]);
+        assert_eq!(needed, ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]);
     }
 
     /// What is seen is kept: new light of any kind needs no horizons of the circle, whose lattice is one, used
@@ -156,7 +156,7 @@ mod tests {
             assert_eq!(lattices.filter(|r| !of_suns(r)).count(), 1);
             let environment = before.find("environment").unwrap();
             let needed = names(&before, &before.passes_after(&before, &[environment]));
-            assert_eq!(needed, ["env_turns", "light_matrix", "sh_shade", "light_resolve"]);
+            assert_eq!(needed, ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]);
             scene.lights.sky = Some([9.0, 1.0, 0.5]);
             scene.lights.suns[0].irradiance = [0.5; 3];
             let after = plan(&scene);
@@ -164,7 +164,7 @@ mod tests {
             let heights = after.find("heights").unwrap();
             let needed = names(&after, &after.passes_after(&after, &[heights]));
             assert!(["sh_visibility", "sh_shade", "sun_shade"].iter().all(|n| needed.contains(n)));
-            assert!(!needed.contains(&"env_turns") && !needed.contains(&"light_matrix"));
+            assert!(!needed.contains(&"env_rotation") && !needed.contains(&"light_matrix"));
         }
     }
 

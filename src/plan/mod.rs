@@ -33,6 +33,7 @@
 //! [`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan) goes over to it where images and passes are the same.
 //! A rectangle of heights that has changed needs [`Plan::edit_passes`] alone.
 
+mod active_lights;
 mod bend;
 mod change;
 mod choice;
@@ -46,7 +47,6 @@ mod picture;
 mod print;
 mod reference;
 pub(crate) mod scatter;
-mod shining;
 mod view;
 mod visible_points;
 

@@ -3,8 +3,8 @@ mod gloss;
 mod images;
 
 use super::Plan;
+use super::active_lights::ActiveLights;
 use super::reference::lobe_texels;
-use super::shining::Shining;
 use crate::graph::{Builder, Limits};
 use crate::passes;
 use crate::passes::azimuths;
@@ -73,7 +73,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     surface.check(field.rows() * field.cols())?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
-    let shining = Shining::of(scene, quality, wanted, &mut notes)?;
+    let shining = ActiveLights::of(scene, quality, wanted, &mut notes)?;
     let quality = &if wanted.unshadowed { without_bounces(quality) } else { *quality };
     let quality = &gloss::quality(quality, &shining, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
@@ -243,7 +243,7 @@ pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
 fn marched_nodes(
     sweep: &Sweep,
     harmonics: Option<&Harmonics>,
-    shining: &Shining<'_>,
+    shining: &ActiveLights<'_>,
     wanted: Picture,
 ) -> Nodes {
     let is_marched = matches!(sweep, Sweep::March { .. } | Sweep::Pyramid(_));
@@ -259,7 +259,7 @@ fn used(
     quality: &Quality,
     sweep: Option<&Sweep>,
     border: Border,
-    shining: &Shining<'_>,
+    shining: &ActiveLights<'_>,
     images: &Images,
     soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {

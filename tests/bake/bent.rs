@@ -4,8 +4,8 @@ use glam::DVec3;
 use ridgelight::scene::{
     Albedo, Border, Curvature, Directions, HeightField, Lights, Scene, Surface, VisiblePoints,
 };
-use ridgelight_cpu::fan_weigh::weight;
-use ridgelight_cpu::points_bend::{Draped, Fans};
+use ridgelight_cpu::bent_directions::{Draped, Fans};
+use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::visible_points::visible_points;
 
 #[path = "../../examples/curved/light.rs"]

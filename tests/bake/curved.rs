@@ -7,11 +7,11 @@ use ridgelight::scene::{
     Border, Changed, Curvature, Directions, HeightField, VisiblePoint, VisiblePoints,
 };
 use ridgelight_bake::CurvedEllipses;
+use ridgelight_cpu::bent_directions::ways::Ways;
+use ridgelight_cpu::bent_directions::{Draped, Fans, bent_direction};
 use ridgelight_cpu::ellipse_fit::{Ellipse, Seen, fit, least_radius};
-use ridgelight_cpu::fan_weigh::weight;
+use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::points_bend::ways::Ways;
-use ridgelight_cpu::points_bend::{Draped, Fans, bent_direction};
 use ridgelight_cpu::visible_points::{visible_point, visible_points};
 
 const HALF: usize = 8;
@@ -91,7 +91,7 @@ fn hills(rows: usize, cols: usize) -> HeightField {
 
 /// What a field that repeats shows is found in the repetition that the ray meets, however many it has passed over: within
 /// half a cell each way of where the oracle, which follows the surface piece by piece, meets it; or in one before, which the ray
-/// passes over by less than is told from meeting it. Of the knobs' rays some go beyond two repetitions and 128 cells, of wide
+/// passes over by less than is told from meeting it. Of the ladders' rays some go beyond two repetitions and 128 cells, of wide
 /// fields and of lines one or two samples wide.
 #[test]
 fn repetitions_are_those_that_rays_meet() {
@@ -288,7 +288,7 @@ fn weights_are_solid_angles_between_bent_walls() {
     }
 }
 
-/// Told by more rows or columns than a base may turn by across, a field that repeats is no other one; a field that does not is
+/// FileNotes by more rows or columns than a base may turn by across, a field that repeats is no other one; a field that does not is
 /// refused.
 #[test]
 fn long_tiles_are_the_same_surface() {

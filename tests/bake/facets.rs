@@ -6,7 +6,7 @@ use glam::DVec3;
 use ridgelight::scene::{
     Albedo, Border, Directions, HeightField, Lights, Scene, Surface, VisiblePoint, VisiblePoints,
 };
-use ridgelight_bake::{Angles, Brdf, Facets, Leaving};
+use ridgelight_bake::{Angles, Brdf, ExitRadiance, Facets};
 use ridgelight_cpu::facet_mask::facet_mask;
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::scatter_gather::expected;
@@ -32,7 +32,7 @@ fn facets(scene: &Scene, times: usize, directions: Directions) -> Facets {
 }
 
 /// Of all pairs: `radiance` is that of all triangles under a light of irradiance 1 facing it from each direction.
-pub fn table(facets: &Facets, radiance: impl Fn(usize) -> Leaving) -> Brdf {
+pub fn table(facets: &Facets, radiance: impl Fn(usize) -> ExitRadiance) -> Brdf {
     facets.check().expect("a plane from afar");
     let directions = facets.directions().vectors().to_vec();
     let of = |(light, e): (usize, &DVec3)| {
@@ -243,13 +243,13 @@ impl Shares {
             radiance[facet] = [1.0; 3];
             radiance
         };
-        let seen = |light: &Leaving| -> f64 {
+        let seen = |light: &ExitRadiance| -> f64 {
             facets.seen_from_all(light).iter().zip(weights).map(|(l, w)| w * l[0]).sum()
         };
         let of_sample = |sample: usize| {
             let mut samples = vec![[0.0; 3]; samples];
             samples[sample] = [1.0; 3];
-            let mut light = Leaving::from(vec![[0.0; 3]; count]);
+            let mut light = ExitRadiance::from(vec![[0.0; 3]; count]);
             facets.add_samples(&samples, &mut light);
             light
         };
@@ -281,7 +281,7 @@ impl Shares {
             let thrown: Vec<f64> =
                 facets.to_samples(&radiance).iter().map(|l| f64::from(l[0])).collect();
             let sum = |of: &[f64]| thrown.iter().zip(of).map(|(l, s)| l * s).sum::<f64>();
-            let at_once = seen(&Leaving::from(radiance)) / sent(count);
+            let at_once = seen(&ExitRadiance::from(radiance)) / sent(count);
             let all = at_once + sum(&scattered) / sent(count);
             let unsent = (at_once + each * sum(&of_others) - 1.0).abs();
             (all, unsent + each * sum(&unsent_later) + most.powi(BOUNCES as i32))

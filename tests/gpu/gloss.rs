@@ -9,7 +9,7 @@ use ridgelight::scene::{
     Albedo, Basis, Border, HeightField, Lights, Lobe, Method, Phong, Quality, Scene, Sun,
 };
 use ridgelight_cpu::indirect::{Fineness, light};
-use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope, twin_sun_gloss};
+use ridgelight_cpu::tolerance::{ShadeError, twin_march_slope, twin_sun_specular};
 use ridgelight_io as files;
 use ridgelight_io::HeightOptions;
 
@@ -108,7 +108,7 @@ fn suns_in_a_lobe_are_the_quadratures() {
                 let irradiance: f64 =
                     scene.lights.suns.iter().map(|s| f64::from(s.irradiance[c])).sum();
                 // A sun that is faced by a tenth or less: of f32's share, ten times.
-                let rounded = twin_sun_gloss(n, error.normal(), 0.1);
+                let rounded = twin_sun_specular(n, error.normal(), 0.1);
                 let uneven = peak * (n / std::f64::consts::E).sqrt() * 2.0 * radius;
                 let of_sum = 10.0 * PI * error.sun(if radius > 0.0 { PI } else { 1.0 }) * peak;
                 let bound = 0.5 * irradiance * (rounded + uneven + of_sum);

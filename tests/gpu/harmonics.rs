@@ -14,7 +14,7 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{
     Basis, Border, Environment, HeightField, Quality, Receiver, Scene, Window,
 };
-use ridgelight_cpu::env_turns::env_turns;
+use ridgelight_cpu::env_rotation::env_rotation;
 use ridgelight_cpu::light_matrix::{light_matrix, series};
 
 use crate::{Device, field, random, under_sky};
@@ -71,7 +71,7 @@ fn in_f64(
     let light_order = if is_plane { order - 1 } else { order };
     let height = environment.height();
     let rows = if fitted { height.div_ceil(2) } else { height };
-    let turns = env_turns(environment, rows, light_order);
+    let turns = env_rotation(environment, rows, light_order);
     let matrix = light_matrix(quality, &series(&turns, height, light_order, fitted));
     let slices = Slices::new(order);
     let along: Vec<Vec<f64>> = lowest.iter().map(|w| slices.above(*w)).collect();

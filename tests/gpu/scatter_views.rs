@@ -6,7 +6,7 @@ use ridgelight::plan::{self, Limits};
 use ridgelight::scene::{
     Albedo, Border, Directions, Lights, Lobe, Phong, Scatter, Scene, Sun, VisiblePoints,
 };
-use ridgelight_bake::Leaving;
+use ridgelight_bake::ExitRadiance;
 
 use crate::scatter::{points, sphere};
 use crate::{Device, field, random, under_sky};
@@ -112,7 +112,7 @@ fn lights_in_turn_are_each_alone() {
     let gpu = device.gpu.as_mut().expect("alive");
     let facets = ridgelight_bake::facets(gpu, &scene, 2, &above, &limits).expect("triangles");
     let wanted = |light: usize| if light == 4 { 6..7 } else { 0..8 };
-    let mut all: Vec<(usize, Leaving)> = Vec::new();
+    let mut all: Vec<(usize, ExitRadiance)> = Vec::new();
     ridgelight_bake::lit_from(
         gpu,
         &scene,

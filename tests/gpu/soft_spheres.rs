@@ -11,7 +11,7 @@ use ridgelight::scene::fractal;
 use ridgelight::scene::{Border, HeightField, LightBasis, Quality, Receiver, Scene, Wedges};
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::oracle::Oracle;
-use ridgelight_cpu::soft_ball::SoftBall;
+use ridgelight_cpu::soft_sphere::SoftBall;
 use ridgelight_cpu::sphere::sphere_of;
 use ridgelight_cpu::sphere_sh_shade::{BEYOND, SphereSh, half_width, light_of};
 use ridgelight_cpu::tolerance::BallSeen;

@@ -72,7 +72,7 @@ fn bounces_at_nodes() {
             let later = if walks_once { 0 } else { 2 * nodes(2 * stride) };
             assert_eq!(samples.sum::<u64>(), (nodes(stride) + later) * 8, "{name} {stride}");
             assert_eq!(count(&plan, "bounce_shade"), 3);
-            assert_eq!(count(&plan, "cast_gather"), if walks_once { 2 } else { 0 });
+            assert_eq!(count(&plan, "cache_gather"), if walks_once { 2 } else { 0 });
             assert_eq!(missing_barriers(&plan.passes), vec![]);
             let bytes = |name: &str| plan.resources[plan.find(name).expect(name).0].bytes();
             assert_eq!(bytes("node_sum"), nodes(stride) * 16);
@@ -93,7 +93,7 @@ fn bounces_at_nodes() {
     let all: u64 = plan.resources.iter().map(plan::Resource::bytes).sum();
     // What is swept anew takes a little more than what was swept once.
     let tight = drawn(&large, &walks, all - sets + sets / 8);
-    assert!(tight.find("casting_sets").is_none() && count(&tight, "cast_gather") == 0);
+    assert!(tight.find("casting_sets").is_none() && count(&tight, "cache_gather") == 0);
     let walked = |plan: &Plan| -> u64 {
         plan.passes.iter().filter(|p| p.name() == "bounce_walk").map(|p| p.samples).sum()
     };

@@ -39,14 +39,14 @@ fn each_bounce_is_thrown_once() {
         let plan = planned(gloss, 4);
         let is_vector = gloss != BounceGloss::Scalar;
         for label in [
-            "gloss_exit direct",
-            "gloss_exit bounce1",
-            "gloss_exit bounce2",
+            "specular_exit direct",
+            "specular_exit bounce1",
+            "specular_exit bounce2",
             "light_resolve bounces glossy",
         ] {
             assert!(has(&plan, label), "{label}");
         }
-        assert_eq!(has(&plan, "gloss_seen"), is_vector);
+        assert_eq!(has(&plan, "specular_visibility"), is_vector);
         assert_eq!(has(&plan, "vector_reduce bounce1 level 1"), is_vector);
         assert_eq!(has(&plan, "shade_reduce bounce2 level 1"), !is_vector);
         assert!(!has(&plan, "bounce_gather bounce1"));

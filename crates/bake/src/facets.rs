@@ -64,7 +64,7 @@ pub struct Facets {
 
 /// Exit radiance of all triangles under one light, R, G, B each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Leaving {
+pub struct ExitRadiance {
     /// Of each triangle, towards all views alike.
     alike: Vec<[f64; 3]>,
     /// The direction of the light that lobes mirror besides, of irradiance 1 facing it.
@@ -73,14 +73,14 @@ pub struct Leaving {
     towards: Option<(usize, Vec<Vec<[f32; 3]>>)>,
 }
 
-impl From<Vec<[f64; 3]>> for Leaving {
+impl From<Vec<[f64; 3]>> for ExitRadiance {
     /// Of each triangle, towards all views alike.
     fn from(alike: Vec<[f64; 3]>) -> Self {
         Self { alike, mirrored: None, towards: None }
     }
 }
 
-impl Leaving {
+impl ExitRadiance {
     /// What leaves each triangle towards all views alike.
     pub fn alike(&self) -> &[[f64; 3]] {
         &self.alike
@@ -243,18 +243,18 @@ impl Facets {
 
     /// Exit radiance of all triangles, without scattered light, under a light of irradiance 1 facing it from direction
     /// `light`.
-    pub fn lit_from(&self, light: usize) -> Leaving {
+    pub fn lit_from(&self, light: usize) -> ExitRadiance {
         let mut alike = vec![[0.0; 3]; self.slopes.len()];
         for (facet, share) in self.shares(light) {
             let irradiance = self.scales[light] * share / self.area(facet);
             alike[facet] = self.albedo[facet].map(|albedo| albedo / PI * irradiance);
         }
         let mirrored = self.lobes.is_some().then_some(light);
-        Leaving { alike, mirrored, towards: None }
+        ExitRadiance { alike, mirrored, towards: None }
     }
 
     /// What leaves a triangle towards a direction that sees it and of whose view it fills `share`.
-    fn towards(&self, (view, share): (usize, f64), facet: usize, light: &Leaving) -> [f64; 3] {
+    fn towards(&self, (view, share): (usize, f64), facet: usize, light: &ExitRadiance) -> [f64; 3] {
         let mut sum = light.alike[facet];
         if let Some((first, towards)) = &light.towards {
             let samples = &towards[view - first];
@@ -279,8 +279,8 @@ impl Facets {
     /// Mean radiance of what is seen from each direction.
     ///
     /// # Panics
-    /// Where light is not scattered towards all of them: [`Leaving::scattering`].
-    pub fn seen_from_all(&self, light: &Leaving) -> Vec<[f64; 3]> {
+    /// Where light is not scattered towards all of them: [`ExitRadiance::scattering`].
+    pub fn seen_from_all(&self, light: &ExitRadiance) -> Vec<[f64; 3]> {
         self.of_all(|view| self.seen_from(view, light))
     }
 
@@ -288,7 +288,7 @@ impl Facets {
     ///
     /// # Panics
     /// Where light is not scattered towards that.
-    pub fn seen_from(&self, view: usize, light: &Leaving) -> [f64; 3] {
+    pub fn seen_from(&self, view: usize, light: &ExitRadiance) -> [f64; 3] {
         let (mut sum, mut whole) = ([0.0; 3], 0.0);
         for (facet, share) in self.shares(view) {
             let radiance = self.towards((view, share), facet, light);

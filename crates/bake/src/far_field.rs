@@ -8,7 +8,7 @@ use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{self, Limits};
 use ridgelight::scene::{Directions, Lights, Scatter, Scene, Sun, VisiblePoints};
 
-use crate::{Facets, Leaving};
+use crate::{ExitRadiance, Facets};
 
 /// A point of a sky, of irradiance 1 facing it.
 fn sun(towards: DVec3) -> Sun {
@@ -53,7 +53,7 @@ pub fn lit_from(
     (facets, lights, views): (&Facets, Range<usize>, &dyn Fn(usize) -> Range<usize>),
     scatter: Option<(&VisiblePoints, &Scatter)>,
     limits: &Limits,
-    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
+    take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let mut direct_alone =
         || lights.clone().try_for_each(|light| take(light, facets.lit_from(light)));
@@ -90,7 +90,7 @@ fn lit_by_lobes(
     (facets, lights, views): (&Facets, Range<usize>, &dyn Fn(usize) -> Range<usize>),
     (points, scatter): (&VisiblePoints, &Scatter),
     limits: &Limits,
-    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
+    take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let directions = facets.directions().vectors();
     let samples = scene.field.heights_m().len();

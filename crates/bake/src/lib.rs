@@ -45,7 +45,7 @@ pub use encoding::{
     BENT_NORMAL, Bound, COEFFICIENTS, CURVED_ELLIPSE, Component, ELLIPSE, Encoding,
     HARMONIC_WEIGHTS, HORIZON, POINTS, RADIANCE, REFLECTED, SHARE, TEXELS, encoding_named,
 };
-pub use facets::{Facets, Leaving};
+pub use facets::{ExitRadiance, Facets};
 pub use factors::Factors;
 pub use far_field::{facets, lit_from};
 pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};

@@ -1,11 +1,11 @@
 //! `bake`: maps for engines, of a field that does not move.
 
-mod asked;
 mod folder;
 mod job;
 mod kinds;
+mod manifest;
 mod map;
-mod sheet;
+mod request;
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -21,13 +21,13 @@ use serde_json::json;
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
-pub use asked::{help, kind_named, packing};
 use folder::{check_folder, check_memory, parent, remove_old, take_sheet};
 use job::{Job, first};
 pub use kinds::Kind;
-use kinds::{Asked, Lit, Looked, Source};
+use kinds::{Lit, LookJob, Request, Source};
 pub use map::Format;
 use map::{MapFiles, Whole};
+pub use request::{help, kind_named, packing};
 
 /// What the folder's contents are told by; written last.
 const SHEET: &str = "bake.json";
@@ -40,21 +40,21 @@ pub struct Packing {
 }
 
 pub fn run(args: &BakeArgs) -> Result<Outcome> {
-    let wanted = asked::wanted(args)?;
+    let wanted = request::wanted(args)?;
     check_folder(&args.output, &wanted)?;
     if let Some(json) = &args.global.json {
         setup::check_output("--json", json, &["json"])?;
     }
-    let quality = asked::quality(args)?;
+    let quality = request::quality(args)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
-    let (directions, angles) = (asked::directions(args)?, asked::angles(args)?);
+    let (directions, angles) = (request::directions(args)?, request::angles(args)?);
     let has_lobe = scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
         let curvature = args.curvature;
-        (w.kind.begin)(&Asked {
+        (w.kind.begin)(&Request {
             border,
             quality,
             directions,
@@ -67,8 +67,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
         })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
-    asked::check_uses(args, making.iter().map(|m| &m.source))?;
-    let scatter = asked::scatter(args, &quality);
+    request::check_uses(args, making.iter().map(|m| &m.source))?;
+    let scatter = request::scatter(args, &quality);
     // Those of a device that has none: its own once it is open.
     let limits = Limits::boundless(true, u64::MAX);
     let (quality, around) = (&quality, &directions);
@@ -100,7 +100,7 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let why = |setting: &str| job.idle_reason(setting);
     idle::say_why(args.global.quiet, &args.quality.written, &used, &why);
     if !args.global.quiet {
-        asked::say_idle_light(args, &job.wanted, job.lit.scatter.is_some());
+        request::say_idle_light(args, &job.wanted, job.lit.scatter.is_some());
     }
     let _folder = files::ResultFolder::create(&args.output)?;
     bake(args, job, &mut gpu, &used)
@@ -113,7 +113,7 @@ fn bake(
     used: &[(String, String)],
 ) -> Result<Outcome> {
     let (has_horizons, looks_along) = (job.has_horizons(), job.looks_along());
-    let is_light = job.wanted.iter().any(|w| asked::is_light(w.kind));
+    let is_light = job.wanted.iter().any(|w| request::is_light(w.kind));
     let Job { lit, wanted, making } = job;
     let Lit { quality, around: directions, curvature, limits, .. } = lit;
     let (field, border) = (&lit.scene.field, lit.scene.surface.border);
@@ -156,7 +156,7 @@ fn bake(
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
                 let outputs = &outputs;
-                let looked = Looked { field, border, directions, curvature, outputs };
+                let looked = LookJob { field, border, directions, curvature, outputs };
                 (of.take)(&looked, files)?;
             }
             Source::Light(of) => {
@@ -208,7 +208,7 @@ fn bake(
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let mut sheet = sheet::sheet(&metadata, &times, field, quality, &sheets);
+    let mut sheet = manifest::sheet(&metadata, &times, field, quality, &sheets);
     if !has_horizons {
         sheet["horizons"] = serde_json::Value::Null;
     }
@@ -236,7 +236,7 @@ fn say_done(
     let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
     let way = match has_horizons {
         true => format!("{} azimuths", quality.azimuths),
-        false => format!("{} directions", args.directions.unwrap_or(asked::DIRECTIONS)),
+        false => format!("{} directions", args.directions.unwrap_or(request::DIRECTIONS)),
     };
     let of_them = if times.is_empty() { String::new() } else { format!(", {ms:.1} ms of them") };
     crate::say!(

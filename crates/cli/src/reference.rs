@@ -22,7 +22,7 @@ const BATCHES_A_LOOK: u32 = 4;
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
 static WAS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Told of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
+/// FileNotes of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
 /// second one is not.
 pub fn hears_signal() -> bool {
     IS_TRACING.load(Ordering::SeqCst) && !WAS_INTERRUPTED.swap(true, Ordering::SeqCst)

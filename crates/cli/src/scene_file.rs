@@ -17,7 +17,7 @@ use ridgelight::{Error, Result};
 
 use json::Found;
 use keys::{GROUPS, Kind};
-pub use write::Asked;
+pub use write::Request;
 
 /// A flag that a scene file gave.
 struct Given {

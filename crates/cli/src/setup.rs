@@ -1,6 +1,6 @@
 //! From arguments to scenes, qualities and devices.
 
-mod told;
+mod settings_used;
 
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
@@ -18,14 +18,14 @@ use crate::args::{
     LightBasisName, LinesName, MethodName, PhongArg, PrecisionName, QualityArgs, ReceiverName,
     SubsampleName, SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
-pub use told::{as_json, asked, metadata, typed};
+pub use settings_used::{as_json, asked, metadata, typed};
 
 /// How a command ended that did not fail.
 pub enum Outcome {
     Done,
     /// A comparison beyond its bound.
     Beyond,
-    /// Told to end early; what it had is written.
+    /// FileNotes to end early; what it had is written.
     Interrupted,
 }
 

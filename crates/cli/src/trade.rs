@@ -2,6 +2,7 @@
 //! both, and a recommendation.
 
 mod baked;
+mod ground_truth;
 mod html;
 mod hull;
 mod left_out;
@@ -11,7 +12,6 @@ mod point;
 mod report;
 mod rig;
 mod same;
-mod truth;
 mod walk;
 mod why;
 
@@ -21,14 +21,14 @@ use ridgelight::plan::{self, Picture};
 use ridgelight::scene::{Bounces, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
-use ridgelight_trade::trade::{Place, Rule, knobs, places, refused, start_of};
+use ridgelight_trade::trade::{Place, Rule, ladders, places, refused, start_of};
 
 use crate::args::TradeArgs;
 use crate::setup::{self, Outcome};
+use ground_truth::Truth;
 use picture::Tones;
 use report::Report;
 use rig::{Budget, Rig};
-use truth::Truth;
 
 const FILES: [&str; 3] = ["trade.html", "trade.json", "trade.csv"];
 
@@ -90,15 +90,15 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     let tones = Tones::of(&truth);
     bar.set_message("scattering over visible points");
     let baked = baked::measure(&mut rig, &truth, &start)?;
-    let knobs = knobs(&scene, args.bounces);
-    let places = places(&knobs, &start);
+    let ladders = ladders(&scene, args.bounces);
+    let places = places(&ladders, &start);
     let why = |place: &Place| match rig.plan(&scene, &place.quality) {
         Err(error @ Error::Setting { .. }) => Some(setup::in_flags(error).to_string()),
         _ => None,
     };
-    let refused = refused(&knobs, &places, why);
+    let refused = refused(&ladders, &places, why);
     let (walk, recommended) =
-        walk::walk(&mut rig, (&truth, &tones), (&knobs, &places, refused), (&start, rule), &bar)?;
+        walk::walk(&mut rig, (&truth, &tones), (&ladders, &places, refused), (&start, rule), &bar)?;
     bar.set_message("moving the hull of the recommended settings");
     let best = &walk.points[recommended.point];
     let draw_s = best.ratio * walk.baseline_ns() * 1e-9;
@@ -120,7 +120,7 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         tones: &tones,
         hulls: &hulls,
         baked: &baked,
-        knobs: &knobs,
+        ladders: &ladders,
         places: &places,
         walk: &walk,
         rule: walk.in_baselines(rule),

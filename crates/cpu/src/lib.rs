@@ -23,12 +23,14 @@ mod specular;
 pub mod tolerance;
 mod view;
 
-pub use bake::{ellipse_fit, facet_mask, fan_weigh, points_bend, scatter_gather, visible_points};
+pub use bake::{
+    bent_directions, ellipse_fit, facet_mask, fan_weights, scatter_gather, visible_points,
+};
 pub use bounce::{
-    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, shade_expand,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, shade_expand,
     shade_reduce, vector_reduce,
 };
-pub use direct::{env_tables, light_resolve, sky_shade, soft_ball, sphere_shade, sun_shade};
+pub use direct::{env_tables, light_resolve, sky_shade, soft_sphere, sphere_shade, sun_shade};
 pub use edit::{dirty_list, dirty_mark, horizon_resweep};
 pub use horizon::{
     height_expand, height_reduce, height_transpose, horizon_march, horizon_sweep, lattice,
@@ -37,8 +39,8 @@ pub use horizon::{
 pub use rays::{height_bounds, height_cells};
 pub use reference::{indirect, key, light, lit, oracle, path_trace, profile, sphere};
 pub use sh::{
-    env_turns, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
+    env_rotation, env_wedges, harmonics, light_matrix, sh_shade, sh_visibility, sh_wedges,
     sphere_sh_shade,
 };
-pub use specular::{gloss_exit, gloss_gather, gloss_seen, sun_gloss};
+pub use specular::{specular_exit, specular_gather, specular_visibility, sun_specular};
 pub use view::{map_draw, picture_tone, sky_draw, terrain_draw};

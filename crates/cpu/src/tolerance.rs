@@ -18,7 +18,9 @@ use std::f64::consts::PI;
 use crate::bounce_shade::LEAST_SHARE;
 pub use bend::{bent, fan_weight, over, way};
 pub use bounce::{CastError, Gathered, Land, Slices, ThrownError, march_error, walk_error};
-pub use gloss::{stored_f16, twin_arriving, twin_gloss_exit, twin_gloss_seen, twin_sun_arriving};
+pub use gloss::{
+    stored_f16, twin_arriving, twin_specular_exit, twin_specular_visibility, twin_sun_arriving,
+};
 pub use light::{BallSeen, ShadeError};
 pub use points::{
     MET_SHARE, crossing_elevation, ellipse_moment, ellipse_reach, ellipse_start, facet_elevation,
@@ -237,7 +239,7 @@ pub fn twin_table(sum: f64, largest: f64, pieces: f64) -> f64 {
     EPSILON * (20.0 * sum + (0.6 * pieces + 2.0) * largest)
 }
 
-/// An integral of `env_turns` around a row of `columns`, for a mean radiance of 1.
+/// An integral of `env_rotation` around a row of `columns`, for a mean radiance of 1.
 ///
 /// Weights are at most 2 √π / columns. Each is rounded, as are its product, 32 sums within a block and one
 /// a block.
@@ -268,13 +270,13 @@ pub fn twin_sh_gloss(order: usize, normal_error: f64) -> f64 {
     (135.0 + 3.0 * (order * order) as f64) * EPSILON + 8.0 * normal_error
 }
 
-/// `sun_gloss` from a given sun's sum, for irradiance 1, at a sample that the sun faces by `facing`, the cosine.
+/// `sun_specular` from a given sun's sum, for irradiance 1, at a sample that the sun faces by `facing`, the cosine.
 ///
 /// The lobe is (n + 1)/2π at most and changes by √(n/e) of that a radian; its direction turns by twice the
 /// normal's error, and the difference of two directions, the sun's rounded to f32, by 6 ε. Its power errs by
 /// 40 ε: n m e^(-n m) ≤ 1/e of a series' and quotients' 10 ε, and `exp` by 2^-22 and less. The part that is seen
 /// is a quotient by a cosine that errs as the normal does and by 6 ε: at most 1, of which that is the share.
-pub fn twin_sun_gloss(exponent: f64, normal_error: f64, facing: f64) -> f64 {
+pub fn twin_sun_specular(exponent: f64, normal_error: f64, facing: f64) -> f64 {
     let peak = (exponent + 1.0) / (2.0 * PI);
     let turned = (exponent / std::f64::consts::E).sqrt() * (2.0 * normal_error + 6.0 * EPSILON);
     let part = ((normal_error + 6.0 * EPSILON) / facing.max(1e-30)).min(1.0);

@@ -11,7 +11,7 @@ use crate::passes::sphere_shade::MOST_TURNS;
 use crate::passes::sweep::warm_up;
 use crate::scene::{HeightField, Levels, Receiver};
 
-/// Of this pass and of `gloss_gather`.
+/// Of this pass and of `specular_gather`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct GatherPush {
@@ -35,7 +35,7 @@ pub(crate) struct GatherPush {
 
 same_layout!(
     GatherPush,
-    [bounce_gather_push, gloss_gather_push],
+    [bounce_gather_push, specular_gather_push],
     {
         cols = COLS,
         rows = ROWS,

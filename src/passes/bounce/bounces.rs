@@ -7,14 +7,14 @@ use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::batch::Batch;
 use crate::passes::blocks::Blocks;
 use crate::passes::bounce_nodes::{BounceNodes, NodeSum};
-use crate::passes::glossy::{Glossy, Thrown, Vectors};
+use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
 use crate::passes::nodes::Nodes;
 use crate::passes::pyramid::Pyramid;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Sweeping, part};
 use crate::passes::{
-    bounce_gather, bounce_march, bounce_shade, bounce_walk, cast_gather, gloss_gather,
-    height_cells, pyramid_march, shade_expand, shade_reduce, sky_shade, vector_reduce,
+    bounce_gather, bounce_march, bounce_shade, bounce_walk, cache_gather, height_cells,
+    pyramid_march, shade_expand, shade_reduce, sky_shade, specular_gather, vector_reduce,
 };
 use crate::scene::{Border, BounceEngine, Bounces, HeightField, Levels, Quality, Scene, Surface};
 
@@ -126,7 +126,7 @@ impl Bouncing {
             BounceEngine::Sweep => Engine::Sweep,
             BounceEngine::Auto => unreachable!("settled before"),
             BounceEngine::Pyramid => {
-                let has_numbers = glossy.is_none_or(|g| matches!(g.thrown, Thrown::Seen(_)));
+                let has_numbers = glossy.is_none_or(|g| matches!(g.thrown, BouncedLight::Seen(_)));
                 Engine::Pyramid(pyramids(builder, (shade, grey), quality, levels, has_numbers))
             }
         };
@@ -183,7 +183,7 @@ impl Bouncing {
                 _ => format!("light of bounce {} off the surface", k - 1),
             },
             exit: match self.glossy.map(|glossy| glossy.thrown) {
-                Some(Thrown::Seen(exit)) => exit,
+                Some(BouncedLight::Seen(exit)) => exit,
                 _ => before.unwrap_or(direct),
             },
             grey: self.grey,
@@ -201,7 +201,7 @@ impl Bouncing {
                         let first = batches[0].first;
                         let circle = (sweeping.azimuths, first..first + self.azimuths);
                         let field = (size, scene.surface.border);
-                        cast_gather::plan(builder, field, circle, (&walked, casts), &bounce);
+                        cache_gather::plan(builder, field, circle, (&walked, casts), &bounce);
                     }
                     _ => walk(builder, scene, k, (sweeping, batches), (&bounce, &self.at_nodes)),
                 }
@@ -309,7 +309,8 @@ fn gather(
     ids: [ResourceId; 2],
 ) {
     if let Some(glossy) = glossy
-        && let Thrown::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) = glossy.thrown
+        && let BouncedLight::Vectors(Vectors { exit, levels: Some([levels, table]), .. }) =
+            glossy.thrown
     {
         for level in 1..=of.shade.levels() {
             let (of, ids) = ((&of.shade, level), [exit, levels, table]);
@@ -325,7 +326,7 @@ fn gather(
         }
     }
     match glossy {
-        Some(glossy) => gloss_gather::plan(builder, field, (of, glossy), azimuths, bounce, ids),
+        Some(glossy) => specular_gather::plan(builder, field, (of, glossy), azimuths, bounce, ids),
         None => bounce_gather::plan(builder, field, of, azimuths, bounce, ids),
     }
 }

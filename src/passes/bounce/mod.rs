@@ -4,7 +4,7 @@ pub(crate) mod bounce_nodes;
 pub(crate) mod bounce_shade;
 pub(crate) mod bounce_walk;
 pub(crate) mod bounces;
-pub(crate) mod cast_gather;
+pub(crate) mod cache_gather;
 pub(crate) mod shade_expand;
 pub(crate) mod shade_reduce;
 pub(crate) mod vector_reduce;

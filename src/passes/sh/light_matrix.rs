@@ -39,7 +39,7 @@ pub(crate) fn plan(
     let Sh { order, light_order, receivers, rows, .. } = *sh;
     let entries = (receivers * order * order) as u64;
     let mut bound = vec![("constants", constants), ("light_matrix", matrix)];
-    bound.extend(turns.map(|t| ("env_turns", t)));
+    bound.extend(turns.map(|t| ("env_rotation", t)));
     let [r, g, b] = sky.unwrap_or_default();
     builder.pass(
         shaders::LightMatrix,

@@ -1,4 +1,4 @@
-pub(crate) mod env_turns;
+pub(crate) mod env_rotation;
 pub(crate) mod env_wedges;
 pub(crate) mod light_matrix;
 pub mod sh_layout;

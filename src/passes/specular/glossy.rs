@@ -1,7 +1,7 @@
 //! Light that lobes throw from surface to surface (Nowrouzezahrai & Snyder 2009, §5.3 and §7).
 //!
 //! At every sample light arrives as a series of spherical harmonics: first direct light, then of each bounce what
-//! `gloss_gather` finds. `gloss_exit` makes of it what leaves, diffuse light beside it: a series again, whose pyramid
+//! `specular_gather` finds. `specular_exit` makes of it what leaves, diffuse light beside it: a series again, whose pyramid
 //! is looked at in the direction towards each sample that sees it, or one number, the radiance as seen from above.
 
 use crate::basis::harmonics::{evaluate, product_rule};
@@ -22,12 +22,12 @@ pub(crate) struct Glossy {
     /// What the lobes reflect upwards of all bounces.
     pub bounced: ResourceId,
     pub layer: Option<ResourceId>,
-    pub thrown: Thrown,
+    pub thrown: BouncedLight,
 }
 
 /// What leaves a sample.
 #[derive(Clone, Copy)]
-pub(crate) enum Thrown {
+pub(crate) enum BouncedLight {
     Vectors(Vectors),
     /// Exit radiance as seen from above.
     Seen(ResourceId),
@@ -72,7 +72,7 @@ impl Glossy {
         let bounced = image("gloss_bounced", Owner::Internal, Format::Rgba32Float, flat, false);
         let layer = layers.then(|| image("glossy", Owner::Output, colour, flat, false));
         let thrown = if quality.bounces.gloss == BounceGloss::Scalar {
-            Thrown::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
+            BouncedLight::Seen(image("exit_seen", Owner::Internal, colour, flat, false))
         } else {
             let halves = quality.bounces.gloss == BounceGloss::VectorF16;
             notes.push(memory_note(size, shade, (order, count), halves));
@@ -91,7 +91,7 @@ impl Glossy {
             let texels = turning(order as usize);
             let fours = product_rule(order as usize).len().div_ceil(4);
             let (constants, first_texel) = builder.constants(&texels);
-            Thrown::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
+            BouncedLight::Vectors(Vectors { exit, levels, halves, constants, first_texel, fours })
         };
         Self { order, grey, arriving, bounced, layer, thrown }
     }
@@ -104,7 +104,7 @@ impl Glossy {
     /// Of the series that leave.
     pub fn texel_bytes(&self) -> u64 {
         match self.thrown {
-            Thrown::Vectors(Vectors { halves: true, .. }) => 8,
+            BouncedLight::Vectors(Vectors { halves: true, .. }) => 8,
             _ => 16,
         }
     }
@@ -112,9 +112,9 @@ impl Glossy {
     /// As the command line spells it.
     pub fn gloss(&self) -> BounceGloss {
         match self.thrown {
-            Thrown::Seen(_) => BounceGloss::Scalar,
-            Thrown::Vectors(Vectors { halves: true, .. }) => BounceGloss::VectorF16,
-            Thrown::Vectors(_) => BounceGloss::Vector,
+            BouncedLight::Seen(_) => BounceGloss::Scalar,
+            BouncedLight::Vectors(Vectors { halves: true, .. }) => BounceGloss::VectorF16,
+            BouncedLight::Vectors(_) => BounceGloss::Vector,
         }
     }
 }

@@ -1,5 +1,5 @@
-pub(crate) mod gloss_exit;
-pub(crate) mod gloss_gather;
-pub(crate) mod gloss_seen;
 pub(crate) mod glossy;
-pub(crate) mod sun_gloss;
+pub(crate) mod specular_exit;
+pub(crate) mod specular_gather;
+pub(crate) mod specular_visibility;
+pub(crate) mod sun_specular;

@@ -1,6 +1,6 @@
 //! The passes of a picture, light by light.
 
-use super::super::shining::{Aimed, Colour, Shining};
+use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, Tables};
 use crate::graph::{Builder, ResourceId};
 use crate::passes::blocks::Blocks;
@@ -17,7 +17,7 @@ use crate::{Error, Result};
 pub(super) struct Drawing<'a> {
     pub builder: Builder,
     pub scene: &'a Scene,
-    pub shining: Shining<'a>,
+    pub shining: ActiveLights<'a>,
     pub images: Images,
     pub tables: Option<Tables>,
     pub harmonics: Option<Harmonics>,
@@ -200,7 +200,7 @@ impl Drawing<'_> {
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
             if let (Some((_, sun)), Some(batch)) = (self.shining.suns.get(i), batches.last()) {
-                self.sun_gloss(&name, sun, batch, sum);
+                self.sun_specular(&name, sun, batch, sum);
             }
         }
     }

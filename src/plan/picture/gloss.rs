@@ -1,12 +1,12 @@
 //! What a lobe beside the diffuse reflection adds to a picture.
 
-use super::super::shining::Shining;
+use super::super::active_lights::ActiveLights;
 use super::drawing::Drawing;
 use crate::graph::ResourceId;
 use crate::passes::batch::Batch;
 use crate::passes::bounces::{Bouncing, bounce_name};
-use crate::passes::glossy::{Glossy, Thrown};
-use crate::passes::{self, Lobes, gloss_exit, light_resolve};
+use crate::passes::glossy::{BouncedLight, Glossy};
+use crate::passes::{self, Lobes, light_resolve, specular_exit};
 use crate::scene::{Basis, BounceEngine, Lobe, Phong, Quality, Receiver, Sun};
 use crate::{Error, Result};
 
@@ -16,7 +16,7 @@ use crate::{Error, Result};
 /// A light or a basis that gives a lobe nothing.
 pub(super) fn quality(
     quality: &Quality,
-    shining: &Shining<'_>,
+    shining: &ActiveLights<'_>,
     notes: &mut Vec<String>,
 ) -> Result<Quality> {
     if shining.gloss.is_none() {
@@ -82,16 +82,16 @@ impl Drawing<'_> {
         for (seen, sky) in lit {
             let Some(seen) = seen else { continue };
             let environment = self.shining.environment.zip(self.images.environment);
-            if let (Some((e, image)), Some(turns)) = (environment, seen.env_turns) {
-                passes::env_turns::plan(builder, e, &seen.sh, [image, h.constants, turns]);
+            if let (Some((e, image)), Some(turns)) = (environment, seen.env_rotation) {
+                passes::env_rotation::plan(builder, e, &seen.sh, [image, h.constants, turns]);
             }
             let ids = [h.constants, seen.light_matrix];
-            passes::light_matrix::plan(builder, &seen.sh, sky, seen.env_turns, ids);
+            passes::light_matrix::plan(builder, &seen.sh, sky, seen.env_rotation, ids);
         }
     }
 
     /// A sun in the lobe, from what it gives to diffuse ground.
-    pub(super) fn sun_gloss(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
+    pub(super) fn sun_specular(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
         let Some((gloss, lobes)) = self.images.gloss_sum.zip(self.lobes()) else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Some(sweeping) = &self.sweeping else { return };
@@ -99,7 +99,7 @@ impl Drawing<'_> {
         let begins = !std::mem::replace(&mut self.gloss_is_begun, true);
         let field = (batch.axis, border, cell_m);
         let thrown = self.thrown_by_direction();
-        passes::sun_gloss::plan(
+        passes::sun_specular::plan(
             &mut self.builder,
             field,
             name,
@@ -117,13 +117,13 @@ impl Drawing<'_> {
         let Some(seen) = &h.gloss else { return };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         let ids = [h.visibility, seen.light_matrix];
-        passes::gloss_seen::plan(&mut self.builder, size, &glossy, ids);
+        passes::specular_visibility::plan(&mut self.builder, size, &glossy, ids);
     }
 
     /// What lobes throw on as series.
     fn thrown_by_direction(&self) -> Option<Glossy> {
         let glossy = self.bouncing.as_ref().and_then(|bouncing| bouncing.glossy);
-        glossy.filter(|glossy| matches!(glossy.thrown, Thrown::Vectors(_)))
+        glossy.filter(|glossy| matches!(glossy.thrown, BouncedLight::Vectors(_)))
     }
 
     /// What lobes make of bounce `k`, 0 of direct light, and throw on.
@@ -133,14 +133,14 @@ impl Drawing<'_> {
             return;
         };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
-        let leaving = gloss_exit::Leaving {
+        let leaving = specular_exit::ExitRadiance {
             name: if k == 0 { "direct".to_owned() } else { bounce_name(k) },
             bounce: k,
             diffuse: bouncing.diffuse(k, self.images.radiance),
             gloss_direct,
         };
         let ground = blocks.images.ground;
-        gloss_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &leaving);
+        specular_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &leaving);
     }
 
     /// What lobes have made of all bounces.
@@ -251,13 +251,13 @@ mod tests {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
         assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
         assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
-        assert!(of_sky.find("env_turns").is_none() && of_sky.find("gloss_turns").is_none());
+        assert!(of_sky.find("env_rotation").is_none() && of_sky.find("gloss_turns").is_none());
         assert!(names(&of_sky).contains(&"sh_shade glossy".to_owned()), "{:?}", names(&of_sky));
         let environment = Environment::new(4, 2, vec![[1.0; 3]; 8], 0.0).unwrap();
         let lit = Lights { environment: Some(environment), ..sun() };
         let of_all = plan(lit, Basis::Auto, 0.5).unwrap();
         let all = names(&of_all);
-        for name in ["env_turns", "env_turns glossy", "sh_shade env", "sun_gloss sun1"] {
+        for name in ["env_rotation", "env_rotation glossy", "sh_shade env", "sun_specular sun1"] {
             assert!(all.iter().any(|n| n == name), "{name}: {all:?}");
         }
         assert!(of_all.find("direct.glossy").is_some() && of_all.edit_passes.is_empty());

@@ -1,6 +1,6 @@
 //! What a picture's passes read and write besides the sweeps' own.
 
-use super::super::shining::Shining;
+use super::super::active_lights::ActiveLights;
 use super::Picture;
 use crate::graph::{Builder, Format, Owner, ResourceId};
 use crate::passes::azimuths::Azimuth;
@@ -20,7 +20,7 @@ pub(super) struct Images {
     pub radiance: ResourceId,
     pub sky_layer: Option<ResourceId>,
     pub env_layer: Option<ResourceId>,
-    /// In the order of [`Shining::aimed`].
+    /// In the order of [`ActiveLights::aimed`].
     pub aimed_layers: Vec<Option<ResourceId>>,
     /// In the order of the balls of light that shine.
     pub sphere_layers: Vec<Option<ResourceId>>,
@@ -38,7 +38,7 @@ impl Images {
     pub fn make(
         builder: &mut Builder,
         scene: &Scene,
-        shining: &Shining<'_>,
+        shining: &ActiveLights<'_>,
         (wanted, need_share): (Picture, bool),
     ) -> Self {
         let flat = [scene.field.cols() as u32, scene.field.rows() as u32, 1];
@@ -56,7 +56,7 @@ impl Images {
         let has_lobes = matches!(shining.gloss, Some(Lobe::Map(_)));
         let phong_map = has_lobes.then(|| image("phong", Owner::Input, Format::Rgba32Float, flat));
         let light_colours = wanted.colours_on_device.then(|| {
-            let extent = [Shining::texels_of(&scene.lights) as u32, 1, 1];
+            let extent = [ActiveLights::texels_of(&scene.lights) as u32, 1, 1];
             image("light_colours", Owner::Input, Format::Rgba32Float, extent)
         });
         let radiance = image("radiance", Owner::Output, colour, flat);
@@ -149,18 +149,18 @@ pub(super) struct Harmonics {
 pub(super) struct Seen {
     pub sh: Sh,
     /// Of an environment.
-    pub env_turns: Option<ResourceId>,
+    pub env_rotation: Option<ResourceId>,
     pub light_matrix: ResourceId,
 }
 
 impl Seen {
     fn make(builder: &mut Builder, sh: Sh, [turns, matrix]: [&str; 2]) -> Self {
         let count = sh.rows * (2 * sh.light_order - 1);
-        let env_turns = (count > 0).then(|| builder.buffer(turns, count as u64 * 16, false));
+        let env_rotation = (count > 0).then(|| builder.buffer(turns, count as u64 * 16, false));
         let extent = [(sh.order * sh.order) as u32, sh.receivers as u32, 1];
         let light_matrix =
             builder.image(matrix, Owner::Internal, Format::Rgba32Float, extent, false);
-        Self { sh, env_turns, light_matrix }
+        Self { sh, env_rotation, light_matrix }
     }
 }
 
@@ -182,7 +182,7 @@ impl Harmonics {
         let table = by_table.then(|| WedgeTexels::of(border, quality, circle, &mut constants));
         // The first: they lie where they count from.
         let (constants, _) = builder.constants(&constants);
-        let diffuse = diffuse.map(|sh| Seen::make(builder, sh, ["env_turns", "light_matrix"]));
+        let diffuse = diffuse.map(|sh| Seen::make(builder, sh, ["env_rotation", "light_matrix"]));
         let gloss = gloss.map(|sh| Seen::make(builder, sh, ["gloss_turns", "gloss_matrix"]));
         let wedge_table = table.map(|table| {
             let extent = [size[0], size[1], table.azimuths as u32];

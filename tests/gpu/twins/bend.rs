@@ -1,12 +1,12 @@
 //! What samples see on curved bases.
 
 use glam::DVec3;
-use ridgelight::gpu::shaders::offsets::{fan_weigh_push, points_bend_push as push};
+use ridgelight::gpu::shaders::offsets::{bent_directions_push as push, fan_weights_push};
 use ridgelight::plan::Pass;
 use ridgelight::scene::{Curvature, Directions, VisiblePoint, VisiblePoints};
-use ridgelight_cpu::fan_weigh::weight;
-use ridgelight_cpu::points_bend::ways::{HALF_SIDE, Way, Ways};
-use ridgelight_cpu::points_bend::{Draped, Fans, bent_direction};
+use ridgelight_cpu::bent_directions::ways::{HALF_SIDE, Way, Ways};
+use ridgelight_cpu::bent_directions::{Draped, Fans, bent_direction};
+use ridgelight_cpu::fan_weights::weight;
 use ridgelight_cpu::tolerance::{EPSILON, bent as bent_error, fan_weight, over};
 
 use super::{Pair, Run, pushed};
@@ -66,7 +66,7 @@ fn may_be_met(ways: &Ways, rise_m: f64) -> Vec<Way> {
 
 /// The twin's direction, or another that it gives where which neighbour a direction moves with, or which repetition is seen,
 /// hangs on roundings.
-pub(super) fn points_bend(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+pub(super) fn bent_directions(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let points = flat(run, pass, directions.clone());
     let float = |o: usize| f64::from(f32::from_bits(pushed(pass, o)));
@@ -114,10 +114,10 @@ pub(super) fn points_bend(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// Given the device's own directions.
-pub(super) fn fan_weigh(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+pub(super) fn fan_weights(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let directions = run.bent_directions();
     let fans = fans_of(&directions);
-    let first = pushed(pass, fan_weigh_push::FIRST_DIRECTION) as usize;
+    let first = pushed(pass, fan_weights_push::FIRST_DIRECTION) as usize;
     let count = pass.groups[2] as usize;
     let bent = of_samples(run, pass, directions.count());
     let weights = run.floats(pass, "fan_weights").expect("written");

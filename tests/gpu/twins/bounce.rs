@@ -11,7 +11,7 @@ use ridgelight_cpu::bounce_march::stretches_along;
 use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::shared::thrown::{radiance, thrown};
+use ridgelight_cpu::shared::bounced::{radiance, thrown};
 use ridgelight_cpu::tolerance::{
     Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
 };

@@ -6,16 +6,16 @@ use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Format, Kind, Pass};
 use ridgelight::scene::{Levels, Receiver};
 use ridgelight_cpu::bounce_gather::BounceGather;
-use ridgelight_cpu::gloss_exit::{mirrored, thrown};
-use ridgelight_cpu::gloss_gather::{GlossGather, Series};
 use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
-use ridgelight_cpu::shared::thrown::Cast;
+use ridgelight_cpu::specular_exit::{mirrored, thrown};
+use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_gloss_exit,
-    twin_gloss_seen, twin_level, twin_sh_gloss,
+    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_level,
+    twin_sh_gloss, twin_specular_exit, twin_specular_visibility,
 };
-use ridgelight_cpu::{gloss_seen as seen_twin, vector_reduce as reduce_twin};
+use ridgelight_cpu::{specular_visibility as seen_twin, vector_reduce as reduce_twin};
 
 use super::bounce::{brightest, colours};
 use super::sh::device_series;
@@ -74,7 +74,7 @@ fn magnitude(series: &Series) -> f64 {
     (0..3).map(sum).fold(0.0, f64::max)
 }
 
-pub(super) fn gloss_seen(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+pub(super) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let order = constant(pass, "order") as usize;
     let seen = device_series(run, pass, order);
     let texels = run.floats(pass, "light_matrix").expect("bound");
@@ -84,13 +84,13 @@ pub(super) fn gloss_seen(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let [cols, _] = run.size();
     let mut pairs = Vec::new();
     for (i, (got, seen)) in got.iter().zip(&seen).enumerate() {
-        let want = seen_twin::gloss_seen(seen, &matrix);
+        let want = seen_twin::specular_visibility(seen, &matrix);
         for (k, row) in matrix.iter().enumerate() {
             let summed: glam::DVec3 = row.iter().zip(seen).map(|(m, v)| m.abs() * v.abs()).sum();
             pairs.extend((0..3).map(|c| Pair {
                 got: got[k][c],
                 want: want[k][c],
-                tolerance: twin_gloss_seen(order) * summed[c],
+                tolerance: twin_specular_visibility(order) * summed[c],
                 at: [k, i / cols, i % cols],
             }));
         }
@@ -99,8 +99,8 @@ pub(super) fn gloss_seen(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     pairs
 }
 
-pub(super) fn gloss_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::gloss_exit_push::BEGINS;
+pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::specular_exit_push::BEGINS;
     let [order, direct, throws, vectors, halves] =
         ["order", "is_direct", "throws", "vectors", "halves"]
             .map(|name| constant(pass, name) as usize);
@@ -157,7 +157,7 @@ pub(super) fn gloss_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let want = thrown(&arriving[i], normals[i], phong, diffuse[i]);
         let bright = diffuse[i].iter().fold(0.0, |m: f64, v| v.max(m));
         let of_lobe =
-            f64::from(phong.scale) * twin_gloss_exit(order, error) * magnitude(&arriving[i]);
+            f64::from(phong.scale) * twin_specular_exit(order, error) * magnitude(&arriving[i]);
         let sum = of_lobe + 4.0 * EPSILON * 4.0 * bright;
         let tolerance = |want: f64| sum + if halves == 1 { stored_f16(want) } else { 0.0 };
         pairs.extend(paired((got, &want), tolerance, [i / cols, i % cols]));
@@ -183,8 +183,8 @@ pub(super) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// What arrives, from the levels that the device made, in one dispatch.
-pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::gloss_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
+pub(super) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::specular_gather_push::{AZIMUTHS, FIRST_AZIMUTH, LAST_AZIMUTH};
     let azimuths = pushed(pass, AZIMUTHS);
     assert_eq!([pushed(pass, FIRST_AZIMUTH), pushed(pass, LAST_AZIMUTH)], [0, azimuths]);
     let order = constant(pass, "order") as usize;
@@ -226,7 +226,7 @@ pub(super) fn gloss_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         azimuths,
     };
     let of_vectors = vectors.as_ref().map(|[exit, levels]| [&exit[..], &levels[..]]);
-    let twin = GlossGather { gather, order, vectors: of_vectors };
+    let twin = SpecularGather { gather, order, vectors: of_vectors };
     let bright = match &vectors {
         Some([exit, _]) => exit.iter().map(magnitude).fold(0.0, f64::max),
         None => brightest(&exit),

@@ -15,11 +15,11 @@ use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sky_shade as sky_twin;
 use ridgelight_cpu::sphere_shade as sphere_twin;
-use ridgelight_cpu::sun_gloss as gloss_twin;
 use ridgelight_cpu::sun_shade as sun_twin;
+use ridgelight_cpu::sun_specular as gloss_twin;
 use ridgelight_cpu::tolerance::{
     BallSeen, EPSILON, ShadeError, twin_fused_slope, twin_resolved, twin_sun_arriving,
-    twin_sun_gloss, twin_table, twin_wedge_row,
+    twin_sun_specular, twin_table, twin_wedge_row,
 };
 
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -196,8 +196,8 @@ pub(super) fn sun_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
 }
 
 /// From the device's own sun, added to what is there.
-pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::sun_gloss_push::COLOUR;
+pub(super) fn sun_specular(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::sun_specular_push::COLOUR;
     let number: usize =
         pass.part.strip_prefix("sun").and_then(|n| n.parse().ok()).expect("sun and its number");
     let sun = run.scene.lights.suns[number - 1];
@@ -218,7 +218,8 @@ pub(super) fn sun_gloss(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let normal = normal_of(field_slope(&heights, (i % cols) as i32, (i / cols) as i32));
         let phong = run.lobe(i);
         let light = gloss_twin::gloss_on(normal, &sun, phong, sums[i].into());
-        let tolerance = twin_sun_gloss(phong.exponent.into(), error.normal(), normal.dot(towards));
+        let tolerance =
+            twin_sun_specular(phong.exponent.into(), error.normal(), normal.dot(towards));
         for (c, (got, sum)) in got.iter().zip(&mut run.gloss[i]).enumerate() {
             let colour = f64::from(sun.irradiance[c]);
             let want = *sum + colour * light;
@@ -238,7 +239,7 @@ fn sun_arriving(run: &mut Run, pass: &Pass, sun: &Sun, towards: Rgb) -> Vec<Pair
     }
     let sums = run.floats(pass, "sun_sum").expect("read");
     let got = run.all_series(pass, "arriving", order);
-    if f32::from_bits(pushed(pass, offsets::sun_gloss_push::COLOUR + 12)) > 0.0 {
+    if f32::from_bits(pushed(pass, offsets::sun_specular_push::COLOUR + 12)) > 0.0 {
         run.arriving = vec![vec![[0.0; 3]; order * order]; sums.len()];
     }
     let (heights, error) = (run.heights(), run.sample_error());

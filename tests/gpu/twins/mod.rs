@@ -57,10 +57,10 @@ fn worst(pairs: &[Pair]) -> Option<&Pair> {
     pairs.iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-type Twin = fn(&mut Run, &Pass) -> Vec<Pair>;
+type CpuReference = fn(&mut Run, &Pass) -> Vec<Pair>;
 
 /// The twin of every pass, by name.
-const TWINS: &[(&str, Twin)] = &[
+const TWINS: &[(&str, CpuReference)] = &[
     ("dirty_list", edit::dirty_list),
     ("dirty_mark", edit::dirty_mark),
     ("height_expand", pyramid::height_expand),
@@ -72,8 +72,8 @@ const TWINS: &[(&str, Twin)] = &[
     ("height_bounds", paths::height_bounds),
     ("path_trace", paths::path_trace),
     ("visible_points", points::visible_points),
-    ("points_bend", bend::points_bend),
-    ("fan_weigh", bend::fan_weigh),
+    ("bent_directions", bend::bent_directions),
+    ("fan_weights", bend::fan_weights),
     ("ellipse_fit", ellipses::ellipse_fit),
     ("facet_mask", facets::facet_mask),
     ("scatter_gather", scatter::scatter_gather),
@@ -83,26 +83,26 @@ const TWINS: &[(&str, Twin)] = &[
     ("sweep_fuse", sweep::sweep_fuse),
     ("env_wedges", light::env_wedges),
     ("env_tables", light::env_tables),
-    ("env_turns", sh::env_turns),
+    ("env_rotation", sh::env_rotation),
     ("light_matrix", sh::light_matrix),
     ("sh_visibility", sh::sh_visibility),
     ("sh_shade", sh::sh_shade),
     ("sh_wedges", sh::sh_wedges),
     ("sky_shade", light::sky_shade),
     ("sun_shade", light::sun_shade),
-    ("sun_gloss", light::sun_gloss),
+    ("sun_specular", light::sun_specular),
     ("sphere_shade", light::sphere_shade),
     ("sphere_sh_shade", soft::sphere_sh_shade),
     ("light_resolve", light::light_resolve),
     ("bounce_gather", bounce::bounce_gather),
-    ("gloss_exit", gloss::gloss_exit),
-    ("gloss_gather", gloss::gloss_gather),
-    ("gloss_seen", gloss::gloss_seen),
+    ("specular_exit", gloss::specular_exit),
+    ("specular_gather", gloss::specular_gather),
+    ("specular_visibility", gloss::specular_visibility),
     ("vector_reduce", gloss::vector_reduce),
     ("bounce_march", bounce::bounce_march),
     ("bounce_shade", nodes::bounce_shade),
     ("bounce_walk", bounce::bounce_walk),
-    ("cast_gather", nodes::cast_gather),
+    ("cache_gather", nodes::cache_gather),
     ("shade_expand", bounce::shade_expand),
     ("shade_reduce", bounce::shade_reduce),
 ];
@@ -110,7 +110,7 @@ const TWINS: &[(&str, Twin)] = &[
 /// Held to their twins where whole pictures are, byte by byte: [`crate::map`].
 const ELSEWHERE: [&str; 1] = ["map_draw"];
 
-fn twin_of(pass: &Pass) -> Twin {
+fn twin_of(pass: &Pass) -> CpuReference {
     let twin = TWINS.iter().find(|t| t.0 == pass.name());
     twin.unwrap_or_else(|| panic!("{} has no twin test", pass.name())).1
 }

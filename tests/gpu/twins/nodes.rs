@@ -9,11 +9,11 @@ use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Border, Fuse};
 use ridgelight_cpu::bounce_shade::bounce_shade as shade_twin;
 use ridgelight_cpu::bounce_walk::walked_along;
-use ridgelight_cpu::cast_gather::{
-    Cast, RING_ENDS, cast_gather as gather_twin, cast_of, cast_part,
+use ridgelight_cpu::cache_gather::{
+    Cast, RING_ENDS, cache_gather as gather_twin, cast_of, cast_part,
 };
+use ridgelight_cpu::shared::bounced::thrown;
 use ridgelight_cpu::shared::sweep::March;
-use ridgelight_cpu::shared::thrown::thrown;
 use ridgelight_cpu::tolerance::{EPSILON, Slices, ThrownError, twin_bounce_shade, walk_error};
 
 use super::bounce::{brightest, colours};
@@ -96,8 +96,8 @@ fn casting_sets(
 }
 
 /// From the device's own casting sets: a product and a sum for each, of weights that are products themselves.
-pub(super) fn cast_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::cast_gather_push::{BEGIN, COUNT};
+pub(super) fn cache_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::cache_gather_push::{BEGIN, COUNT};
     let places = places(run, Nodes { stride: constant(pass, "node_stride") });
     let begin = pushed(pass, BEGIN) as usize;
     let sets = casting_sets(run, pass, begin, &places).expect("bound");

@@ -5,11 +5,11 @@ use std::ops::Range;
 use ridgelight::gpu::{Frame, Headless};
 use ridgelight::plan::{Azimuth, Kind, Pass, Plan, ResourceId};
 use ridgelight::scene::{Border, Directions, Fuse, Phong, Quality, Scene, VisiblePoints};
-use ridgelight_cpu::gloss_gather::Series;
 use ridgelight_cpu::lattice::{Lattice, Lattices, number_layers};
 use ridgelight_cpu::path_trace::Traced;
 use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
+use ridgelight_cpu::specular_gather::Series;
 use ridgelight_cpu::tolerance::ShadeError;
 
 use super::cases::Case;

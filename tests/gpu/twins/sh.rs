@@ -7,7 +7,7 @@ use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::gpu::shaders::offsets;
 use ridgelight::plan::{Azimuth, Nodes, Pass};
 use ridgelight::scene::{Border, Environment, Receiver, Wedges};
-use ridgelight_cpu::env_turns as turns_twin;
+use ridgelight_cpu::env_rotation as turns_twin;
 use ridgelight_cpu::harmonics::{Seen, matrix_magnitudes};
 use ridgelight_cpu::light_matrix as matrix_twin;
 use ridgelight_cpu::sh_shade::{gloss_on, light_at, nodes_around};
@@ -32,12 +32,12 @@ fn three(got: DVec3, want: DVec3, tolerance: DVec3, at: [usize; 3]) -> [Pair; 3]
     [0, 1, 2].map(|c| Pair { got: got[c], want: want[c], tolerance: tolerance[c], at })
 }
 
-pub(super) fn env_turns(run: &mut Run, pass: &Pass) -> Vec<Pair> {
-    use offsets::env_turns_push::{ROWS, TURNS};
+pub(super) fn env_rotation(run: &mut Run, pass: &Pass) -> Vec<Pair> {
+    use offsets::env_rotation_push::{ROWS, TURNS};
     let [rows, turns] = [ROWS, TURNS].map(|at| pushed(pass, at) as usize);
-    let got = texels(run, pass, "env_turns");
+    let got = texels(run, pass, "env_rotation");
     let environment = environment(run);
-    let want = turns_twin::env_turns(environment, rows, turns.div_ceil(2));
+    let want = turns_twin::env_rotation(environment, rows, turns.div_ceil(2));
     let width = environment.width();
     let mut pairs = Vec::new();
     for (i, got) in got.into_iter().enumerate() {
@@ -54,7 +54,7 @@ pub(super) fn light_matrix(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     use offsets::light_matrix_push::{LIGHT_ORDER, ORDER, ROWS, SKY};
     let [rows, light_order, order] = [ROWS, LIGHT_ORDER, ORDER].map(|at| pushed(pass, at) as usize);
     let turns: Vec<Vec<DVec3>> = if rows > 0 {
-        let all = texels(run, pass, "env_turns");
+        let all = texels(run, pass, "env_rotation");
         all.chunks_exact(2 * light_order - 1).map(<[_]>::to_vec).collect()
     } else {
         Vec::new()

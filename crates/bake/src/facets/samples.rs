@@ -1,6 +1,6 @@
 //! What triangles and the samples of the field, between which they lie, have of each other.
 
-use super::{Facets, Leaving, corners_of};
+use super::{ExitRadiance, Facets, corners_of};
 
 impl Facets {
     /// The samples of the field, not the finer one, that a triangle lies between, and their shares of it.
@@ -37,7 +37,7 @@ impl Facets {
     }
 
     /// Adds radiance of samples, the same towards all views, linear between them.
-    pub fn add_samples(&self, samples: &[[f32; 3]], light: &mut Leaving) {
+    pub fn add_samples(&self, samples: &[[f32; 3]], light: &mut ExitRadiance) {
         for (facet, light) in light.alike.iter_mut().enumerate() {
             for (sample, share) in self.between(facet) {
                 (0..3).for_each(|c| light[c] += share * f64::from(samples[sample][c]));
@@ -53,7 +53,7 @@ impl Facets {
     ///
     /// # Panics
     /// Where light is not scattered towards that.
-    pub fn texels_from(&self, view: usize, light: &Leaving) -> Vec<[f64; 4]> {
+    pub fn texels_from(&self, view: usize, light: &ExitRadiance) -> Vec<[f64; 4]> {
         let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
         let each = 0.5 / self.times.pow(2) as f64;
         for (facet, filled) in self.shares(view) {
@@ -78,7 +78,7 @@ impl Facets {
     ///
     /// # Panics
     /// Where light is not scattered towards one of them.
-    pub fn texels_from_all(&self, light: &Leaving) -> Vec<Vec<[f64; 4]>> {
+    pub fn texels_from_all(&self, light: &ExitRadiance) -> Vec<Vec<[f64; 4]>> {
         self.of_all(|view| self.texels_from(view, light))
     }
 }

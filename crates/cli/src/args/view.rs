@@ -6,7 +6,7 @@ use clap::{ArgMatches, Args};
 
 use super::values::pixels;
 use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
-use crate::scene_file::Asked;
+use crate::scene_file::Request;
 
 /// Columns and rows; a name of its own, as the parser takes arrays for lists.
 pub type Pixels = [u32; 2];
@@ -37,11 +37,11 @@ pub struct ViewArgs {
     pub global: GlobalArgs,
     /// What was given, for scenes to be saved with.
     #[arg(skip)]
-    pub asked: Asked,
+    pub asked: Request,
 }
 
 impl ViewArgs {
     pub fn remember(&mut self, matches: &ArgMatches) {
-        self.asked = Asked::of(matches);
+        self.asked = Request::of(matches);
     }
 }

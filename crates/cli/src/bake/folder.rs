@@ -9,13 +9,13 @@ use super::SHEET;
 use super::map::Wanted;
 
 /// A kind and its files.
-type Told = (String, Vec<String>);
+type FileNotes = (String, Vec<String>);
 
 /// The kinds that a sheet tells of, each with its files; none where there is no sheet.
 ///
 /// # Errors
 /// One that cannot be read, or does not tell: what lies beside it is unknown.
-fn told(path: &Path) -> Result<Vec<Told>> {
+fn told(path: &Path) -> Result<Vec<FileNotes>> {
     let text = match std::fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         text => text.map_err(|source| Error::Io { path: path.to_owned(), source })?,
@@ -30,7 +30,7 @@ fn told(path: &Path) -> Result<Vec<Told>> {
 }
 
 /// What the sheet of an earlier bake tells of, and removes it.
-pub fn take_sheet(folder: &Path) -> Result<Vec<Told>> {
+pub fn take_sheet(folder: &Path) -> Result<Vec<FileNotes>> {
     let path = folder.join(SHEET);
     let before = told(&path)?;
     match std::fs::remove_file(&path) {
@@ -41,7 +41,7 @@ pub fn take_sheet(folder: &Path) -> Result<Vec<Told>> {
     }
 }
 
-fn kinds(sheet: &serde_json::Value) -> Option<Vec<Told>> {
+fn kinds(sheet: &serde_json::Value) -> Option<Vec<FileNotes>> {
     let word = |value: &serde_json::Value| value.as_str().map(str::to_owned);
     let of = |map: &serde_json::Value| {
         let files = map["files"].as_array()?.iter().map(|file| word(&file["file"]));
@@ -92,7 +92,7 @@ pub fn parent(path: &Path) -> &Path {
 }
 
 /// Removes what an earlier bake told of and this one does not: azimuths beyond the last, other formats.
-pub fn remove_old(folder: &Path, before: Vec<Told>) -> Result<()> {
+pub fn remove_old(folder: &Path, before: Vec<FileNotes>) -> Result<()> {
     let now: Vec<String> =
         told(&folder.join(SHEET))?.into_iter().flat_map(|(_, files)| files).collect();
     for (kind, names) in before {

@@ -5,7 +5,7 @@ use ridgelight::{Error, Result};
 
 use super::kinds::{self, Lit, Making, OfDirections, Source};
 use super::map::{Format, Wanted};
-use super::{SHEET, asked};
+use super::{SHEET, request};
 use crate::horizon;
 
 /// What is known before anything runs.
@@ -76,10 +76,10 @@ impl Job<'_> {
     /// Why a flag changes nothing, where kinds of maps know better than plans.
     pub fn idle_reason(&self, setting: &str) -> Option<String> {
         let names: Vec<&str> = self.wanted.iter().map(|w| w.kind.name).collect();
-        let has_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
+        let has_light = self.wanted.iter().any(|w| request::is_light(w.kind));
         let is_of_bounces = setting.starts_with("bounce");
         if is_of_bounces && !has_light {
-            return Some(format!("without a kind that scatters light: {}", asked::lights()));
+            return Some(format!("without a kind that scatters light: {}", request::lights()));
         }
         if is_of_bounces {
             return Some("for what is baked: light is scattered along --paths".into());
@@ -89,7 +89,7 @@ impl Job<'_> {
 
     /// Kinds that the scene's lights shine on.
     fn has_direct(&self) -> bool {
-        self.wanted.iter().any(|w| asked::is_lit(w.kind))
+        self.wanted.iter().any(|w| request::is_lit(w.kind))
     }
 
     pub fn has_horizons(&self) -> bool {
@@ -132,7 +132,7 @@ impl Job<'_> {
         if has(|name| name.starts_with("sh-") || name == "brdf-harmonics") {
             used.push(("sh_order".into(), quality.sh_order.to_string()));
         }
-        let is_light = self.wanted.iter().any(|w| asked::is_light(w.kind));
+        let is_light = self.wanted.iter().any(|w| request::is_light(w.kind));
         if is_light {
             let bounces = self.lit.scatter.map_or(0, |scatter| scatter.bounces);
             used.retain(|(name, _)| name != "bounces");

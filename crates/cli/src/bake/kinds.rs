@@ -1,6 +1,5 @@
 //! What can be baked: one file a kind, and a line of [`KINDS`].
 
-mod afar;
 mod bent_normal;
 mod brdf;
 mod brdf_factors;
@@ -8,6 +7,7 @@ mod brdf_harmonics;
 mod btf;
 mod curved_ellipse;
 mod ellipse;
+mod far_field;
 mod horizon;
 mod light_field;
 mod scatter;
@@ -27,7 +27,7 @@ use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene
 use ridgelight_bake::{Angles, Encoding, Ray, Sum, Summing};
 
 use super::map::{Format, MapFiles};
-pub use afar::{diffuse, direct_plan, looks};
+pub use far_field::{diffuse, direct_plan, looks};
 pub use scatter::paths;
 
 /// All of them, as --help lists them.
@@ -62,11 +62,11 @@ pub struct Kind {
     /// GLSL that reads the .ktx2, less the constants of a [`Map`].
     pub decoder: &'static str,
     /// Begins one.
-    pub begin: fn(&Asked) -> Result<Making>,
+    pub begin: fn(&Request) -> Result<Making>,
 }
 
 /// What is asked of a kind.
-pub struct Asked<'a> {
+pub struct Request<'a> {
     pub border: Border,
     pub quality: &'a Quality,
     pub directions: &'a Directions,
@@ -152,7 +152,7 @@ pub struct OfDirections {
     /// Bytes a sample of what comes off the device and waits for files.
     pub bytes: fn(&Directions) -> u64,
     /// To files.
-    pub take: fn(&Looked, &mut MapFiles) -> Result<()>,
+    pub take: fn(&LookJob, &mut MapFiles) -> Result<()>,
 }
 
 /// Takes what is being done, for who waits.
@@ -195,7 +195,7 @@ pub struct Lit<'a> {
 }
 
 /// What came of its plan.
-pub struct Looked<'a> {
+pub struct LookJob<'a> {
     pub field: &'a HeightField,
     pub border: Border,
     pub directions: &'a Directions,
@@ -229,7 +229,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn begin(what: Box<dyn Sum>, asked: &Asked, map: Map) -> Making {
+    fn begin(what: Box<dyn Sum>, asked: &Request, map: Map) -> Making {
         // The sums, and the values as they are made of them.
         let bytes =
             Summing::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;

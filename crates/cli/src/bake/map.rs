@@ -1,7 +1,7 @@
 //! A map's files: values go to all of them as they come, layer by layer.
 
 mod coded;
-mod told;
+mod notes;
 mod wanted;
 mod whole;
 
@@ -13,8 +13,8 @@ use ridgelight_io as files;
 use ridgelight_io::{Ktx2Writer, NpyWriter, Written};
 use serde_json::Value as Json;
 
-use super::asked;
 use super::kinds::Map;
+use super::request;
 pub use wanted::{Format, Wanted, stem};
 pub use whole::Whole;
 

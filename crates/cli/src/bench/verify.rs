@@ -1,10 +1,10 @@
 //! Before a time is printed, the light is compared with the oracle's.
 
-mod balls;
 mod bounces;
 mod environments;
 mod harmonics;
-mod lobes;
+mod specular;
+mod sphere_lights;
 mod spheres;
 mod sweeps;
 
@@ -154,8 +154,8 @@ impl Verifier {
     /// An error beyond its bound, in a sentence.
     pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
         if self.scene.surface.phong.is_some() {
-            let quality = lobes::quality(&self.scene, quality);
-            let lobes = lobes::check(&self.scene, &self.truth.places, gpu, &quality, limits)?;
+            let quality = specular::quality(&self.scene, quality);
+            let lobes = specular::check(&self.scene, &self.truth.places, gpu, &quality, limits)?;
             let surface = Surface { phong: None, ..self.scene.surface.clone() };
             let diffuse = Scene { surface, ..self.scene.clone() };
             let found = Self { scene: diffuse, truth: self.truth.clone() };
@@ -176,8 +176,8 @@ impl Verifier {
         limits: &Limits,
     ) -> Result<String> {
         if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
-            let found = balls::check(&self.scene, &self.truth, gpu, quality, limits)?;
-            let Some(scene) = balls::without(&self.scene) else { return Ok(found) };
+            let found = sphere_lights::check(&self.scene, &self.truth, gpu, quality, limits)?;
+            let Some(scene) = sphere_lights::without(&self.scene) else { return Ok(found) };
             let rest = Self { scene, truth: self.truth.without_balls() };
             return Ok(format!("{}; {found}", rest.check_direct(gpu, quality, limits)?));
         }

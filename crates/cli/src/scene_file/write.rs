@@ -8,9 +8,9 @@ use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
 
 /// Flags that were given, on the command line or by a scene file, as the parser calls them, and the words of each.
 #[derive(Clone, Debug, Default)]
-pub struct Asked(Vec<(String, Vec<String>)>);
+pub struct Request(Vec<(String, Vec<String>)>);
 
-impl Asked {
+impl Request {
     pub fn of(matches: &ArgMatches) -> Self {
         let given = matches.ids().map(clap::Id::as_str).filter_map(|id| {
             let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);

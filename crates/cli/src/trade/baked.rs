@@ -10,10 +10,10 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
 use serde_json::{Value, json};
 
+use super::ground_truth::{Distance, Truth};
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
-use super::truth::{Distance, Truth};
 use crate::setup;
 use crate::terminal::{digits, percent};
 

@@ -51,7 +51,7 @@ pub fn page(report: &Report) -> String {
             ("broken", broken),
             ("ruled_out", ruled_out(report)),
             ("not_tried", not_tried(report)),
-            ("knobs", knobs(report)),
+            ("knobs", ladders(report)),
             ("about", about),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ],
@@ -189,8 +189,8 @@ fn not_tried(report: &Report) -> String {
     }
 }
 
-fn knobs(report: &Report) -> String {
-    let row = |knob: &ridgelight_trade::trade::Knob| {
+fn ladders(report: &Report) -> String {
+    let row = |knob: &ridgelight_trade::trade::Ladder| {
         let range = knob.range.as_ref();
         format!(
             "<tr><th>{}<td>{}<td>{}<td>{}<td>{}\n",
@@ -201,7 +201,7 @@ fn knobs(report: &Report) -> String {
             escaped(knob.dearer)
         )
     };
-    report.knobs.iter().map(row).collect()
+    report.ladders.iter().map(row).collect()
 }
 
 /// Flags that lines break between, not within.

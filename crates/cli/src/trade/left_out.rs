@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ridgelight_trade::trade::{Knob, Place, Skip};
+use ridgelight_trade::trade::{Ladder, Place, Skip};
 use serde_json::{Value, json};
 
 use super::report::ms;
@@ -16,7 +16,7 @@ pub const EXAMPLES: usize = 6;
 /// Settings, and what is known of them.
 #[derive(Clone, Copy)]
 pub struct LeftOut<'a> {
-    pub knobs: &'a [Knob],
+    pub ladders: &'a [Ladder],
     pub places: &'a [Place],
     pub walk: &'a Walk,
 }
@@ -29,7 +29,7 @@ pub struct Group {
 
 impl LeftOut<'_> {
     pub fn flags(&self, place: usize) -> String {
-        self.places[place].flags(self.knobs)
+        self.places[place].flags(self.ladders)
     }
 
     fn skip_text(&self, skip: &Skip) -> String {
@@ -127,7 +127,7 @@ impl LeftOut<'_> {
                 "not_tried": count(Kind::NotTried),
             })
         };
-        let by_step = |(k, knob): (usize, &Knob)| {
+        let by_step = |(k, knob): (usize, &Ladder)| {
             let steps = knob.steps.iter().enumerate().map(|(s, spelt)| {
                 let mut of = counted(&|place| place.steps[k] == Some(s));
                 of["step"] = json!(spelt);
@@ -138,7 +138,7 @@ impl LeftOut<'_> {
         let mut all = counted(&|_| true);
         all["settings"] = json!(self.places.len());
         all["reasons"] = json!(self.skipped().len());
-        all["by_knob"] = self.knobs.iter().enumerate().map(by_step).collect();
+        all["by_knob"] = self.ladders.iter().enumerate().map(by_step).collect();
         all
     }
 }
@@ -147,7 +147,7 @@ impl LeftOut<'_> {
 mod tests {
     use super::*;
     use ridgelight::scene::{Bounces, HeightField, Lights, Quality, Scene, Sun, Surface};
-    use ridgelight_trade::trade::{Search, Value as Measured, knobs, places, start_of};
+    use ridgelight_trade::trade::{Search, Value as Measured, ladders, places, start_of};
 
     /// Under a sky and a sun with bounces there are over a hundred thousand settings. With four measured, nearly all are either
     /// ruled out or open: the report stays below 64 KiB, 40 settings and 40 reasons with 6 each of 250 letters and 12 KiB of
@@ -161,10 +161,10 @@ mod tests {
             surface: Surface::default(),
             lights: Lights { sky: Some([1.0; 3]), suns: vec![sun], ..Lights::default() },
         };
-        let knobs = knobs(&scene, 3);
+        let ladders = ladders(&scene, 3);
         let bounces = Bounces { count: 3, ..Bounces::default() };
         let start = Quality { bounces, ..start_of(&scene) };
-        let places = places(&knobs, &start);
+        let places = places(&ladders, &start);
         assert!(places.len() > 100_000, "{}", places.len());
         let baseline = places.iter().position(|p| p.quality == start).unwrap();
         let steps = places.iter().map(|p| p.steps.clone()).collect();
@@ -181,7 +181,7 @@ mod tests {
         }
         walk.search.give_up(9, false);
         walk.given_up.push((9, "refused".to_owned()));
-        let left = LeftOut { knobs: &knobs, places: &places, walk: &walk };
+        let left = LeftOut { ladders: &ladders, places: &places, walk: &walk };
         let counts = left.counts_json();
         let number = |of: &Value, name: &str| of[name].as_u64().unwrap() as usize;
         let kinds = ["measured", "ruled_out", "not_tried"];

@@ -8,7 +8,7 @@ use ridgelight_trade::flip;
 use ridgelight_trade::flip::{FlipError, PIXELS_PER_DEGREE};
 use ridgelight_trade::statistics::quantiles;
 
-use super::truth::Truth;
+use super::ground_truth::Truth;
 
 /// Longest side of a picture in the report, pixels.
 const PICTURE_SIDE: usize = 240;

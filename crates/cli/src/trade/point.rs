@@ -8,9 +8,9 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
 use ridgelight_trade::trade::Value;
 
+use super::ground_truth::{Distance, Truth};
 use super::picture::Pictures;
 use super::rig::Rig;
-use super::truth::{Distance, Truth};
 
 /// Draws after one that warms up: fewer, which is said, once they take this share of the budget.
 const DRAWS: usize = 7;

@@ -1,15 +1,15 @@
 //! What a walk found, for people, for spreadsheets and for machines.
 
-use ridgelight_trade::trade::{Break, Knob, Place, Recommendation, Rule, SLACK, Side};
+use ridgelight_trade::trade::{Break, Ladder, Place, Recommendation, Rule, SLACK, Side};
 use serde_json::{Value, json};
 
 use super::baked::Tried;
+use super::ground_truth::Truth;
 use super::hull;
 use super::left_out::LeftOut;
 use super::picture::Tones;
 use super::point::Point;
 use super::rig::Budget;
-use super::truth::Truth;
 use super::walk::Walk;
 use crate::setup;
 use crate::terminal::{digits, percent};
@@ -23,7 +23,7 @@ pub struct Report<'a> {
     pub tones: &'a Tones,
     pub hulls: &'a [hull::Place],
     pub baked: &'a Tried,
-    pub knobs: &'a [Knob],
+    pub ladders: &'a [Ladder],
     pub places: &'a [Place],
     pub walk: &'a Walk,
     pub rule: Rule,
@@ -43,7 +43,7 @@ impl Report<'_> {
     }
 
     pub fn others(&self) -> LeftOut<'_> {
-        LeftOut { knobs: self.knobs, places: self.places, walk: self.walk }
+        LeftOut { ladders: self.ladders, places: self.places, walk: self.walk }
     }
 
     /// Points that no other covers, from cheap to dear.
@@ -103,7 +103,7 @@ impl Report<'_> {
     }
 
     pub fn break_text(&self, found: &Break) -> String {
-        let names: Vec<&str> = found.knobs.iter().map(|k| self.knobs[*k].name).collect();
+        let names: Vec<&str> = found.ladders.iter().map(|k| self.ladders[*k].name).collect();
         let value = |i: usize| {
             let value = self.walk.search.value(i);
             value.map_or_else(String::new, |v| match found.side {
@@ -180,7 +180,7 @@ impl Report<'_> {
     }
 
     pub fn csv(&self) -> String {
-        let names = self.knobs.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
+        let names = self.ladders.iter().map(|k| k.name.replace(' ', "_")).collect::<Vec<_>>();
         let mut text = format!(
             "settings,{},time_ms,median_ms,p10_ms,p90_ms,min_ms,draws,relative_rmse,at_most,mean_shift,p99,\
              worst,worst_row,worst_col,flip_mean,flip_p99,bytes,baseline_ms,frontier,recommended\n",
@@ -190,7 +190,7 @@ impl Report<'_> {
         for point in &self.walk.points {
             let (t, d) = (&point.total_ns, &point.distance);
             let place = &self.places[point.place];
-            let steps = self.knobs.iter().zip(&place.steps).map(|(knob, step)| {
+            let steps = self.ladders.iter().zip(&place.steps).map(|(knob, step)| {
                 let spelt = step.map_or("", |s| knob.steps[s].as_str());
                 spelt.split(' ').next_back().unwrap_or_default()
             });
@@ -243,8 +243,8 @@ impl Report<'_> {
         let position = |place: usize| self.walk.points.iter().position(|p| p.place == place);
         let front: Vec<usize> =
             self.walk.search.frontier().iter().filter_map(|f| position(*f)).collect();
-        let knobs: Vec<Value> = self
-            .knobs
+        let ladders: Vec<Value> = self
+            .ladders
             .iter()
             .map(|k| {
                 json!({
@@ -272,7 +272,7 @@ impl Report<'_> {
                 "how": self.truth.quality_of, "seconds": self.truth_s,
             },
             "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
-            "knobs": knobs,
+            "knobs": ladders,
             "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
             "frontier": front,
             "recommendation": {

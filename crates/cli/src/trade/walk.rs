@@ -5,12 +5,12 @@ use ridgelight::gpu::Frame;
 use ridgelight::scene::{Lines, Method, Quality};
 use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
-use ridgelight_trade::trade::{Knob, Place, Recommendation, Rule, Search, recommend};
+use ridgelight_trade::trade::{Ladder, Place, Recommendation, Rule, Search, recommend};
 
+use super::ground_truth::Truth;
 use super::picture::{self, Tones};
 use super::point::{self, Point};
 use super::rig::{Budget, Rig};
-use super::truth::Truth;
 use crate::setup;
 
 /// Share of the budget that one setting may take.
@@ -67,7 +67,7 @@ impl Walk {
 pub fn walk(
     rig: &mut Rig,
     (truth, tones): (&Truth, &Tones),
-    (knobs, places, refused): (&[Knob], &[Place], Vec<(usize, String)>),
+    (ladders, places, refused): (&[Ladder], &[Place], Vec<(usize, String)>),
     (start, rule): (&Quality, Rule),
     bar: &indicatif::ProgressBar,
 ) -> Result<(Walk, Recommendation)> {
@@ -101,7 +101,7 @@ pub fn walk(
                 Budget::Seconds(_) => format!("{:.0} s left", rig.left().max(0.0)),
                 Budget::Evaluations(most) => format!("{} left", most - walk.points.len()),
             },
-            places[place].flags(knobs)
+            places[place].flags(ladders)
         ));
         let truths = (truth, tones);
         if let Err(error) = visit(rig, truths, place, places, &mut walk, &mut frame, &mut slow) {

@@ -4,7 +4,7 @@ mod figures;
 mod lights;
 mod painting;
 mod settings;
-mod sight;
+mod viewpoint;
 
 use ridgelight::plan::{self, Limits, Map, Picture, Plan, Rectangle, View};
 use ridgelight::scene::Tone;
@@ -16,9 +16,9 @@ use super::moving::{Kind, Moving};
 use super::script::Button;
 use super::strokes::Strokes;
 use crate::args::ViewArgs;
-use crate::scene_file::Asked;
+use crate::scene_file::Request;
 use settings::{Refused, Settings};
-use sight::{FOV_DEG, Sight};
+use viewpoint::{FOV_DEG, Sight};
 
 pub use figures::Figures;
 pub use settings::said;
@@ -41,7 +41,7 @@ pub enum Wish {
 }
 
 /// Settings, lights, and the words that they were given by.
-pub type Light = (Quality, Lights, Asked);
+pub type Light = (Quality, Lights, Request);
 
 /// How much text is shown.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -63,7 +63,7 @@ enum Tool {
 pub struct State {
     pub scene: Scene,
     pub quality: Quality,
-    asked: Asked,
+    asked: Request,
     moving: Option<Moving>,
     exposure: f32,
     sight: Sight,
@@ -148,7 +148,7 @@ impl State {
         [width, height]: [u32; 2],
         limits: &Limits,
         heights: Option<&str>,
-    ) -> Asked {
+    ) -> Request {
         let mut asked = self.asked.clone();
         if let Some(heights) = heights {
             let field = &self.scene.field;

@@ -2,7 +2,7 @@
 //! the device's rays, with which it shares no code.
 
 use crate::oracle::Oracle;
-use crate::profile::Stretch;
+use crate::profile::VisibleInterval;
 use glam::DVec3;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
 use std::f64::consts::FRAC_PI_2;
@@ -53,7 +53,7 @@ pub fn possible_within(
     oracle: &Oracle,
     [row, col]: [usize; 2],
     e: DVec3,
-    elevation_rad: impl Fn(&Stretch) -> f64,
+    elevation_rad: impl Fn(&VisibleInterval) -> f64,
     of_way: f64,
 ) -> Vec<VisiblePoint> {
     // Straight up or down there is no azimuth: nothing, or the sample itself.
@@ -111,7 +111,7 @@ pub fn possible_within(
 }
 
 /// The sample nearest to a place on a stretch, `off` rows and columns beside it.
-fn met(oracle: &Oracle, stretch: &Stretch, distance_m: f64, off: [f64; 2]) -> VisiblePoint {
+fn met(oracle: &Oracle, stretch: &VisibleInterval, distance_m: f64, off: [f64; 2]) -> VisiblePoint {
     let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
     let [_, second, third] = stretch.corner_weights(distance_m);
     let [[row, col], ..] = oracle.corners(stretch.triangle);

@@ -3,7 +3,7 @@
 use crate::indirect::mean_distance_m;
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
-use crate::shared::thrown::{Along, Cast, NEARLY_RAD, radiance};
+use crate::shared::bounced::{Along, Cast, NEARLY_RAD, radiance};
 use ridgelight::scene::Border;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -42,7 +42,7 @@ pub fn stretches_along(
         let whole = slice.light(-FRAC_PI_2, FRAC_PI_2);
         oracle.nearly_seen(row, col, azimuth_rad, NEARLY_RAD, &mut seen);
         let casts = seen.iter().filter(|stretch| stretch.high_rad > slice.low - NEARLY_RAD);
-        let cast = |stretch: &crate::profile::Stretch| {
+        let cast = |stretch: &crate::profile::VisibleInterval| {
             let from = oracle.corners(stretch.triangle).map(|[r, c]| exit[r * field.cols() + c]);
             let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
             let [rise_m, steepest] = land_around(oracle, stretch.triangle, [row, col]);

@@ -6,11 +6,11 @@
 //! behind something nearer all between is; where the far end rises over it, what lies between is looked at.
 
 use crate::lattice::Lattice;
+use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
 use crate::shared::gather::{Swept, elevation_moments};
 use crate::shared::sweep::{CELL_SHIFT, March, NO_SLOPE, PER_CELL, wrapped};
-use crate::shared::thrown::{Along, Cast, NEARLY_RAD, thrown};
 use glam::{DVec2, DVec3};
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 

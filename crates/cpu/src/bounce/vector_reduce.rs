@@ -1,8 +1,8 @@
 //! One level of the pyramid of exit radiance's series, coefficient by coefficient as
 //! [`shade_reduce`](crate::shade_reduce) makes one of radiance.
 
-use crate::gloss_gather::Series;
 use crate::shade_reduce::shade_reduce;
+use crate::specular_gather::Series;
 use ridgelight::plan::pyramid::Pyramid;
 
 /// Series of level `number` from those of the samples and of the texels of the levels before it.

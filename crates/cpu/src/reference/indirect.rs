@@ -23,7 +23,7 @@
 use crate::key::key_on;
 use crate::light::{Receiver, Slice, environment_on, normal, sun_on};
 use crate::oracle::Oracle;
-use crate::profile::Stretch;
+use crate::profile::VisibleInterval;
 use crate::sphere::sphere_on;
 use glam::DVec3;
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Scene, SphereLight};
@@ -279,7 +279,7 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
 
 /// Where on a stretch its mean radiance is found, radiance being linear in the distance: the distance
 /// averaged by Gauss' rule of two points over the elevations above the slice's plane.
-pub(crate) fn mean_distance_m(slice: &Slice, stretch: &Stretch) -> f64 {
+pub(crate) fn mean_distance_m(slice: &Slice, stretch: &VisibleInterval) -> f64 {
     let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
     let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
     let [(near, f), (far, g)] =

@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_2;
 /// The first one a ray meets holds the sample itself. Directions below it lead into the ground at
 /// once; they are its too, met at distance 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct VisibleInterval {
     /// Elevations between which it is seen, radians.
     pub low_rad: f64,
     /// The upper one.
@@ -31,7 +31,7 @@ pub struct Stretch {
     weights: [[f64; 3]; 2],
 }
 
-impl Stretch {
+impl VisibleInterval {
     /// Horizontal distance to the piece along an elevation, metres.
     pub fn distance_m(&self, elevation_rad: f64) -> f64 {
         let [near, far] = self.span_m;
@@ -79,7 +79,13 @@ impl Oracle<'_> {
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
-    pub fn stretches(&self, row: usize, col: usize, azimuth_rad: f64, seen: &mut Vec<Stretch>) {
+    pub fn stretches(
+        &self,
+        row: usize,
+        col: usize,
+        azimuth_rad: f64,
+        seen: &mut Vec<VisibleInterval>,
+    ) {
         self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
     }
 
@@ -93,7 +99,7 @@ impl Oracle<'_> {
         col: usize,
         azimuth_rad: f64,
         nearly_rad: f64,
-        seen: &mut Vec<Stretch>,
+        seen: &mut Vec<VisibleInterval>,
     ) {
         seen.clear();
         let field = self.field();
@@ -128,7 +134,7 @@ impl Oracle<'_> {
             // The surface is continuous: no piece begins above the largest slope before it.
             if piece.high_rad > lowest {
                 let high_rad = piece.high_rad.max(reached);
-                seen.push(Stretch { low_rad: reached, high_rad, ..piece });
+                seen.push(VisibleInterval { low_rad: reached, high_rad, ..piece });
                 reached = high_rad;
             }
             near = far;
@@ -148,7 +154,7 @@ impl Oracle<'_> {
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
         let mut seen = Vec::new();
         self.stretches(row, col, azimuth_rad, &mut seen);
-        let slope = |stretch: &Stretch| {
+        let slope = |stretch: &VisibleInterval| {
             let [near, far] = stretch.span_m;
             let end = if near == 0.0 { far } else { far.min(within_m) };
             (near == 0.0 || near < within_m).then(|| stretch.slope + stretch.rise_m / end)
@@ -158,7 +164,7 @@ impl Oracle<'_> {
 
     /// The piece of surface between two distances from a sample, all of it taken as visible; none
     /// outside the field. Between them lies no crossing.
-    fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<Stretch> {
+    fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<VisibleInterval> {
         let [near, far] = span_m;
         let middle = 0.5 * (near + far);
         let samples = [self.field().rows(), self.field().cols()];
@@ -195,7 +201,7 @@ impl Oracle<'_> {
         let slope = sum(change);
         // The first piece holds the sample: no rounding may lift it off.
         let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - self.vertex(here[0], here[1]) };
-        Some(Stretch {
+        Some(VisibleInterval {
             low_rad: -FRAC_PI_2,
             high_rad: (slope + rise_m / far).atan(),
             triangle,

@@ -6,7 +6,7 @@
 
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
-use crate::profile::Stretch;
+use crate::profile::VisibleInterval;
 use ridgelight::scene::SphereLight;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -98,7 +98,7 @@ struct Disc {
 
 impl Disc {
     /// The elevations at which the disc is seen.
-    fn visible(&self, seen: &[Stretch]) -> Vec<[f64; 2]> {
+    fn visible(&self, seen: &[VisibleInterval]) -> Vec<[f64; 2]> {
         let distance = self.along.hypot(self.up);
         let (low, high) = if distance > self.radius {
             let (middle, half) = (self.up.atan2(self.along), (self.radius / distance).asin());
@@ -140,8 +140,8 @@ impl Disc {
     }
 
     /// Elevations at which the circle crosses the line of a stretch, rise + slope·D.
-    fn crossings(&self, stretch: &Stretch) -> impl Iterator<Item = f64> {
-        let Stretch { rise_m, slope, .. } = *stretch;
+    fn crossings(&self, stretch: &VisibleInterval) -> impl Iterator<Item = f64> {
+        let VisibleInterval { rise_m, slope, .. } = *stretch;
         // (D - along)² + (rise + slope D - up)² = radius².
         let (a, below) = (1.0 + slope * slope, self.up - rise_m);
         let b = self.along + slope * below;

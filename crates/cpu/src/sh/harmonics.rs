@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::env_turns::env_turns;
+use crate::env_rotation::env_rotation;
 use crate::light_matrix::{add_sky, gloss_matrix, is_fitted, light_matrix, row_weights, series};
 use crate::sh_shade::{gloss_on, light_on};
 use crate::sh_visibility::{Series, seen_above};
@@ -90,7 +90,7 @@ impl Harmonics {
             Some(_) => height,
             None => 0,
         };
-        let turns = environment.map_or(Vec::new(), |e| env_turns(e, rows, light_order));
+        let turns = environment.map_or(Vec::new(), |e| env_rotation(e, rows, light_order));
         let mut light = series(&turns, height, light_order, fitted);
         let matrix = match gloss {
             None => light_matrix(quality, &light),

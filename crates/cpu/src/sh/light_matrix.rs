@@ -38,7 +38,7 @@ pub fn row_weights((height, rows): (usize, usize), order: usize, is_fitted: bool
 }
 
 /// The series of an environment of `height` rows, whose first rows' sums are `turns`
-/// ([`crate::env_turns`]): its integrals with Y_lm, or where `is_fitted` the best fit above ground.
+/// ([`crate::env_rotation`]): its integrals with Y_lm, or where `is_fitted` the best fit above ground.
 ///
 /// # Panics
 /// When the sums are of another order.

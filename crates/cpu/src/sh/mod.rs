@@ -1,4 +1,4 @@
-pub mod env_turns;
+pub mod env_rotation;
 pub mod env_wedges;
 pub mod harmonics;
 pub mod light_matrix;

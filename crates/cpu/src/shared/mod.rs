@@ -1,5 +1,6 @@
 //! What several shaders include, file by file as in `shaders_glsl/shared/`.
 
+pub mod bounced;
 pub mod field;
 pub mod fuse;
 pub mod gather;
@@ -9,6 +10,5 @@ pub mod random;
 pub mod segment;
 pub mod surface;
 pub mod sweep;
-pub mod thrown;
 pub mod trace;
 pub mod walk;

@@ -1,4 +1,4 @@
-pub mod gloss_exit;
-pub mod gloss_gather;
-pub mod gloss_seen;
-pub mod sun_gloss;
+pub mod specular_exit;
+pub mod specular_gather;
+pub mod specular_visibility;
+pub mod sun_specular;

@@ -3,18 +3,18 @@
 use glam::{DVec2, DVec3};
 
 use super::EPSILON;
-use crate::points_bend::ways::Way;
-use crate::points_bend::{Fans, MOST_TURN};
+use crate::bent_directions::ways::Way;
+use crate::bent_directions::{Fans, MOST_TURN};
 use ridgelight::scene::Curvature;
 
-/// By how much `points_bend` may be off beside a way that ends `to_m` away, m: components of the way err by 2 ε of themselves
+/// By how much `bent_directions` may be off beside a way that ends `to_m` away, m: components of the way err by 2 ε of themselves
 /// (a product, the cell's or the difference's rounding) and by the direction's ε, their products and two sums by 4 ε more; what
 /// lies beside the ray by the same again.
 pub fn way(to_m: f64) -> f64 {
     16.0 * EPSILON * to_m
 }
 
-/// By how much `points_bend` may be off in how far a ray stays over the surface around a sample, m.
+/// By how much `bent_directions` may be off in how far a ray stays over the surface around a sample, m.
 ///
 /// A cell's climb errs by 4 ε of itself (direction, pace, quotient), its product and sum by 3 ε more; the sample's rise and its
 /// difference by 3 ε. With g the relief around the sample and n cells of the way: the place beside it errs by 7 ε of n and ε of
@@ -46,7 +46,7 @@ pub fn bent(e: DVec3, Way { away_m, to_m, .. }: Way, own_m: f64, curvature: Curv
     (EPSILON * parts + moved) / (0.9 * Curvature::LEAST_STRETCH) + 8.0 * EPSILON
 }
 
-/// By how much `fan_weigh` may be off, of directions as the device has them.
+/// By how much `fan_weights` may be off, of directions as the device has them.
 ///
 /// Half a triangle's area is atan(x) of x = V/B. V is that of two sides u and v, 10 ε |u| |v|; B, a sum of four of at most
 /// 1, 8 ε: the angle errs by (|B| δV + |V| δB) / (V² + B²), the quotient by 5 ε of sin·cos ≤ x, the polynomial by 2e-8 and 8 ε of
@@ -65,6 +65,6 @@ pub fn fan_weight(fans: &Fans, bent: &[DVec3], i: usize) -> f64 {
             + 2.0 * x * EPSILON * fans.pairs[i].len() as f64
     };
     let sum: f64 = fans.pairs[i].iter().map(of).sum();
-    let area: f64 = crate::fan_weigh::weight(fans, bent, i);
+    let area: f64 = crate::fan_weights::weight(fans, bent, i);
     if fans.flat_sr[i] > 0.0 { sum / fans.flat_sr[i] + 7.0 * EPSILON * area } else { 0.0 }
 }

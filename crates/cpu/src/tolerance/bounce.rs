@@ -1,9 +1,9 @@
 //! What thrown light errs by against its twins: sample by sample, from what the twin itself has seen.
 
 use super::{ARC_TANGENT, EPSILON, twin_level, twin_spline};
+use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
 use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, wrapped};
-use crate::shared::thrown::{Along, Cast, NEARLY_RAD, thrown};
 use ridgelight::scene::{Border, HeightField, Receiver};
 
 /// What counts of a field.

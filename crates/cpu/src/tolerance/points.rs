@@ -3,7 +3,7 @@
 use super::{EPSILON, Land};
 use crate::ellipse_fit::Ellipse;
 use crate::oracle::Oracle;
-use crate::profile::Stretch;
+use crate::profile::VisibleInterval;
 use crate::scatter_gather::Gathered;
 
 /// By how much a place that is met may be off along either axis of the grid, in cells and as a share of the cells to it:
@@ -30,7 +30,7 @@ pub fn seen_elevation(land: &Land) -> f64 {
 /// r, 8 ε r, and along either axis by its place, 10 ε t, and by the direction's, 12 ε t, times the triangle's relief g a cell c,
 /// with t c at most d. A slope is off by (16 r / d + 44 g / c) ε, turned into an angle where it is flattest; the direction
 /// itself by 12 ε upwards.
-pub fn crossing_elevation(oracle: &Oracle, stretch: &Stretch, own_m: f64) -> f64 {
+pub fn crossing_elevation(oracle: &Oracle, stretch: &VisibleInterval, own_m: f64) -> f64 {
     let field = oracle.field();
     let [x, y] = field.cell_m();
     let corners = oracle

@@ -2,13 +2,13 @@
 //! take. Pure: the caller measures.
 
 mod frontier;
-mod knobs;
+mod ladders;
 mod refused;
 mod search;
 #[cfg(test)]
 mod tests;
 
 pub use frontier::{Recommendation, Rule, Value, frontier, recommend};
-pub use knobs::{Knob, Place, knobs, places, start, start_of};
+pub use ladders::{Ladder, Place, ladders, places, start, start_of};
 pub use refused::refused;
 pub use search::{Break, SLACK, Search, Side, Skip};

@@ -1,13 +1,13 @@
 //! Settings that would be refused, known before any is measured.
 
-use super::knobs::{Knob, Place};
+use super::ladders::{Ladder, Place};
 
 /// Places that are refused whatever their counts are, with the reason.
 ///
 /// `why` is asked of the places that differ from the defaults in one choice or two: no refusal is known that needs three, and
 /// none of a count within its range. Whatever has what is refused of those is refused, too.
 pub fn refused(
-    knobs: &[Knob],
+    ladders: &[Ladder],
     places: &[Place],
     mut why: impl FnMut(&Place) -> Option<String>,
 ) -> Vec<(usize, String)> {
@@ -16,7 +16,7 @@ pub fn refused(
         let steps = place.steps.iter().enumerate();
         steps
             .filter_map(|(k, s)| Some((k, (*s)?)))
-            .filter(|(k, s)| knobs[*k].default != *s)
+            .filter(|(k, s)| ladders[*k].default != *s)
             .collect()
     };
     let has = |place: &Place, steps: &[(usize, usize)]| {
@@ -25,7 +25,7 @@ pub fn refused(
     for count in 1..=2 {
         for place in places {
             let steps = others(place);
-            let is_choice = steps.iter().all(|(knob, _)| knobs[*knob].range.is_none());
+            let is_choice = steps.iter().all(|(knob, _)| ladders[*knob].range.is_none());
             let is_known = known.iter().any(|(of, _)| has(place, of));
             if steps.len() == count && is_choice && !is_known {
                 known.extend(why(place).map(|why| (steps, why)));
@@ -40,7 +40,7 @@ pub fn refused(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trade::{knobs, places, start};
+    use crate::trade::{ladders, places, start};
     use ridgelight::scene::{
         Fuse, HeightField, Lights, Lines, Method, Precision, Scene, Sun, Surface,
     };
@@ -56,8 +56,8 @@ mod tests {
             surface: Surface::default(),
             lights: Lights { sky: Some([1.0; 3]), suns: vec![sun], ..Lights::default() },
         };
-        let knobs = knobs(&scene, 0);
-        let places = places(&knobs, &start());
+        let ladders = ladders(&scene, 0);
+        let places = places(&ladders, &start());
         let why = |place: &Place| {
             let quality = &place.quality;
             let is_swept = !matches!(quality.method, Method::Brute | Method::Pyramid);
@@ -69,7 +69,7 @@ mod tests {
             }
         };
         let mut asked = 0;
-        let found = refused(&knobs, &places, |place| {
+        let found = refused(&ladders, &places, |place| {
             asked += 1;
             why(place)
         });

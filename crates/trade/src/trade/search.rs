@@ -25,8 +25,8 @@ pub enum Side {
 /// Two measured places that a ladder has the wrong way round.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Break {
-    /// The knobs in which they differ.
-    pub knobs: Vec<usize>,
+    /// The ladders in which they differ.
+    pub ladders: Vec<usize>,
     /// What is the wrong way round.
     pub side: Side,
     /// The place that should be the cheaper and less accurate.
@@ -85,13 +85,13 @@ impl Search {
     /// A walk over `steps` from number `start` on; errors below `floor` are all the same.
     ///
     /// # Panics
-    /// When `start` is not one of the places, or they are not of one number of knobs.
+    /// When `start` is not one of the places, or they are not of one number of ladders.
     pub fn new(steps: Vec<Steps>, start: usize, floor: f64) -> Self {
-        let knobs = steps[start].len();
-        assert!(steps.iter().all(|s| s.len() == knobs), "one step a knob");
+        let ladders = steps[start].len();
+        assert!(steps.iter().all(|s| s.len() == ladders), "one step a knob");
         let count = steps.len();
         let most = |knob: usize| steps.iter().filter_map(|s| s[knob]).max().map_or(0, |s| s + 1);
-        let alone = (0..knobs).map(|knob| vec![None; most(knob) + 1]).collect();
+        let alone = (0..ladders).map(|knob| vec![None; most(knob) + 1]).collect();
         Self {
             steps,
             start,
@@ -100,7 +100,7 @@ impl Search {
             given_up: vec![false; count],
             measured: Vec::new(),
             too_dear: Vec::new(),
-            trusted: [vec![true; knobs], vec![true; knobs]],
+            trusted: [vec![true; ladders], vec![true; ladders]],
             breaks: Vec::new(),
             bounds: vec![[None; 2]; count],
             front: Vec::new(),
@@ -299,7 +299,7 @@ impl Search {
         for other in others {
             for (lower, higher) in [(new, other), (other, new)] {
                 for side in [Side::Cost, Side::Error] {
-                    let knobs: Vec<usize> = self.differing(lower, higher).collect();
+                    let ladders: Vec<usize> = self.differing(lower, higher).collect();
                     let (Some(low), Some(high)) = (self.values[lower], self.values[higher]) else {
                         continue;
                     };
@@ -307,13 +307,13 @@ impl Search {
                         Side::Cost => low.cost > high.cost * (1.0 + SLACK),
                         Side::Error => high.error > low.error * (1.0 + SLACK),
                     };
-                    if !is_broken || knobs.is_empty() || !self.is_below(lower, higher, side) {
+                    if !is_broken || ladders.is_empty() || !self.is_below(lower, higher, side) {
                         continue;
                     }
-                    for knob in &knobs {
+                    for knob in &ladders {
                         self.trusted[side as usize][*knob] = false;
                     }
-                    self.breaks.push(Break { knobs, side, lower, higher });
+                    self.breaks.push(Break { ladders, side, lower, higher });
                     any = true;
                 }
             }

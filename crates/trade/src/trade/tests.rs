@@ -153,8 +153,9 @@ fn a_ladder_the_wrong_way_round_is_noticed() {
             }
         };
         let search = walk(&steps, wrong, 0.0, usize::MAX);
-        let broken =
-            |side, knob| search.breaks().iter().any(|b| b.side == side && b.knobs.contains(&knob));
+        let broken = |side, knob| {
+            search.breaks().iter().any(|b| b.side == side && b.ladders.contains(&knob))
+        };
         assert!(broken(Side::Cost, 0) && broken(Side::Error, 1), "seed {seed}");
         for found in search.breaks() {
             let [low, high] = [found.lower, found.higher].map(|i| search.value(i).unwrap());

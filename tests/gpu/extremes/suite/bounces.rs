@@ -17,11 +17,11 @@ use ridgelight_cpu::height_reduce::height_levels;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shade_reduce::shade_levels;
+use ridgelight_cpu::shared::bounced::{Along, Cast, radiance};
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::gather::elevation_moments;
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::shared::thrown::{Along, Cast, radiance};
 use ridgelight_cpu::tolerance::{
     CastError, EPSILON, Gathered, Land, Slices, ThrownError, march_error, walk_error,
 };

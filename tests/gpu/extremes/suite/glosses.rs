@@ -12,16 +12,16 @@ use ridgelight::scene::{
     Albedo, Border, BounceGloss, HeightField, Levels, Lights, Lobe, Phong, Receiver, Sun,
 };
 use ridgelight_cpu::bounce_gather::BounceGather;
-use ridgelight_cpu::gloss_exit::{mirrored, thrown};
-use ridgelight_cpu::gloss_gather::{GlossGather, Series};
 use ridgelight_cpu::pyramid_march::Stored;
+use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::shared::thrown::Cast;
-use ridgelight_cpu::sun_gloss::gloss_on;
+use ridgelight_cpu::specular_exit::{mirrored, thrown};
+use ridgelight_cpu::specular_gather::{Series, SpecularGather};
+use ridgelight_cpu::sun_specular::gloss_on;
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_gloss_exit,
-    twin_sh_gloss, twin_sun_arriving, twin_sun_gloss,
+    CastError, EPSILON, Gathered, Land, Slices, ThrownError, twin_arriving, twin_sh_gloss,
+    twin_specular_exit, twin_sun_arriving, twin_sun_specular,
 };
 use ridgelight_cpu::vector_reduce::vector_reduce;
 
@@ -180,9 +180,9 @@ impl Exit {
             // A coefficient that arrives is turned into at most √(n²) times its error; diffuse light by √4π.
             let arrives = order as f64 * twin_sun_arriving(error, facing);
             let of_diffuse = 4.0 * (error * bright * albedo + 16.0 * EPSILON * diffuse[0]);
-            let leaves = twin_gloss_exit(order, error) * magnitude;
+            let leaves = twin_specular_exit(order, error) * magnitude;
             exit.off = exit.off.max(scale * (arrives + leaves) + of_diffuse);
-            let of_lobe = twin_sun_gloss(phong.exponent.into(), error, facing);
+            let of_lobe = twin_sun_specular(phong.exponent.into(), error, facing);
             exit.off_seen =
                 exit.off_seen.max(scale * of_lobe + of_diffuse + 16.0 * EPSILON * mirrored);
         }
@@ -221,7 +221,7 @@ fn both(found: &Found) -> Vec<Probe> {
         azimuths: quality.bounces.azimuths,
     };
     let vectors = is_vector.then_some([&exit.series[..], &texels[..]]);
-    let twin = GlossGather { gather, order, vectors };
+    let twin = SpecularGather { gather, order, vectors };
     let sum = |series: &Series| series.iter().map(|s| s[0].abs()).sum::<f64>();
     // Y_lm of a direction have the norm n / √4π; so have n² coefficients that are e off each, n e: in any direction a series
     // is n² e / √4π off, and one of norm |c| is n |c| / √4π at most.

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use ridgelight::basis::zonal::{cap, phong};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Phong, Sun};
-use ridgelight_cpu::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_gloss};
+use ridgelight_cpu::tolerance::{EPSILON, Land, ShadeError, twin_sh_gloss, twin_sun_specular};
 
 use super::lights::{PLACES, SIDE, filled_voids, level, light, probe};
 use super::{About, Case, Found, Probe, field};
@@ -104,7 +104,7 @@ fn none() -> Case {
 
 const OF_SUNS: (&str, &str) = (
     "E · scale · (n + 1) / 2π · cosⁿ of the sun's angle to the mirrored zenith; 0 of suns that stand at 0°",
-    "what f32 does to directions, powers and quotients (`twin_sun_gloss`), and 16 ε of a sun's light",
+    "what f32 does to directions, powers and quotients (`twin_sun_specular`), and 16 ε of a sun's light",
 );
 
 fn sun(azimuth_rad: f64, elevation_rad: f64) -> Sun {
@@ -115,7 +115,7 @@ fn sun(azimuth_rad: f64, elevation_rad: f64) -> Sun {
 fn reflected(exponent: f64, off: f64, facing: f64, normal_error: f64) -> [f64; 2] {
     let peak = (exponent + 1.0) / (2.0 * PI);
     let right = peak * off.cos().max(0.0).powf(exponent);
-    let bound = twin_sun_gloss(exponent, normal_error, facing) + 16.0 * EPSILON * right;
+    let bound = twin_sun_specular(exponent, normal_error, facing) + 16.0 * EPSILON * right;
     [right, bound].map(|v| f64::from(SCALE) * v)
 }
 

@@ -21,7 +21,7 @@ use ridgelight::plan::{self, Azimuth, Picture, Plan};
 use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface, VisiblePoints};
 
 use methods::{Looks, Method};
-use twin::Twin;
+use twin::CpuReference;
 
 /// What is drawn for a case.
 pub enum Asks {
@@ -115,7 +115,7 @@ pub struct Found<'a> {
     /// Radians of each.
     pub azimuths_rad: Vec<f64>,
     /// What a pyramid has to find where heights are no plane's.
-    twin: Option<Twin<'a>>,
+    twin: Option<CpuReference<'a>>,
     plan: Plan,
     outputs: Vec<Pixels>,
 }
@@ -300,7 +300,7 @@ pub fn probes(gpu: &mut Headless, case: &Case, method: &Method) -> Result<Vec<Pr
     let outputs = drawn(gpu, plan.clone(), &contents)?;
     let finds_horizons = case.about == About::Horizons;
     let is_smoothed = finds_horizons && method.is_pyramid() && !is_plane(scene);
-    let twin = is_smoothed.then(|| Twin::new(scene, &quality));
+    let twin = is_smoothed.then(|| CpuReference::new(scene, &quality));
     let found = Found {
         scene,
         method,

@@ -10,7 +10,7 @@ use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::Heights;
-use ridgelight_cpu::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_within};
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
 use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_angle, twin_pyramid_slope};
 
@@ -28,7 +28,7 @@ fn soft(case: Case) -> Case {
         about: About::SoftBalls,
         expected: "what their order keeps of it, from the same series in f64, at least 0"
             .to_owned(),
-        bound: "what f32 may do to the series (`src/measure/soft_ball.rs`), and 4 ε".to_owned(),
+        bound: "what f32 may do to the series (`src/measure/soft_sphere.rs`), and 4 ε".to_owned(),
         probes: Box::new(probes),
         // Of 64 cells a pyramid's levels may err by more than a ball is wide.
         unjudged: match super::relief(&case.scene.field) > 16.0 {

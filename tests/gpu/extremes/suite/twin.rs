@@ -16,7 +16,7 @@ use ridgelight_cpu::tolerance::twin_pyramid_angle;
 use super::{largest, relief};
 
 /// A scene's levels, and how they are marched over.
-pub struct Twin<'a> {
+pub struct CpuReference<'a> {
     heights: Heights<'a>,
     pyramid: Pyramid,
     levels: Vec<f32>,
@@ -28,7 +28,7 @@ pub struct Twin<'a> {
     relief_m: f64,
 }
 
-impl<'a> Twin<'a> {
+impl<'a> CpuReference<'a> {
     pub fn new(scene: &'a Scene, quality: &Quality) -> Self {
         let (field, border) = (&scene.field, scene.surface.border);
         let heights = Heights::of(field, border);

@@ -5,7 +5,7 @@ use ridgelight_io::Component;
 use std::f64::consts::PI;
 
 use super::super::map::Format;
-use super::{Asked, Kind, Making, Map, Sums, Value};
+use super::{Kind, Making, Map, Request, Sums, Value};
 
 pub static KIND: Kind = Kind {
     name: "bent-normal",
@@ -16,7 +16,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let component = |name| Value {
         name,
         about: "of the unit vector along ∫ V e de; the zenith where nothing is free",

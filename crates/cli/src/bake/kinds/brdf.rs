@@ -7,7 +7,7 @@ use ridgelight_bake::{Brdf, Facets};
 use serde_json::json;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, far_field};
 
 pub static KIND: Kind = Kind {
     name: "brdf",
@@ -23,7 +23,7 @@ pub static KIND: Kind = Kind {
 pub const PAIRS: usize = 64;
 
 /// From afar a field is a plane where it repeats.
-pub fn check(asked: &Asked, name: &str) -> Result<()> {
+pub fn check(asked: &Request, name: &str) -> Result<()> {
     if asked.border == Border::Periodic {
         return Ok(());
     }
@@ -34,10 +34,10 @@ pub fn check(asked: &Asked, name: &str) -> Result<()> {
 /// On this side.
 pub fn bytes(lit: &Lit) -> u64 {
     let count = lit.angles.count();
-    afar::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
+    far_field::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
 }
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let (angles, count) = (asked.angles, asked.angles.count());
     check(asked, KIND.name)?;
     let value = |name| Value {
@@ -45,13 +45,13 @@ fn begin(asked: &Asked) -> Result<Making> {
         about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
                 light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/sr",
-        range: [0.0, afar::largest(asked)],
+        range: [0.0, far_field::largest(asked)],
     };
     let map = Map {
         planes: ["brdf.R", "brdf.G", "brdf.B"].map(String::from).into(),
         values: ["red", "green", "blue"].map(value).into(),
         is_array: false,
-        constants: afar::constants("BRDF", angles),
+        constants: far_field::constants("BRDF", angles),
         size: Some([count, count]),
         axes: vec![
             ("channel", 3),
@@ -61,7 +61,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             ("phi_o", angles.azimuths),
         ],
     };
-    let of = OfLight { plans: afar::plans, bytes, make };
+    let of = OfLight { plans: far_field::plans, bytes, make };
     Ok(Making { map, source: Source::Light(of) })
 }
 
@@ -86,7 +86,7 @@ pub fn table<'a>(gpu: &mut Headless, lit: &'a Lit, say: Say) -> Result<&'a Table
 fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     let directions = lit.angles.directions()?;
     let count = directions.count();
-    let facets = afar::facets(gpu, lit, &directions, say)?;
+    let facets = far_field::facets(gpu, lit, &directions, say)?;
     facets.check().map_err(|error| match error {
         Error::Setting { name, found, expected } if name.starts_with("direction ") => {
             let angles = format!("{}x{}", lit.angles.zeniths, lit.angles.azimuths);
@@ -96,7 +96,7 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     })?;
     let mut values = Vec::with_capacity(count * count);
     let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
-    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
+    far_field::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
         values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
@@ -108,7 +108,7 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     let seen = ridgelight_bake::facets(gpu, lit.scene, facets.times(), &pairs, &lit.limits)?;
     let mut between = Vec::with_capacity(PAIRS);
     let own = |light| PAIRS + light..PAIRS + light + 1;
-    afar::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
+    far_field::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
         let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
         between.push(([l, v], seen.seen_from(PAIRS + light, &radiance).map(|m| m / l.z)));
         Ok(())
@@ -157,7 +157,7 @@ pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFi
     let weights = lit.angles.projected_sr();
     let reflected = (0..lit.angles.count()).flat_map(|light| table.brdf.reflected(light, &weights));
     let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
-    let is_coarse = afar::is_coarse(lit, &table.facets);
+    let is_coarse = far_field::is_coarse(lit, &table.facets);
     let is = if is_coarse {
         "of a light's irradiance, over all lights and colours, summed over --angles: the sharpest lobe is narrower than they are \
          apart, and sums say nothing of what it reflects"
@@ -204,5 +204,5 @@ pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFi
             ),
         }),
     );
-    afar::tell(files, lit, &table.facets, afar::walked(lit)?.as_ref(), is_linear)
+    far_field::tell(files, lit, &table.facets, far_field::walked(lit)?.as_ref(), is_linear)
 }

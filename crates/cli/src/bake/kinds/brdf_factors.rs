@@ -4,7 +4,7 @@ use ridgelight_bake as bake;
 use ridgelight_bake::Factors;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, brdf};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, brdf, far_field};
 
 pub static KIND: Kind = Kind {
     name: "brdf-factors",
@@ -19,7 +19,7 @@ pub static KIND: Kind = Kind {
 /// Products: what more of them would take off is less than a table's own steps leave (`examples/scatter`).
 const COUNT: usize = 8;
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let angles = asked.angles;
     brdf::check(asked, KIND.name)?;
     if angles.count() < COUNT {
@@ -30,7 +30,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             format!("{COUNT} angles or more, one a factor"),
         ));
     }
-    let largest = afar::largest(asked);
+    let largest = far_field::largest(asked);
     let value = |name| Value {
         name,
         about: "of a function of one direction: the table is the sum over k of layer k for the light times layer views + k for \
@@ -38,7 +38,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         unit: "1/√sr",
         range: [-largest, largest],
     };
-    let mut constants = afar::constants("BRDF", angles);
+    let mut constants = far_field::constants("BRDF", angles);
     constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
     // What lobes mirror is of other functions of the view than of the light.
     let views = if asked.has_lobe { COUNT } else { 0 };
@@ -58,7 +58,7 @@ fn begin(asked: &Asked) -> Result<Making> {
             ("phi", angles.azimuths),
         ],
     };
-    let of = OfLight { plans: afar::plans, bytes: brdf::bytes, make };
+    let of = OfLight { plans: far_field::plans, bytes: brdf::bytes, make };
     Ok(Making { map, source: Source::Light(of) })
 }
 

@@ -4,7 +4,7 @@ use ridgelight_bake as bake;
 use ridgelight_bake::BrdfHarmonics;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, brdf};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, brdf, far_field};
 
 pub static KIND: Kind = Kind {
     name: "brdf-harmonics",
@@ -16,7 +16,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let (angles, order) = (asked.angles, asked.quality.sh_order as usize);
     brdf::check(asked, KIND.name)?;
     let terms = order * order;
@@ -24,7 +24,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         let found = format!("{}x{} with --sh-order {order}", angles.zeniths, angles.azimuths);
         return Err(Error::setting("--angles", found, format!("{terms} angles or more")));
     }
-    let largest = afar::largest(asked);
+    let largest = far_field::largest(asked);
     let value = |name| Value {
         name,
         about: "the table is the sum over texels (j, i) of their values times Y_i of the light and Y_j of the view; real, \
@@ -43,7 +43,7 @@ fn begin(asked: &Asked) -> Result<Making> {
         axes: vec![("channel", 3), ("light", terms), ("view", terms)],
         ..Map::default()
     };
-    let of = OfLight { plans: afar::plans, bytes: brdf::bytes, make };
+    let of = OfLight { plans: far_field::plans, bytes: brdf::bytes, make };
     Ok(Making { map, source: Source::Light(of) })
 }
 

@@ -3,8 +3,8 @@ use ridgelight::gpu::Headless;
 use ridgelight_bake as bake;
 
 use super::super::map::{Format, MapFiles};
-use super::afar::{self, texel};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source};
+use super::far_field::{self, texel};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source};
 
 pub static KIND: Kind = Kind {
     name: "btf",
@@ -16,7 +16,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let count = asked.angles.count();
     let name = |pair: usize| {
         let (light, view) = (pair / count, pair % count);
@@ -30,20 +30,23 @@ fn begin(asked: &Asked) -> Result<Making> {
             asked,
         ),
         is_array: true,
-        constants: afar::constants("BTF", asked.angles),
+        constants: far_field::constants("BTF", asked.angles),
         ..Map::default()
     };
-    let of =
-        OfLight { plans: afar::plans, bytes: |lit| afar::bytes(lit, lit.angles.count()), make };
+    let of = OfLight {
+        plans: far_field::plans,
+        bytes: |lit| far_field::bytes(lit, lit.angles.count()),
+        make,
+    };
     Ok(Making { map, source: Source::Light(of) })
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     let count = lit.angles.count();
     let directions = lit.angles.directions()?;
-    let facets = afar::facets(gpu, lit, &directions, say)?;
+    let facets = far_field::facets(gpu, lit, &directions, say)?;
     let of = (0..count, &(|_| 0..count) as &dyn Fn(usize) -> _);
-    afar::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
+    far_field::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         for texels in facets.texels_from_all(&radiance) {
             let planes =
@@ -52,5 +55,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         }
         Ok(())
     })?;
-    afar::tell(files, lit, &facets, afar::walked(lit)?.as_ref(), true)
+    far_field::tell(files, lit, &facets, far_field::walked(lit)?.as_ref(), true)
 }

@@ -5,7 +5,7 @@ use ridgelight_bake::{CurvedEllipses, Ellipse};
 use ridgelight_cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Looked, Making, Map, OfDirections, Source, Value};
+use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "curved-ellipse",
@@ -20,7 +20,7 @@ pub static KIND: Kind = Kind {
 const BASES: [&str; 5] =
     ["flat", "east_outwards", "east_inwards", "north_outwards", "north_inwards"];
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let Some([outwards, inwards]) = asked.curvature else {
         let expected = "OUT[,IN], the curvatures that ellipses are fitted at, 1/m";
         return Err(Error::setting("--curvature", "none with --what curved-ellipse", expected));
@@ -65,7 +65,7 @@ fn begin(asked: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
+fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
     let steps = looked.curvature.expect("looked for by begin");
     let [outwards, inwards] = steps;
     let bent = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];

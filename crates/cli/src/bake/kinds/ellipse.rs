@@ -4,7 +4,7 @@ use ridgelight_bake as bake;
 use ridgelight_cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Looked, Making, Map, OfDirections, Source, Value};
+use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "ellipse",
@@ -16,7 +16,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(_: &Asked) -> Result<Making> {
+fn begin(_: &Request) -> Result<Making> {
     let value = |name, about, range| Value { name, about, unit: "", range };
     let centre = "of the ellipse's centre, where a direction is (x, y), its z dropped; (4, 0) where all is shadowed";
     let axis = "of the unit axis";
@@ -45,7 +45,7 @@ fn begin(_: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
+fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
     let plane = |image: &[f32], part: usize| -> Vec<f32> {
         image.chunks_exact(4).map(|texel| texel[part]).collect()
     };

@@ -7,7 +7,7 @@ use ridgelight_io::Component;
 use std::f64::consts::FRAC_PI_2;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Maker, Making, Map, Source, Value};
+use super::{Kind, Maker, Making, Map, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "horizon",
@@ -18,7 +18,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let (encoding, count) = (asked.encoding, asked.quality.azimuths);
     let component = encoding.component;
     if asked.border == Border::Open && !component.is_signed() {

@@ -5,8 +5,8 @@ use ridgelight::{Result, plan};
 use ridgelight_bake as bake;
 
 use super::super::map::{Format, MapFiles};
-use super::afar::{self, Walked, texel};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source};
+use super::far_field::{self, Walked, texel};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source};
 
 pub static KIND: Kind = Kind {
     name: "light-field",
@@ -18,7 +18,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let count = asked.angles.count();
     let map = Map {
         planes: (0..count)
@@ -30,30 +30,30 @@ fn begin(asked: &Asked) -> Result<Making> {
             asked,
         ),
         is_array: true,
-        constants: afar::constants("LIGHT_FIELD", asked.angles),
+        constants: far_field::constants("LIGHT_FIELD", asked.angles),
         ..Map::default()
     };
-    let of = OfLight { plans, bytes: |lit| afar::bytes(lit, lit.angles.count()), make };
+    let of = OfLight { plans, bytes: |lit| far_field::bytes(lit, lit.angles.count()), make };
     Ok(Making { map, source: Source::Light(of) })
 }
 
 fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let field = &lit.scene.field;
-    let mut all = vec![afar::direct_plan(lit, &afar::diffuse(lit), limits)?];
-    if afar::lobe(lit).is_some() {
+    let mut all = vec![far_field::direct_plan(lit, &far_field::diffuse(lit), limits)?];
+    if far_field::lobe(lit).is_some() {
         all.extend(walked(lit, limits)?);
         all.push(plan::visible_points(field, lit.scene.surface.border, lit.around, limits)?);
-        all.push(afar::mask_plan(lit, limits)?);
+        all.push(far_field::mask_plan(lit, limits)?);
         return Ok(all);
     }
-    all.extend(afar::plans(lit, limits)?);
+    all.extend(far_field::plans(lit, limits)?);
     all.extend(walked(lit, limits)?);
     Ok(all)
 }
 
 /// Of paths, towards as many views as go side by side where they are others towards each.
 fn walked(lit: &Lit, limits: &Limits) -> Result<Option<Plan>> {
-    if afar::lobe(lit).is_none() {
+    if far_field::lobe(lit).is_none() {
         let of = |scatter: &Scatter| plan::scatter(lit.scene, lit.around, scatter, limits);
         return lit.scatter.as_ref().map(of).transpose();
     }
@@ -70,8 +70,8 @@ pub fn paths(lit: &Lit) -> Scatter {
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
-    let mut light = afar::direct(gpu, lit, &afar::diffuse(lit))?;
-    let has_lobe = afar::lobe(lit).is_some();
+    let mut light = far_field::direct(gpu, lit, &far_field::diffuse(lit))?;
+    let has_lobe = far_field::lobe(lit).is_some();
     if let Some(scatter) = lit.scatter.as_ref().filter(|_| !has_lobe) {
         say(format!("what samples see in {} directions", lit.around.count()));
         let border = lit.scene.surface.border;
@@ -87,7 +87,7 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let facets = ridgelight_bake::facets(
         gpu,
         lit.scene,
-        afar::times(&lit.scene.field),
+        far_field::times(&lit.scene.field),
         &directions,
         &lit.limits,
     )?;
@@ -122,5 +122,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let has_sky = lights.environment.is_some() || lights.sky.is_some_and(|sky| sky != [0.0; 3]);
     let walked = walked(lit, &lit.limits)?;
     let walked = walked.map(|plan| Walked { plan, mirrors_sky: has_lobe && has_sky });
-    afar::tell(files, lit, &facets, walked.as_ref(), true)
+    far_field::tell(files, lit, &facets, walked.as_ref(), true)
 }

@@ -6,7 +6,7 @@ use ridgelight_bake as bake;
 use serde_json::json;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Lit, Making, Map, OfLight, Say, Source, Value, afar, number};
+use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, far_field, number};
 
 pub static KIND: Kind = Kind {
     name: "scatter",
@@ -21,8 +21,8 @@ pub static KIND: Kind = Kind {
 /// Parts of the paths, each with directions of its own order, whose spread tells of chance.
 const PARTS: u32 = 8;
 
-fn begin(asked: &Asked) -> Result<Making> {
-    let range = [0.0, afar::largest(asked)];
+fn begin(asked: &Request) -> Result<Making> {
+    let range = [0.0, far_field::largest(asked)];
     let value = |name, about| Value { name, about, unit: "radiance", range };
     let light = match asked.has_lobe {
         false => "what leaves diffuse ground: direct light and all bounces",
@@ -71,16 +71,16 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     Ok(vec![
         plan::scatter(lit.scene, lit.around, &part(lit, 0)?, limits)?,
         plan::visible_points(field, border, lit.around, limits)?,
-        afar::direct_plan(lit, lit.scene, limits)?,
+        far_field::direct_plan(lit, lit.scene, limits)?,
     ])
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
-    let direct = afar::direct(gpu, lit, lit.scene)?;
+    let direct = far_field::direct(gpu, lit, lit.scene)?;
     // Of lobes paths find themselves what they throw on: it is another towards each place.
-    let thrown = match afar::lobe(lit) {
-        Some(_) => afar::direct(gpu, lit, &afar::diffuse(lit))?,
+    let thrown = match far_field::lobe(lit) {
+        Some(_) => far_field::direct(gpu, lit, &far_field::diffuse(lit))?,
         None => direct.clone(),
     };
     say(format!("what samples see in {} directions", lit.around.count()));

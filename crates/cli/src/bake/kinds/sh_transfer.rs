@@ -3,7 +3,7 @@ use ridgelight_bake as bake;
 use ridgelight_bake::{MAX_TRANSFER_ORDER, ShTransfer};
 
 use super::super::map::Format;
-use super::{Asked, Kind, Making, Sums, Value, coefficients};
+use super::{Kind, Making, Request, Sums, Value, coefficients};
 
 pub static KIND: Kind = Kind {
     name: "sh-transfer",
@@ -14,7 +14,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let order = asked.quality.sh_order as usize;
     if order > MAX_TRANSFER_ORDER {
         return Err(Error::setting(

@@ -3,7 +3,7 @@ use ridgelight_bake as bake;
 use ridgelight_bake::ShVisibility;
 
 use super::super::map::Format;
-use super::{Asked, Kind, Making, Sums, Value, coefficients};
+use super::{Kind, Making, Request, Sums, Value, coefficients};
 
 pub static KIND: Kind = Kind {
     name: "sh-visibility",
@@ -14,7 +14,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let order = asked.quality.sh_order as usize;
     let value = Value {
         name: "coefficient",

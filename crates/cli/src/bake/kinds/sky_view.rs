@@ -3,7 +3,7 @@ use ridgelight_bake as bake;
 use ridgelight_bake::SkyView;
 
 use super::super::map::Format;
-use super::{Asked, Kind, Making, Map, Sums, Value};
+use super::{Kind, Making, Map, Request, Sums, Value};
 
 pub static KIND: Kind = Kind {
     name: "sky-view",
@@ -15,7 +15,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let map = Map {
         planes: vec!["sky_view".into()],
         values: vec![Value {

@@ -3,7 +3,7 @@ use ridgelight::{Result, plan};
 use ridgelight_bake as bake;
 
 use super::super::map::{Format, MapFiles};
-use super::{Asked, Kind, Looked, Making, Map, OfDirections, Source, Value};
+use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "visible-points",
@@ -14,7 +14,7 @@ pub static KIND: Kind = Kind {
     begin,
 };
 
-fn begin(asked: &Asked) -> Result<Making> {
+fn begin(asked: &Request) -> Result<Making> {
     let count = asked.directions.count();
     let value = |name| Value {
         name,
@@ -40,8 +40,8 @@ fn begin(asked: &Asked) -> Result<Making> {
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &Looked, files: &mut MapFiles) -> Result<()> {
-    let Looked { field, border, directions, outputs, .. } = looked;
+fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
+    let LookJob { field, border, directions, outputs, .. } = looked;
     let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
     let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
     let (samples, cols) = (field.rows() * field.cols(), field.cols());

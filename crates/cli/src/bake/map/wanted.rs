@@ -4,8 +4,8 @@ use clap::ValueEnum;
 use ridgelight_bake::Encoding;
 use ridgelight_io::TexelFormat;
 
-use crate::bake::asked;
 use crate::bake::kinds::{Kind, Map};
+use crate::bake::request;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -28,7 +28,7 @@ impl Format {
     /// Whether it can hold what the encoding makes of a kind.
     pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
         let is_picture = encoding.component.is_normalised() && encoding.components < 4;
-        self != Format::Png || is_picture || asked::is_scaled(kind)
+        self != Format::Png || is_picture || request::is_scaled(kind)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use ridgelight::scene::{SphereLight, Sun};
 
-use super::sight::height;
+use super::viewpoint::height;
 use super::{State, Wish, hundredths};
 use crate::args::sun;
 

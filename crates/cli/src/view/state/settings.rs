@@ -5,7 +5,7 @@ use ridgelight::Result;
 use ridgelight::scene::Quality;
 
 use crate::args::{QualityArgs, SETTINGS};
-use crate::scene_file::Asked;
+use crate::scene_file::Request;
 use crate::setup;
 
 /// A setting and the words that it may be.
@@ -77,7 +77,10 @@ impl Settings {
     }
 
     /// Names and words, and whether it is the chosen one.
-    pub fn list<'a>(&'a self, asked: &'a Asked) -> impl Iterator<Item = (&'a str, &'a str, bool)> {
+    pub fn list<'a>(
+        &'a self,
+        asked: &'a Request,
+    ) -> impl Iterator<Item = (&'a str, &'a str, bool)> {
         let all = self.all.iter().enumerate();
         all.map(move |(n, s)| (s.id.as_str(), s.word(asked), n == self.chosen))
     }
@@ -90,7 +93,7 @@ impl Settings {
         &self,
         id: &str,
         ahead: bool,
-        asked: &mut Asked,
+        asked: &mut Request,
     ) -> std::result::Result<Quality, Refused> {
         let setting = self.all.iter().find(|s| s.id == id);
         let setting = setting.ok_or_else(|| Refused(format!("no setting {id}")))?;
@@ -103,7 +106,7 @@ impl Settings {
     }
 
     /// As the command line reads the words.
-    fn quality(&self, asked: &Asked) -> std::result::Result<Quality, Refused> {
+    fn quality(&self, asked: &Request) -> std::result::Result<Quality, Refused> {
         let flag = |s: &Setting| format!("--{}={}", s.id.replace('_', "-"), s.word(asked));
         let words = std::iter::once("settings".to_owned()).chain(self.all.iter().map(flag));
         let parser = QualityArgs::augment_args(clap::Command::new("settings"));
@@ -124,11 +127,11 @@ pub fn said<T>(result: Result<T>) -> std::result::Result<T, Refused> {
 }
 
 impl Setting {
-    fn word<'a>(&'a self, asked: &'a Asked) -> &'a str {
+    fn word<'a>(&'a self, asked: &'a Request) -> &'a str {
         asked.first(&self.id).unwrap_or(&self.default)
     }
 
-    fn next(&self, asked: &Asked, ahead: bool) -> String {
+    fn next(&self, asked: &Request, ahead: bool) -> String {
         let word = self.word(asked);
         match &self.values {
             Values::Words(words) => {
@@ -161,7 +164,7 @@ mod tests {
         assert_eq!(settings.all.len(), SETTINGS.len() + 1);
         for setting in &settings.all {
             for ahead in [true, false] {
-                let mut asked = Asked::default();
+                let mut asked = Request::default();
                 match settings.turn(&setting.id, ahead, &mut asked) {
                     Ok(_) => assert!(asked.first(&setting.id).is_some()),
                     Err(Refused(why)) => {
@@ -175,7 +178,7 @@ mod tests {
 
     #[test]
     fn words_go_round_numbers_go_to_their_ends() {
-        let (settings, mut asked) = (Settings::new(), Asked::default());
+        let (settings, mut asked) = (Settings::new(), Request::default());
         let mut seen = Vec::new();
         for _ in 0..4 {
             assert!(settings.turn("method", true, &mut asked).is_ok());

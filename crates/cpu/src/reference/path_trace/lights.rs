@@ -8,7 +8,7 @@ use crate::shared::random::{direction_about, on_circle};
 use crate::tolerance::near::{Near, Near3, dot, minus, product};
 
 /// A direction of a light and what it may bring.
-pub(super) struct Shining {
+pub(super) struct ActiveLights {
     pub(super) e: Near3,
     pub(super) brought: Near3,
     /// Whether it faces the place.
@@ -26,7 +26,7 @@ impl Tracer<'_> {
         centre: Near3,
         r: usize,
         u: [Near; 2],
-    ) -> Option<Shining> {
+    ) -> Option<ActiveLights> {
         let [suns, keys, _] = self.counts();
         let source = given(self.lights[2 * r]);
         let colour = colour(self.lights[2 * r + 1]);
@@ -58,7 +58,13 @@ impl Tracer<'_> {
                 // From inside no ray is sent, whichever way.
                 if shines == Some(false) {
                     let (e, brought) = (above, [Near::ZERO; 3]);
-                    return Some(Shining { e, brought, reflected: Some(false), shines, end_m });
+                    return Some(ActiveLights {
+                        e,
+                        brought,
+                        reflected: Some(false),
+                        shines,
+                        end_m,
+                    });
                 }
             }
             direction_about(towards, off, u[1])?
@@ -66,7 +72,7 @@ impl Tracer<'_> {
         let of = self.reflected(place, e);
         let brought = product(of.light, colour).map(|l| l * solid);
         let reflected = of.facing.above(Near::ZERO);
-        Some(Shining { e, brought, reflected, shines, end_m })
+        Some(ActiveLights { e, brought, reflected, shines, end_m })
     }
 }
 

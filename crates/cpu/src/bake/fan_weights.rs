@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::points_bend::Fans;
+use crate::bent_directions::Fans;
 use ridgelight::basis::triangles::area_sr;
 
 /// Solid angle of a direction's triangles over that on the flat field, 0 or more; 1 of a direction without any.

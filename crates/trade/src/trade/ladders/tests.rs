@@ -17,7 +17,7 @@ fn sun(diameter_rad: f64) -> Lights {
 
 #[test]
 fn only_knobs_that_change_something_are_walked() {
-    let names = |lights| knobs(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
+    let names = |lights| ladders(&scene(lights), 0).iter().map(|k| k.name).collect::<Vec<_>>();
     let always = ["sweep", "fuse", "precision", "level step", "level offset"];
     let with = |more: &[&'static str]| [&always, more].concat();
     assert_eq!(names(sky()), with(&["azimuths"]));
@@ -48,9 +48,9 @@ fn only_knobs_that_change_something_are_walked() {
 /// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
 #[test]
 fn places_are_all_that_differ() {
-    let knobs = knobs(&scene(sky()), 0);
+    let ladders = ladders(&scene(sky()), 0);
     let start = start();
-    let all = places(&knobs, &start);
+    let all = places(&ladders, &start);
     assert_eq!(all.len(), (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6);
     for (i, place) in all.iter().enumerate() {
         place.quality.check().unwrap();
@@ -58,10 +58,10 @@ fn places_are_all_that_differ() {
     }
     let default = all.iter().find(|p| p.quality == start).unwrap();
     let flags = "--lines 1 --fuse aimed-nearest --precision f32 --azimuths 64";
-    assert_eq!(default.flags(&knobs), flags);
+    assert_eq!(default.flags(&ladders), flags);
     let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
     assert_eq!(brute.len(), 6);
-    assert_eq!(brute[0].flags(&knobs), "--method brute --azimuths 8");
+    assert_eq!(brute[0].flags(&ladders), "--method brute --azimuths 8");
     assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
 }
 
@@ -72,7 +72,7 @@ fn lobes_have_knobs_of_their_own() {
     let names = |lights: Lights, scale: f32, bounces: u32| {
         let mut scene = scene(lights);
         scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale }));
-        knobs(&scene, bounces).iter().map(|k| k.name).collect::<Vec<_>>()
+        ladders(&scene, bounces).iter().map(|k| k.name).collect::<Vec<_>>()
     };
     let always = ["sweep", "fuse", "precision", "level step", "level offset"];
     let with = |more: &[&'static str]| [&always, more].concat();
@@ -83,7 +83,7 @@ fn lobes_have_knobs_of_their_own() {
     assert_eq!(names(sky(), 0.2, 2), with(&thrown));
     let mut scene = scene(sky());
     scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.2 }));
-    let all = knobs(&scene, 1);
+    let all = ladders(&scene, 1);
     let found: Vec<&str> = all.iter().map(|k| k.steps[k.default].as_str()).collect();
     let [.., basis, gloss, _] = found[..] else { panic!("{found:?}") };
     assert_eq!([basis, gloss], ["--basis sh --sh-order 4", "--bounce-gloss vector"]);
@@ -99,7 +99,7 @@ fn knobs_say_their_range_and_default() {
         ),
         ..sun(0.01)
     };
-    let all = knobs(&scene(light), 1);
+    let all = ladders(&scene(light), 1);
     let found: Vec<(&str, &str)> =
         all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
     let expected = [

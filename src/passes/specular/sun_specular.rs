@@ -7,7 +7,7 @@ use crate::scene::{Border, Sun};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct SunGlossPush {
+struct SunSpecularPush {
     cols: i32,
     rows: i32,
     cell_x_m: f32,
@@ -18,8 +18,8 @@ struct SunGlossPush {
 }
 
 same_layout!(
-    SunGlossPush,
-    sun_gloss_push,
+    SunSpecularPush,
+    sun_specular_push,
     cols = COLS,
     rows = ROWS,
     cell_x_m = CELL_X_M,
@@ -49,7 +49,7 @@ pub(crate) fn plan(
     bound.extend(thrown.map(|glossy| ("arriving", glossy.arriving)));
     let layers = thrown.map_or(0, |glossy| glossy.layers());
     builder.pass(
-        shaders::SunGloss {
+        shaders::SunSpecular {
             border: border as u32,
             marches_rows: axis.marches_rows,
             lobe_is_map: lobes.map.is_some(),
@@ -59,7 +59,7 @@ pub(crate) fn plan(
         name,
         "the lobe towards the sun, times the part of it that is seen",
         [axis.steps.div_ceil(8), axis.lanes.div_ceil(4 * 16), 1],
-        &SunGlossPush {
+        &SunSpecularPush {
             cols: cols as i32,
             rows: rows as i32,
             cell_x_m: cell_m[0] as f32,

@@ -21,7 +21,7 @@ layout(binding = 3, r32f) uniform readonly image2D exit_grey;
 layout(binding = 4, rgba32f) uniform readonly image2D node_sum;
 layout(binding = 5, rgba32f) uniform writeonly image2D bounce_sum;
 
-layout(push_constant) uniform CastGatherPush {
+layout(push_constant) uniform CacheGatherPush {
     int cols;
     int rows;
     uint begin;  // of the bounces' azimuths
@@ -30,7 +30,7 @@ layout(push_constant) uniform CastGatherPush {
 
 #include "horizon/sweep.glsl"
 #include "shared/nodes.glsl"
-#include "bounce/casting_set.glsl"
+#include "bounce/visibility_cache.glsl"
 
 vec3 leaving(ivec2 at) {
     vec3 colour;

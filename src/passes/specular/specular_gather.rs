@@ -2,7 +2,7 @@ use crate::graph::shaders;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::bounce_gather::{GatherPush, Pyramids};
 use crate::passes::bounces::Bounce;
-use crate::passes::glossy::{Glossy, Thrown, Vectors};
+use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
 use crate::passes::sphere_shade::MOST_TURNS;
 use crate::scene::{HeightField, Levels};
 
@@ -25,18 +25,18 @@ pub(crate) fn plan(
     ];
     bound.extend(of.height_bindings());
     match glossy.thrown {
-        Thrown::Vectors(Vectors { exit, levels, .. }) => {
+        BouncedLight::Vectors(Vectors { exit, levels, .. }) => {
             bound.push(("exit_vectors", exit));
             let of_levels =
                 levels.into_iter().flat_map(|[l, t]| [("vector_levels", l), ("shade_table", t)]);
             bound.extend(of_levels);
         }
-        Thrown::Seen(exit) => {
+        BouncedLight::Seen(exit) => {
             bound.push(("exit_radiance", exit));
             bound.extend(of.shade_bindings());
         }
     }
-    let has_vectors = matches!(glossy.thrown, Thrown::Vectors(_));
+    let has_vectors = matches!(glossy.thrown, BouncedLight::Vectors(_));
     // The march, and inside it samples that round to one distance; then for each sample that is seen, and for the
     // end, the sums over its coefficients.
     let looked_at = of.heights.samples();
@@ -56,7 +56,7 @@ pub(crate) fn plan(
         let looks = u64::from(looked_at) * u64::from(count);
         let of_look = if has_vectors { 4 * glossy.texel_bytes() * u64::from(layers) } else { 16 };
         builder.pass(
-            shaders::GlossGather {
+            shaders::SpecularGather {
                 periodic: of.heights.periodic,
                 stack: of.heights.stored == Levels::Stack,
                 levels: of.heights.levels() as i32,

@@ -9,7 +9,7 @@ use ridgelight::scene::{Levels, Lights, Method, Quality, Scene, SphereLight};
 use ridgelight_cpu::light::normal;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::soft_ball::{SoftBall, twin_pyramid_within, twin_surface_within};
+use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_within};
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
 use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope, twin_resolved};
 

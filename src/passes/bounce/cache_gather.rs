@@ -8,7 +8,7 @@ use std::ops::Range;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct CastGatherPush {
+struct CacheGatherPush {
     cols: i32,
     rows: i32,
     begin: u32,
@@ -16,8 +16,8 @@ struct CastGatherPush {
 }
 
 same_layout!(
-    CastGatherPush,
-    cast_gather_push,
+    CacheGatherPush,
+    cache_gather_push,
     cols = COLS,
     rows = ROWS,
     begin = BEGIN,
@@ -38,7 +38,7 @@ pub(crate) fn plan(
     let count = circle.len() as u32;
     let seen = at.count(size) * u64::from(count);
     let pass = builder.pass(
-        shaders::CastGather {
+        shaders::CacheGather {
             border: border as u32,
             grey: bounce.grey,
             node_stride: at.nodes.stride as i32,
@@ -46,7 +46,7 @@ pub(crate) fn plan(
         &bounce.name,
         format!("{}, by the casting sets of {count} azimuths", bounce.why),
         [nodes_x.div_ceil(8), nodes_y.div_ceil(8), 1],
-        &CastGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
+        &CacheGatherPush { cols: size[0] as i32, rows: size[1] as i32, begin: circle.start, count },
         &[
             ("casting_sets", casts),
             ("azimuths", azimuths),

@@ -8,7 +8,7 @@ use crate::scene::{Border, Curvature, HeightField, VisiblePoints};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct PointsBendPush {
+struct BentDirectionsPush {
     cols: i32,
     rows: i32,
     first_texel: i32,
@@ -19,8 +19,8 @@ struct PointsBendPush {
 }
 
 same_layout!(
-    PointsBendPush,
-    points_bend_push,
+    BentDirectionsPush,
+    bent_directions_push,
     cols = COLS,
     rows = ROWS,
     first_texel = FIRST_TEXEL,
@@ -45,11 +45,15 @@ pub(crate) fn plan(
     let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
     let is_small = VisiblePoints::is_small(field.rows(), field.cols());
     builder.pass(
-        shaders::PointsBend { border: border as u32, small: is_small, reach: REACH_CELLS as i32 },
+        shaders::BentDirections {
+            border: border as u32,
+            small: is_small,
+            reach: REACH_CELLS as i32,
+        },
         part,
         "where samples see on the curved base what they see on the flat one",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &PointsBendPush {
+        &BentDirectionsPush {
             cols: cols as i32,
             rows: rows as i32,
             first_texel: first_texel as i32,

@@ -33,7 +33,7 @@ layout(binding = 6, rgba32f) uniform image2D gloss_bounced;
 layout(binding = 7) uniform writeonly image2DArray exit_vectors;
 layout(binding = 8) uniform writeonly image2D exit_seen;
 
-layout(push_constant) uniform GlossExitPush {
+layout(push_constant) uniform SpecularExitPush {
     int cols;
     int rows;
     uint begins;      // 1 for the first bounce

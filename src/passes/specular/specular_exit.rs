@@ -2,11 +2,11 @@ use crate::graph::shaders;
 use crate::graph::shaders::same_layout;
 use crate::graph::{Builder, ResourceId};
 use crate::passes::Lobes;
-use crate::passes::glossy::{Glossy, Thrown, Vectors};
+use crate::passes::glossy::{BouncedLight, Glossy, Vectors};
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct GlossExitPush {
+struct SpecularExitPush {
     cols: i32,
     rows: i32,
     begins: u32,
@@ -17,8 +17,8 @@ struct GlossExitPush {
 }
 
 same_layout!(
-    GlossExitPush,
-    gloss_exit_push,
+    SpecularExitPush,
+    specular_exit_push,
     cols = COLS,
     rows = ROWS,
     begins = BEGINS,
@@ -29,7 +29,7 @@ same_layout!(
 );
 
 /// The light that leaves a surface.
-pub(crate) struct Leaving {
+pub(crate) struct ExitRadiance {
     /// As in labels: "direct", "bounce1".
     pub name: String,
     /// How often it has been reflected before it arrived: 0 is direct light.
@@ -46,16 +46,16 @@ pub(crate) fn plan(
     [cols, rows]: [u32; 2],
     (glossy, lobes): (&Glossy, Lobes),
     ground: ResourceId,
-    leaving: &Leaving,
+    leaving: &ExitRadiance,
 ) {
     let samples = u64::from(cols) * u64::from(rows);
     let is_direct = leaving.bounce == 0;
     let throws = leaving.diffuse.is_some();
     let vectors = match glossy.thrown {
-        Thrown::Vectors(vectors) if throws => Some(vectors),
+        BouncedLight::Vectors(vectors) if throws => Some(vectors),
         _ => None,
     };
-    let has_vectors = matches!(glossy.thrown, Thrown::Vectors(_));
+    let has_vectors = matches!(glossy.thrown, BouncedLight::Vectors(_));
     let mut bound = vec![("ground", ground)];
     if has_vectors || !is_direct {
         bound.push(("arriving", glossy.arriving));
@@ -71,7 +71,7 @@ pub(crate) fn plan(
         (_, Some(Vectors { exit, constants, .. })) => {
             bound.extend([("constants", constants), ("exit_vectors", exit)]);
         }
-        (Thrown::Seen(exit), _) if throws => bound.push(("exit_seen", exit)),
+        (BouncedLight::Seen(exit), _) if throws => bound.push(("exit_seen", exit)),
         _ => {}
     }
     let why = match (throws, has_vectors) {
@@ -82,7 +82,7 @@ pub(crate) fn plan(
     let layers = u64::from(glossy.layers());
     let written = vectors.map_or(16, |_| glossy.texel_bytes() * layers);
     builder.pass(
-        shaders::GlossExit {
+        shaders::SpecularExit {
             order: glossy.order as i32,
             grey: glossy.grey,
             lobe_is_map: lobes.map.is_some(),
@@ -94,7 +94,7 @@ pub(crate) fn plan(
         &leaving.name,
         why,
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &GlossExitPush {
+        &SpecularExitPush {
             cols: cols as i32,
             rows: rows as i32,
             begins: u32::from(leaving.bounce == 1),

@@ -4,7 +4,7 @@ use ridgelight_io::Component;
 use serde_json::{Value as Json, json};
 
 use super::whole::Waiting;
-use super::{Format, MapFiles, asked};
+use super::{Format, MapFiles, request};
 
 impl MapFiles<'_> {
     /// What was remarked, and of values beyond their range.
@@ -21,7 +21,7 @@ impl MapFiles<'_> {
             }
             _ => "",
         };
-        let cause = match asked::is_light(self.wanted.kind) {
+        let cause = match request::is_light(self.wanted.kind) {
             true if component == Component::F16 && self.has(Format::Ktx2) => {
                 format!("f16 of .ktx2 holds no more, --encoding {kind}=f32 does")
             }

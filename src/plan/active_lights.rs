@@ -10,7 +10,7 @@ use crate::scene::{
 use crate::{Error, Result};
 
 /// The lights that give any light.
-pub(super) struct Shining<'a> {
+pub(super) struct ActiveLights<'a> {
     pub sky: Option<[f32; 3]>,
     pub environment: Option<&'a Environment>,
     /// With their positions in the scene.
@@ -38,7 +38,7 @@ pub(super) enum Colour {
     Texel(u32),
 }
 
-impl<'a> Shining<'a> {
+impl<'a> ActiveLights<'a> {
     pub fn of(
         scene: &'a Scene,
         quality: &Quality,

@@ -6,7 +6,7 @@ use crate::scene::Environment;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct EnvTurnsPush {
+struct EnvRotationPush {
     width: i32,
     rows: i32,
     turns: i32,
@@ -14,8 +14,8 @@ struct EnvTurnsPush {
 }
 
 same_layout!(
-    EnvTurnsPush,
-    env_turns_push,
+    EnvRotationPush,
+    env_rotation_push,
     width = WIDTH,
     rows = ROWS,
     turns = TURNS,
@@ -32,17 +32,17 @@ pub(crate) fn plan(
     let count = 2 * sh.light_order - 1;
     let texels = (environment.width() * sh.rows) as u64;
     builder.pass(
-        shaders::EnvTurns,
+        shaders::EnvRotation,
         sh.part(),
         format!("the environment around each row, up to {} turns", sh.light_order - 1),
         [((sh.rows * count) as u32).div_ceil(32), 1, 1],
-        &EnvTurnsPush {
+        &EnvRotationPush {
             width: environment.width() as i32,
             rows: sh.rows as i32,
             turns: count as i32,
             column_first: sh.column_first as i32,
         },
-        &[("environment", image), ("constants", constants), ("env_turns", turns)],
+        &[("environment", image), ("constants", constants), ("env_rotation", turns)],
         texels * 16 + (sh.rows * count) as u64 * 16,
         texels,
     );

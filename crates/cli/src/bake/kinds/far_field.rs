@@ -11,15 +11,15 @@ use ridgelight::scene::{
     Surface,
 };
 use ridgelight::{Error, Result, plan};
-use ridgelight_bake::{Angles, Facets, Leaving};
+use ridgelight_bake::{Angles, ExitRadiance, Facets};
 use ridgelight_io::Component;
 use serde_json::json;
 
 use super::super::map::MapFiles;
-use super::{Asked, Lit, Say, Value, brdf, light_field, number};
+use super::{Lit, Request, Say, Value, brdf, light_field, number};
 
 /// The most that the files hold: f32 all but a .ktx2, whose components may be less.
-pub fn largest(asked: &Asked) -> f64 {
+pub fn largest(asked: &Request) -> f64 {
     let is_half = asked.encoding.component == Component::F16 && asked.has_texels;
     if is_half { 65_504.0 } else { f64::from(f32::MAX) }
 }
@@ -43,7 +43,7 @@ pub fn constants(prefix: &str, angles: Angles) -> Vec<String> {
 }
 
 /// A texel of a picture that a view sees.
-pub fn texel(about: &'static str, unit: &'static str, asked: &Asked) -> Vec<Value> {
+pub fn texel(about: &'static str, unit: &'static str, asked: &Request) -> Vec<Value> {
     let range = [0.0, largest(asked)];
     let colour = |name| Value { name, about, unit, range };
     let share = Value {
@@ -193,7 +193,7 @@ pub fn each_light(
     lit: &Lit,
     facets: &Facets,
     (lights, views): (Range<usize>, &dyn Fn(usize) -> Range<usize>),
-    take: &mut dyn FnMut(usize, Leaving) -> Result<()>,
+    take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let of = (facets, lights, views);
     let Some(scatter) = &lit.scatter else {

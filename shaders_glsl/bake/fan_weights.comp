@@ -1,6 +1,6 @@
 // Computes: what each direction on a curved base stands for among the others: the solid angle of the triangles around it
 // over that on the flat field, the importance of paths along it (Heidrich et al. 2000, §5, figure 8).
-// Reads: bent (see points_bend), fans. Writes: fan_weights; 0 where triangles that have folded over outweigh the others.
+// Reads: bent (see bent_directions), fans. Writes: fan_weights; 0 where triangles that have folded over outweigh the others.
 // One invocation is one sample and one direction.
 #version 460
 
@@ -12,7 +12,7 @@ layout(binding = 0) uniform texture2DArray bent;
 layout(binding = 1) uniform textureBuffer fans;
 layout(binding = 2, r32f) uniform writeonly image2DArray fan_weights;
 
-layout(push_constant) uniform FanWeighPush {
+layout(push_constant) uniform FanWeightsPush {
     int cols;
     int rows;
     int first_fan;        // texel of the first direction's

@@ -14,7 +14,7 @@ layout(binding = 0) uniform texture2DArray visibility;
 layout(binding = 1) uniform texture2D light_matrix;
 layout(binding = 2, rgba32f) uniform writeonly image2DArray arriving;
 
-layout(push_constant) uniform GlossSeenPush {
+layout(push_constant) uniform SpecularVisibilityPush {
     int cols;
     int rows;
 };

@@ -1,5 +1,5 @@
 //! The settings that trade speed for accuracy, each as a ladder from cheap to dear. Whoever adds a
-//! method or a setting registers its knob in [`knobs`]; search, frontier and report know none by name.
+//! method or a setting registers its knob in [`ladders`]; search, frontier and report know none by name.
 //!
 //! Where the hull lives is no knob: it costs time and never changes the result.
 
@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 
 /// One setting, or two that exclude each other, and the values that are walked.
 #[derive(Clone, Debug)]
-pub struct Knob {
+pub struct Ladder {
     /// What it is called.
     pub name: &'static str,
     /// Its values as the command line spells them, flag and all, from cheap to dear.
@@ -79,13 +79,13 @@ fn has_lobe(scene: &Scene) -> bool {
     scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
 }
 
-/// The knobs that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
+/// The ladders that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
 /// an environment. Lobes are lit by harmonics alone, and throw light on by pyramids alone, from every sample.
-pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
+pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let (lights, has_lobe) = (&shining(&scene.lights), has_lobe(scene));
     let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
     let mut all = vec![
-        Knob {
+        Ladder {
             name: "sweep",
             steps: LINES
                 .iter()
@@ -103,7 +103,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             },
             idle: |_| false,
         },
-        Knob {
+        Ladder {
             name: "fuse",
             steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
             range: None,
@@ -113,7 +113,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             set: |quality, step| quality.fuse = FUSES[step],
             idle: has_no_lines,
         },
-        Knob {
+        Ladder {
             name: "precision",
             steps: PRECISIONS.iter().map(|p| format!("--precision {}", p.name())).collect(),
             range: None,
@@ -122,7 +122,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             set: |quality, step| quality.precision = PRECISIONS[step],
             idle: has_no_lines,
         },
-        Knob {
+        Ladder {
             name: "level step",
             steps: spell("--level-step", &LEVEL_STEPS),
             range: Some(Quality::LEVEL_STEP),
@@ -131,7 +131,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
             set: |quality, step| quality.level_step = LEVEL_STEPS[step],
             idle: has_no_levels,
         },
-        Knob {
+        Ladder {
             name: "level offset",
             steps: spell("--level-offset", &LEVEL_OFFSETS),
             range: Some(Quality::LEVEL_OFFSET),
@@ -147,7 +147,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         all.clear();
     }
     if lights.sky.is_some() || lights.environment.is_some() {
-        all.push(Knob {
+        all.push(Ladder {
             name: "azimuths",
             steps: spell("--azimuths", &AZIMUTHS),
             range: Some(Quality::AZIMUTHS),
@@ -158,7 +158,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         });
     }
     if lights.have_slices() {
-        all.push(Knob {
+        all.push(Ladder {
             name: "sun azimuths",
             steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
@@ -169,7 +169,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         });
     }
     if !lights.spheres.is_empty() {
-        all.push(Knob {
+        all.push(Ladder {
             name: "light basis",
             steps: LIGHT_BASES.iter().map(|b| format!("--light-basis {}", b.name())).collect(),
             range: None,
@@ -180,7 +180,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
         });
     }
     if lights.environment.is_some() && !has_lobe {
-        all.push(Knob {
+        all.push(Ladder {
             name: "table elevations",
             steps: spell("--table-elevations", &TABLE_ELEVATIONS),
             range: Some(Quality::TABLE_ELEVATIONS),
@@ -193,7 +193,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
     if lights.environment.is_some() || (lights.sky.is_some() && has_lobe) {
         let orders = SH_ORDERS.map(|n| format!("--basis sh --sh-order {n}"));
         let table = (!has_lobe).then(|| "--basis table".to_owned());
-        all.push(Knob {
+        all.push(Ladder {
             name: "basis",
             steps: orders.into_iter().chain(table).collect(),
             range: None,
@@ -208,7 +208,7 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
     }
     let is_sampled_all = has_lobe && bounces > 0;
     if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
-        all.push(Knob {
+        all.push(Ladder {
             name: "sub-sampling",
             steps: spell("--subsample", &SUBSAMPLES),
             range: None,
@@ -228,9 +228,9 @@ pub fn knobs(scene: &Scene, bounces: u32) -> Vec<Knob> {
     all
 }
 
-fn bounce_knobs(has_lobe: bool) -> [Knob; 2] {
+fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
     let by = match has_lobe {
-        true => Knob {
+        true => Ladder {
             name: "bounce gloss",
             steps: BOUNCE_GLOSSES.iter().map(|g| format!("--bounce-gloss {}", g.name())).collect(),
             range: None,
@@ -239,7 +239,7 @@ fn bounce_knobs(has_lobe: bool) -> [Knob; 2] {
             set: |quality, step| quality.bounces.gloss = BOUNCE_GLOSSES[step],
             idle: |_| false,
         },
-        false => Knob {
+        false => Ladder {
             name: "bounce engine",
             steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
             range: None,
@@ -251,7 +251,7 @@ fn bounce_knobs(has_lobe: bool) -> [Knob; 2] {
     };
     [
         by,
-        Knob {
+        Ladder {
             name: "bounce azimuths",
             steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
             range: Some(Bounces::AZIMUTHS),
@@ -276,7 +276,7 @@ pub fn start_of(scene: &Scene) -> Quality {
     Quality { basis, ..start() }
 }
 
-fn default_step(knob: &Knob, start: &Quality) -> usize {
+fn default_step(knob: &Ladder, start: &Quality) -> usize {
     let is_default = |step: &usize| {
         let mut quality = *start;
         (knob.set)(&mut quality, *step);
@@ -296,35 +296,37 @@ pub struct Place {
 
 impl Place {
     /// As the command line spells it.
-    pub fn flags(&self, knobs: &[Knob]) -> String {
-        let each = knobs.iter().zip(&self.steps).filter_map(|(k, s)| Some(k.steps[(*s)?].as_str()));
+    pub fn flags(&self, ladders: &[Ladder]) -> String {
+        let each =
+            ladders.iter().zip(&self.steps).filter_map(|(k, s)| Some(k.steps[(*s)?].as_str()));
         each.collect::<Vec<_>>().join(" ")
     }
 }
 
 /// Every combination of steps that does something of its own, from cheap to dear, the others of
 /// `start`'s settings as they are.
-pub fn places(knobs: &[Knob], start: &Quality) -> Vec<Place> {
+pub fn places(ladders: &[Ladder], start: &Quality) -> Vec<Place> {
     let mut all = Vec::new();
-    let mut steps = vec![0; knobs.len()];
+    let mut steps = vec![0; ladders.len()];
     'next: loop {
         let mut quality = *start;
-        knobs.iter().zip(&steps).for_each(|(k, s)| (k.set)(&mut quality, *s));
-        let idle: Vec<bool> = knobs.iter().map(|k| (k.idle)(&quality)).collect();
+        ladders.iter().zip(&steps).for_each(|(k, s)| (k.set)(&mut quality, *s));
+        let idle: Vec<bool> = ladders.iter().map(|k| (k.idle)(&quality)).collect();
         let stores_slopes = matches!(quality.fuse, Fuse::Nearest | Fuse::Slopes);
         // Where no slopes are stored, f16 is f32.
         let is_other = quality.precision == Precision::F16 && !stores_slopes;
         let is_repeated = idle.iter().zip(&steps).any(|(idle, s)| *idle && *s > 0);
         if !is_repeated && (!is_other || has_no_lines(&quality)) {
             let mut quality = *start;
-            for ((knob, step), _) in knobs.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
+            for ((knob, step), _) in
+                ladders.iter().zip(&steps).zip(&idle).filter(|(_, idle)| !**idle)
             {
                 (knob.set)(&mut quality, *step);
             }
             let steps = steps.iter().zip(&idle).map(|(s, idle)| (!idle).then_some(*s)).collect();
             all.push(Place { quality, steps });
         }
-        for (step, knob) in steps.iter_mut().zip(knobs) {
+        for (step, knob) in steps.iter_mut().zip(ladders) {
             *step += 1;
             if *step < knob.steps.len() {
                 continue 'next;

@@ -39,7 +39,7 @@ layout(binding = 10) uniform texture2DArray exit_vectors;
 layout(binding = 11) uniform texture2DArray vector_levels;
 layout(binding = 12, rgba32f) uniform image2DArray arriving;
 
-layout(push_constant) uniform GlossGatherPush {
+layout(push_constant) uniform SpecularGatherPush {
     int cols;
     int rows;
     float cell_x_m;

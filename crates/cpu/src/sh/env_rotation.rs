@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_1_PI, PI, TAU};
 ///
 /// # Panics
 /// When there are not as many rows.
-pub fn env_turns(environment: &Environment, rows: usize, order: usize) -> Vec<Vec<DVec3>> {
+pub fn env_rotation(environment: &Environment, rows: usize, order: usize) -> Vec<Vec<DVec3>> {
     let step = TAU / environment.width() as f64;
     let weight = |turn: isize, col: usize| {
         // From the column's end to its begin: columns run clockwise from azimuth π.

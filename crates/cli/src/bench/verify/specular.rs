@@ -7,8 +7,8 @@ use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{Albedo, Basis, Lights, Lobe, Phong, Quality, Scene, Sun, Surface};
 use ridgelight_cpu::harmonics::Harmonics;
-use ridgelight_cpu::sun_gloss::gloss_on;
-use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_gloss};
+use ridgelight_cpu::sun_specular::gloss_on;
+use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_specular};
 
 use super::harmonics::{Place, Wanted, with_nodes};
 use super::percent;
@@ -125,7 +125,7 @@ fn of_sun(scene: &Scene, sun: &Sun, place: &Place, phong: Phong, light: DVec3) -
     let towards = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
     let turned = Land::normal_at(field, border, at);
     let facing = place.normal.dot(towards);
-    let off = twin_sun_gloss(phong.exponent.into(), turned, facing);
+    let off = twin_sun_specular(phong.exponent.into(), turned, facing);
     // No sun is seen, and none is mirrored.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
     [mirrored, irradiance * off + 6.0 * EPSILON * mirrored]

@@ -2,8 +2,8 @@
 //! cosine finds it, and as a series of spherical harmonics for the sample's lobe.
 
 use crate::bounce_gather::{BounceGather, March};
+use crate::shared::bounced::{Along, radiance};
 use crate::shared::sweep::wrapped;
-use crate::shared::thrown::{Along, radiance};
 use glam::DVec3;
 use ridgelight::basis::azimuth::around;
 use ridgelight::basis::bands;
@@ -16,7 +16,7 @@ pub type Series = Vec<[f64; 3]>;
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct GlossGather<'a> {
+pub struct SpecularGather<'a> {
     /// Samples and levels; radiance where there are no series.
     pub gather: BounceGather<'a>,
     /// Of what arrives.
@@ -34,7 +34,7 @@ pub struct Arriving {
     pub series: Series,
 }
 
-impl GlossGather<'_> {
+impl SpecularGather<'_> {
     /// What arrives at a sample.
     ///
     /// # Panics

@@ -1,6 +1,6 @@
 // Computes: the environment summed around each of its rows: integrals over azimuth of L times 1, cos m phi
 // and sin m phi, m below the light's order.
-// Reads: environment (equirectangular, row 0 at the zenith), constants. Writes: env_turns at [row][turn].
+// Reads: environment (equirectangular, row 0 at the zenith), constants. Writes: env_rotation at [row][turn].
 // One invocation is one turn of one row.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,9 +9,9 @@ layout(local_size_x = 32) in;
 
 layout(binding = 0) uniform texture2D environment;
 layout(binding = 1) uniform textureBuffer constants;
-layout(binding = 2) writeonly buffer EnvTurns { vec4 env_turns[]; };
+layout(binding = 2) writeonly buffer EnvRotation { vec4 env_rotation[]; };
 
-layout(push_constant) uniform EnvTurnsPush {
+layout(push_constant) uniform EnvRotationPush {
     int width;
     int rows;         // of the environment, from the zenith down, that count
     int turns;        // 2n - 1
@@ -41,5 +41,5 @@ void main() {
         }
         sum += part;
     }
-    env_turns[index] = vec4(sum, 0.0);
+    env_rotation[index] = vec4(sum, 0.0);
 }

@@ -25,7 +25,7 @@ layout(binding = 2, rgba32f) uniform image2D gloss_sum;
 layout(binding = 3) uniform texture2D phong_map;
 layout(binding = 4, rgba32f) uniform image2DArray arriving;
 
-layout(push_constant) uniform SunGlossPush {
+layout(push_constant) uniform SunSpecularPush {
     int cols;
     int rows;
     float cell_x_m;

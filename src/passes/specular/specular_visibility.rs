@@ -5,12 +5,12 @@ use crate::passes::glossy::Glossy;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct GlossSeenPush {
+struct SpecularVisibilityPush {
     cols: i32,
     rows: i32,
 }
 
-same_layout!(GlossSeenPush, gloss_seen_push, cols = COLS, rows = ROWS);
+same_layout!(SpecularVisibilityPush, specular_visibility_push, cols = COLS, rows = ROWS);
 
 /// What arrives of light from all around, as a series.
 pub(crate) fn plan(
@@ -22,11 +22,11 @@ pub(crate) fn plan(
     let samples = u64::from(cols) * u64::from(rows);
     let fours = u64::from((glossy.order * glossy.order).div_ceil(4));
     builder.pass(
-        shaders::GlossSeen { order: glossy.order as i32, grey: glossy.grey },
+        shaders::SpecularVisibility { order: glossy.order as i32, grey: glossy.grey },
         "",
         "what is seen times the light, to be thrown on",
         [cols.div_ceil(8), rows.div_ceil(8), 1],
-        &GlossSeenPush { cols: cols as i32, rows: rows as i32 },
+        &SpecularVisibilityPush { cols: cols as i32, rows: rows as i32 },
         &[
             ("visibility", visibility),
             ("light_matrix", light_matrix),

@@ -7,7 +7,7 @@ use crate::scene::HeightField;
 
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct FanWeighPush {
+struct FanWeightsPush {
     cols: i32,
     rows: i32,
     first_fan: i32,
@@ -15,8 +15,8 @@ struct FanWeighPush {
 }
 
 same_layout!(
-    FanWeighPush,
-    fan_weigh_push,
+    FanWeightsPush,
+    fan_weights_push,
     cols = COLS,
     rows = ROWS,
     first_fan = FIRST_FAN,
@@ -36,11 +36,11 @@ pub(crate) fn plan(
     let count = directions.end - directions.start;
     let looks = u64::from(cols) * u64::from(rows) * u64::from(count);
     builder.pass(
-        shaders::FanWeigh,
+        shaders::FanWeights,
         part,
         "what each direction stands for on the curved base",
         [cols.div_ceil(8), rows.div_ceil(8), count],
-        &FanWeighPush {
+        &FanWeightsPush {
             cols: cols as i32,
             rows: rows as i32,
             first_fan: first_fan as i32,

@@ -1,6 +1,6 @@
 //! What leaves a sample of the light that arrives there as a series: by its lobe, and diffuse light beside it.
 
-use crate::gloss_gather::Series;
+use crate::specular_gather::Series;
 use glam::DVec3;
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::{half_turn, reconstruct};

@@ -8,13 +8,13 @@ use super::{BufferArg, Headless, ImageArg, ImageState};
 use crate::{Error, Result};
 
 /// An image beside those of frames, in GENERAL; given back with [`Headless::take_back`].
-pub struct Lent {
+pub struct HostImage {
     backed: Backed,
     format: vk::Format,
     extent: [u32; 3],
 }
 
-impl Lent {
+impl HostImage {
     /// To be read by a renderer in place of a frame's own input.
     pub fn arg(&self) -> ImageArg {
         ImageArg {
@@ -29,12 +29,12 @@ impl Lent {
 }
 
 /// A buffer of texels, given back with [`Headless::take_back_buffer`].
-pub struct LentBuffer {
+pub struct HostBuffer {
     backed: Backed,
     bytes: u64,
 }
 
-impl LentBuffer {
+impl HostBuffer {
     /// To be read by a renderer whose plan takes a buffer, from its begin, rows one after the other.
     pub fn arg(&self) -> BufferArg {
         BufferArg {
@@ -58,19 +58,19 @@ impl Headless {
     ///
     /// # Errors
     /// No bytes, or the device's.
-    pub fn lend_buffer(&mut self, name: &str, contents: &[u8]) -> Result<LentBuffer> {
+    pub fn lend_buffer(&mut self, name: &str, contents: &[u8]) -> Result<HostBuffer> {
         if contents.is_empty() {
             return Err(Error::setting(name, "no bytes", "at least one texel"));
         }
         let (usage, bytes) = (vk::BufferUsageFlags::TRANSFER_SRC, contents.len() as u64);
         let backed = self.memory.buffer(name, bytes, usage, MemoryUse::Upload)?;
-        let mut lent = LentBuffer { backed, bytes };
+        let mut lent = HostBuffer { backed, bytes };
         lent.contents().copy_from_slice(contents);
         Ok(lent)
     }
 
     /// Frees a buffer that was lent.
-    pub fn take_back_buffer(&mut self, mut lent: LentBuffer) {
+    pub fn take_back_buffer(&mut self, mut lent: HostBuffer) {
         self.memory.free(&mut lent.backed);
     }
 
@@ -85,7 +85,7 @@ impl Headless {
         format: vk::Format,
         [cols, rows]: [u32; 2],
         texels: &[u8],
-    ) -> Result<Lent> {
+    ) -> Result<HostImage> {
         let count = cols as usize * rows as usize;
         if count == 0 || texels.is_empty() || !texels.len().is_multiple_of(count) {
             return Err(Error::setting(
@@ -106,7 +106,7 @@ impl Headless {
         let extent = [cols, rows, 1];
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let backed = self.memory.image_for(name, (format, usage), extent, false)?;
-        let mut lent = Lent { backed, format, extent };
+        let mut lent = HostImage { backed, format, extent };
         match self.fill_lent(&lent, texels) {
             Ok(()) => Ok(lent),
             Err(error) => {
@@ -116,7 +116,7 @@ impl Headless {
         }
     }
 
-    fn fill_lent(&mut self, lent: &Lent, texels: &[u8]) -> Result<()> {
+    fn fill_lent(&mut self, lent: &HostImage, texels: &[u8]) -> Result<()> {
         let usage = vk::BufferUsageFlags::TRANSFER_SRC;
         let bytes = texels.len() as u64;
         let mut staging = self.memory.buffer("staging", bytes, usage, MemoryUse::Upload)?;
@@ -148,7 +148,7 @@ impl Headless {
     }
 
     /// Frees an image that was lent.
-    pub fn take_back(&mut self, mut lent: Lent) {
+    pub fn take_back(&mut self, mut lent: HostImage) {
         self.memory.free(&mut lent.backed);
     }
 }

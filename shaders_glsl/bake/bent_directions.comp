@@ -35,7 +35,7 @@ layout(binding = 2) uniform textureBuffer directions;
 layout(binding = 3) uniform textureBuffer fans;
 layout(binding = 4, rgba32f) uniform writeonly image2DArray bent;
 
-layout(push_constant) uniform PointsBendPush {
+layout(push_constant) uniform BentDirectionsPush {
     int cols;
     int rows;
     int first_texel;      // of the directions

@@ -41,7 +41,7 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
 ///
 /// # Panics
 /// A cast of a sample that is none.
-pub fn cast_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
+pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
     casts
         .into_iter()
         .fold([0.0; 3], |sum, cast| [0, 1, 2].map(|c| sum[c] + cast.weight * exit[cast.sample][c]))
