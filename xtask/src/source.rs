@@ -1,0 +1,95 @@
+//! Files of the repository, and Rust without what readers of its structure skip.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a command prints, or why it fails.
+pub type Outcome = Result<String, String>;
+
+/// Reads a file as text.
+pub fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Every file below a folder with one of these extensions, sorted; build outputs and hidden folders left out.
+pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if path.is_dir() {
+                if name != "target" && name != "out" && !name.starts_with('.') {
+                    open.push(path);
+                }
+            } else if path.extension().is_some_and(|e| extensions.iter().any(|wanted| e == *wanted))
+            {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Rust without its line comments and without the unit tests at a file's end.
+pub fn code(text: &str) -> String {
+    let text = text.split("\n#[cfg(test)]\n").next().unwrap_or(text);
+    let line = |line: &str| line.split_once("//").map_or(line, |(code, _)| code).to_owned();
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Names that follow `prefix` in Rust code: of `crate::` the modules that are named after it, also in braces.
+pub fn after(code: &str, prefix: &str) -> Vec<String> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let name =
+        |text: &str| text.trim_start().chars().take_while(|c| is_name(*c)).collect::<String>();
+    let mut names = Vec::new();
+    for (at, _) in code.match_indices(prefix) {
+        if code[..at].ends_with(|c: char| is_name(c) || c == ':' || c == '$') {
+            continue;
+        }
+        let rest = &code[at + prefix.len()..];
+        let Some(inner) = rest.strip_prefix('{') else {
+            names.push(name(rest));
+            continue;
+        };
+        // The first name of each part between commas that are in no inner braces.
+        let (mut depth, mut begin) = (0, 0);
+        for (i, c) in inner.char_indices() {
+            if depth == 0 && (c == ',' || c == '}') {
+                names.push(name(&inner[begin..i]));
+                begin = i + 1;
+            }
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                _ => {}
+            }
+        }
+    }
+    names.retain(|name| !name.is_empty());
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_from_paths_and_braces() {
+        let text = "use crate::plan::{Plan, View};\nuse crate::{Error, passes::{sweep, x}, scene};\nlet a = crate::gpu::f();";
+        let names = after(text, "crate::");
+        assert_eq!(names, ["plan", "Error", "passes", "scene", "gpu"]);
+        assert!(after("$crate::graph::x", "crate::").is_empty());
+    }
+
+    #[test]
+    fn comments_and_tests_are_no_code() {
+        let text = "use crate::a; // crate::b\n\n#[cfg(test)]\nmod tests { use crate::c; }";
+        assert_eq!(after(&code(text), "crate::"), ["a"]);
+    }
+}

@@ -1,0 +1,94 @@
+//! Coined words that tools/words.txt forbids.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::source::{Outcome, read};
+
+/// One line of tools/words.txt: a pattern, what to write instead, and a pattern of lines in which it is right.
+struct Rule {
+    pattern: String,
+    instead: String,
+    allowed: Option<String>,
+}
+
+fn rules(text: &str) -> Result<Vec<Rule>, String> {
+    let mut all = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let parts: Vec<&str> = line.split('\t').map(str::trim).collect();
+        let (pattern, instead) = match parts.as_slice() {
+            [pattern, instead] | [pattern, instead, _] => (pattern, instead),
+            _ => {
+                return Err(format!(
+                    "tools/words.txt:{}: expected two or three columns",
+                    number + 1
+                ));
+            }
+        };
+        let allowed = parts.get(2).map(|text| (*text).to_owned());
+        all.push(Rule { pattern: (*pattern).to_owned(), instead: (*instead).to_owned(), allowed });
+    }
+    Ok(all)
+}
+
+/// Lines of the tracked files that match a Perl pattern. CHANGELOG.md tells old names, and so does their table.
+fn grep(root: &Path, pattern: &str) -> Result<Vec<String>, String> {
+    let paths = [
+        ".",
+        ":!CHANGELOG.md",
+        ":!tools/words.txt",
+        ":!benches/results",
+        ":!shaders_glsl/compiled",
+        ":!Cargo.lock",
+        ":!*/Cargo.lock",
+        ":!crates/cli/src/args/renamed.rs",
+    ];
+    let mut git = Command::new("git");
+    git.current_dir(root)
+        .args(["grep", "--no-color", "-I", "-n", "-i", "-P", "-e", pattern, "--"])
+        .args(paths);
+    let done = git.output().map_err(|e| format!("git: {e}"))?;
+    match done.status.code() {
+        Some(0 | 1) => {
+            Ok(String::from_utf8_lossy(&done.stdout).lines().map(str::to_owned).collect())
+        }
+        _ => Err(format!("git grep {pattern}: {}", String::from_utf8_lossy(&done.stderr))),
+    }
+}
+
+/// Fails with each place where a word is not allowed.
+pub fn check(root: &Path) -> Outcome {
+    let rules = rules(&read(&root.join("tools/words.txt"))?)?;
+    let mut wrong = String::new();
+    let mut count = 0;
+    for rule in &rules {
+        let allowed = match &rule.allowed {
+            Some(allowed) => grep(root, allowed)?,
+            None => Vec::new(),
+        };
+        for line in grep(root, &rule.pattern)?.iter().filter(|line| !allowed.contains(line)) {
+            count += 1;
+            wrong.push_str(&format!("{line}\n    write: {}\n", rule.instead));
+        }
+    }
+    if count == 0 {
+        return Ok(format!("words: none of {} patterns\n", rules.len()));
+    }
+    Err(format!("{wrong}words: {count} places"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_have_two_or_three_columns() {
+        let all = rules("# comment\n\nlamp\tsphere light\noff\terror\toff by one\n").unwrap();
+        assert_eq!((all.len(), all[0].instead.as_str()), (2, "sphere light"));
+        assert_eq!(all[1].allowed.as_deref(), Some("off by one"));
+        assert!(rules("alone").is_err());
+    }
+}
