@@ -13,7 +13,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   layers [--check]   crates, modules and their imports; fails on a circle or an upward import
   words              coined words that tools/words.txt forbids; fails where there is one
   size               lines of Rust and GLSL, files a folder, README, dependencies of an embedder
-  surface [--check]  public items of the core, as kept in docs/surface.txt";
+  surface [--check]  public items of the core, as kept in tools/surface.txt";
 
 fn main() -> ExitCode {
     let root =
