@@ -1,4 +1,4 @@
-//! What a field reflects as seen from afar, over all pairs of a set of directions.
+//! The far-field BRDF of a height field, tabulated for pairs of directions.
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -6,19 +6,19 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use ridgelight::scene::Directions;
 use ridgelight::{Error, Result};
 
-/// Zenith angles times azimuths, evenly over the hemisphere above: direction k · azimuths + j has the zenith angle
+/// A grid of directions over the upper hemisphere. Direction k · azimuths + j has the zenith angle
 /// (k + ½) π/2 / zeniths and the azimuth 2π j / azimuths, counter-clockwise from east.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Angles {
-    /// From straight above to horizontal, [2..64].
+    /// Zenith angles from 0 to π/2, [2..64].
     pub zeniths: usize,
-    /// All around, [4..256].
+    /// Azimuths of a full circle, [4..256].
     pub azimuths: usize,
 }
 
 impl Angles {
     /// # Errors
-    /// Fewer or more than there may be, or more than [`Directions::COUNT`] together.
+    /// Counts out of range, or more than [`Directions::COUNT`] in total.
     pub fn check(&self) -> Result<()> {
         let count = self.zeniths.saturating_mul(self.azimuths);
         let is_right = (2..=64).contains(&self.zeniths) && (4..=256).contains(&self.azimuths);
@@ -32,12 +32,12 @@ impl Angles {
         Err(Error::setting("angles", format!("{}x{}", self.zeniths, self.azimuths), expected))
     }
 
-    /// As many.
+    /// Number of directions.
     pub fn count(&self) -> usize {
         self.zeniths * self.azimuths
     }
 
-    /// In order.
+    /// The directions, in order.
     ///
     /// # Errors
     /// As [`check`](Self::check).
@@ -52,7 +52,7 @@ impl Angles {
         Directions::from_vectors(vectors.collect(), 0.0)
     }
 
-    /// ∫ cos θ dω over the part of the hemisphere that each direction is in the middle of; π together.
+    /// ∫ cos θ dω over each direction's cell of the hemisphere. The sum is π.
     pub fn projected_sr(&self) -> Vec<f64> {
         let edge = |k: usize| (k as f64 * FRAC_PI_2 / self.zeniths as f64).sin().powi(2);
         let of = |i: usize| {
@@ -62,8 +62,8 @@ impl Angles {
         (0..self.count()).map(of).collect()
     }
 
-    /// The four directions around one above horizontal, and their shares, linear in both angles: beyond the first and the last
-    /// zenith angle as there.
+    /// The four neighbours of a direction above horizontal, and their bilinear weights. Zenith
+    /// angles beyond the first and the last are clamped.
     pub fn around(&self, e: DVec3) -> [(usize, f64); 4] {
         let zenith = e.z.clamp(-1.0, 1.0).acos() / FRAC_PI_2 * self.zeniths as f64 - 0.5;
         let zenith = zenith.clamp(0.0, (self.zeniths - 1) as f64);
@@ -81,12 +81,12 @@ impl Angles {
     }
 }
 
-/// Pairs of light and view, the lights first: a sequence of low discrepancy in four dimensions (additive recurrence by the powers
-/// of the root of x⁵ = x + 1: Roberts 2018) from a place that the seed decides, each end even in what a level plane receives
-/// or sends, cos θ dω.
+/// Pairs of light and view directions; all lights come first. A four-dimensional low-discrepancy
+/// sequence (additive recurrence by the powers of the root of x⁵ = x + 1: Roberts 2018), whose
+/// start `seed` sets. Lights and views are each distributed in proportion to cos θ dω.
 ///
 /// # Errors
-/// Twice as many as [`Directions::COUNT`] holds, or none.
+/// A count of 0, or above half of what [`Directions::COUNT`] allows.
 pub fn pairs(count: usize, seed: u32) -> Result<Directions> {
     const ROOT: f64 = 1.167_303_978_261_418_7;
     let most = Directions::COUNT.end() / 2;
@@ -112,10 +112,10 @@ pub struct Brdf {
 }
 
 impl Brdf {
-    /// Of values that are known, all views of the first light first.
+    /// A table of known values, all views of the first light first.
     ///
     /// # Errors
-    /// Not as many as pairs.
+    /// Another number of values than pairs.
     pub fn from_values(directions: Vec<DVec3>, values: Vec<[f64; 3]>) -> Result<Self> {
         let pairs = directions.len().pow(2);
         if values.len() == pairs {
@@ -124,23 +124,23 @@ impl Brdf {
         Err(Error::setting("values of pairs", values.len().to_string(), pairs.to_string()))
     }
 
-    /// Those of lights and views alike.
+    /// Directions of the lights and of the views.
     pub fn directions(&self) -> &[DVec3] {
         &self.directions
     }
 
-    /// For a light and a view, by their numbers.
+    /// Value for a light and a view, by index.
     ///
     /// # Panics
-    /// Outside the table.
+    /// An index outside the table.
     pub fn at(&self, light: usize, view: usize) -> [f64; 3] {
         self.values[light * self.directions.len() + view]
     }
 
-    /// Between the directions of some angles, which must be those of the table; unit vectors above horizontal.
+    /// Interpolated value for unit vectors above horizontal. `angles` must be those of the table.
     ///
     /// # Panics
-    /// When they are more than the table's.
+    /// More angles than the table has.
     pub fn between(&self, angles: &Angles, light: DVec3, view: DVec3) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (l, of_light) in angles.around(light) {
@@ -152,9 +152,10 @@ impl Brdf {
         sum
     }
 
-    /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, each weighted by its part of
-    /// ∫ cos θ dω, which together are π. Of lobes it may be more than 1: see [`Facets`](super::Facets). A sum, not an integral: of
-    /// a lobe narrower than the directions are apart it says nothing.
+    /// Share of a light's irradiance that leaves again, R, G, B: the sum over all views, weighted
+    /// by `projected_sr`, which adds up to π. With Phong specular it may exceed 1: see
+    /// [`Facets`](super::Facets). It is a sum, not an integral: it is meaningless for a Phong lobe
+    /// narrower than the spacing of the directions.
     pub fn reflected(&self, light: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (view, weight) in projected_sr.iter().enumerate() {
@@ -164,11 +165,12 @@ impl Brdf {
         sum
     }
 
-    /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights, each weighted by its part of
-    /// ∫ cos θ dω, which together are π. With triangles that fill views and receive light as the plane does
-    /// ([`closure`](super::Facets::closure) 1) no more than what all of the surface reflects, diffusely and by its lobe, but for
-    /// what the sum is off the integral: a lobe much narrower than the directions are apart counts for its density there times
-    /// their solid angle, many times 1 at its middle and nothing beside it.
+    /// Radiance of a view under a light of 1 from all sides, R, G, B: the sum over all lights,
+    /// weighted by `projected_sr`, which adds up to π. Where [`closure`](super::Facets::closure) is
+    /// 1, the integral is at most the sum of diffuse and specular reflectance. The sum differs from
+    /// the integral where a Phong lobe is much narrower than the spacing of the directions: such a
+    /// lobe counts for its density times a direction's solid angle, many times 1 at its centre and
+    /// 0 beside it.
     pub fn gathered(&self, view: usize, projected_sr: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (light, weight) in projected_sr.iter().enumerate() {
@@ -178,8 +180,8 @@ impl Brdf {
         sum
     }
 
-    /// How far it is from being the same with light and view exchanged: rms of half the difference over the rms, all
-    /// channels.
+    /// Departure from reciprocity: rms of half the difference when light and view are exchanged,
+    /// over the rms of all values, all channels.
     pub fn unreciprocal(&self) -> f64 {
         let (mut apart, mut all) = (0.0, 0.0);
         let count = self.directions.len();
@@ -197,7 +199,7 @@ impl Brdf {
 mod tests {
     use super::pairs;
 
-    /// Refused before anything of that size is made.
+    /// Refused before any memory is allocated.
     #[test]
     fn pairs_are_bounded() {
         for count in [0, 2049, usize::MAX] {

@@ -1,4 +1,4 @@
-//! A table of what is reflected as a sum over two sets of spherical harmonics.
+//! A BRDF table as a double sum of spherical harmonics.
 
 use glam::DVec3;
 
@@ -7,30 +7,33 @@ use ridgelight::basis::MAX_ORDER;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::{Error, Result};
 
-/// f(l, v) ≈ Σ c_ij Y_i(l) Y_j(v), c symmetric but for lobes, R, G, B: real orthonormal harmonics about x east, y north, z up, index l(l+1) + m.
+/// f(l, v) ≈ Σ c_ij Y_i(l) Y_j(v), R, G, B. Real orthonormal harmonics about x east, y north, z up,
+/// index l(l+1) + m. c is symmetric unless the surface has Phong specular.
 ///
-/// Smooth between all directions, where a table has steps; of mirrors and edges nothing finer than its order, and where it rings
-/// it may be below 0. Below horizontal it means nothing.
+/// It is smooth in both directions, where a table has steps. It resolves nothing finer than its
+/// order, and ringing may make it negative. It is undefined below horizontal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrdfHarmonics {
     order: usize,
     coefficients: Vec<[f64; 3]>,
 }
 
-/// Of the largest of BᵀWB's diagonal: what keeps apart numbers small that the hemisphere alone does not tell apart, at the
-/// cost of at most half its root of their share in the values.
+/// Ridge relative to the largest diagonal element of BᵀWB. It bounds coefficients that the
+/// hemisphere alone does not determine. Its error is at most half its root of their share in the
+/// values.
 const RIDGE: f64 = 1e-6;
 
 impl BrdfHarmonics {
-    /// Of a table over these angles, of order n, by least squares.
+    /// Least-squares fit of order n to a table over `angles`.
     ///
-    /// B has the values of n² harmonics in all directions, W the parts of ∫ cos θ dω. With B⁺ = (BᵀWB + r)⁻¹BᵀW and F the table,
-    /// C = B⁺ F B⁺ᵀ leaves the least squares over all pairs, each weighted by what a plane receives and sends; without lobes
-    /// C + Cᵀ halves what chance has made different with light and view exchanged.
+    /// B holds the values of n² harmonics in all directions, W the parts of ∫ cos θ dω. With B⁺ =
+    /// (BᵀWB + r)⁻¹BᵀW and F the table, C = B⁺ F B⁺ᵀ is the least-squares solution over all pairs,
+    /// weighted by cos θ dω of both directions. Without Phong specular, (C + Cᵀ)/2 halves the Monte
+    /// Carlo noise.
     ///
     /// # Errors
-    /// An order outside of [1..6]; fewer angles than harmonics; a table of others.
-    pub fn of(table: &Brdf, angles: Angles, order: usize, has_lobes: bool) -> Result<Self> {
+    /// An order outside [1..6]; fewer angles than harmonics; a table over other angles.
+    pub fn of(table: &Brdf, angles: Angles, order: usize, has_specular: bool) -> Result<Self> {
         let (count, terms) = (angles.count(), order.saturating_mul(order));
         if table.directions().len() != count {
             let found = format!("{} directions", table.directions().len());
@@ -49,7 +52,7 @@ impl BrdfHarmonics {
         let inverse = pseudo_inverse(&rows, terms, &angles.projected_sr());
         let mut coefficients = vec![[0.0; 3]; terms * terms];
         for channel in [0, 1, 2] {
-            // B⁺ F, whose product with B⁺ᵀ follows.
+            // B⁺ F; the product with B⁺ᵀ follows.
             let mut half = vec![0.0; terms * count];
             for (row, half) in inverse.iter().zip(half.chunks_exact_mut(count)) {
                 for (light, weight) in row.iter().enumerate() {
@@ -64,25 +67,25 @@ impl BrdfHarmonics {
             };
             for (at, texel) in coefficients.iter_mut().enumerate() {
                 let (i, j) = (at / terms, at % terms);
-                let other = if has_lobes { product(i, j) } else { product(j, i) };
+                let other = if has_specular { product(i, j) } else { product(j, i) };
                 texel[channel] = 0.5 * (product(i, j) + other);
             }
         }
         Ok(Self { order, coefficients })
     }
 
-    /// n² × n² colours, those of the light's first harmonic first.
+    /// n² × n² colours; those of the light's first harmonic come first.
     pub fn coefficients(&self) -> &[[f64; 3]] {
         &self.coefficients
     }
 
-    /// For a light and a view above horizontal, unit vectors; 1/sr.
+    /// Value for unit vectors above horizontal; 1/sr.
     pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
         weighted(&self.under(light), &evaluate(self.order, view))
     }
 
-    /// Of a light from each of some directions in turn, towards all of them: [`at`](Self::at), whose harmonics are evaluated once
-    /// a direction.
+    /// [`at`](Self::at) for each light in turn, towards all directions. Each direction's harmonics
+    /// are evaluated once.
     pub fn rows(&self, directions: &[DVec3]) -> impl Iterator<Item = Vec<[f64; 3]>> {
         let all: Vec<Vec<f64>> = directions.iter().map(|v| evaluate(self.order, *v)).collect();
         directions.iter().map(move |light| {
@@ -91,7 +94,7 @@ impl BrdfHarmonics {
         })
     }
 
-    /// Weights of a view's harmonics under a light.
+    /// Coefficients over the view for one light.
     fn under(&self, light: DVec3) -> Vec<[f64; 3]> {
         let of_light = evaluate(self.order, light);
         let mut sums = vec![[0.0; 3]; of_light.len()];
@@ -104,7 +107,7 @@ impl BrdfHarmonics {
     }
 }
 
-/// Sum of colours, each times its weight.
+/// Weighted sum of colours.
 fn weighted(colours: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (colour, weight) in colours.iter().zip(weights) {
@@ -113,7 +116,7 @@ fn weighted(colours: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
     sum
 }
 
-/// (BᵀWB + r)⁻¹BᵀW by Gauss & Jordan with the largest pivots.
+/// (BᵀWB + r)⁻¹BᵀW by Gauss-Jordan elimination with partial pivoting.
 fn pseudo_inverse(rows: &[Vec<f64>], terms: usize, weights: &[f64]) -> Vec<Vec<f64>> {
     let mut left = vec![vec![0.0; terms]; terms];
     for (row, weight) in rows.iter().zip(weights) {
@@ -147,21 +150,22 @@ fn pseudo_inverse(rows: &[Vec<f64>], terms: usize, weights: &[f64]) -> Vec<Vec<f
 mod tests {
     use super::*;
 
-    /// Of a sum of harmonics, the same; of lobes one that is another with light and view exchanged. In coefficients the ridge takes of a part of eigenvalue s of BᵀWB the share r/(s + r), and
-    /// of its values √s r/(s + r) ≤ √r/2, as a norm over what a plane receives; at one direction of weight w that is at most
-    /// √(r/w)/2 of the coefficients' length. Once for lights and once for views; the other side's harmonics have the length
-    /// √(n²/4π) everywhere.
+    /// The fit recovers a sum of harmonics; with Phong specular one that is not reciprocal. For an
+    /// eigenvalue s of BᵀWB the ridge removes the share r/(s + r) of the coefficients, and √s r/(s
+    /// + r) ≤ √r/2 of the values, as a norm weighted by cos θ dω. At one direction of weight w that
+    /// is at most √(r/w)/2 of the coefficients' length. It counts once for lights and once for
+    /// views; the other side's harmonics have the length √(n²/4π) everywhere.
     #[test]
-    fn a_sum_of_harmonics_is_found() {
+    fn fit_recovers_a_sum_of_harmonics() {
         let angles = Angles { zeniths: 8, azimuths: 16 };
         let directions = angles.directions().expect("angles").vectors().to_vec();
         let order = 3;
         let terms = order * order;
-        for has_lobes in [false, true] {
+        for has_specular in [false, true] {
             let known: Vec<f64> = (0..terms * terms)
                 .map(|at| {
                     let (i, j) = (at / terms, at % terms);
-                    0.1 * ((i * j + i + (1 + usize::from(has_lobes)) * j) as f64 * 0.618_034)
+                    0.1 * ((i * j + i + (1 + usize::from(has_specular)) * j) as f64 * 0.618_034)
                         .fract()
                 })
                 .collect();
@@ -172,10 +176,10 @@ mod tests {
             let pairs = directions.iter().flat_map(|l| directions.iter().map(move |v| (*l, *v)));
             let values = pairs.map(|(l, v)| [sum(l, v), 0.0, 2.0 * sum(l, v)]).collect();
             let table = Brdf::from_values(directions.clone(), values).expect("a table");
-            let found = BrdfHarmonics::of(&table, angles, order, has_lobes).expect("harmonics");
+            let found = BrdfHarmonics::of(&table, angles, order, has_specular).expect("harmonics");
             let weights = angles.projected_sr();
             let size = known.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // The largest of BᵀWB's diagonal is ∫ Y² cos θ dω ≤ max Y² π ≤ n²/4π · π.
+            // The largest diagonal element of BᵀWB is ∫ Y² cos θ dω ≤ max Y² π ≤ n²/4π · π.
             let root = (RIDGE * terms as f64 / 4.0).sqrt();
             let other = (terms as f64 / (2.0 * std::f64::consts::TAU)).sqrt();
             let rows = found.rows(&directions).collect::<Vec<_>>();
@@ -195,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn invalid_orders_and_angles_are_refused() {
         let angles = Angles { zeniths: 2, azimuths: 4 };
         let directions = angles.directions().expect("angles").vectors().to_vec();
         let table = Brdf::from_values(directions, vec![[0.1; 3]; 64]).expect("a table");

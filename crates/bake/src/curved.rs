@@ -1,29 +1,31 @@
-//! Ellipses of visible sky on bases of any small curvature, between five that were fitted (Heidrich et al. 2000, §5).
+//! Visibility ellipses on curved base surfaces, interpolated between five fits (Heidrich et al.
+//! 2000, §5).
 
 use glam::{DVec2, DVec3};
 
 use super::Ellipse;
 use ridgelight::scene::Curvature;
 
-/// Of a sample: the ellipse on the flat base, and by how much its numbers change with curvature, linearly.
+/// A texel's ellipse on the flat base, and its linear change with curvature.
 ///
-/// Axes of ellipses that were fitted apart may be swapped or turned round where the shapes hardly differ, and between two
-/// such lies nothing. So an ellipse is kept as its centre and the symmetric matrix that takes the unit disc to its shape, P =
-/// Σ r a aᵀ of its axes a and radii r: five numbers which are the same whichever axis is called the first, and linear in
-/// radii. The whole disc is that of radius 1, nothing the point P = 0.
+/// Independently fitted ellipses may swap or reverse their axes where the shapes hardly differ, so
+/// axes cannot be interpolated. An ellipse is therefore stored as its centre and the symmetric
+/// matrix P = Σ r a aᵀ over its axes a and radii r, which maps the unit disc to its shape. These
+/// five numbers do not depend on the order of the axes and are linear in the radii. Full visibility
+/// is the disc of radius 1; no visibility is P = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvedEllipses {
-    /// Centre (east, north), P's xx, yy and xy; of the flat base, of curvature towards east above 0 and below, towards north above
-    /// and below.
+    /// Centre (east, north), then P's xx, yy and xy. Order: flat base, curvature towards east above
+    /// 0 and below 0, towards north above 0 and below 0.
     pub numbers: [[f64; 5]; 5],
-    /// The curvatures that they were fitted at, 1/m, both above 0: outwards, inwards.
+    /// Curvatures of the fits, 1/m, both above 0: convex, concave.
     pub steps_per_m: [f64; 2],
 }
 
 impl CurvedEllipses {
-    /// Of what [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses) leaves of a sample.
+    /// From one texel of [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses).
     pub fn of(five: &[Ellipse; 5], steps_per_m: [f64; 2]) -> Self {
-        // What is nothing has no centre: that of the flat base, or of all others that have one.
+        // An empty ellipse has no centre: it takes the flat base's, else the mean of the others.
         let own = five.iter().filter(|e| **e != Ellipse::EMPTY).map(centre);
         let (sum, count) = own.fold((DVec2::ZERO, 0.0), |(s, n), c| (s + c, n + 1.0));
         let others = if count > 0.0 { sum / count } else { DVec2::ZERO };
@@ -40,7 +42,8 @@ impl CurvedEllipses {
         Self { numbers, steps_per_m }
     }
 
-    /// Centre and P on a base of some curvature: between the five, and beyond them on as they change there.
+    /// Centre and P on a base of this curvature: interpolated between the five fits, extrapolated
+    /// beyond.
     pub fn at(&self, curvature: Curvature) -> [f64; 5] {
         let mut numbers = self.numbers[0];
         for (axis, k) in curvature.per_m.into_iter().enumerate() {
@@ -55,14 +58,15 @@ impl CurvedEllipses {
         numbers
     }
 
-    /// Whether light from a direction of the sample's own frame arrives, a unit vector whose z is above 0; or the sample is
-    /// seen from there.
+    /// Whether light arrives from a unit vector in the grid point's own frame, z above 0. The
+    /// visibility of the grid point from that direction is the same.
     pub fn holds(&self, curvature: Curvature, direction: DVec3) -> bool {
         holds(self.at(curvature), direction)
     }
 }
 
-/// Whether |P⁻¹ v| ≤ 1 of v from the centre: |adj P v| ≤ det P. A shape that has shrunk to nothing and beyond holds nothing.
+/// Whether |P⁻¹ v| ≤ 1 for v from the centre: |adj P v| ≤ det P. A shape extrapolated beyond
+/// nothing is empty.
 fn holds([x, y, xx, yy, xy]: [f64; 5], direction: DVec3) -> bool {
     let v = direction.truncate() - DVec2::new(x, y);
     let determinant = xx * yy - xy * xy;

@@ -1,36 +1,33 @@
-//! From values to texels and back, and by how much that may be off.
-
-mod light;
+//! Texel encodings of baked values, with error bounds.
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub use ridgelight_io::Component;
 
-pub use light::{HARMONIC_WEIGHTS, RADIANCE, REFLECTED, TEXELS};
-
-/// What a decoder in f32 may add to a component of at most 1: its conversion and a product or two.
+/// Error that an f32 decoder may add to a component of at most 1: a conversion and one or two
+/// products.
 const DECODER: f64 = 1.0 / (1 << 22) as f64;
 
-/// A promise: how far a decoded quantity may be from the value that was encoded.
+/// Guaranteed bound on the error of a decoded quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
-    /// Of what.
+    /// Name of the quantity.
     pub of: &'static str,
-    /// "rad", or nothing.
+    /// "rad", or empty.
     pub unit: &'static str,
-    /// Times the half step of a component.
+    /// Half steps of a component.
     pub half_steps: f64,
-    /// How far values are from others in this, and how large it is of the others.
-    pub off: fn(&[f64], &[f64]) -> [f64; 2],
+    /// Error of decoded values against the originals, and the original's magnitude.
+    pub error: fn(&[f64], &[f64]) -> [f64; 2],
 }
 
-/// Of the one at a place.
+/// Error of the value at one index.
 const fn at<const PLACE: usize>() -> fn(&[f64], &[f64]) -> [f64; 2] {
     |is, was| [(is[PLACE] - was[PLACE]).abs(), was[PLACE].abs()]
 }
 
-/// Of all, the one that is farthest off.
+/// Largest error of all values.
 fn farthest(is: &[f64], was: &[f64]) -> [f64; 2] {
     let all = is.iter().zip(was).map(|(i, w)| [(i - w).abs(), w.abs()]);
     all.max_by(|a, b| a[0].total_cmp(&b[0])).unwrap_or_default()
@@ -47,24 +44,25 @@ fn direction(is: &[f64], was: &[f64]) -> [f64; 2] {
 }
 
 impl Bound {
-    /// At most this, and [`relative`](Self::relative) of the value besides; what a decoder in f32 adds is in it.
+    /// Absolute bound, which adds to [`relative`](Self::relative) times the value. Includes the
+    /// error of an f32 decoder.
     pub fn absolute(&self, component: Component) -> f64 {
         match component {
-            // Half the least step.
+            // Half the smallest subnormal step.
             Component::F16 => self.half_steps / f64::from(1 << 25),
             Component::F32 => 0.0,
             _ => self.half_steps * (component.half_step() + DECODER),
         }
     }
 
-    /// By how much values are beyond what is promised of others: 1 is all of it.
+    /// Error of decoded values as a share of the bound; 1 is the bound itself.
     pub fn share(&self, component: Component, is: &[f64], was: &[f64]) -> f64 {
-        let [off, value] = (self.off)(is, was);
+        let [error, value] = (self.error)(is, was);
         let allowed = self.absolute(component) + self.relative(component) * value;
-        if off == 0.0 { 0.0 } else { off / allowed }
+        if error == 0.0 { 0.0 } else { error / allowed }
     }
 
-    /// A share of the value itself, of floats: half a step and the decoder's.
+    /// Relative bound of float components: half a step, and the error of an f32 decoder.
     pub fn relative(&self, component: Component) -> f64 {
         match component {
             Component::F16 => 1.0 / 2048.0 + DECODER,
@@ -74,32 +72,32 @@ impl Bound {
     }
 }
 
-/// How values of a kind become the components of a texel.
+/// How values become the components of a texel.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoding {
-    /// As the command line calls it.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What holds each.
+    /// Format of each component.
     pub component: Component,
-    /// Values that a texel stands for.
+    /// Values per texel.
     pub values: usize,
-    /// Components that it takes.
+    /// Components per texel.
     pub components: usize,
     /// Values to components, each in the component's range.
     pub encode: fn(&[f64], &mut [f64]),
     /// Components to values.
     pub decode: fn(&[f64], &mut [f64]),
-    /// The same in words, for the sheet; components are r, g, b and a.
+    /// The decoding formula, for the manifest; components are r, g, b and a.
     pub decoding: &'static str,
-    /// What is promised.
+    /// Guaranteed error bounds.
     pub bounds: &'static [Bound],
 }
 
 impl Encoding {
-    /// Values as they come back from a texel, decoded in f64.
+    /// Encodes to the component's precision and decodes in f64.
     ///
     /// # Panics
-    /// When there are not as many as [`values`](Self::values).
+    /// Another number of values than [`values`](Self::values).
     pub fn packed(&self, values: &[f64]) -> Vec<f64> {
         assert_eq!(values.len(), self.values, "values of a texel");
         let (mut texel, mut back) = (vec![0.0; self.components], vec![0.0; self.values]);
@@ -110,7 +108,7 @@ impl Encoding {
     }
 }
 
-/// The one of that name.
+/// The encoding of that name.
 pub fn encoding_named(all: &'static [Encoding], name: &str) -> Option<&'static Encoding> {
     all.iter().find(|encoding| encoding.name == name)
 }
@@ -131,7 +129,7 @@ const SCALAR: Encoding = Encoding {
 };
 
 const ELEVATION: &[Bound] =
-    &[Bound { of: "elevation", unit: "rad", half_steps: FRAC_PI_2, off: at::<0>() }];
+    &[Bound { of: "elevation", unit: "rad", half_steps: FRAC_PI_2, error: at::<0>() }];
 
 const ANGLE: Encoding = Encoding {
     encode: |value, texel| texel[0] = value[0] / FRAC_PI_2,
@@ -141,9 +139,9 @@ const ANGLE: Encoding = Encoding {
     ..SCALAR
 };
 
-/// Of horizons, radians: fractions of a right angle, whose step is the same at all elevations, or the sine, which
-/// light takes without another function but which is coarse near the zenith. A sine and an unsigned fraction hold no
-/// horizon below horizontal.
+/// Horizon elevation, radians: a fraction of a right angle with a uniform step, or the sine.
+/// Lighting needs no further function of the sine, which is coarse near the zenith. The sine and
+/// the unsigned fraction cannot store horizons below horizontal.
 pub static HORIZON: [Encoding; 5] = [
     Encoding { name: "snorm16-angle", component: Component::Snorm16, ..ANGLE },
     Encoding { name: "snorm8-angle", component: Component::Snorm8, ..ANGLE },
@@ -154,27 +152,28 @@ pub static HORIZON: [Encoding; 5] = [
         encode: |value, texel| texel[0] = value[0].sin(),
         decode: |texel, value| value[0] = texel[0].min(1.0).asin(),
         decoding: "sine of the elevation = r",
-        bounds: &[Bound { of: "sine of the elevation", unit: "", half_steps: 1.0, off: sine }],
+        bounds: &[Bound { of: "sine of the elevation", unit: "", half_steps: 1.0, error: sine }],
         ..SCALAR
     },
     Encoding { bounds: ELEVATION, decoding: "elevation = r", ..SCALAR },
 ];
 
-const SHARES: &[Bound] = &[Bound { of: "share", unit: "", half_steps: 1.0, off: at::<0>() }];
+const SHARES: &[Bound] = &[Bound { of: "share", unit: "", half_steps: 1.0, error: at::<0>() }];
 
-/// Of shares, 0 to 1.
+/// Shares, 0 to 1.
 pub static SHARE: [Encoding; 3] = [
     Encoding { name: "unorm16", component: Component::Unorm16, bounds: SHARES, ..SCALAR },
     Encoding { name: "unorm8", component: Component::Unorm8, bounds: SHARES, ..SCALAR },
     Encoding { bounds: SHARES, ..SCALAR },
 ];
 
-/// The upper half of an octahedron, turned by 45° so that it fills the square (Cigolle et al. 2014, hemi-oct): with
-/// p = (x, y)/(|x| + |y| + z), u = p_x + p_y and v = p_x - p_y. Continuous all over, so that it may be filtered.
+/// The upper half of an octahedron, rotated by 45° to fill the square (Cigolle et al. 2014,
+/// hemi-oct): with p = (x, y)/(|x| + |y| + z), u = p_x + p_y and v = p_x - p_y. It is continuous,
+/// so textures may be filtered.
 ///
-/// Steps δ of u and v move p by at most δ and z = 1 - |p_x| - |p_y| by at most δ, the point on the octahedron by
-/// √2 δ; it is at least 1/√3 from the middle, so the direction turns by at most asin(√6 δ). In half steps of components,
-/// of which u and v are twice as wide, 2 √6 = 4.899.
+/// Steps δ of u and v move p by at most δ and z = 1 - |p_x| - |p_y| by at most δ, the point on the
+/// octahedron by √2 δ. It is at least 1/√3 from the centre, so the direction turns by at most
+/// asin(√6 δ). In half steps of components, of which u and v are twice as wide, 2 √6 = 4.899.
 const OCTAHEDRAL: Encoding = Encoding {
     values: 4,
     components: 3,
@@ -195,13 +194,14 @@ const OCTAHEDRAL: Encoding = Encoding {
     decoding: "u = 2r - 1, v = 2g - 1, x = (u + v)/2, y = (u - v)/2, direction = normalize(x, y, 1 - |x| - |y|), \
                cone's half-angle = b π",
     bounds: &[
-        Bound { of: "direction", unit: "rad", half_steps: 4.9, off: direction },
-        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, off: at::<3>() },
+        Bound { of: "direction", unit: "rad", half_steps: 4.9, error: direction },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, error: at::<3>() },
     ],
     ..SCALAR
 };
 
-/// Steps δ of three components move a unit vector by at most √3 δ, so it turns by asin(√3 δ).
+/// Steps δ of three components move a unit vector by at most √3 δ, so it turns by at most asin(√3
+/// δ).
 const XYZ: Encoding = Encoding {
     values: 4,
     components: 4,
@@ -218,13 +218,13 @@ const XYZ: Encoding = Encoding {
     },
     decoding: "direction = normalize(r, g, b), cone's half-angle = a π",
     bounds: &[
-        Bound { of: "direction", unit: "rad", half_steps: 1.7322, off: direction },
-        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, off: at::<3>() },
+        Bound { of: "direction", unit: "rad", half_steps: 1.7322, error: direction },
+        Bound { of: "cone's half-angle", unit: "rad", half_steps: PI, error: at::<3>() },
     ],
     ..SCALAR
 };
 
-/// Of a direction above horizontal and the half-angle of a cone, radians.
+/// A direction above horizontal and a cone's half-angle, radians.
 pub static BENT_NORMAL: [Encoding; 5] = [
     Encoding { name: "unorm16-octahedral", component: Component::Unorm16, ..OCTAHEDRAL },
     Encoding { name: "unorm8-octahedral", component: Component::Unorm8, ..OCTAHEDRAL },
@@ -239,9 +239,9 @@ pub static BENT_NORMAL: [Encoding; 5] = [
                 of: "components of the direction",
                 unit: "",
                 half_steps: 1.0,
-                off: |is, was| farthest(&is[..3], &was[..3]),
+                error: |is, was| farthest(&is[..3], &was[..3]),
             },
-            Bound { of: "cone's half-angle", unit: "rad", half_steps: 1.0, off: at::<3>() },
+            Bound { of: "cone's half-angle", unit: "rad", half_steps: 1.0, error: at::<3>() },
         ],
         ..SCALAR
     },
@@ -251,21 +251,21 @@ const FOUR: Encoding = Encoding {
     values: 4,
     components: 4,
     decoding: "coefficients 4k to 4k + 3 of layer k = r, g, b, a",
-    bounds: &[Bound { of: "coefficient", unit: "", half_steps: 1.0, off: farthest }],
+    bounds: &[Bound { of: "coefficient", unit: "", half_steps: 1.0, error: farthest }],
     ..SCALAR
 };
 
-/// Of coefficients, four a texel.
+/// SH coefficients, four per texel.
 pub static COEFFICIENTS: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..FOUR }, FOUR];
 
 const SIX: Encoding = Encoding {
     decoding: "layer 0: centre = (r, g), axis = (b, a); layer 1: 1 / radius along the axis = r, across it = g",
-    bounds: &[Bound { of: "number", unit: "", half_steps: 1.0, off: farthest }],
+    bounds: &[Bound { of: "number", unit: "", half_steps: 1.0, error: farthest }],
     ..FOUR
 };
 
-/// Of ellipses: six numbers in two layers.
+/// Visibility ellipses: six numbers in two layers.
 pub static ELLIPSE: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..SIX }, SIX];
 
@@ -275,11 +275,11 @@ const CURVED: Encoding = Encoding {
     ..SIX
 };
 
-/// Of five ellipses, centre and symmetric matrix: 25 numbers in seven layers.
+/// Five ellipses as centre and symmetric matrix: 25 numbers in seven layers.
 pub static CURVED_ELLIPSE: [Encoding; 2] =
     [Encoding { name: "f16", component: Component::F16, ..CURVED }, CURVED];
 
-/// Of rows and columns up to 65532, -1 for sky and -2 for ground: whole numbers that come back as they were.
+/// Rows and columns up to 65532, -1 for sky and -2 for ground. The integers are exact.
 pub static POINTS: [Encoding; 1] = [Encoding {
     name: "unorm16",
     component: Component::Unorm16,
@@ -296,8 +296,46 @@ pub static POINTS: [Encoding; 1] = [Encoding {
         }
     },
     decoding: "row = round(65535 r) - 2, column = round(65535 g) - 2",
-    bounds: &[Bound { of: "row and column", unit: "samples", half_steps: 0.0, off: farthest }],
+    bounds: &[Bound { of: "row and column", unit: "samples", half_steps: 0.0, error: farthest }],
 }];
+
+const COLOUR: Encoding = Encoding {
+    values: 3,
+    components: 3,
+    encode: same,
+    decode: same,
+    decoding: "r, g, b",
+    bounds: &[Bound { of: "colour", unit: "", half_steps: 1.0, error: farthest }],
+    ..SCALAR
+};
+
+const HALF: Encoding = Encoding { name: "f16", component: Component::F16, ..COLOUR };
+
+/// Radiance, and its standard error in the next layer.
+pub static RADIANCE: [Encoding; 2] = {
+    const DECODING: &str = "layer 0: radiance = r, g, b; layer 1: its standard error = r, g, b";
+    [Encoding { decoding: DECODING, ..HALF }, Encoding { decoding: DECODING, ..COLOUR }]
+};
+
+/// A BRDF table, 1/sr.
+pub static REFLECTED: [Encoding; 2] =
+    [Encoding { component: Component::F32, name: "f32", ..COLOUR }, HALF];
+
+/// Weights of products of harmonics, 1/sr. They cancel each other, so f16 would leave too large an
+/// error.
+pub static HARMONIC_WEIGHTS: [Encoding; 1] =
+    [Encoding { component: Component::F32, name: "f32", ..COLOUR }];
+
+/// Radiance, and the part of the view that a texel fills.
+pub static TEXELS: [Encoding; 2] = {
+    const TEXEL: Encoding = Encoding {
+        values: 4,
+        components: 4,
+        decoding: "radiance = r, g, b; share of the view = a",
+        ..COLOUR
+    };
+    [Encoding { name: "f16", component: Component::F16, ..TEXEL }, TEXEL]
+};
 
 #[cfg(test)]
 mod tests;

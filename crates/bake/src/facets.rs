@@ -1,92 +1,99 @@
-//! A field as its flat triangles, and what each shows of itself in each of a set of directions.
+//! A height field as flat triangles, and the visibility of each triangle from a set of directions.
 //!
-//! From far away a field that repeats is a plane. A light of irradiance 1 facing it, from l, brings the plane l_z; seen
-//! from v, each part of the plane's area A fills A v_z of the view. Of the surface x above it, an area dx of the plan is
-//! dx / n_z of slope, which fills (n·v)⁺ dx / n_z of the view where V(x, v) = 1, that is where nothing hides it from v: every
-//! line of sight ends somewhere, so that ∫ V (n·v)⁺ / n_z dx = A v_z. The radiance seen is the mean over what is seen,
+//! In the far field a periodic height field is a plane. A light of irradiance 1 facing it, from l,
+//! gives the plane l_z; seen from v, each part of the plane's area A fills A v_z of the view. An
+//! area dx of the plan has the area dx / n_z on the slope. It fills (n·v)⁺ dx / n_z of the view
+//! where V(x, v) = 1, that is where nothing occludes it from v. Every view ray hits the surface, so
+//! ∫ V (n·v)⁺ / n_z dx = A v_z. The radiance of a view is the mean over the visible surface,
 //!
 //! > L(v) = ∫ L(x, v) V(x, v) (n·v)⁺ / n_z dx / (A v_z),   f(l, v) = L(v) / l_z.
 //!
-//! Of diffuse ground without scattered light L(x) = ρ/π V(x, l) (n·l)⁺, so
+//! For a diffuse surface without indirect light L(x) = ρ/π V(x, l) (n·l)⁺, so
 //!
-//! > f(l, v) = 1/(A l_z v_z) ∫ ρ/π V(x, l) V(x, v) (n·l)⁺ (n·v)⁺ / n_z dx,
+//! > f(l, v) = 1/(A l_z v_z) ∫ ρ/π V(x, l) V(x, v) (n·l)⁺ (n·v)⁺ / n_z dx.
 //!
-//! the same with l and v exchanged, and ∫ f v_z dv ≤ ρ, as ∫ (n·v)⁺ dv = π and ∫ V (n·l)⁺ / n_z dx = A l_z.
+//! f is reciprocal, and ∫ f v_z dv ≤ ρ, as ∫ (n·v)⁺ dv = π and ∫ V (n·l)⁺ / n_z dx = A l_z.
 //!
-//! A lobe of share s and exponent k ([`Phong`](ridgelight::scene::Phong)) adds L(x, v) = s p(l, v) V(x, l) where n·l > 0, with
-//! p = (k + 1)/2π (r·l)⁺ᵏ about the mirror direction r of v: no cosine in it, so that level ground has the closed form
+//! [Phong specular](ridgelight::scene::PhongSpecular) of scale s and exponent k adds L(x, v) = s
+//! p(l, v) V(x, l) where n·l > 0, with p = (k + 1)/2π (r·l)⁺ᵏ about the mirror direction r of v. It
+//! has no cosine, so level ground has the closed form
 //!
 //! > f(l, v) = ρ/π + s p(l, v) / l_z.
 //!
-//! p is the same with l and v exchanged, s p / (n·l), which a lobe reflects of what falls on it, is not: **f is not reciprocal
-//! where there are lobes**. Nor is it bounded by the light: a light at grazing angles brings little, a lobe takes no less of
-//! it, and more may leave than arrives. It is bounded by the view: ∫ p dl ≤ 1, so that under light of 1 from all sides
-//! ∫ f l_z dl ≤ ρ + s whatever the view. [`Brdf`](super::Brdf) says how far it is from both, where its directions are as close
-//! as lobes are wide: a sum over others is no such integral.
+//! p is reciprocal, but s p / (n·l), the reflected share of the irradiance, is not: **f is not
+//! reciprocal with Phong specular**. Nor does the irradiance bound it: at grazing angles more may
+//! leave than arrives. The view bounds it: ∫ p dl ≤ 1, so under light of 1 from all sides ∫ f l_z
+//! dl ≤ ρ + s for every view. [`Brdf`](super::Brdf) measures both departures, provided that its
+//! directions are as dense as Phong lobes are wide: otherwise a sum does not approximate these
+//! integrals.
 //!
-//! Here x are flat triangles, whose slopes are exact, each seen or hidden as a whole by what its middle sees. Where the
-//! edge of what is hidden crosses a triangle, that errs by up to its share, and their sum S(v) is not quite v_z: shares are
-//! taken times v_z / S(v), so that a light brings the triangles what it brings the plane, l_z, and they fill a view as the
-//! plane does, v_z. The exchange of l and v stays exact of what is diffuse; what leaves of that is at most ρ times what sum of
-//! cosines a triangle has over a set of directions. What a lobe mirrors is scaled as its light is, so that a view sees up to
-//! l_z / S(l) times s. [`Facets::closure`] is how far S is off, and finer triangles bring it to 1.
+//! x runs over flat triangles, whose slopes are exact. Each is visible or occluded as a whole, by a
+//! ray from its centroid. A triangle that a visibility edge crosses has an error of up to its
+//! share, and the sum S(v) of all shares differs from v_z. Shares are therefore scaled by v_z /
+//! S(v): a light gives the triangles the plane's irradiance l_z, and they fill v_z of a view. The
+//! diffuse part stays exactly reciprocal; its reflected share is at most ρ times a triangle's sum
+//! of cosines over the set of directions. The specular part is scaled by the light's factor, so a
+//! view receives up to l_z / S(l) times s. [`Facets::closure`] is S(v) / v_z; finer triangles bring
+//! it to 1.
 
-mod samples;
+mod grid_points;
 
 use std::f64::consts::{PI, TAU};
 
 use ridgelight::plan::DIRECTIONS_A_WORD;
-use ridgelight::scene::{Albedo, Border, Directions, LOST_RAY, Phong, Scene};
+use ridgelight::scene::{Albedo, Border, Directions, LOST_RAY, PhongSpecular, Scene};
 use ridgelight::{Error, Result};
 use ridgelight_cpu::facet_mask::cells;
 
-/// A ray of a word took more steps than there can be.
+/// A ray of this word exceeded the step limit.
 const LOST: u32 = 1 << 31;
 
-/// A field's triangles, cut so many times finer, and in which directions each is seen.
+/// The triangles of a refined field, and their visibility from a set of directions.
 #[derive(Clone, Debug)]
 pub struct Facets {
     directions: Directions,
     times: usize,
-    /// Columns and rows of the field and of the finer one's cells.
+    /// Columns and rows: of the field, and of the refined field's cells.
     size: [usize; 2],
     cells: [usize; 2],
-    /// Rise a length unit towards east and north.
+    /// Slopes towards east and north, rise over run.
     slopes: Vec<[f64; 2]>,
     albedo: Vec<[f64; 3]>,
-    /// Exponents and shares, where anything is mirrored.
-    lobes: Option<Vec<[f64; 2]>>,
+    /// Phong exponents and scales, where the surface has any.
+    specular: Option<Vec<[f64; 2]>>,
     words: Vec<u32>,
     /// v_z / S(v) of each direction, infinite of those that show no front of a triangle; else of a field that ends 1.
     scales: Vec<f64>,
     repeats: bool,
 }
 
-/// Exit radiance of all triangles under one light, R, G, B each.
+/// Exit radiance of all triangles under one light, R, G, B.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExitRadiance {
-    /// Of each triangle, towards all views alike.
+    /// Diffuse: each triangle, the same towards all views.
     alike: Vec<[f64; 3]>,
-    /// The direction of the light that lobes mirror besides, of irradiance 1 facing it.
+    /// Index of the light direction for Phong specular, of irradiance 1 facing it.
     mirrored: Option<usize>,
-    /// What samples scatter towards each direction from the first on, where that is not alike.
+    /// Indirect light of grid points towards each direction from this index on, where it depends on
+    /// the view.
     towards: Option<(usize, Vec<Vec<[f32; 3]>>)>,
 }
 
 impl From<Vec<[f64; 3]>> for ExitRadiance {
-    /// Of each triangle, towards all views alike.
+    /// Diffuse radiance of each triangle.
     fn from(alike: Vec<[f64; 3]>) -> Self {
         Self { alike, mirrored: None, towards: None }
     }
 }
 
 impl ExitRadiance {
-    /// What leaves each triangle towards all views alike.
+    /// Each triangle's radiance, the same towards all views.
     pub fn alike(&self) -> &[[f64; 3]] {
         &self.alike
     }
 
-    /// With what samples scatter, linear between them, towards each direction from number `first` on: no other may then look.
+    /// Adds indirect light of grid points towards directions from index `first` on, linearly
+    /// interpolated. No other view may then be evaluated.
     #[must_use]
     pub fn scattering(self, first: usize, towards: Vec<Vec<[f32; 3]>>) -> Self {
         Self { towards: Some((first, towards)), ..self }
@@ -94,12 +101,13 @@ impl ExitRadiance {
 }
 
 impl Facets {
-    /// Of a scene, whose light is none of this, and the words that [`plan::facet_mask`](ridgelight::plan::facet_mask) leaves of
-    /// its field `times` [`finer`](ridgelight::scene::HeightField::finer).
+    /// From a scene, whose lights are ignored, and the words of
+    /// [`plan::facet_mask`](ridgelight::plan::facet_mask) for its field `times`
+    /// [`finer`](ridgelight::scene::HeightField::finer).
     ///
     /// # Errors
-    /// A direction at or below horizontal, from where no plane is seen; other than a word a cell and fifteen
-    /// directions; a ray that the device has lost.
+    /// A direction at or below horizontal; another count than one word per cell and fifteen
+    /// directions; a ray that the device lost.
     pub fn of(
         scene: &Scene,
         times: usize,
@@ -108,7 +116,11 @@ impl Facets {
     ) -> Result<Self> {
         if let Some(i) = directions.vectors().iter().position(|v| v.z <= 0.0) {
             let found = format!("{}", directions.vectors()[i]);
-            return Err(Error::setting(format!("direction {i}"), found, "one above horizontal"));
+            return Err(Error::setting(
+                format!("direction {i}"),
+                found,
+                "a direction above horizontal",
+            ));
         }
         let finer = scene.finer(times)?;
         let (field, border) = (&finer.field, scene.surface.border);
@@ -117,15 +129,15 @@ impl Facets {
         let wanted = directions.count().div_ceil(DIRECTIONS_A_WORD) * count;
         if words.len() != wanted {
             let found = format!("{} words", words.len());
-            return Err(Error::setting("triangles seen", found, format!("{wanted} words")));
+            return Err(Error::setting("visible triangles", found, format!("{wanted} words")));
         }
         if let Some(i) = words.iter().position(|word| word & LOST != 0) {
-            let doing = format!("triangles seen: word {i}");
+            let doing = format!("visible triangles: word {i}");
             return Err(Error::Device { doing, reason: LOST_RAY.to_owned() });
         }
         let [cell_x, cell_y] = field.cell_m();
-        let lobe = finer.surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
-        let mut lobes = lobe.map(|_| Vec::with_capacity(2 * count));
+        let surface = finer.surface.specular.as_ref().filter(|phong| phong.largest().scale > 0.0);
+        let mut specular = surface.map(|_| Vec::with_capacity(2 * count));
         let (mut slopes, mut albedo) = (Vec::with_capacity(2 * count), Vec::new());
         for facet in 0..2 * count {
             let corners = corners_of(facet, cells[0], [field.cols(), field.rows()]);
@@ -139,18 +151,28 @@ impl Facets {
                 Albedo::Map(map) => [0, 1, 2]
                     .map(|c| corners.iter().map(|i| f64::from(map[*i][c])).sum::<f64>() / 3.0),
             });
-            if let (Some(lobes), Some(lobe)) = (&mut lobes, lobe) {
-                let all = corners.map(|i| lobe.at(i));
-                let mean = |of: fn(&Phong) -> f32| -> f64 {
-                    all.iter().map(|phong| f64::from(of(phong))).sum::<f64>() / 3.0
+            if let (Some(all), Some(surface)) = (&mut specular, surface) {
+                let of_corners = corners.map(|i| surface.at(i));
+                let mean = |of: fn(&PhongSpecular) -> f32| -> f64 {
+                    of_corners.iter().map(|phong| f64::from(of(phong))).sum::<f64>() / 3.0
                 };
-                lobes.push([mean(|phong| phong.exponent), mean(|phong| phong.scale)]);
+                all.push([mean(|phong| phong.exponent), mean(|phong| phong.scale)]);
             }
         }
         let size = [scene.field.cols(), scene.field.rows()];
         let (scales, repeats) = (Vec::new(), border == Border::Periodic);
-        let mut all =
-            Self { directions, times, size, cells, slopes, albedo, lobes, words, scales, repeats };
+        let mut all = Self {
+            directions,
+            times,
+            size,
+            cells,
+            slopes,
+            albedo,
+            specular,
+            words,
+            scales,
+            repeats,
+        };
         let sums = all.of_all(|direction| all.shares(direction).map(|s| s.1).sum::<f64>());
         let facets = all.slopes.len() as f64;
         let heights = all.directions.vectors().iter().map(|v| v.z);
@@ -159,112 +181,116 @@ impl Facets {
         Ok(all)
     }
 
-    /// In which triangles are seen.
+    /// The directions of the visibility.
     pub fn directions(&self) -> &Directions {
         &self.directions
     }
 
-    /// How many triangles.
+    /// Number of triangles.
     pub fn count(&self) -> usize {
         self.slopes.len()
     }
 
-    /// How many finer than the field.
+    /// Refinement factor of the field.
     pub fn times(&self) -> usize {
         self.times
     }
 
-    /// S(v) / v_z: what the triangles that are seen from a direction fill of the view, of what the plane does; 1 but for those
-    /// that are hidden in part, 0 where it shows no front of a triangle.
+    /// S(v) / v_z: the visible triangles' part of the view over the plane's. It differs from 1 by
+    /// partly visible triangles, and is 0 where no front face is visible.
     pub fn closure(&self, direction: usize) -> f64 {
         1.0 / self.scales[direction]
     }
 
-    /// Whether there are lobes: what leaves is then not alike towards all views.
-    pub fn has_lobes(&self) -> bool {
-        self.lobes.is_some()
+    /// Whether there is Phong specular, which makes radiance depend on the view.
+    pub fn has_specular(&self) -> bool {
+        self.specular.is_some()
     }
 
-    /// Of the triangles that mirror anything the largest exponent, and the largest share that comes with it: a triangle has the
-    /// means of its corners.
-    pub fn sharpest(&self) -> Option<Phong> {
-        let mirrors = self.lobes.iter().flatten().filter(|[_, scale]| *scale > 0.0);
+    /// The largest exponent of triangles with a scale above 0, and the largest scale with that
+    /// exponent. A triangle has the mean of its corners.
+    pub fn sharpest(&self) -> Option<PhongSpecular> {
+        let mirrors = self.specular.iter().flatten().filter(|[_, scale]| *scale > 0.0);
         let sharpest = mirrors.max_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        sharpest.map(|[exponent, scale]| Phong { exponent: *exponent as f32, scale: *scale as f32 })
+        sharpest.map(|[exponent, scale]| PhongSpecular {
+            exponent: *exponent as f32,
+            scale: *scale as f32,
+        })
     }
 
-    /// Whether a direction shows the front of any triangle.
+    /// Whether any front face is visible from a direction.
     pub fn shows(&self, direction: usize) -> bool {
         self.scales[direction].is_finite()
     }
 
-    /// Refuses what is no plane from afar.
+    /// Refuses a field without a far field.
     ///
     /// # Errors
-    /// A field that does not repeat; a direction that shows nothing at all, by its number: finer triangles may.
+    /// A field that does not repeat; a direction, by its index, from which no front face is visible
+    /// (finer triangles may help).
     pub fn check(&self) -> Result<()> {
         if !self.repeats {
-            let expected = "periodic: from afar, ground that goes on without end is a plane";
+            let expected = "a periodic one: only repeating ground has a far field";
             return Err(Error::setting("border", "a field that ends", expected));
         }
         let Some(i) = self.scales.iter().position(|s| !s.is_finite()) else { return Ok(()) };
         let found = self.directions.vectors()[i].to_string();
-        let expected = "one that shows a triangle: a finer field, or less near to horizontal";
+        let expected = "one with a visible front face: refine the field, or raise the direction";
         Err(Error::setting(format!("direction {i}"), found, expected))
     }
 
-    /// Whether a direction sees a triangle, and how much of a view from there that fills over its own area of the plan, more
-    /// than 0. Backs, which a field that ends may show, fill nothing: a direction that shows them alone has no scale.
-    fn seen(&self, direction: usize) -> impl Fn(usize) -> Option<f64> {
+    /// Whether a triangle is visible from a direction, and its part of the view over its own area
+    /// of the plan, above 0. Back faces, which a bounded field may show, count for nothing.
+    fn visible(&self, direction: usize) -> impl Fn(usize) -> Option<f64> {
         let e = self.directions.vectors()[direction];
         let cells = self.cells[0] * self.cells[1];
         let first = direction / DIRECTIONS_A_WORD * cells;
         let bit = 2 * (direction % DIRECTIONS_A_WORD);
         let words = &self.words[first..first + cells];
         move |facet| {
-            let is_seen = words[facet / 2] >> (bit + facet % 2) & 1 == 1;
+            let is_visible = words[facet / 2] >> (bit + facet % 2) & 1 == 1;
             let [east, north] = self.slopes[facet];
             let share = e.z - east * e.x - north * e.y;
-            (is_seen && share > 0.0).then_some(share)
+            (is_visible && share > 0.0).then_some(share)
         }
     }
 
-    /// The triangles that are seen from a direction, each with its [`seen`](Self::seen).
+    /// The triangles visible from a direction, each with its [`visible`](Self::visible).
     fn shares(&self, direction: usize) -> impl Iterator<Item = (usize, f64)> {
-        let seen = self.seen(direction);
-        (0..self.slopes.len()).filter_map(move |facet| Some((facet, seen(facet)?)))
+        let visible = self.visible(direction);
+        (0..self.slopes.len()).filter_map(move |facet| Some((facet, visible(facet)?)))
     }
 
-    /// Area of a triangle over that of its plan.
+    /// Area of a triangle over its area on the plan.
     fn area(&self, facet: usize) -> f64 {
         let [east, north] = self.slopes[facet];
         (1.0 + east * east + north * north).sqrt()
     }
 
-    /// Exit radiance of all triangles, without scattered light, under a light of irradiance 1 facing it from direction
-    /// `light`.
+    /// Exit radiance of all triangles by direct light of irradiance 1 facing direction `light`.
     pub fn lit_from(&self, light: usize) -> ExitRadiance {
         let mut alike = vec![[0.0; 3]; self.slopes.len()];
         for (facet, share) in self.shares(light) {
             let irradiance = self.scales[light] * share / self.area(facet);
             alike[facet] = self.albedo[facet].map(|albedo| albedo / PI * irradiance);
         }
-        let mirrored = self.lobes.is_some().then_some(light);
+        let mirrored = self.specular.is_some().then_some(light);
         ExitRadiance { alike, mirrored, towards: None }
     }
 
-    /// What leaves a triangle towards a direction that sees it and of whose view it fills `share`.
+    /// Radiance of a triangle towards a direction from which it is visible and fills `share` of the
+    /// view.
     fn towards(&self, (view, share): (usize, f64), facet: usize, light: &ExitRadiance) -> [f64; 3] {
         let mut sum = light.alike[facet];
         if let Some((first, towards)) = &light.towards {
-            let samples = &towards[view - first];
-            for (sample, part) in self.between(facet) {
-                (0..3).for_each(|c| sum[c] += part * f64::from(samples[sample][c]));
+            let points = &towards[view - first];
+            for (point, part) in self.between(facet) {
+                (0..3).for_each(|c| sum[c] += part * f64::from(points[point][c]));
             }
         }
-        let (Some(lobes), Some(from)) = (&self.lobes, light.mirrored) else { return sum };
-        let [exponent, scale] = lobes[facet];
-        let Some(lit) = self.seen(from)(facet) else { return sum };
+        let (Some(specular), Some(from)) = (&self.specular, light.mirrored) else { return sum };
+        let [exponent, scale] = specular[facet];
+        let Some(lit) = self.visible(from)(facet) else { return sum };
         let [l, v] = [from, view].map(|i| self.directions.vectors()[i]);
         let [east, north] = self.slopes[facet];
         // r·l = 2 (n·v)(n·l) - v·l, and a share is the cosine times the area over the plan's, √(1 + slope²).
@@ -276,19 +302,19 @@ impl Facets {
         sum
     }
 
-    /// Mean radiance of what is seen from each direction.
+    /// Mean visible radiance from each direction.
     ///
     /// # Panics
-    /// Where light is not scattered towards all of them: [`ExitRadiance::scattering`].
-    pub fn seen_from_all(&self, light: &ExitRadiance) -> Vec<[f64; 3]> {
-        self.of_all(|view| self.seen_from(view, light))
+    /// Indirect light that does not cover all directions: [`ExitRadiance::scattering`].
+    pub fn radiance_from_all(&self, light: &ExitRadiance) -> Vec<[f64; 3]> {
+        self.of_all(|view| self.radiance_from(view, light))
     }
 
-    /// Mean radiance of what is seen from direction `view`; 0 where nothing is.
+    /// Mean visible radiance from direction `view`; 0 where nothing is visible.
     ///
     /// # Panics
-    /// Where light is not scattered towards that.
-    pub fn seen_from(&self, view: usize, light: &ExitRadiance) -> [f64; 3] {
+    /// Indirect light that does not cover this view.
+    pub fn radiance_from(&self, view: usize, light: &ExitRadiance) -> [f64; 3] {
         let (mut sum, mut whole) = ([0.0; 3], 0.0);
         for (facet, share) in self.shares(view) {
             let radiance = self.towards((view, share), facet, light);
@@ -298,7 +324,7 @@ impl Facets {
         if whole > 0.0 { sum.map(|s| s / whole) } else { sum }
     }
 
-    /// Runs over all directions, on as many threads as there are processors.
+    /// Runs over all directions on all processors.
     fn of_all<T: Send>(&self, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
         let count = self.directions.count();
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -319,7 +345,7 @@ impl Facets {
     }
 }
 
-/// A triangle's samples: of its diagonal's north-western end, of the corner beside it, of the other end.
+/// A triangle's grid points: the diagonal's north-western end, the corner beside it, the other end.
 fn corners_of(facet: usize, cells_x: usize, [cols, rows]: [usize; 2]) -> [usize; 3] {
     let [row, col] = [facet / 2 / cells_x, facet / 2 % cells_x];
     let [below, right] = [(row + 1) % rows, (col + 1) % cols];

@@ -1,39 +1,42 @@
-//! A table of what is reflected as a short sum of products of two functions of one direction each.
+//! A BRDF table as a short sum of products of two functions of one direction each.
 
 use glam::DVec3;
 
 use super::{Angles, Brdf};
 use ridgelight::{Error, Result};
 
-/// f(l, v) ≈ Σ g_k(l) h_k(v), each g_k and h_k over a grid of angles, R, G, B (separable approximation: Kautz & McCool 1999).
+/// f(l, v) ≈ Σ g_k(l) h_k(v), each g_k and h_k over a grid of angles, R, G, B (separable
+/// approximation: Kautz & McCool 1999).
 ///
-/// Of what is diffuse, g_k and h_k are the same. With w the parts of ∫ cos θ dω, the matrix √w_i f_ij √w_j is symmetric, as light and view can be exchanged, and has no
-/// eigenvalue below 0: direct light is a sum over places of what each receives from l times the same of v, and scattered
-/// light is what these throw to each other and back. Of all sums of so many products that of its largest eigenvalues λ_k and
-/// their vectors q_k leaves the least squares of f, weighted by what a plane receives and sends, g_k = √λ_k q_k / √w.
+/// For diffuse surfaces g_k = h_k. With w the parts of ∫ cos θ dω, the matrix √w_i f_ij √w_j is
+/// symmetric by reciprocity. It has no negative eigenvalue: direct light is a sum over places of
+/// the irradiance from l times the same for v, and indirect light is what these places exchange.
+/// The largest eigenvalues λ_k and their vectors q_k give the least squares of f, weighted by cos θ
+/// dω, with g_k = √λ_k q_k / √w.
 ///
-/// Lobes mirror: theirs is neither symmetric nor without eigenvalues below 0. Of them the largest singular values σ_k and their
-/// vectors on both sides leave the least, g_k = √σ_k a_k / √w and h_k = √σ_k b_k / √w.
+/// With Phong specular the matrix is neither symmetric nor positive. The largest singular values
+/// σ_k and their vectors a_k, b_k then give the least squares, with g_k = √σ_k a_k / √w and h_k =
+/// √σ_k b_k / √w.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factors {
     angles: Angles,
-    /// Of each k, all angles in order: g.
+    /// g of each k, all angles in order.
     values: Vec<Vec<[f64; 3]>>,
-    /// The same of h, where it is another.
+    /// h, where it differs from g.
     of_views: Option<Vec<Vec<[f64; 3]>>>,
 }
 
-/// Turns of the iteration, each of which brings vectors nearer by the quotient of two neighbouring eigenvalues: those that are
-/// not told apart after so many leave nearly the same squares.
-const TURNS: usize = 60;
+/// Orthogonal iterations. Each improves the vectors by the quotient of two neighbouring
+/// eigenvalues. Eigenvalues that are too close to separate give nearly the same squares.
+const ITERATIONS: usize = 60;
 
 impl Factors {
-    /// The first `count` of a table over these angles, with lobes or without: then of what chance has made different with light
-    /// and view exchanged the mean.
+    /// The first `count` products for a table over `angles`. Without Phong specular the mean with
+    /// light and view exchanged is used, which reduces Monte Carlo noise.
     ///
     /// # Errors
-    /// None, or more than angles; a table of others.
-    pub fn of(table: &Brdf, angles: Angles, count: usize, has_lobes: bool) -> Result<Self> {
+    /// A count of 0, or above that of the angles; a table over other angles.
+    pub fn of(table: &Brdf, angles: Angles, count: usize, has_specular: bool) -> Result<Self> {
         let size = angles.count();
         if table.directions().len() != size {
             let found = format!("{} directions", table.directions().len());
@@ -44,7 +47,7 @@ impl Factors {
         }
         let roots: Vec<f64> = angles.projected_sr().iter().map(|w| w.sqrt()).collect();
         let mut values = vec![vec![[0.0; 3]; size]; count];
-        if has_lobes {
+        if has_specular {
             let mut views = values.clone();
             for channel in [0, 1, 2] {
                 let of = |i: usize| {
@@ -85,17 +88,18 @@ impl Factors {
         Ok(Self { angles, values, of_views: None })
     }
 
-    /// One for each product, R, G, B of all angles: of the light, and of the view where there are no others.
+    /// g: one per product, R, G, B of all angles. Also h unless [`of_views`](Self::of_views) holds
+    /// it.
     pub fn values(&self) -> &[Vec<[f64; 3]>] {
         &self.values
     }
 
-    /// Those of the view, where they are others than the light's.
+    /// h, where it differs from g.
     pub fn of_views(&self) -> Option<&[Vec<[f64; 3]>]> {
         self.of_views.as_deref()
     }
 
-    /// Of a light at each of the angles in turn, towards all of them; 1/sr.
+    /// Value of each light in turn, towards all angles; 1/sr.
     pub fn rows(&self) -> impl Iterator<Item = Vec<[f64; 3]>> {
         let of_views = self.of_views.as_ref().unwrap_or(&self.values);
         let at = move |light: usize, view: usize, c: usize| -> f64 {
@@ -105,7 +109,7 @@ impl Factors {
         (0..count).map(move |l| (0..count).map(|v| [0, 1, 2].map(|c| at(l, v, c))).collect())
     }
 
-    /// For a light and a view above horizontal, unit vectors; each factor linear between its angles.
+    /// Value for unit vectors above horizontal, each factor interpolated between its angles.
     pub fn at(&self, light: DVec3, view: DVec3) -> [f64; 3] {
         let [light, view] = [light, view].map(|e| self.angles.around(e));
         let mut sum = [0.0; 3];
@@ -129,20 +133,21 @@ fn times(matrix: &[f64], v: &[f64]) -> Vec<f64> {
     matrix.chunks_exact(v.len()).map(|row| dot(row, v)).collect()
 }
 
-/// The largest eigenvalues of what takes vectors of a size as a symmetric matrix does, and their unit vectors, by orthogonal
-/// iteration from fixed beginnings.
+/// The largest eigenvalues of a symmetric linear map, and their unit vectors, by orthogonal
+/// iteration from fixed starting vectors.
 fn largest(times: &dyn Fn(&[f64]) -> Vec<f64>, size: usize, count: usize) -> Vec<(f64, Vec<f64>)> {
-    // Fractions of multiples of an irrational number: no vector is at right angles to them by chance.
+    // Fractions of multiples of an irrational number: practically never orthogonal to an
+    // eigenvector.
     let begin =
         |k: usize| (0..size).map(move |i| ((k * size + i + 1) as f64 * 0.618_034).fract() - 0.5);
     let mut vectors: Vec<Vec<f64>> = (0..count).map(|k| begin(k).collect()).collect();
-    for turn in 0..=TURNS {
-        if turn > 0 {
+    for iteration in 0..=ITERATIONS {
+        if iteration > 0 {
             vectors = vectors.iter().map(|v| times(v)).collect();
         }
         for k in 0..count {
             let (before, rest) = vectors.split_at_mut(k);
-            // Twice, as what is left after the first may be mostly rounding.
+            // Twice: the remainder of the first pass may be mostly rounding.
             for other in before.iter().chain(before.iter()) {
                 let along = dot(other, &rest[0]);
                 rest[0].iter_mut().zip(other).for_each(|(v, o)| *v -= along * o);
@@ -159,9 +164,9 @@ fn largest(times: &dyn Fn(&[f64]) -> Vec<f64>, size: usize, count: usize) -> Vec
 mod tests {
     use super::*;
 
-    /// 2 a aᵀ + b bᵀ of two vectors of length 1 at right angles: their squares' shares, and nothing left of a third.
+    /// 2 a aᵀ + b bᵀ for two orthogonal unit vectors: their eigenvalues, and 0 for the third.
     #[test]
-    fn eigenvectors_are_found() {
+    fn iteration_finds_eigenvectors() {
         let (a, b) = ([0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]);
         let matrix: Vec<f64> =
             (0..9).map(|i| 2.0 * a[i / 3] * a[i % 3] + b[i / 3] * b[i % 3]).collect();
@@ -173,11 +178,11 @@ mod tests {
         assert!(found[2].0.abs() < 1e-9);
     }
 
-    /// A table that is a product of two unlike functions, one of them below 0 somewhere, is one such product, which it is not of
-    /// one function; a sum of two squares, which like that of diffuse ground is symmetric and has no eigenvalue below 0, is of
-    /// two: nothing is dropped of it.
+    /// A product of two different functions, one of them negative somewhere, needs one product of
+    /// two functions, and no product of one function with itself fits it. A sum of two squares,
+    /// symmetric and without a negative eigenvalue like diffuse ground, needs two products.
     #[test]
-    fn unlike_sides_are_told_apart() {
+    fn different_sides_need_two_functions() {
         let angles = Angles { zeniths: 2, azimuths: 4 };
         let directions = angles.directions().unwrap().vectors().to_vec();
         let (g, h) = (|e: &DVec3| 2.0 + e.x, |e: &DVec3| e.z - e.y - 0.5);
@@ -196,7 +201,7 @@ mod tests {
         };
         assert!(off(&factors) < 1e-9, "{}", off(&factors));
         let alike = Factors::of(&table, angles, 1, false).unwrap();
-        assert!(alike.of_views().is_none() && off(&alike) > 0.1, "deaf: {}", off(&alike));
+        assert!(alike.of_views().is_none() && off(&alike) > 0.1, "no contrast: {}", off(&alike));
         let squares = |l: &DVec3, v: &DVec3| g(l) * g(v) + h(l) * h(v);
         let values = directions.iter().flat_map(|l| directions.iter().map(move |v| (l, v)));
         let values = values.map(|(l, v)| [0.0, squares(l, v), 1.0]).collect();

@@ -1,4 +1,4 @@
-//! Light that a field of triangles reflects, as seen from far away.
+//! Far-field reflection of a field of triangles.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use ridgelight::scene::{Directions, Lights, Scatter, Scene, Sun, VisiblePoints};
 
 use crate::{ExitRadiance, Facets};
 
-/// A point of a sky, of irradiance 1 facing it.
+/// A point light at infinity, of irradiance 1 facing it.
 fn sun(towards: DVec3) -> Sun {
     Sun {
         azimuth_rad: towards.y.atan2(towards.x),
@@ -20,7 +20,7 @@ fn sun(towards: DVec3) -> Sun {
     }
 }
 
-/// A field's triangles, `times` finer, and which of them are seen from each of some directions above horizontal.
+/// The triangles of a field refined `times`, and their visibility from directions above horizontal.
 ///
 /// # Errors
 /// As [`plan::facet_mask`](ridgelight::plan::facet_mask) and [`Facets::of`].
@@ -38,15 +38,18 @@ pub fn facets(
     Facets::of(scene, times, directions.clone(), words)
 }
 
-/// Radiance of all triangles under a light of irradiance 1 facing it from each of some of their directions in turn, with
-/// what the field scatters of it (`points` are of directions all around) where that is asked for: direct light of triangles, its mean at samples, from there by
-/// the method of dependent tests, and linear between samples.
+/// Radiance of all triangles under a light of irradiance 1 facing each of `lights` in turn.
 ///
-/// Lobes scatter otherwise towards each view: towards those that `views` has of a light, by its number. Samples mirror the
-/// light where their own middle sees it, by normals between those of their triangles.
+/// With `scatter` it includes indirect light: the triangles' direct light is averaged at grid
+/// points, scattered there by the method of dependent tests, and interpolated linearly. `points`
+/// cover directions all around.
+///
+/// With Phong specular indirect light depends on the view. It is computed for the views that
+/// `views` returns for a light's index. Grid points reflect the light where it is visible from the
+/// grid point itself, with normals interpolated between their triangles.
 ///
 /// # Errors
-/// As [`plan::scatter_views`]; the first of `take`, which is given each light's number.
+/// As [`plan::scatter_views`]; the first error of `take`, which receives each light's index.
 pub fn lit_from(
     gpu: &mut Headless,
     scene: &Scene,
@@ -58,12 +61,12 @@ pub fn lit_from(
     let mut direct_alone =
         || lights.clone().try_for_each(|light| take(light, facets.lit_from(light)));
     let Some((points, scatter)) = scatter else { return direct_alone() };
-    if facets.has_lobes() {
+    if facets.has_specular() {
         let of = (facets, lights, views);
-        return lit_by_lobes(gpu, scene, of, (points, scatter), limits, take);
+        return lit_with_specular(gpu, scene, of, (points, scatter), limits, take);
     }
     let plan = plan::scatter(scene, points.directions(), scatter, limits)?;
-    // Level or black ground scatters nothing, and its plan asks for nothing.
+    // Level or black ground has no indirect light, and its plan has no inputs.
     let Some(direct) = plan.inputs().position(|(_, r)| r.name == "direct") else {
         return direct_alone();
     };
@@ -73,18 +76,18 @@ pub fn lit_from(
     gpu.with_frame(plan, &contents, |gpu, frame| {
         for light in lights {
             let mut radiance = facets.lit_from(light);
-            let samples = facets.to_samples(radiance.alike());
-            let texels: Vec<f32> = samples.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
+            let grid = facets.to_grid_points(radiance.alike());
+            let texels: Vec<f32> = grid.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
             gpu.refill(frame, direct, &texels)?;
             gpu.draw_counted(frame)?;
-            facets.add_samples(&gpu.colours(frame)?, &mut radiance);
+            facets.add_grid_points(&gpu.colours(frame)?, &mut radiance);
             take(light, radiance)?;
         }
         Ok(())
     })
 }
 
-fn lit_by_lobes(
+fn lit_with_specular(
     gpu: &mut Headless,
     scene: &Scene,
     (facets, lights, views): (&Facets, Range<usize>, &dyn Fn(usize) -> Range<usize>),
@@ -93,15 +96,15 @@ fn lit_by_lobes(
     take: &mut dyn FnMut(usize, ExitRadiance) -> Result<()>,
 ) -> Result<()> {
     let directions = facets.directions().vectors();
-    let samples = scene.field.heights_m().len();
-    let none = vec![[0.0; 3]; samples];
+    let count = scene.field.heights_m().len();
+    let none = vec![[0.0; 3]; count];
     let mut lit = Scene { lights: Lights::default(), ..scene.clone() };
-    // The frame of as many views is the same under all lights.
+    // Lights with the same number of views share a frame.
     let mut kept: Option<(usize, Frame)> = None;
     let mut one = |gpu: &mut Headless, light: usize| {
         lit.lights.suns = vec![sun(directions[light])];
         let mut radiance = facets.lit_from(light);
-        let direct = facets.to_samples(radiance.alike());
+        let direct = facets.to_grid_points(radiance.alike());
         let wanted = views(light);
         let at_once = plan::views_at_once(&scene.field, wanted.len(), limits);
         let mut towards = Vec::with_capacity(wanted.len());
@@ -109,7 +112,7 @@ fn lit_by_lobes(
             let some = &directions[first..wanted.end.min(first + at_once)];
             let around = points.directions();
             let plan = plan::scatter_views(&lit, around, scatter, some, limits)?;
-            // Level or black ground scatters nothing, and its plan asks for nothing.
+            // Level or black ground has no indirect light, and its plan has no inputs.
             let Some(place) = plan.inputs().position(|(_, r)| r.name == "direct") else {
                 return take(light, radiance);
             };
@@ -131,7 +134,7 @@ fn lit_by_lobes(
             gpu.refill(frame, place, &texels)?;
             gpu.draw_counted(frame)?;
             let light = gpu.colours(frame)?;
-            towards.extend(light.chunks_exact(samples).map(<[_]>::to_vec));
+            towards.extend(light.chunks_exact(count).map(<[_]>::to_vec));
         }
         radiance = radiance.scattering(wanted.start, towards);
         take(light, radiance)

@@ -1,21 +1,21 @@
-//! What is free, and what a diffuse surface makes of light from there, as spherical harmonics.
+//! Visibility and diffuse transfer as spherical harmonics.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-use super::{Ray, Sum};
+use super::{HorizonMap, Ray};
 use ridgelight::basis::azimuth::around;
 use ridgelight::basis::product::{orders, triples};
 use ridgelight::basis::slice::{Slices, slice_index};
 use ridgelight::basis::{MAX_ORDER, bands};
 
-/// The highest order of a transfer: the cosine takes one band more of what is free.
+/// The highest order of a transfer: the cosine needs one more band of the visibility.
 pub const MAX_TRANSFER_ORDER: usize = MAX_ORDER - 1;
 
-/// Sums of slices of an order: what is free above elevations, times weights of azimuths.
+/// SH coefficients of the unoccluded slices, summed over azimuths.
 struct Series {
     slices: Slices,
-    /// Of each coefficient: its place in a slice, and its weight among an azimuth's.
+    /// For each coefficient: its index in a slice, and its azimuth weight's index.
     places: Vec<[usize; 2]>,
 }
 
@@ -27,37 +27,39 @@ impl Series {
         Self { slices: Slices::new(order), places: bands(order).map(place).collect() }
     }
 
-    fn turn(&self, ray: Ray) -> Vec<f64> {
+    fn azimuth_factors(&self, ray: Ray) -> Vec<f64> {
         let weights = around(self.slices.order(), ray.azimuth_rad);
         weights.iter().map(|w| w * ray.width_rad).collect()
     }
 
-    fn add(&self, turn: &[f64], elevation_rad: f64, sums: &mut [f64]) {
+    fn add(&self, factors: &[f64], elevation_rad: f64, sums: &mut [f64]) {
         let mut slice = [0.0; MAX_ORDER * (MAX_ORDER + 1) / 2];
         self.slices.above_into(elevation_rad, &mut slice);
         for (sum, [part, at]) in sums.iter_mut().zip(&self.places) {
-            *sum += turn[*at] * slice[*part];
+            *sum += factors[*at] * slice[*part];
         }
     }
 }
 
-/// Visibility as n² coefficients v_i = ∫ V Y_i de: V is 1 above the horizon, 0 below; the normal has no part in it.
+/// Visibility as n² coefficients v_i = ∫ V Y_i de: V is 1 above the horizon, 0 below; the surface
+/// normal is ignored.
 ///
-/// Real orthonormal harmonics without the sign of Condon and Shortley, index l(l+1) + m, about the world's axes (x
-/// east, y north, z up). Σ v_i f_i is the integral of a function f of that order over all that is free.
+/// Real orthonormal harmonics without the Condon-Shortley phase, index l(l+1) + m, about the
+/// world's axes (x east, y north, z up). Σ v_i f_i is the integral of a function f of that order
+/// over the unoccluded directions.
 pub struct ShVisibility(Series);
 
 impl ShVisibility {
-    /// n² coefficients, n of 1 to [`MAX_ORDER`].
+    /// n² coefficients, n from 1 to [`MAX_ORDER`].
     ///
     /// # Panics
-    /// Outside that.
+    /// Another order.
     pub fn new(order: usize) -> Self {
         Self(Series::new(order))
     }
 }
 
-impl Sum for ShVisibility {
+impl HorizonMap for ShVisibility {
     fn sums(&self) -> usize {
         self.0.places.len()
     }
@@ -66,12 +68,12 @@ impl Sum for ShVisibility {
         self.0.places.len()
     }
 
-    fn turn(&self, ray: Ray) -> Vec<f64> {
-        self.0.turn(ray)
+    fn azimuth_factors(&self, ray: Ray) -> Vec<f64> {
+        self.0.azimuth_factors(ray)
     }
 
-    fn add(&self, turn: &[f64], _: DVec3, elevation_rad: f64, sums: &mut [f64]) {
-        self.0.add(turn, elevation_rad, sums);
+    fn add(&self, factors: &[f64], _: DVec3, elevation_rad: f64, sums: &mut [f64]) {
+        self.0.add(factors, elevation_rad, sums);
     }
 
     fn end(&self, _: DVec3, sums: &[f64], values: &mut [f64]) {
@@ -81,22 +83,23 @@ impl Sum for ShVisibility {
 
 /// Diffuse transfer as n² coefficients t_i = 1/π ∫ V max(N·e, 0) Y_i de, in the basis of [`ShVisibility`].
 ///
-/// Σ t_i L_i is the exit radiance that light L of that order gives to a surface of albedo 1 by direct light, shadows
-/// and cosine in it (Sloan, Kautz & Snyder 2002, without interreflection). Exact but for the azimuths: what is free
-/// above the horizon *and* the normal's own plane is summed to one band more, of which N·e, a function of band 1, takes
-/// all that there is.
+/// Σ t_i L_i is the exit radiance of a surface of albedo 1 under direct light L of that order, with
+/// shadows and cosine (Sloan, Kautz & Snyder 2002, without interreflection). It is exact but for
+/// the number of azimuths: visibility above the horizon *and* the tangent plane is summed to one
+/// more band, which the product with N·e (band 1) needs.
 pub struct ShTransfer {
     free: Series,
     count: usize,
-    /// Coefficient of the transfer, component of the normal (0 x, 1 y, 2 z), coefficient of what is free, factor.
+    /// Index of the transfer coefficient, component of the normal (0 x, 1 y, 2 z), index of the
+    /// visibility coefficient, factor.
     products: Vec<(usize, usize, usize, f64)>,
 }
 
 impl ShTransfer {
-    /// n² coefficients, n of 1 to [`MAX_TRANSFER_ORDER`].
+    /// n² coefficients, n from 1 to [`MAX_TRANSFER_ORDER`].
     ///
     /// # Panics
-    /// Outside that.
+    /// Another order.
     pub fn new(order: usize) -> Self {
         let count = order * order;
         // N·e = √(4π/3) (N_y Y_1-1 + N_z Y_10 + N_x Y_11), at places 1, 2 and 3.
@@ -114,7 +117,7 @@ impl ShTransfer {
     }
 }
 
-impl Sum for ShTransfer {
+impl HorizonMap for ShTransfer {
     fn sums(&self) -> usize {
         self.free.places.len()
     }
@@ -123,15 +126,15 @@ impl Sum for ShTransfer {
         self.count
     }
 
-    fn turn(&self, ray: Ray) -> Vec<f64> {
+    fn azimuth_factors(&self, ray: Ray) -> Vec<f64> {
         let (sin, cos) = ray.azimuth_rad.sin_cos();
-        let mut turn = self.free.turn(ray);
-        turn.extend([cos, sin]);
-        turn
+        let mut factors = self.free.azimuth_factors(ray);
+        factors.extend([cos, sin]);
+        factors
     }
 
-    fn add(&self, turn: &[f64], normal: DVec3, elevation_rad: f64, sums: &mut [f64]) {
-        let (weights, direction) = turn.split_at(turn.len() - 2);
+    fn add(&self, factors: &[f64], normal: DVec3, elevation_rad: f64, sums: &mut [f64]) {
+        let (weights, direction) = factors.split_at(factors.len() - 2);
         let along = normal.x * direction[0] + normal.y * direction[1];
         self.free.add(weights, elevation_rad.max((-along).atan2(normal.z)), sums);
     }

@@ -1,20 +1,18 @@
-//! What engines keep of a field that does not move, made from its horizons: maps of numbers a sample, and how
-//! they are packed for textures.
+//! Maps for engines, baked from the horizons of a static height field, and their texture encodings.
 //!
-//! Horizons along the azimuths of a circle come one azimuth at a time, from
-//! [`plan::horizons`](ridgelight::plan::horizons) or elsewhere. A [`Sum`] is what is kept of each sample: closed forms of
-//! elevation along an azimuth, times the width of that azimuth, in f64 on the processor. Baking is done once, and
-//! what it reads comes back from the device anyway for the horizons themselves; sums there would be a pass and a
-//! rounding more a kind.
+//! Horizons arrive one azimuth at a time, from [`plan::horizons`](ridgelight::plan::horizons) or
+//! elsewhere. A [`HorizonMap`] sums a closed form in elevation over all azimuths, in f64 on the
+//! CPU: the horizons are read back from the device anyway.
 //!
-//! Each kind is defined where it is computed: [`SkyView`] and [`VisibleSky`] (two things: light of the sky on the
-//! ground as it lies, and how much of the sky is seen), [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
-//! [`Ellipse`]s of visible sky and visible points come off the device as they are ([`plan::ellipses`](ridgelight::plan::ellipses),
-//! [`plan::visible_points`](ridgelight::plan::visible_points)).
-//! [`CurvedEllipses`] go between those of [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses) on a curved base.
-//! [`Facets`] are a field as its flat triangles, [`Brdf`] what it reflects as seen from afar, [`Factors`] and
-//! [`BrdfHarmonics`] that in short.
-//! [`Encoding`]s take values to texels and back, within errors that they state.
+//! - [`SkyView`]: cosine-weighted unoccluded share of the sky. [`VisibleSky`]: unweighted share.
+//! - [`BentNormal`], [`ShVisibility`], [`ShTransfer`].
+//! - [`Ellipse`]s and visible points come from the device unchanged
+//! ([`plan::ellipses`](ridgelight::plan::ellipses),
+//! [`plan::visible_points`](ridgelight::plan::visible_points)). [`CurvedEllipses`] interpolate
+//! those of [`plan::curved_ellipses`](ridgelight::plan::curved_ellipses) on a curved base surface.
+//! - [`Facets`]: a field as flat triangles. [`Brdf`]: its far-field reflection as a table.
+//! [`Factors`] and [`BrdfHarmonics`]: the table in short form.
+//! - [`Encoding`]: values to texels and back, with guaranteed error bounds.
 
 #![deny(clippy::missing_errors_doc)]
 
@@ -52,34 +50,34 @@ pub use harmonics::{MAX_TRANSFER_ORDER, ShTransfer, ShVisibility};
 pub use ridgelight_cpu::ellipse_fit::Ellipse;
 pub use sky::{SkyView, VisibleSky};
 
-/// An azimuth of a circle, and the width that it stands for; both radians, counter-clockwise from east.
+/// One azimuth of a circle and its angular width, radians, counter-clockwise from east.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Direction.
+    /// Direction of its centre.
     pub azimuth_rad: f64,
-    /// Widths of a whole circle add up to 2π.
+    /// The widths of a whole circle add up to 2π.
     pub width_rad: f64,
 }
 
-/// What is kept of every sample: sums over azimuths of what is free above the horizon.
-pub trait Sum: Send + Sync {
-    /// Numbers that are summed, a sample.
+/// A map that is a sum over azimuths of the unoccluded part above the horizon.
+pub trait HorizonMap: Send + Sync {
+    /// Number of sums per texel.
     fn sums(&self) -> usize;
 
-    /// Values of a sample in the end, in the order of [`end`](Self::end).
+    /// Number of values per texel, in the order of [`end`](Self::end).
     fn values(&self) -> usize;
 
-    /// What of an azimuth is the same at every sample.
-    fn turn(&self, ray: Ray) -> Vec<f64>;
+    /// Factors of an azimuth that all texels share.
+    fn azimuth_factors(&self, ray: Ray) -> Vec<f64>;
 
-    /// Adds what a sample of this unit normal sees above an elevation, [-π/2..π/2].
-    fn add(&self, turn: &[f64], normal: DVec3, elevation_rad: f64, sums: &mut [f64]);
+    /// Adds the unoccluded part above an elevation, [-π/2..π/2], for a unit normal.
+    fn add(&self, factors: &[f64], normal: DVec3, elevation_rad: f64, sums: &mut [f64]);
 
-    /// The sample's values.
+    /// The texel's values.
     fn end(&self, normal: DVec3, sums: &[f64], values: &mut [f64]);
 }
 
-/// Unit normals of all samples, row-major: [`normal`].
+/// Unit normals of all texels, row-major: [`normal`].
 pub fn normals(field: &HeightField, border: Border) -> Vec<DVec3> {
     let cols = field.cols();
     let count = field.rows() * cols;
@@ -92,70 +90,70 @@ pub fn normals(field: &HeightField, border: Border) -> Vec<DVec3> {
     all
 }
 
-/// A kind's sums over a field, azimuth by azimuth.
-pub struct Summing {
-    what: Box<dyn Sum>,
-    samples: usize,
-    /// None before the first azimuth.
+/// Sums of a map over a field, azimuth by azimuth.
+pub struct HorizonSums {
+    map: Box<dyn HorizonMap>,
+    texels: usize,
+    /// Empty before the first azimuth.
     sums: Vec<f64>,
 }
 
-impl Summing {
-    /// Of so many samples, all sums 0; their memory is taken with the first azimuth.
-    pub fn new(what: Box<dyn Sum>, samples: usize) -> Self {
-        Self { what, samples, sums: Vec::new() }
+impl HorizonSums {
+    /// All sums start at 0. Memory is allocated with the first azimuth.
+    pub fn new(map: Box<dyn HorizonMap>, texels: usize) -> Self {
+        Self { map, texels, sums: Vec::new() }
     }
 
-    /// Bytes of the sums.
-    pub fn bytes(what: &dyn Sum, samples: usize) -> u64 {
-        8 * what.sums() as u64 * samples as u64
+    /// Size of the sums in bytes.
+    pub fn bytes(map: &dyn HorizonMap, texels: usize) -> u64 {
+        8 * map.sums() as u64 * texels as u64
     }
 
     /// Adds an azimuth: elevations of the horizon, radians, and unit normals, row-major.
     ///
     /// # Errors
-    /// More sums than there is memory for.
+    /// Not enough memory for the sums.
     ///
     /// # Panics
-    /// When there are not as many of either as samples.
+    /// Another number of elevations or normals than texels.
     pub fn add(&mut self, ray: Ray, elevations_rad: &[f32], normals: &[DVec3]) -> Result<()> {
-        let (what, count) = (&*self.what, self.what.sums());
-        let samples = self.samples;
-        assert_eq!([elevations_rad.len(), normals.len()], [samples; 2], "one a sample");
+        let (map, count) = (&*self.map, self.map.sums());
+        let texels = self.texels;
+        assert_eq!([elevations_rad.len(), normals.len()], [texels; 2], "one per texel");
         if self.sums.is_empty() {
-            self.sums = zeros(samples, count)?;
+            self.sums = zeros(texels, count)?;
         }
-        let turn = what.turn(ray);
-        in_parts(samples, &mut self.sums, count, |first, part| {
+        let factors = map.azimuth_factors(ray);
+        in_parts(texels, &mut self.sums, count, |first, part| {
             for (i, sums) in part.chunks_exact_mut(count).enumerate() {
                 let at = first + i;
-                // A right angle in f32 is a little more than one.
+                // π/2 in f32 is slightly above π/2.
                 let elevation = f64::from(elevations_rad[at]).clamp(-FRAC_PI_2, FRAC_PI_2);
-                what.add(&turn, normals[at], elevation, sums);
+                map.add(&factors, normals[at], elevation, sums);
             }
         });
         Ok(())
     }
 
-    /// The values: a plane each, row-major.
+    /// The values, one row-major plane each.
     ///
     /// # Errors
-    /// More values than there is memory for.
+    /// Not enough memory for the values.
     ///
     /// # Panics
-    /// When there are not as many normals as samples, or no azimuth was added.
+    /// Another number of normals than texels, or no azimuth added.
     pub fn end(self, normals: &[DVec3]) -> Result<Vec<Vec<f32>>> {
-        let Self { what, samples, sums } = self;
-        let count = what.values();
-        assert_eq!(normals.len(), samples, "one normal a sample");
-        assert_eq!(sums.len(), samples * what.sums(), "an azimuth at least");
+        let Self { map, texels, sums } = self;
+        let count = map.values();
+        assert_eq!(normals.len(), texels, "one normal per texel");
+        assert_eq!(sums.len(), texels * map.sums(), "at least one azimuth");
         let mut planes = Vec::new();
         for _ in 0..count {
-            planes.push(zeros(samples, 1)?);
+            planes.push(zeros(texels, 1)?);
         }
         let mut values = vec![0.0; count];
-        for (at, sums) in sums.chunks_exact(what.sums()).enumerate() {
-            what.end(normals[at], sums, &mut values);
+        for (at, sums) in sums.chunks_exact(map.sums()).enumerate() {
+            map.end(normals[at], sums, &mut values);
             for (plane, value) in planes.iter_mut().zip(&values) {
                 plane[at] = *value as f32;
             }
@@ -164,12 +162,12 @@ impl Summing {
     }
 }
 
-/// As many a sample, all 0.
-fn zeros<T: Clone + Default>(samples: usize, each: usize) -> Result<Vec<T>> {
+/// `each` zeros per texel.
+fn zeros<T: Clone + Default>(texels: usize, each: usize) -> Result<Vec<T>> {
     let mut all = Vec::new();
-    let count = samples.saturating_mul(each);
+    let count = texels.saturating_mul(each);
     all.try_reserve_exact(count).map_err(|_| Error::Limit {
-        what: format!("{each} numbers of each of {samples} samples"),
+        what: format!("{each} values for each of {texels} texels"),
         needs: format!("{} bytes", count.saturating_mul(size_of::<T>())),
         limit: "the memory of this machine".into(),
     })?;
@@ -177,19 +175,19 @@ fn zeros<T: Clone + Default>(samples: usize, each: usize) -> Result<Vec<T>> {
     Ok(all)
 }
 
-/// Fewer samples are not worth a thread.
-const LEAST_PART: usize = 1024;
+/// Smallest number of texels that is worth a thread.
+const MIN_PART: usize = 1024;
 
-/// Runs `work(first sample, its part)` on as many threads as there are processors; samples have `each` values.
+/// Runs `work(first texel, its part)` on all processors; a texel has `each` values.
 fn in_parts<T: Send>(
-    samples: usize,
+    texels: usize,
     values: &mut [T],
     each: usize,
     work: impl Fn(usize, &mut [T]) + Sync,
 ) {
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    let part = samples.div_ceil(threads).max(LEAST_PART);
-    if samples <= part {
+    let part = texels.div_ceil(threads).max(MIN_PART);
+    if texels <= part {
         return work(0, values);
     }
     thread::scope(|scope| {
@@ -204,11 +202,11 @@ fn in_parts<T: Send>(
 mod tests {
     use super::*;
 
-    /// More sums than an address space holds: nothing is taken to begin with, and then it is said.
+    /// Memory is not allocated before the first azimuth, and a failed allocation is an error.
     #[test]
     fn more_sums_than_memory_are_an_error() {
         assert!(matches!(zeros::<f64>(1 << 60, 36), Err(Error::Limit { .. })));
         assert!(zeros::<f64>(3, 2).is_ok_and(|all| all == [0.0; 6]));
-        drop(Summing::new(Box::new(ShTransfer::new(5)), 1 << 60));
+        drop(HorizonSums::new(Box::new(ShTransfer::new(5)), 1 << 60));
     }
 }

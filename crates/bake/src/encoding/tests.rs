@@ -1,6 +1,6 @@
 use super::*;
 
-/// The largest share of its bound that a value's decoded form is off by, over all bounds.
+/// The largest error as a share of its bound.
 fn worst(encoding: &Encoding, values: &[f64]) -> f64 {
     let back = encoding.packed(values);
     let shares = encoding.bounds.iter().map(|b| b.share(encoding.component, &back, values));
@@ -8,8 +8,8 @@ fn worst(encoding: &Encoding, values: &[f64]) -> f64 {
 }
 
 #[test]
-fn values_come_back_within_what_is_promised() {
-    // Steps are worst between two codes: dense, and not in step with any of them.
+fn decoded_values_are_within_their_bounds() {
+    // Errors are largest between two codes, so the values are dense and not aligned with the codes.
     let dense = |i: usize, count: usize| i as f64 / count as f64;
     let mut largest = 0.0;
     let mut hold = |encoding: &Encoding, values: &[f64]| {
@@ -52,16 +52,16 @@ fn values_come_back_within_what_is_promised() {
         let mut texel = [0.0; 2];
         (POINTS[0].encode)(&[of(n), of(65_530 - n)], &mut texel);
         let mut back = [0.0; 2];
-        // As the decoder has it, in f32.
+        // In f32, as a decoder computes it.
         (POINTS[0].decode)(&texel.map(|t| f64::from(t as f32)), &mut back);
         assert_eq!(back, [of(n), of(65_530 - n)]);
     }
-    // Bounds are near what happens, not far beyond it.
+    // The bounds are tight.
     assert!(largest > 0.99, "{largest}");
 }
 
 #[test]
-fn a_code_off_by_one_is_beyond_the_bound() {
+fn an_error_of_one_code_exceeds_the_bound() {
     for encoding in HORIZON.iter().chain(&SHARE).filter(|e| e.component.is_normalised()) {
         let step = 1.0 / encoding.component.one();
         let allowed = encoding.bounds[0].absolute(encoding.component);
@@ -69,17 +69,17 @@ fn a_code_off_by_one_is_beyond_the_bound() {
         (encoding.decode)(&[0.25 + step], &mut value);
         let mut expected = [0.0];
         (encoding.decode)(&[0.25], &mut expected);
-        let off = if encoding.name.ends_with("sin") {
+        let error = if encoding.name.ends_with("sin") {
             value[0].sin() - expected[0].sin()
         } else {
             value[0] - expected[0]
         };
-        assert!(off > 1.5 * allowed, "{}", encoding.name);
+        assert!(error > 1.5 * allowed, "{}", encoding.name);
     }
 }
 
 #[test]
-fn codes_are_vulkans() {
+fn codes_are_those_of_vulkan() {
     let bytes = |component: Component, value| {
         let mut bytes = Vec::new();
         component.put(value, &mut bytes);

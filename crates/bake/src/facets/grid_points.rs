@@ -1,9 +1,9 @@
-//! What triangles and the samples of the field, between which they lie, have of each other.
+//! Transfers between triangles and the grid points of the field.
 
 use super::{ExitRadiance, Facets, corners_of};
 
 impl Facets {
-    /// The samples of the field, not the finer one, that a triangle lies between, and their shares of it.
+    /// The field's grid points (not the refined field's) around a triangle, and their weights.
     pub(super) fn between(&self, facet: usize) -> [(usize, f64); 3] {
         let times = self.times as f64;
         let cell = facet / 2;
@@ -22,13 +22,13 @@ impl Facets {
         [(corners[0], 1.0 - both - one), (corners[1], one), (corners[2], both)]
     }
 
-    /// Exit radiance of samples that leaves as much as that of triangles: the mean over the slopes that each stands for.
-    pub fn to_samples(&self, radiance: &[[f64; 3]]) -> Vec<[f32; 3]> {
+    /// Exit radiance of grid points with the same total as the triangles': the area-weighted mean.
+    pub fn to_grid_points(&self, radiance: &[[f64; 3]]) -> Vec<[f32; 3]> {
         let mut sums = vec![([0.0; 3], 0.0); self.size[0] * self.size[1]];
         for (facet, light) in radiance.iter().enumerate() {
             let area = self.area(facet);
-            for (sample, share) in self.between(facet) {
-                let (sum, whole) = &mut sums[sample];
+            for (point, share) in self.between(facet) {
+                let (sum, whole) = &mut sums[point];
                 (0..3).for_each(|c| sum[c] += share * area * light[c]);
                 *whole += share * area;
             }
@@ -36,32 +36,32 @@ impl Facets {
         sums.into_iter().map(|(sum, whole)| sum.map(|s| (s / whole) as f32)).collect()
     }
 
-    /// Adds radiance of samples, the same towards all views, linear between them.
-    pub fn add_samples(&self, samples: &[[f32; 3]], light: &mut ExitRadiance) {
+    /// Adds radiance of grid points, the same towards all views, linearly interpolated.
+    pub fn add_grid_points(&self, points: &[[f32; 3]], light: &mut ExitRadiance) {
         for (facet, light) in light.alike.iter_mut().enumerate() {
-            for (sample, share) in self.between(facet) {
-                (0..3).for_each(|c| light[c] += share * f64::from(samples[sample][c]));
+            for (point, share) in self.between(facet) {
+                (0..3).for_each(|c| light[c] += share * f64::from(points[point][c]));
             }
         }
     }
 
-    /// Of each sample as direction `view` shows it: radiance, and the share of the view that it fills over its own cell, masking
-    /// counted. The mean over all samples of their product over that of the shares is [`seen_from`](Self::seen_from), and the
-    /// shares' mean is v_z where the field repeats. One that ends has half a cell of the samples at its edges, and of those at
-    /// its corners a third where a diagonal begins or ends, else a sixth: shares times a cell's area are the area of the view
-    /// that is filled.
+    /// Each grid point from direction `view`: radiance, and its visible part of the view over its
+    /// own cell. The mean product of both over the mean part is [`radiance_from`](Self::radiance_from), and
+    /// the mean part is v_z where the field repeats. In a bounded field a grid point at an edge has
+    /// half a cell; one at a corner a third where a diagonal begins or ends, else a sixth. Parts
+    /// times a cell's area are the filled area of the view.
     ///
     /// # Panics
-    /// Where light is not scattered towards that.
+    /// Indirect light that does not cover this view.
     pub fn texels_from(&self, view: usize, light: &ExitRadiance) -> Vec<[f64; 4]> {
         let mut all = vec![[0.0; 4]; self.size[0] * self.size[1]];
         let each = 0.5 / self.times.pow(2) as f64;
         for (facet, filled) in self.shares(view) {
             let radiance = self.towards((view, filled), facet, light);
-            for (sample, share) in self.between(facet) {
+            for (point, share) in self.between(facet) {
                 let part = share * filled;
-                (0..3).for_each(|c| all[sample][c] += part * radiance[c]);
-                all[sample][3] += part;
+                (0..3).for_each(|c| all[point][c] += part * radiance[c]);
+                all[point][3] += part;
             }
         }
         for texel in &mut all {
@@ -74,10 +74,10 @@ impl Facets {
         all
     }
 
-    /// The same of all views.
+    /// [`texels_from`](Self::texels_from) for all views.
     ///
     /// # Panics
-    /// Where light is not scattered towards one of them.
+    /// Indirect light that does not cover every view.
     pub fn texels_from_all(&self, light: &ExitRadiance) -> Vec<Vec<[f64; 4]>> {
         self.of_all(|view| self.texels_from(view, light))
     }
