@@ -1,7 +1,9 @@
-// Computes: the ellipse in the plan of the hemisphere that holds the directions in which a sample sees the sky (Heidrich et
-// al. 2000, §4). Reads: visible_points (see bake/points.glsl), directions (east, north, up), or on a curved base bent (see
-// bent_directions), of which those above horizontal count. Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
-// One invocation is one sample.
+// Computes: the ellipse in the plan of the hemisphere that best covers the directions with visible sky (Heidrich et
+// al. 2000, §4).
+// Reads: visible_points (see bake/points.glsl), directions (east, north, up), or on a curved base surface bent (see
+// bent_directions), of which directions above horizontal count.
+// Writes: ellipse_axes (centre, unit axis), ellipse_radii (1 / radii, score, last step).
+// One invocation is one grid point.
 #version 460
 
 #include "shared/conventions.glsl"
@@ -9,7 +11,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Two directions in a word.
+// Two directions per word.
 layout(constant_id = 0) const bool SMALL = false;
 layout(constant_id = 1) const bool BENT = false;
 
@@ -22,24 +24,25 @@ layout(binding = 4) uniform texture2DArray bent;
 layout(push_constant) uniform EllipseFitPush {
     int cols;
     int rows;
-    int first_direction;  // among the texels of directions
+    int first_direction;  // texel in directions
     int end_direction;
     int first_row;
     float least_radius;
 };
 
-// Steps of the search: from the first, halved while nothing is better, to the last; and how many it may take.
+// Search step: starts at the first value, is halved when no move improves the score, ends at the last; maximum step
+// count.
 const float FIRST_STEP = 0.25;
 const float LAST_STEP = 1.0 / 64.0;
 const int MOST_STEPS = 48;
 
-// Centre and radius along an axis, by steps: either end, both to one side, both apart.
+// Moves of centre and radius along an axis: either end, both ends to one side, both ends apart.
 const vec4 MOVE_A = vec4(-1.0, 0.0, 1.0, -1.0);
 const vec4 GROW_A = vec4(-1.0, -1.0, -1.0, 0.0);
 const vec4 MOVE_B = vec4(1.0, -1.0, 0.0, 1.0);
 const vec4 GROW_B = vec4(0.0, 1.0, 1.0, 1.0);
 
-// Plan of a direction, and what it counts for: 1 where it sees the sky, -1 where not, 0 below horizontal.
+// Plan coordinates of a direction and its weight: 1 visible sky, -1 hidden, 0 below horizontal.
 vec3 seen(int i, ivec2 at, out float z) {
     if (BENT) {
         vec4 own = texelFetch(bent, ivec3(at, i), 0);
@@ -52,7 +55,8 @@ vec3 seen(int i, ivec2 at, out float z) {
     return vec3(e.xy, e.z > 0.0 ? (point == SEES_SKY ? 1.0 : -1.0) : 0.0);
 }
 
-// Which of four ellipses, moved along one axis, hold a point: along it, and what the other axis adds.
+// Which of four ellipses, moved along one axis, contain a point, given its coordinate along the axis and the other
+// axis' term.
 ivec4 held(float along, vec4 centre, vec4 radius, float other) {
     vec4 t = (along - centre) / max(radius, vec4(least_radius));
     return ivec4(lessThanEqual(t * t + other, vec4(1.0)));
@@ -64,7 +68,7 @@ void main() {
         return;
     }
     int count = end_direction - first_direction;
-    // Moments over the plan's area: a direction stands for z of its share of the sphere.
+    // Moments over the plan's area: a direction has weight z times its solid angle.
     float z, weight = 0.0;
     vec2 mean = vec2(0.0);
     ivec2 counts = ivec2(0);
@@ -141,7 +145,7 @@ void main() {
         inverse = vec4(0.0, 0.0, float(whole), 0.0);
     }
     if (max(whole, score) <= 0 || counts.x == 0) {
-        // Farther from the hemisphere's plan than its own radius.
+        // Outside the unit disc by more than its own radius.
         axes = vec4(4.0, 0.0, 1.0, 0.0);
         inverse = vec4(1.0, 1.0, 0.0, 0.0);
     }

@@ -1,5 +1,6 @@
-// Computes: from which of some directions each flat triangle of the field is seen, asked at its middle.
-// Reads: cells, maxima, directions (east, north, up). Writes: facet_mask (see bake/facets.glsl).
+// Computes: visibility of each flat triangle of the field from its centroid, along a set of directions.
+// Reads: cells, maxima, directions (east, north, up).
+// Writes: facet_mask (see bake/facets.glsl).
 // One invocation is one cell and fifteen directions.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
@@ -12,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint BORDER = 0u;
 // As in path_trace.
 layout(constant_id = 1) const int MOST_STEPS = 60000;
-// A field one sample wide that does not repeat has no triangles.
+// A field one grid point wide that does not repeat has no triangles.
 const bool THIN_ROWS = false;
 const bool THIN_COLS = false;
 
@@ -32,8 +33,8 @@ layout(push_constant) uniform FacetMaskPush {
     float cell_y_m;
     float highest_m;
     int first_layer;
-    int first_direction;  // among the texels of directions
-    int end_direction;    // there are no more from here on
+    int first_direction;  // texel in directions
+    int end_direction;    // one past the last
 };
 
 #include "rays/trace.glsl"

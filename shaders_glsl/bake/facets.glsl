@@ -1,5 +1,5 @@
-// A cell's two flat triangles, 0 north-east of its diagonal and 1 south-west of it, in a word a layer: bit 2j + k says whether
-// triangle k sees the sky along direction FACET_DIRECTIONS · layer + j.
+// Visibility of a cell's two flat triangles, one word per layer: 0 is north-east of the diagonal, 1 south-west. Bit
+// 2j + k: triangle k has a free view along direction FACET_DIRECTIONS · layer + j.
 
-const int FACET_DIRECTIONS = 15;      // of a layer
-const uint FACET_LOST = 0x80000000u;  // a ray took more steps than there can be
+const int FACET_DIRECTIONS = 15;      // per layer
+const uint FACET_LOST = 0x80000000u;  // a ray exceeded the step limit

@@ -1,7 +1,8 @@
-// Computes: what each direction on a curved base stands for among the others: the solid angle of the triangles around it
-// over that on the flat field, the importance of paths along it (Heidrich et al. 2000, §5, figure 8).
-// Reads: bent (see bent_directions), fans. Writes: fan_weights; 0 where triangles that have folded over outweigh the others.
-// One invocation is one sample and one direction.
+// Computes: the weight of each direction on a curved base surface: the solid angle of its triangles over that on the
+// flat field. It is the importance of paths along that direction (Heidrich et al. 2000, §5, figure 8).
+// Reads: bent (see bent_directions), fans.
+// Writes: fan_weights; 0 where folded triangles outweigh the others.
+// One invocation is one grid point and one direction.
 #version 460
 
 #include "shared/angle.glsl"
@@ -19,9 +20,9 @@ layout(push_constant) uniform FanWeightsPush {
     int first_direction;  // of this dispatch
 };
 
-// Solid angle of a spherical triangle, below 0 clockwise (Van Oosterom & Strackee 1983).
+// Signed solid angle of a spherical triangle, negative if clockwise (Van Oosterom & Strackee 1983).
 float area_sr(vec3 a, vec3 b, vec3 c) {
-    // Of the sides, which err by less than their difference is.
+    // From the sides, whose rounding error is relative to their length.
     float volume = dot(a, cross(b - a, c - a));
     float below = 1.0 + dot(a, b) + dot(b, c) + dot(c, a);
     float half_angle = arc_tangent(vec4(volume / (abs(below) < 1e-9 ? 1e-9 : below))).x;

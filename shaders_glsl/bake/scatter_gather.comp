@@ -1,14 +1,15 @@
-// Computes: one step of some light paths at every sample: the light that leaves it back along its path, or, of the last
-// step, towards each view. All samples look along the same directions (method of dependent tests, Heidrich et al. 2000,
-// section 3.2), so that what a step leaves is a picture that the next one looks things up in.
-// Reads: ground, direct, visible_points, links, carried_in, sun_points, albedo_map, phong_map; on a curved base bent and
-// fan_weights. Writes: carried, or reads and writes scattered (mean of the paths so far; w: how many).
-// One invocation is one sample of one path; of the last step, one sample of one view, of all paths.
+// Computes: one step of a set of light paths for every grid point: the radiance that leaves it back along its path
+// or, in the last step, towards each view. All grid points share their directions (method of dependent tests,
+// Heidrich et al. 2000, section 3.2), so each step writes an image in which the next one looks up.
+// Reads: ground, direct, visible_points, links, carried_in, sun_points, albedo_map, phong_map; on a curved base
+// surface bent and fan_weights.
+// Writes: carried; or reads and writes scattered (mean of the paths so far; w: path count).
+// One invocation is one grid point of one path; in the last step, one grid point of one view, all paths.
 //
-// The light that a sample scatters is the integral of f_r(e) max(N.e, 0) L(e) de over the sphere, L that of the sample
-// seen along e. With e one of the directions, each as likely, of all the solid angle W that they stand for, its estimate is
-// W f_r max(N.e, 0) L: unbiased for the sum over all directions, and so is a path's product of them, as each of its
-// directions is drawn apart. On a curved base e is each sample's own, and counts for as much as its triangles have grown.
+// Scattered light is the integral of f_r(e) max(N.e, 0) L(e) de over the sphere, with L the radiance of the grid
+// point visible along e. For e drawn uniformly from the directions, with total solid angle W, the estimate W f_r
+// max(N.e, 0) L is unbiased for the sum over all directions. So is the product along a path, as its directions are
+// drawn independently. On a curved base surface e depends on the grid point and is weighted by its fan weight.
 #version 460
 
 #include "shared/conventions.glsl"
@@ -17,46 +18,46 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const uint FROM_NONE = 0u;     // what is seen gives nothing: beyond the last bounce
+const uint FROM_NONE = 0u;     // the visible point contributes nothing: beyond the last bounce
 const uint FROM_DIRECT = 1u;   // its direct light alone
-const uint FROM_CARRIED = 2u;  // what an earlier step left
+const uint FROM_CARRIED = 2u;  // radiance from an earlier step
 
 layout(constant_id = 0) const uint SOURCE = FROM_DIRECT;
 layout(constant_id = 1) const bool SUMS = false;  // the last step
-// Two directions in a word.
+// Two directions per word.
 layout(constant_id = 2) const bool SMALL = false;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_LOBE = false;
 layout(constant_id = 5) const bool LOBE_IS_MAP = false;
 layout(constant_id = 6) const bool BENT = false;
-// Views see what the sample's own lobe mirrors of the lights, too.
+// Views include the grid point's own Phong specular reflection of the lights.
 layout(constant_id = 7) const bool OWN_LOBE = false;
 
 layout(binding = 0) uniform texture2D ground;
-// Exit radiance of what is diffuse.
+// Diffuse exit radiance.
 layout(binding = 1) uniform texture2D direct;
 layout(binding = 2) uniform utexture2DArray visible_points;
-// A path's steps, two texels each: direction and its number; the light of the sky there. Then suns: direction, and
-// irradiance facing it. Then views: towards them.
+// Steps of a path, two texels each: direction and its index; the sky radiance there. Then suns: direction, and
+// irradiance facing it. Then the directions of the views.
 layout(binding = 3) uniform textureBuffer links;
 layout(binding = 4) uniform texture2DArray carried_in;
-// What samples see towards each sun.
+// Visibility towards each sun.
 layout(binding = 5) uniform utexture2DArray sun_points;
 layout(binding = 6) uniform texture2D albedo_map;
 layout(binding = 7) uniform texture2D phong_map;
 layout(binding = 8, rgba32f) uniform writeonly image2DArray carried;
-layout(binding = 9, rgba32f) uniform image2DArray scattered;  // a layer a view
+layout(binding = 9, rgba32f) uniform image2DArray scattered;  // one layer per view
 layout(binding = 10) uniform texture2DArray bent;
 layout(binding = 11) uniform texture2DArray fan_weights;
 
 layout(push_constant) uniform ScatterGatherPush {
     int cols;
     int rows;
-    int first_link;       // texel of the first step of this pass's first path
-    int steps;            // of a path
-    int step;             // this one
-    int first_path;       // how many the mean holds before
-    int paths;            // 0 where nothing is scattered
+    int first_link;       // texel of the first step of the first path of this pass
+    int steps;            // per path
+    int step;             // index of this step
+    int first_path;       // paths in the mean so far
+    int paths;            // 0: no scattered light
     int first_direction;  // of the image of visible points
     int first_sun;        // texel
     int suns;
@@ -94,7 +95,7 @@ void main() {
     vec4 own = texelFetch(ground, at, 0);
     vec3 normal = vec3(-own.y, -own.z, 1.0);
     if (BENT) {
-        // At a height over the base the field is drawn apart.
+        // Directions over an elevated field diverge.
         normal.xy /= 1.0 + own.x * vec2(curvature_x, curvature_y);
     }
     normal = normalize(normal);
@@ -137,7 +138,7 @@ void main() {
         if (HAS_LOBE) {
             vec3 back = SUMS ? towards_view : -texelFetch(links, link - 2).xyz;
             mirror = 2.0 * dot(normal, back) * normal - back;
-            // The sky's light belongs to the direct light of what is diffuse, and of the sample itself.
+            // Sky light is part of the diffuse direct light and of the grid point's own.
             bool sees_sky = (!SUMS || OWN_LOBE) && seen == SEES_SKY;
             vec3 all = arriving + (sees_sky ? texelFetch(links, link + 1).rgb : vec3(0.0));
             light += facing > 0.0 ? lobe.y * lobe_density(ahead.xyz - mirror, lobe.x) * all : vec3(0.0);

@@ -1,6 +1,7 @@
-// Computes: which sample each sample sees in each of some directions: that nearest to where a ray meets the surface.
-// Reads: cells, maxima, ground, directions (east, north, up). Writes: visible_points (see bake/points.glsl).
-// One invocation is one sample and one layer: one direction, or two of a small field.
+// Computes: for each grid point and direction, the grid point nearest to where the ray hits the surface.
+// Reads: cells, maxima, ground, directions (east, north, up).
+// Writes: visible_points (see bake/points.glsl).
+// One invocation is one grid point and one layer: one direction, or two of a small field.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -10,12 +11,12 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
-// A field one sample wide that does not repeat is a line: only rays along it meet it.
+// A field one grid point wide that does not repeat is a line: only rays along it hit it.
 layout(constant_id = 1) const bool THIN_ROWS = false;
 layout(constant_id = 2) const bool THIN_COLS = false;
 // As in path_trace.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
-// Two directions in a word.
+// Two directions per word.
 layout(constant_id = 4) const bool SMALL = false;
 
 layout(binding = 0) uniform texture2D cells;
@@ -35,8 +36,8 @@ layout(push_constant) uniform VisiblePointsPush {
     float cell_y_m;
     float highest_m;
     int first_layer;      // of the image
-    int first_direction;  // the image's first, among the texels of directions
-    int end_direction;    // there are no more from here on
+    int first_direction;  // first direction of the image: texel in directions
+    int end_direction;    // one past the last
 };
 
 #include "rays/trace.glsl"

@@ -1,28 +1,28 @@
-// Computes: what the surface throws at every sample by pyramids of heights and of exit radiance: along each azimuth
-// one sample a level, at distances that grow by 2^(1/k) and are rounded to whole march steps. Each knot and
-// midpoint of the B-spline over their elevations that is above all before it casts its radiance over the
-// elevations that it opens (Nowrouzezahrai & Snyder 2009, eq. 6-17).
+// Computes: indirect light at every grid point from pyramids of heights and of exit radiance: along each azimuth one
+// lookup per level, at distances that grow by 2^(1/k) and are rounded to whole march steps. Each knot and midpoint of
+// the B-spline over their elevations that rises above all before it contributes its radiance over the newly visible
+// elevations (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 // Reads: heights, height_levels or height_stack, level_table, ground, exit_radiance, shade_levels or shade_stack,
 // shade_table.
-// Reads and writes: bounce_sum (exit radiance for albedo 1; until the last azimuths not yet divided by its A,
-// what whole hemispheres would have given).
-// One invocation is one sample, or one node: bounce_sum has a texel for each.
+// Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
+// last azimuths).
+// One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
-// Levels are there at every sample, else at their own texels.
+// Levels are stored at every grid point, else at their own texels.
 layout(constant_id = 1) const bool STACK = false;
-// Levels beside the field itself; may be none.
+// Levels besides the field itself; may be 0.
 layout(constant_id = 2) const int LEVELS = 0;
 layout(constant_id = 3) const int SHADE_LEVELS = 0;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 4) const bool GREY = false;
-// The cosine is exact; else three bands of it, and four Legendre coefficients a slice.
+// Exact cosine; else three bands of it, and four Legendre coefficients a slice.
 layout(constant_id = 5) const bool IS_PLANE = true;
-// Samples from node to node: 1, 2, 4 or 8.
+// Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 6) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
@@ -41,17 +41,17 @@ layout(push_constant) uniform BounceGatherPush {
     int rows;
     float cell_x_m;
     float cell_y_m;
-    int azimuths;       // of the circle, at the middles of equal parts
+    int azimuths;       // in the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
-    int last_azimuth;   // not itself
-    int warm_up_cols;   // samples marched beyond the field, along columns: whole periods, or 0
+    int last_azimuth;   // exclusive
+    int warm_up_cols;   // grid points marched beyond the field, along columns: whole periods, or 0
     int warm_up_rows;
-    int fine_samples;   // that look at the field itself
+    int fine_samples;   // lookups in the field itself
     int width_shift;
     float growth;       // of distances: 2^(1/k)
-    int shade_fine;     // the same of radiance
+    int shade_fine;     // the same for radiance
     int shade_shift;
-    int step_shade;     // levels an octave of radiance, and of heights
+    int step_shade;     // levels per octave of radiance, and of heights
     int step_height;
 };
 
@@ -60,7 +60,7 @@ layout(push_constant) uniform BounceGatherPush {
 
 // The slice.
 Facing facing;
-vec2 reached;    // direction up to which the surface is seen
+vec2 reached;    // direction up to which the surface has been visited
 float top;       // its elevation
 vec3 thrown;
 mat3x4 series;   // Legendre coefficients, R, G, B
@@ -72,7 +72,7 @@ vec4 occlusion(vec2 direction) {
     return vec4(0.70710678 * (s + 1.0), -0.61237244 * c2, -0.79056942 * s * c2, 0.23385359 * c2 * (5.0 * c2 - 4.0));
 }
 
-// Seen where it is above all before.
+// Visible where it rises above all before.
 void cast_light(float angle, vec2 place, int level, bool on) {
     bool rises = on && angle > top;
     if (!subgroupAny(rises)) {
@@ -95,8 +95,9 @@ void cast_light(float angle, vec2 place, int level, bool on) {
     top = rises ? angle : top;
 }
 
-// What a series gives to the three bands 1/4 + c/2 + 5/32 (3 c^2 - 1) of the clamped cosine of c = f cos(omega) + u sin(omega):
-// the spherical harmonics' sum over turns, by their addition theorem. With s = cos(omega), over z of -1 .. 1:
+// Contribution of a series to the three bands 1/4 + c/2 + 5/32 (3 c^2 - 1) of the clamped cosine of c = f cos(omega)
+// + u sin(omega): the sum of spherical harmonics over azimuth, by their addition theorem. With s = cos(omega), over z
+// of -1 .. 1:
 //   int P0 = sqrt(2), int z^2 P0 = sqrt(2)/3, int s P0 = pi/(2 sqrt(2)), int z P1 = sqrt(2/3), int z s P1 = sqrt(3/2) pi/8,
 //   int z^2 P2 = sqrt(8/45), int s P2 = -sqrt(5/2) pi/16, int z s P3 = -sqrt(7/2) pi/32.
 vec4 three_bands() {
@@ -122,7 +123,7 @@ void main() {
     vec4 sum = vec4(0.0);
     for (int k = first_azimuth; k < last_azimuth; k++) {
         vec2 e = turn_march(k, azimuths, vec2(cell_x_m, cell_y_m));
-        // The sample's own plane rises towards the azimuth with the field's slope.
+        // Rise of the grid point's own tangent plane along the azimuth.
         float own_slope = own.y * e.x + own.z * e.y;
         facing = Facing(-own_slope * up, up);
         reached = direction_of(own_slope);
@@ -133,7 +134,7 @@ void main() {
         march(exists);
         if (!IS_PLANE) {
             vec4 weights = three_bands();
-            // Per azimuth int u K dz, a whole hemisphere's being pi/2 of what `thrown` counts.
+            // Per azimuth int u K dz; a whole hemisphere's is pi/2 of what `thrown` counts.
             thrown = vec3(dot(series[0], weights), dot(series[1], weights), dot(series[2], weights));
             whole = 0.5;
         }
@@ -143,7 +144,7 @@ void main() {
         vec4 before = imageLoad(bounce_sum, at);
         vec4 both = before + sum;
         sum = first_azimuth > 0 ? both : sum;
-        // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is.
+        // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
         vec4 light = vec4(max(sum.rgb, vec3(0.0)) / max(sum.a, 1e-30), 1.0);
         bool is_whole = last_azimuth == azimuths;
         imageStore(bounce_sum, at, is_whole ? light : sum);

@@ -1,9 +1,10 @@
-// Computes: what the surface throws at every sample, exactly but for the azimuths: along each the stretches
-// of surface that the sample sees, each with its cosine-weighted part of the slice in closed form
-// and its radiance where the weighted mean of its distances lies.
-// Reads: cells, maxima, ground, exit_radiance. Reads and writes: bounce_sum (exit radiance for albedo 1; until
-// the last azimuths not yet divided by its A, what whole hemispheres would have given).
-// One invocation is one sample, or one node: bounce_sum has a texel for each.
+// Computes: indirect light at every grid point, exact except for the azimuth count: along each azimuth the visible
+// intervals of the surface, each with its cosine-weighted part of the slice in closed form and its radiance at the
+// weighted mean distance.
+// Reads: cells, maxima, ground, exit_radiance.
+// Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
+// last azimuths).
+// One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -13,14 +14,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
-// A field one sample wide that does not repeat is a line: it throws nothing.
+// A field one grid point wide that does not repeat is a line: it gives no indirect light.
 layout(constant_id = 1) const bool THIN_ROWS = false;
 layout(constant_id = 2) const bool THIN_COLS = false;
-// More than a ray of this field can ask for; llvmpipe ends all loops together after 65,535 turns.
+// More steps than a ray of this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 4) const bool GREY = false;
-// Samples from node to node: 1, 2, 4 or 8.
+// Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 5) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D cells;
@@ -38,9 +39,9 @@ layout(push_constant) uniform BounceMarchPush {
     int top_level;
     float cell_x_m;
     float cell_y_m;
-    int azimuths;       // of the circle, at the middles of equal parts
+    int azimuths;       // in the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
-    int last_azimuth;   // not itself
+    int last_azimuth;   // exclusive
 };
 
 #include "rays/walk.glsl"
@@ -48,7 +49,8 @@ layout(push_constant) uniform BounceMarchPush {
 
 // The slice.
 Facing facing;
-// So far: up to which slope the surface is seen, what it throws, and what the last stretch radiates.
+// So far: the slope up to which the surface is visible, its indirect light, and the radiance of the last visible
+// interval.
 float reached;
 vec3 thrown;
 vec3 last_radiance;
@@ -68,22 +70,22 @@ vec3 radiance_within(vec2 at) {
     return at.y <= at.x ? north : south;
 }
 
-// How far along a piece of surface, between two (distance, height) with shares 0 and 1, an elevation meets it.
+// Fraction of a surface piece, between two (distance, height), at which an elevation meets it.
 float share_at(vec2 begin, vec2 end, vec2 direction) {
     float under = begin.y * direction.x - direction.y * begin.x;
     float over = end.y * direction.x - direction.y * end.x;
     return clamp(under / min(under - over, -1e-30), 0.0, 1.0);
 }
 
-// Takes a piece in: from `reached` up to where it ends, if that is higher. `place` and `advance` are where in
-// the cell it begins, and its way through it.
+// Adds a piece: the part from `reached` up to its end, if that is higher. `place` and `advance` give its start in the
+// cell and its direction through it.
 void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     float slope = end.y / max(end.x, 1e-30);
     bool rises = end.x > begin.x && slope > reached;
     vec2 low = direction_of(reached);
     vec2 high = direction_of(max(slope, reached));
     float weight = max(light_between(facing, low, high), 0.0);
-    // Gauss' rule of two points over the stretch's elevations: at 1/sqrt(3) of its half width beside its middle.
+    // Gauss' rule of two points over the interval's elevations: 1/sqrt(3) of the half width from the middle.
     vec2 middle = normalize(low + high);
     float beside = 0.5773502691896258 * half_width(low, high);
     vec2 turn = vec2(cosine(beside), sine(beside));
@@ -93,7 +95,7 @@ void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     float weight_after = max(facing_of(facing, after), 0.0) * after.x;
     float both = max(weight_before + weight_after, 1e-30);
     float share = (weight_before * share_at(begin, end, before) + weight_after * share_at(begin, end, after)) / both;
-    // No rounding makes it less than nothing.
+    // Clamped against rounding.
     vec3 radiance = max(radiance_within(clamp(place + min(share, 1.0) * advance, 0.0, 1.0)), vec3(0.0));
     float counts = rises ? weight : 0.0;
     thrown += counts * radiance;
@@ -101,7 +103,7 @@ void see(vec2 begin, vec2 end, vec2 place, vec2 advance) {
     reached = rises ? slope : reached;
 }
 
-// The surface as far as any of it may be seen.
+// March over the surface as far as any of it may be visible.
 void march(Ray ray, bool going) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
@@ -109,7 +111,7 @@ void march(Ray ray, bool going) {
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
     for (int turn = 0; turn < MOST_STEPS; turn++) {
-        // Left by all lanes together, as in horizon_sweep.
+        // All lanes leave together, as in horizon_sweep.
         if (!subgroupAny(going)) {
             break;
         }
@@ -134,12 +136,12 @@ void march(Ray ray, bool going) {
         vec2 middle = vec2(t_middle * step_m, (corners.x - ray.own) + at_middle.x * (corners.w - corners.x));
         middle.y = is_split ? middle.y : entry.y;
         vec2 exit = vec2(block.ahead * step_m, cell_rise(corners, ray.own, at_exit));
-        // No rounding lifts the sample off the surface.
+        // Rounding must not lift the grid point off the surface.
         entry.y = walk.t > 0.0 ? entry.y : 0.0;
         middle.y = t_middle > 0.0 ? middle.y : 0.0;
         float middle_slope = middle.y / max(middle.x, 1e-30);
         float exit_slope = exit.y / max(exit.x, 1e-30);
-        // Not split, the middle is the entry, whose slope was taken in before.
+        // In an unsplit cell the middle is the entry, whose slope has been added already.
         float split_slope = max(middle_slope, exit_slope);
         float steepest = is_split ? split_slope : exit_slope;
         bool looks = going && is_cell && block.ahead > walk.t && steepest > reached;
@@ -181,9 +183,10 @@ void main() {
         vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
         vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
                        2.0 * half_direction.x * half_direction.y);
-        // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+        // Azimuths are multiples of 1/1024 of the circle or more: one this near to the grid lies on it, and along the
+        // field's edge.
         e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
-        // The sample's own plane rises towards the azimuth with the field's slope.
+        // Rise of the grid point's own tangent plane along the azimuth.
         float own_slope = own.y * e.x + own.z * e.y;
         facing = Facing(-own_slope * up, up);
         reached = own_slope;
@@ -191,7 +194,7 @@ void main() {
         last_radiance = vec3(0.0);
         march(ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m)), exists && !is_line);
         if (BORDER == BORDER_PERIODIC) {
-            // What has met nothing up to horizontal goes on over the same land for ever.
+            // A ray without a hit up to horizontal continues over the same terrain forever.
             float rest = max(light_between(facing, direction_of(min(reached, 0.0)), vec2(1.0, 0.0)), 0.0);
             thrown += rest * last_radiance;
         }
@@ -201,7 +204,7 @@ void main() {
         vec4 before = imageLoad(bounce_sum, at);
         vec4 both = before + sum;
         sum = first_azimuth > 0 ? both : sum;
-        // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is.
+        // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
         vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), 1.0);
         bool is_whole = last_azimuth == azimuths;
         imageStore(bounce_sum, at, is_whole ? light : sum);

@@ -1,16 +1,17 @@
-// Computes: what a bounce gives to every sample: the share of its own hemisphere that is ground, times the mean radiance
-// of the ground that the nodes around it see.
-// Reads: ground (height, slopes towards east and north), sky_share, node_sum. Writes: bounce_sum (exit radiance for albedo 1).
-// One invocation is one sample.
+// Computes: indirect light at every grid point: the ground's share of its own hemisphere, times the mean radiance of
+// the ground visible from the nodes around it.
+// Reads: ground (height, slopes towards east and north), sky_share, node_sum.
+// Writes: bounce_sum (exit radiance for albedo 1).
+// One invocation is one grid point.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Samples from node to node: 2, 4 or 8.
+// Grid points from node to node: 2, 4 or 8.
 layout(constant_id = 0) const int NODE_STRIDE = 2;
 
 layout(binding = 0, rgba32f) uniform readonly image2D ground;
-// What a sky of radiance 1 gives: the rest is ground.
+// Exit radiance under a sky of radiance 1; the rest of the hemisphere is ground.
 layout(binding = 1, r32f) uniform readonly image2D sky_share;
 layout(binding = 2, rgba32f) uniform readonly image2D node_sum;
 layout(binding = 3, rgba32f) uniform writeonly image2D bounce_sum;
@@ -25,7 +26,7 @@ layout(push_constant) uniform BounceShadePush {
 #include "shared/nodes.glsl"
 #include "sh/alike.glsl"
 
-// Less is nearly none, of which two rules over azimuths know no ratio.
+// Below this share the ratio of two azimuth rules is numerical noise.
 const float LEAST_SHARE = 1.0 / 256.0;
 
 float ground_share(ivec2 at) {
@@ -57,7 +58,7 @@ void main() {
         north[i] = node.z;
         shares[i] = ground_share(places[i]);
     }
-    // How far they see the sample.
+    // Distance at which their ground is visible.
     vec2 from_m = vec2(at - from) * vec2(cell_x_m, -cell_y_m);
     vec2 to_m = vec2(at - to) * vec2(cell_x_m, -cell_y_m);
     vec4 east_m = vec4(from_m.x, to_m.x, from_m.x, to_m.x);

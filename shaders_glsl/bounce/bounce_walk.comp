@@ -1,26 +1,28 @@
-// Computes: what the ground around every sample throws onto it in the azimuths of a batch, added to what
-// earlier ones gave: the visible stretches of the sample's own lines, nearest first, each with its own
-// radiance and weighed in closed form. What a swept line met at its samples is a hull tree of it
-// (Timonen 2012): all between a sample and what it meets lies below the straight line between the two.
-// Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey). Reads and writes: bounce_sum (exit
-// radiance for albedo 1; until the last dispatch not yet divided by its A, what whole hemispheres would give). Writes:
-// casting_sets (of every second node).
-// One invocation is one sample, or one node: bounce_sum has a texel for each.
+// Computes: indirect light at every grid point from the azimuths of a batch, added to earlier batches: the visible
+// intervals of the grid point's own lines, nearest first, each with its own radiance and weighted in closed form. The
+// occluders that a swept line stores form a hull tree (Timonen 2012): everything between a grid point and its
+// occluder lies below the straight line between the two.
+// Reads: lane_heights, azimuths, occluders, exit_radiance (or exit_grey).
+// Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
+// last dispatch).
+// Writes: casting_sets (visibility cache of every second node).
+// One invocation is one grid point, or one node: bounce_sum has a texel for each.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Side by side along the march, as the steps of a line lie in the lattice.
+// Side by side along the march, as the steps of a line are in the lattice.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int LINE_SHIFT = 15;
 layout(constant_id = 1) const uint BORDER = 0u;
 layout(constant_id = 2) const bool MARCHES_ROWS = false;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 3) const bool GREY = false;
-// Samples from node to node: 1, 2, 4 or 8.
+// Grid points from node to node: 1, 2, 4 or 8.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
-// From which nodes: all, or those of every second lane and of the last, of which every second along and the last keep
-// what is seen for later bounces, or those of the other lanes. Whole lanes, as steps side by side walk alike.
+// Which nodes run: all; or those of every second lane and of the last, where every second along and the last fill the
+// visibility cache for later bounces; or those of the other lanes. Whole lanes, because neighbouring steps walk
+// alike.
 layout(constant_id = 5) const uint FROM = 0u;
 const uint FROM_KEPT = 1u;
 const uint FROM_REST = 2u;
@@ -51,10 +53,10 @@ layout(push_constant) uniform BounceWalkPush {
     uint azimuth_count;
     uint clears;  // 1 in the first dispatch of a bounce
     uint is_last; // 1 in the last
-    uint begin;   // of the bounces' azimuths
+    uint begin;   // of the azimuths used for bounces
 };
 
-// The sample, in the lanes and steps of the azimuth that is walked.
+// The grid point, in lanes and steps of the current azimuth.
 Azimuth azimuth;
 uint azimuth_index;
 int lanes;
@@ -62,11 +64,11 @@ int steps;
 int own_lane;
 int own_step;
 float own_height;
-ivec2 own_node;      // where its sum lies
-ivec2 own_kept_node; // and its casting sets, where they are kept
+ivec2 own_node;      // texel of its sum
+ivec2 own_kept_node; // texel of its visibility cache, if kept
 bool own_is_kept;
 
-// A place of the sample's own line: two lanes and how far it lies between them.
+// A point of the grid point's own line: two lanes and the fraction between them.
 struct Place {
     int lane;
     int next;
@@ -94,7 +96,7 @@ Place place_at(int back) {
     return Place(first, second, march_position(azimuth, on, steps), t);
 }
 
-// As quad.glsl's, chosen without branches.
+// As in quad.glsl, selected without branches.
 float height_of(int lane, int march) {
     vec4 four = imageLoad(lane_heights, ivec2(lane >> 2, march));
     vec2 two = mix(four.xy, four.zw, bvec2((lane & 2) != 0));
@@ -113,7 +115,7 @@ vec3 leaving(int lane, int march) {
     ivec2 by_row = ivec2(lane, march);
     ivec2 by_col = ivec2(march, lane);
     ivec2 at = MARCHES_ROWS ? by_row : by_col;
-    // Not left early: that makes loops of functions, which SwiftShader's compiler takes gigabytes over.
+    // No early exit: it makes loops out of functions, for which SwiftShader's compiler takes gigabytes.
     vec3 colour;
     if (GREY) {
         colour = imageLoad(exit_grey, at).xxx;
@@ -128,7 +130,7 @@ vec3 light_at(int back) {
     return mix(leaving(p.lane, p.march), leaving(p.next, p.march), p.t);
 }
 
-// Steps from a place of the own line to what the nearest swept line meets there; 0 where that meets nothing.
+// Steps from a point of the own line to the occluder of the nearest swept line; 0 for none.
 int occluder_at(int back) {
     bool wraps = BORDER == BORDER_PERIODIC;
     int spacing = 1 << LINE_SHIFT;
@@ -140,7 +142,7 @@ int occluder_at(int back) {
     int on = (wraps ? step_round : step_held) + warm_up;
     int origin = on * azimuth.shear - lead * spacing;
     int from_origin = own_lane * CELL - back * azimuth.shear - origin;
-    // The nearer one; of two, the one before.
+    // The nearer one; on a tie, the one before.
     int nearest = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
     int first = (spacing - 1 - origin) >> LINE_SHIFT;
     int last = ((lanes - 1) * CELL - origin) >> LINE_SHIFT;
@@ -156,15 +158,15 @@ int occluder_at(int back) {
     return stands ? found : 0;
 }
 
-// Whether the own line crosses the diagonal of the sample's cell within its first step: (1, 0) to (0, 1), by
-// (u, u * shear) at u = 1 / (1 + shear).
+// Whether the own line crosses the diagonal of the grid point's cell within its first step: (1, 0) to (0, 1), by (u,
+// u * shear) at u = 1 / (1 + shear).
 bool crosses_split() {
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
     return flips_march != flips_lanes && (BORDER == BORDER_PERIODIC || own_lane > 0);
 }
 
-// The ends of that diagonal: the sample's neighbours across the lanes, and ahead.
+// Ends of that diagonal: the grid point's neighbours across the lanes, and ahead.
 ivec4 split_ends() {
     int low_round = wrapped(own_lane - 1, lanes);
     int low_held = max(own_lane - 1, 0);
@@ -181,7 +183,7 @@ vec2 moments_above(float slope) {
     return vec2(moments.flat_part.x, moments.vertical.x);
 }
 
-// How far a walk has come: what is reached is seen up to `reached`, the slope of its last place that rose.
+// Progress of a walk: the surface is visible up to `reached`, the slope of the last point that rose.
 vec2 faces;
 vec2 passed;
 float reached;
@@ -191,11 +193,11 @@ void throw_light(vec2 opened, vec3 light) {
     thrown += dot(faces, opened) * light;
 }
 
-// The casting set so far, ring by ring: weights, and those times the distance in steps.
+// The visibility cache so far, per ring: weights, and weights times the distance in steps.
 vec4 ring_weights;
 vec4 ring_moments;
 
-// A stretch, with the middle of what is seen of it.
+// A visible interval and its middle.
 void take_cast(float middle, vec2 opened, bool on) {
     float weight = mix(0.0, max(dot(faces, opened), 0.0), on);
     vec3 within = vec3(lessThan(vec3(middle), RING_ENDS));
@@ -204,14 +206,14 @@ void take_cast(float middle, vec2 opened, bool on) {
     ring_moments += middle * of_rings;
 }
 
-// What is thrown along the azimuth, on a surface with this normal that rises by `plane` along it; and what
-// radiance 1 from all of its directions would give.
+// Indirect light along the azimuth, on a surface with this normal that rises by `plane` along it; and the same for
+// radiance 1 from every direction.
 vec4 walked(vec3 normal, float plane) {
     int reach = own_step + warm_up;
     if (BORDER != BORDER_PERIODIC && azimuth.shear > 0) {
         reach = min(reach, own_lane * CELL / azimuth.shear);
     }
-    // Behind what the nearest line meets nothing rises.
+    // Nothing rises behind the point where the nearest line has no occluder.
     int limit = min(max(occluder_at(0), 1), reach);
     bool walking = limit > 0;
 
@@ -222,8 +224,8 @@ vec4 walked(vec3 normal, float plane) {
     ring_weights = vec4(0.0);
     ring_moments = vec4(0.0);
     reached = plane;
-    // The triangle that holds the sample: what leads into it meets it at once. Its end is the cell's diagonal,
-    // where that is crossed, else the first step.
+    // The triangle of the grid point: the first surface is met at once. It ends at the cell's diagonal where that is
+    // crossed, else at the first step.
     bool split = crosses_split();
     ivec4 ends = split_ends();
     float u = 1.0 / (1.0 + float(azimuth.shear) * (1.0 / float(CELL)));
@@ -241,14 +243,14 @@ vec4 walked(vec3 normal, float plane) {
     }
     passed = mix(passed, split_moments, bvec2(sees_split));
     reached = sees_split ? split_slope : reached;
-    // Where the next piece begins: its distance in steps, slope, and radiance.
+    // Start of the next piece: distance in steps, slope, and radiance.
     int at = 0;
     float from = split ? u : 0.0;
     float slope = split ? split_slope : plane;
     vec3 light = mix(own_light, split_light, bvec3(split));
-    // At most one turn a step. Neither branch nor vote stands in it: llvmpipe (Mesa 22.3) goes through both sides of the
-    // one and makes eight branches of the other. As it also lets a lane that has left the loop go on computing, what a
-    // turn finds counts where the lane is still walking, of which `turns_on` tells the compiler nothing.
+    // At most one iteration a step, without branch or vote: llvmpipe (Mesa 22.3) runs both sides of a branch and
+    // expands a vote into eight. It also lets a lane that has left the loop keep computing, so a result counts only
+    // while the lane is still walking; the compiler does not know this of `turns_on`.
     int turns_on = int(walking);
     while (turns_on > 0) {
         int met = occluder_at(at);
@@ -257,7 +259,7 @@ vec4 walked(vec3 normal, float plane) {
         int next = min(at + 1, max(limit, 1));
         int to = clamp(at + back, next, max(limit, 1));
         float to_slope = slope_at(to);
-        // What lies between may rise as well.
+        // Points in between may rise as well.
         bool searches = walking && to_slope > reached && to > next;
         float next_slope = slope_at(next);
         to = searches ? next : to;
@@ -266,7 +268,7 @@ vec4 walked(vec3 normal, float plane) {
         bool is_own = at == 0 && !split;
         vec3 there = light_at(to);
         vec3 far = mix(there, own_light, bvec3(is_own));
-        // Where the piece comes up over what is before it: radiance is linear.
+        // Where the piece rises over what is before it; radiance is linear.
         float under = max(reached - slope, 0.0) * from;
         float over = (to_slope - reached) * float(to);
         float hidden = under / max(under + over, 1e-30);
@@ -343,8 +345,8 @@ void main() {
         own_step = march_position(azimuth, march, steps);
         sum += walked(normal, east * azimuth.cos_phi + north * azimuth.sin_phi);
     }
-    // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is. Later bounces of
-    // casting sets divide by the same.
+    // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved. Later bounces from the
+    // visibility cache divide by the same sum.
     vec4 light = vec4(sum.rgb / max(sum.a, 1e-30), sum.a);
     imageStore(bounce_sum, own_node, mix(sum, light, bvec4(is_last != 0u)));
 }

@@ -1,7 +1,8 @@
-// Computes: what every node sees of one more bounce: the radiance of each ring of its casting sets, which the first
-// bounce has left, times its weight.
-// Reads: casting_sets, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce, whose every second node
-// this one's are: in A what whole hemispheres would give, which divides). Writes: bounce_sum (exit radiance for albedo 1).
+// Computes: one more bounce at every node: the radiance of each ring of its visibility cache, filled in the first
+// bounce, times the ring's weight.
+// Reads: casting_sets, azimuths, exit_radiance (or exit_grey), node_sum (of the first bounce; every second node of it
+// is a node here; A is the divisor, the sum for whole hemispheres).
+// Writes: bounce_sum (exit radiance for albedo 1).
 // One invocation is one node.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,9 +10,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 1) const bool GREY = false;
-// Samples from node to node: 4 or 8.
+// Grid points from node to node: 4 or 8.
 layout(constant_id = 2) const int NODE_STRIDE = 4;
 
 layout(binding = 0, rgba32ui) uniform readonly uimage2DArray casting_sets;
@@ -24,7 +25,7 @@ layout(binding = 5, rgba32f) uniform writeonly image2D bounce_sum;
 layout(push_constant) uniform CacheGatherPush {
     int cols;
     int rows;
-    uint begin;  // of the bounces' azimuths
+    uint begin;  // of the azimuths used for bounces
     uint count;
 };
 
@@ -42,7 +43,7 @@ vec3 leaving(ivec2 at) {
     return colour;
 }
 
-// The sample nearest to a place of a sample's own line, so many steps away.
+// The grid point nearest to a point that many steps away on a grid point's own line.
 ivec2 sample_at(Azimuth azimuth, ivec2 here, int back) {
     bool by_rows = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     ivec2 swapped_here = here.yx;

@@ -1,31 +1,31 @@
-// What a sample sees of the surface by pyramids of heights and of exit radiance along one azimuth: one sample a level,
-// at distances that grow by 2^(1/k) and are rounded to whole march steps, the knots and midpoints of the B-spline over
-// their elevations cast their light (Nowrouzezahrai & Snyder 2009, eq. 6-17).
+// Visible surface along one azimuth, from pyramids of heights and of exit radiance: one lookup per level, at
+// distances that grow by 2^(1/k) and are rounded to whole march steps. The knots and midpoints of the B-spline over
+// their elevations contribute light (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 //
 // The including shader declares the constants PERIODIC, STACK, LEVELS, SHADE_LEVELS and GREY, the images heights,
-// height_levels, level_table, height_stack, exit_radiance, shade_levels, shade_table and shade_stack, the numbers
-// cols, rows, warm_up_cols, warm_up_rows, fine_samples, width_shift, growth, shade_fine, shade_shift, step_shade and step_height, and
-// defines cast_light.
+// height_levels, level_table, height_stack, exit_radiance, shade_levels, shade_table and shade_stack, and the numbers
+// cols, rows, warm_up_cols, warm_up_rows, fine_samples, width_shift, growth, shade_fine, shade_shift, step_shade and
+// step_height. It defines cast_light.
 #include "shared/angle.glsl"
 #include "bounce/cosine.glsl"
 #include "shared/spline.glsl"
 #include "bounce/shade.glsl"
 
-// An elevation on the spline, with the place and the level that its light comes from.
+// An elevation on the spline, with the place and level of its radiance.
 void cast_light(float angle, vec2 place, int level, bool on);
 
-// The march: whole steps along columns or rows, straight across the other axis.
+// The march: whole steps along columns or rows, interpolated along the other axis.
 ivec2 here;
 bool by_x;
 int forward;     // 1 or -1 along the march
-float shear;     // samples across a step
+float shear;     // grid points across per step
 float step_m;
-// The last four elevations, the newest in w, and what the third of them looks at.
+// The last four elevations, the newest in w, and the radiance lookup of the third.
 vec4 angles;
 vec2 place_before;
 int level_before;
 
-// Where the march is after so many steps, in samples: column, row.
+// Position of the march after that many steps, in grid points: column, row.
 vec2 place_at(int steps) {
     float along = float(forward * steps);
     float across = float(steps) * shear;
@@ -33,7 +33,7 @@ vec2 place_at(int steps) {
     return vec2(here) + (by_x ? by_column : by_column.yx);
 }
 
-// The two samples on a march step's grid line that a place lies between.
+// The two grid points on a march step's grid line around a position.
 void beside(vec2 place, out ivec2 low, out ivec2 high, out float t) {
     ivec2 size = ivec2(cols, rows);
     vec2 rounded = floor(place + 0.5);
@@ -70,7 +70,7 @@ float height_at(int level, vec2 place) {
     return h + t * (texelFetch(heights, high, 0).x - h);
 }
 
-// Radiance of a level at a place: what radiates is not below 0.
+// Radiance of a level at a place, clamped at 0.
 vec3 radiance_at(int level, vec2 place) {
     if (level > 0 && !STACK) {
         Level of = level_of(texelFetch(shade_table, ivec2(level - 1, 0), 0));
@@ -94,8 +94,8 @@ vec3 radiance_at(int level, vec2 place) {
     return GREY ? mean.xxx : mean.rgb;
 }
 
-// Takes an elevation in: first the spline's midpoint before the last knot, then that knot, both with what
-// the sample of the knot looks at.
+// Adds an elevation: first the spline's midpoint before the last knot, then that knot, both with the radiance lookup
+// of the knot.
 void take_in(float angle, vec2 place, int level, bool is_first, bool on) {
     vec4 shifted = vec4(angles.yzw, angle);
     vec4 four = is_first ? vec4(angle) : shifted;
@@ -103,17 +103,17 @@ void take_in(float angle, vec2 place, int level, bool is_first, bool on) {
     float middle = ((four.x + four.w) + 23.0 * (four.y + four.z)) * (1.0 / 48.0);
     vec2 of = is_first ? place : place_before;
     int of_level = is_first ? level : level_before;
-    // Both radiate alike: the higher opens what both do.
+    // Both have the same radiance: the higher opens the elevations of both.
     cast_light(max(middle, knot), of, of_level, on);
     angles = on ? four : angles;
     place_before = on ? place : place_before;
     level_before = on ? level : level_before;
 }
 
-// Of every level, the field first: they are the same in all azimuths.
+// Per level, the field first; the same in all azimuths.
 float own_heights[LEVELS + 1];
 
-// What the sample itself is at every level; on its own sample either axis' grid line is the same.
+// Height of the grid point itself at every level; there the grid lines of both axes agree.
 void find_own_heights() {
     by_x = true;
     for (int level = 0; level <= LEVELS; level++) {
@@ -121,14 +121,15 @@ void find_own_heights() {
     }
 }
 
-// Turns the march to azimuth k of so many, at the middles of equal parts of the circle; returns its direction.
+// Sets the march to azimuth k of so many, at the middles of equal parts of the circle; returns its direction.
 vec2 turn_march(int k, int azimuths, vec2 cell_m) {
     // Half a turn counted from west, in halves: the sines' range.
     float half_turn = PI * ((float(k) + 0.5) / float(azimuths) - 0.5);
     vec2 half_direction = vec2(cosine(half_turn), sine(half_turn));
     vec2 e = -vec2(half_direction.x * half_direction.x - half_direction.y * half_direction.y,
                    2.0 * half_direction.x * half_direction.y);
-    // Parts of the circle are 1/1024 or more: what is so near to the grid is along it, and along the field's edge.
+    // Azimuths are multiples of 1/1024 of the circle or more: one this near to the grid lies on it, and along the
+    // field's edge.
     e = mix(e, vec2(0.0), lessThan(abs(e), vec2(1e-5)));
     vec2 cells = vec2(e.x / cell_m.x, -e.y / cell_m.y);
     by_x = abs(cells.x) >= abs(cells.y);
@@ -151,7 +152,8 @@ void march(bool exists) {
     int side = by_x ? size.y : size.x;
     int at_side = by_x ? here.y : here.x;
     float room = shear > 0.0 ? float(side - 1 - at_side) : float(at_side);
-    // A hair more, so that rounding decides no last step; beyond any step where it runs along the grid.
+    // Slightly more, so that rounding does not decide the last step; beyond every step where the march runs along the
+    // grid.
     float beside_it = min(room / max(abs(shear), 1e-9) + 1e-3, 1e6);
     float across = mix(beside_it, 1e6, shear == 0.0);
     int far = reach + (by_x ? warm_up_cols : warm_up_rows);
@@ -161,7 +163,7 @@ void march(bool exists) {
     bool on = meets;
     int next = 0;
     float back = 1.0;
-    // Left by all lanes together, as in horizon_sweep.
+    // All lanes leave together, as in horizon_sweep.
     while (subgroupAny(on)) {
         int whole = int(back + 0.5);
         int at = min(whole, reach);
@@ -170,7 +172,7 @@ void march(bool exists) {
         float rise = height_at(level, place) - own_heights[level];
         float angle = arc_tangent(vec4(rise / (float(max(at, 1)) * step_m))).x;
         do {
-            // As many octaves away, in levels of its own.
+            // As many octaves away, in radiance levels.
             int shade = clamp((next * step_shade + step_height / 2) / step_height + 1 - shade_fine, 0, SHADE_LEVELS);
             take_in(angle, place, shade, next == 0, on);
             next++;

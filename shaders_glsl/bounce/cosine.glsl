@@ -1,5 +1,5 @@
-// One azimuth's slice of what a diffuse sample receives, in closed form. Directions of the slice are
-// (cosine, sine) of their elevation. Needs angle.glsl.
+// Irradiance of one azimuth's slice on a diffuse surface, in closed form. Directions of the slice are (cosine, sine)
+// of their elevation. Needs angle.glsl.
 
 // N·e = flat_part cos(omega) + up sin(omega).
 struct Facing {
@@ -15,7 +15,7 @@ vec2 direction_of(float slope) {
     return vec2(1.0, slope) * inversesqrt(1.0 + slope * slope);
 }
 
-// Half of the angle between two directions at most a quarter turn either side of horizontal; small ones keep their digits.
+// Half of the angle between two directions at most a right angle from horizontal; exact for small angles.
 float half_width(vec2 low, vec2 high) {
     vec2 sum = low + high;
     vec2 difference = high - low;

@@ -1,6 +1,6 @@
 #include "shared/levels.glsl"
 
-// Radiance of a level at a place in its texels, by its cubic B-spline: weights are positive and sum to 1. The
+// Radiance of a level at a position in its texels, by its cubic B-spline: weights are positive and sum to 1. The
 // including shader declares `shade_levels`.
 vec3 shade_at(Level level, vec2 place, int width_shift) {
     Taps x = spline_taps(place.x, level.cols);

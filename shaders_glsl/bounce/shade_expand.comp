@@ -1,7 +1,8 @@
-// Computes: every level of the pyramid of exit radiance at the field's own samples, by its B-spline, as
-// height_expand does of heights.
-// Reads: shade_levels, shade_table. Writes: shade_stack at [level - 1][row][column].
-// One invocation is one sample in one level.
+// Computes: every level of the pyramid of exit radiance at the field's own grid points, by its B-spline, as
+// height_expand does for heights.
+// Reads: shade_levels, shade_table.
+// Writes: shade_stack at [level - 1][row][column].
+// One invocation is one grid point in one level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -10,7 +11,7 @@ layout(constant_id = 0) const bool PERIODIC = false;
 
 layout(binding = 0) uniform texture2D shade_levels;
 layout(binding = 1) uniform utexture2D shade_table;
-// Of four channels, or of one where radiance is grey.
+// Four channels, or one for grey radiance.
 layout(binding = 2) uniform writeonly image2DArray shade_stack;
 
 #include "bounce/shade.glsl"

@@ -1,6 +1,7 @@
-// Computes: one level of the pyramid of exit radiance from the level an octave finer (from the samples themselves
-// for the first octave), as height_reduce, but never beyond what it is made of: light is not below 0.
-// Reads: exit_radiance, shade_levels. Writes: shade_levels (R, G, B), shade_table (one texel for this level).
+// Computes: one level of the pyramid of exit radiance from the level an octave finer (from the grid points themselves
+// for the first octave). As height_reduce, but clamped to the range of its source, so that light stays at or above 0.
+// Reads: exit_radiance, shade_levels.
+// Writes: shade_levels (R, G, B), shade_table (one texel for this level).
 // One invocation is one texel of the level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -8,7 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
 layout(constant_id = 1) const bool FROM_FIELD = false;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 2) const bool GREY = false;
 
 layout(binding = 0) uniform texture2D exit_radiance;
@@ -22,7 +23,7 @@ layout(push_constant) uniform ShadeReducePush {
     int source_cols;
     int source_rows;
     int source_first;
-    float ratio_x;  // texels of the source a texel
+    float ratio_x;  // source texels per texel
     float ratio_y;
     float per_sample_x;
     float per_sample_y;

@@ -1,6 +1,7 @@
-// Computes: one level of the pyramid of exit radiance's series from the level an octave finer (from the samples'
-// own for the first octave), as shade_reduce.
-// Reads: exit_vectors, vector_source. Writes: vector_levels (the same image), shade_table (one texel for this level).
+// Computes: one level of the pyramid of exit radiance as SH series, from the level an octave finer (from the grid
+// points' own for the first octave), as shade_reduce.
+// Reads: exit_vectors, vector_source.
+// Writes: vector_levels (the same image), shade_table (one texel for this level).
 // One invocation is one texel of one layer of the level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -22,7 +23,7 @@ layout(push_constant) uniform VectorReducePush {
     int source_cols;
     int source_rows;
     int source_first;
-    float ratio_x;  // texels of the source a texel
+    float ratio_x;  // source texels per texel
     float ratio_y;
     float per_sample_x;
     float per_sample_y;

@@ -1,4 +1,5 @@
-// bent_normal.ktx2: the mean free direction and the cone about it that is as large as all that is free.
+// bent_normal.ktx2: the mean unoccluded direction, and the cone about it with the same solid angle as the unoccluded
+// sky.
 // uv (0, 0) is the north-west corner; x is east, y north, z up.
 
 // The direction, and the cone's half-angle, radians.

@@ -1,7 +1,8 @@
-// brdf.ktx2: texel (v, l) is of view v and light l, direction k · BRDF_PHIS + j of θ = (k + ½) π/2 / BRDF_THETAS from straight
-// above and φ = 2π j / BRDF_PHIS counter-clockwise from east. Linear between the angles.
+// brdf.ktx2: texel (v, l) is for view v and light l, direction k · BRDF_PHIS + j of θ = (k + ½) π/2 / BRDF_THETAS
+// from vertical and φ = 2π j / BRDF_PHIS counter-clockwise from east. Linear between the angles.
 
-// Radiance towards a view over the irradiance, cos θ, of a plane by a light, 1/sr; each is (θ, φ), radians.
+// Radiance towards a view over the irradiance of a horizontal plane by a light, which includes cos θ, 1/sr; each is
+// (θ, φ), radians.
 vec3 brdf(sampler2D map, vec2 light, vec2 view) {
     vec2 size = vec2(BRDF_THETAS, BRDF_PHIS);
     vec4 place = vec4(light, view) * size.xyxy * vec2(0.636619772, 0.159154943).xyxy - vec2(0.5, 0.0).xyxy;

@@ -1,6 +1,6 @@
-// brdf_factors.ktx2: layer k is a function of the light's direction, layer BRDF_VIEWS + k one of the view's, the same where
-// BRDF_VIEWS is 0; texel (j, i) of φ = 2π j / BRDF_PHIS counter-clockwise from east and
-// θ = (i + ½) π/2 / BRDF_THETAS from straight above. Linear between the angles. A direction is (θ, φ), radians.
+// brdf_factors.ktx2: layer k is a function of the light's direction, layer BRDF_VIEWS + k one of the view's; both are
+// the same where BRDF_VIEWS is 0. Texel (j, i) has φ = 2π j / BRDF_PHIS counter-clockwise from east and θ = (i + ½)
+// π/2 / BRDF_THETAS from vertical. Linear between the angles. A direction is (θ, φ), radians.
 
 vec3 brdf_factor(sampler2DArray map, int k, vec2 e) {
     vec2 size = vec2(BRDF_PHIS, BRDF_THETAS);

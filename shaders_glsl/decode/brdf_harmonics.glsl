@@ -1,5 +1,5 @@
-// brdf_harmonics.ktx2: texel (j, i) is the weight of harmonic i of the light times harmonic j of the view. Real orthonormal
-// harmonics about x east, y north, z up, without the sign of Condon and Shortley; index l(l+1) + m.
+// brdf_harmonics.ktx2: texel (j, i) is the weight of harmonic i of the light times harmonic j of the view. Real
+// orthonormal harmonics with x east, y north, z up, without the Condon-Shortley phase; index l(l+1) + m.
 
 // All harmonics of a unit vector: of each m those of l = m, m + 1, … by the recurrence of associated Legendre functions.
 void brdf_harmonics(vec3 e, out float y[BRDF_TERMS]) {
@@ -16,7 +16,8 @@ void brdf_harmonics(vec3 e, out float y[BRDF_TERMS]) {
     }
 }
 
-// Radiance towards the view over the irradiance, cos θ, of a plane by the light, 1/sr; where it rings, below 0.
+// Radiance towards the view over the irradiance of a horizontal plane by the light, 1/sr; ringing can make it
+// negative.
 vec3 brdf_of_harmonics(sampler2D map, float light[BRDF_TERMS], float view[BRDF_TERMS]) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < BRDF_TERMS * BRDF_TERMS; k++) {

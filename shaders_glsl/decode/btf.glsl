@@ -1,9 +1,9 @@
-// btf.ktx2: layer l · (BTF_THETAS · BTF_PHIS) + v is of light l and view v, direction k · BTF_PHIS + j of
-// θ = (k + ½) π/2 / BTF_THETAS from straight above and φ = 2π j / BTF_PHIS counter-clockwise from east. Radiance under
-// irradiance 1 facing the light, and in a the share of the view that the texel fills over its own cell, 0 where it is hidden.
-// uv (0, 0) is the north-west corner.
+// btf.ktx2: layer l · (BTF_THETAS · BTF_PHIS) + v is for light l and view v, direction k · BTF_PHIS + j of θ = (k +
+// ½) π/2 / BTF_THETAS from vertical and φ = 2π j / BTF_PHIS counter-clockwise from east. RGB is radiance under
+// irradiance 1 facing the light. A is the texel's visible area in the view over that of its cell, 0 where it is
+// hidden. uv (0, 0) is the north-west corner.
 
-// The direction nearest to one, (θ, φ), radians.
+// The direction nearest to (θ, φ), radians.
 int btf_direction(vec2 e) {
     int theta = min(int(e.x * 0.636619772 * float(BTF_THETAS)), BTF_THETAS - 1);
     return theta * BTF_PHIS + int(fract(e.y * 0.159154943) * float(BTF_PHIS) + 0.5) % BTF_PHIS;

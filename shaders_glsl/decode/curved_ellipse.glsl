@@ -1,9 +1,10 @@
-// curved_ellipse.ktx2: five ellipses in the plan of the hemisphere, of a flat base and of ones bent by CURVATURE_OUTWARDS and
-// CURVATURE_INWARDS (1/m) towards east and towards north: layers 0 to 4 centre and xx, yy of the matrix that takes the unit disc
-// to each, 5 and 6 (r) their xy. uv (0, 0) is the north-west corner. Linear in all, so that it may be filtered.
+// curved_ellipse.ktx2: five ellipses in the plan of the hemisphere, for a flat base surface and for ones of curvature
+// CURVATURE_OUTWARDS and CURVATURE_INWARDS (1/m) towards east and towards north. Layers 0 to 4 hold the centre and
+// xx, yy of the matrix that maps the unit disc to each ellipse; layers 5 and 6 (r) hold their xy. uv (0, 0) is the
+// north-west corner. Linear in all values, so that the map may be filtered.
 
-// Whether light from a unit vector of the base's frame (z up, above 0) arrives, or the place is seen from there: 1, or 0. On a
-// base of these curvatures towards east and north, 1/m, above 0 where it bends down.
+// Visibility, 0 or 1, along a unit vector of the base's frame (z up, above 0). The base has these curvatures towards
+// east and north, 1/m, positive where it bends down.
 float curved_ellipse_lit(sampler2DArray map, vec2 uv, vec2 curvature, vec3 light) {
     bvec2 inwards = lessThan(curvature, vec2(0.0));
     vec2 share = abs(curvature) / mix(vec2(CURVATURE_OUTWARDS), vec2(CURVATURE_INWARDS), inwards);

@@ -1,7 +1,7 @@
-// horizon.ktx2: layer k holds what ends at the sky along 360° k / HORIZON_AZIMUTHS, counter-clockwise from east.
-// The first row lies in the north: uv (0, 0) is the north-west corner.
+// horizon.ktx2: layer k holds the horizon along azimuth 360° k / HORIZON_AZIMUTHS, counter-clockwise from east. The
+// first row is the northernmost: uv (0, 0) is the north-west corner.
 
-// Elevation of the horizon, radians (its sine where the sheet says "-sin"), along an azimuth, radians, from east.
+// Elevation of the horizon, radians (its sine where the manifest has "-sin"), along an azimuth in radians from east.
 float horizon(sampler2DArray map, vec2 uv, float azimuth_rad) {
     float turn = fract(azimuth_rad / 6.28318531) * float(HORIZON_AZIMUTHS);
     float before = floor(turn);

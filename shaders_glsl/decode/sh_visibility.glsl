@@ -1,7 +1,7 @@
-// sh_visibility.ktx2: ∫ V Y de over the sphere, V 1 above the horizon. Real orthonormal harmonics about x east, y north,
-// z up, without the sign of Condon and Shortley; index l(l+1) + m. uv (0, 0) is the north-west corner.
+// sh_visibility.ktx2: ∫ V Y de over the sphere, V = 1 above the horizon. Real orthonormal harmonics with x east, y
+// north, z up, without the Condon-Shortley phase; index l(l+1) + m. uv (0, 0) is the north-west corner.
 
-// The integral of a function, given as its coefficients, over all that is free.
+// Integral over the visible directions of a function given as SH coefficients.
 vec3 sh_visibility(sampler2DArray map, vec2 uv, vec3 coefficients[SH_COUNT]) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < SH_COUNT; i++) {

@@ -1,6 +1,7 @@
-// Computes: what an azimuth's wedge of the environment gives above each elevation (TW10 eq. 7, split
-// into the three components of the normal, in which it is linear: no normal angle is tabulated).
-// Reads: wedge_rows. Writes: env_tables at [azimuth][moment][node], divided by pi.
+// Computes: irradiance from an azimuth's wedge of the environment above each elevation (TW10 eq. 7), split into the
+// three components of the normal. It is linear in them, so no normal angle is tabulated.
+// Reads: wedge_rows.
+// Writes: env_tables at [azimuth][moment][node], divided by pi.
 // One invocation is one moment of one azimuth, from the zenith down.
 #version 460
 
@@ -40,7 +41,7 @@ void main() {
     float above_upper = 0.0;
     for (int node = nodes - 1; node >= 0; node--) {
         float elevation = bottom_rad + (HALF_PI - bottom_rad) * float(node) / float(nodes - 1);
-        // Whole rows above the node, then a part of the row that it lies in.
+        // Whole rows above the node, then the part of the row that contains it.
         while (upper > elevation) {
             float row_bottom = HALF_PI - PI * float(row + 1) / float(height);
             float lower = max(row_bottom, elevation);

@@ -1,9 +1,9 @@
 #include "horizon/fuse.glsl"
 #include "edit/dirty.glsl"
 
-// Walks the azimuths of a batch at four samples. The including shader declares `azimuths` and the
-// constants RELIGHTS and OWN_PLANE_HIDES, and defines add_light and dark_slope, from which on a horizon leaves
-// no light in an azimuth.
+// Iterates over the azimuths of a batch at four grid points. The including shader declares `azimuths` and the
+// constants RELIGHTS and OWN_PLANE_HIDES. It defines add_light and dark_slope, the horizon slope above which an
+// azimuth gives no light.
 
 layout(binding = 6) readonly buffer DirtySamples { uint dirty_samples[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
@@ -19,8 +19,8 @@ layout(push_constant) uniform ShadePush {
     uint clears;         // 1 in the first batch
 };
 
-// The first lane and the march position of this invocation's four samples: its place in the field, or
-// after an edit one of the eight fours of a word of the list. Beyond the list none is on the field.
+// First lane and march position of this invocation's four grid points: its place in the field, or after an edit one
+// of the eight fours of a word of the list. Past the end of the list none is on the field.
 ivec2 place_of_four() {
     if (!RELIGHTS) {
         return ivec2(gl_GlobalInvocationID.yx) * ivec2(4, 1);
@@ -33,8 +33,8 @@ ivec2 place_of_four() {
     return (four >> 3) < word_count ? place : ivec2(0x7fffffff);
 }
 
-// Which of the four samples from a lane on are lit: after an edit only those that it reaches. Every
-// batch decides alike, so that sums begin and end whole.
+// Which of the four grid points from a lane on are shaded: after an edit only those that it reaches. The same in
+// every batch, so that sums stay complete.
 bvec4 lit_samples(int lane, int march) {
     if (!RELIGHTS) {
         return bvec4(true);
@@ -45,16 +45,16 @@ bvec4 lit_samples(int lane, int march) {
     return notEqual(word & bits, uvec4(0));
 }
 
-// `east` and `north` are the field's slopes at the samples.
+// `east` and `north` are the surface slopes at the grid points.
 void add_all(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     for (uint k = first_azimuth; k < first_azimuth + azimuth_count; k++) {
         Azimuth azimuth = azimuth_at(azimuths, k);
         vec4 lowest = vec4(NO_SLOPE);
         if (OWN_PLANE_HIDES) {
-            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+            // Rise of the grid point's own tangent plane along the azimuth (TW10 eq. 4).
             lowest = east * azimuth.cos_phi + north * azimuth.sin_phi;
         }
-        // What the own plane hides already needs no horizon.
+        // Directions below the own plane need no horizon.
         float dark = dark_slope(azimuth);
         vec4 enough = mix(vec4(dark), vec4(NO_SLOPE), greaterThanEqual(lowest, vec4(dark)));
         lowest = max(fused(azimuth, q, lanes, steps, warm_up, enough).slope, lowest);

@@ -1,7 +1,8 @@
-// Computes: one light's share of the picture: its sum times its colour and the surface's albedo.
-// Reads: scalar_sum or colour_sum, light_colours, albedo_map, dirty_samples, edit_list. Reads and writes: radiance (or radiance_grey). Writes:
-// layer (or layer_grey).
-// One invocation is one sample.
+// Computes: exit radiance of one light: its sum times its colour and the surface's albedo.
+// Reads: scalar_sum or colour_sum, light_colours, albedo_map, dirty_samples, edit_list.
+// Reads and writes: radiance (or radiance_grey).
+// Writes: layer (or layer_grey).
+// One invocation is one grid point.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,11 +14,11 @@ layout(constant_id = 0) const bool SUM_HAS_COLOUR = false;
 layout(constant_id = 1) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 2) const bool ADDS_TO_RADIANCE = true;
 layout(constant_id = 3) const bool WRITES_LAYER = false;
-// All colours are grey: pictures of one channel.
+// All colours are grey: images of one channel.
 layout(constant_id = 4) const bool GREY = false;
-// Only the samples marked in dirty_samples, by the list of their words.
+// Only the grid points marked in dirty_samples, from the list of their words.
 layout(constant_id = 5) const bool RELIGHTS = false;
-// The light's colour is a texel of the caller's.
+// The light's colour is a texel of the caller's image.
 layout(constant_id = 6) const bool COLOUR_IS_TEXEL = false;
 
 layout(binding = 0) uniform texture2D scalar_sum;
@@ -29,7 +30,7 @@ layout(binding = 5, r32f) uniform image2D radiance_grey;
 layout(binding = 6, r32f) uniform writeonly image2D layer_grey;
 layout(binding = 7) readonly buffer DirtySamples { uint dirty_samples[]; };
 layout(binding = 8) readonly buffer EditList { uint swept_steps; uint word_count; uint light_groups[3]; uint resolve_groups[3]; uint dirty_words[]; };
-// One row, a texel a light.
+// One row, one texel per light.
 layout(binding = 9) uniform texture2D light_colours;
 
 layout(push_constant) uniform LightResolvePush {
@@ -37,7 +38,7 @@ layout(push_constant) uniform LightResolvePush {
     int rows;
     uint clears;  // 1 for the first light
     int texel;    // of light_colours
-    vec4 colour;  // of the light, where neither the sum nor a texel has it; times the albedo, where that is constant
+    vec4 colour;  // of the light, for a scalar sum without a texel; includes a constant albedo
 };
 
 void main() {
@@ -55,15 +56,15 @@ void main() {
         return;
     }
     vec4 light = SUM_HAS_COLOUR ? texelFetch(colour_sum, at, 0) : texelFetch(scalar_sum, at, 0).xxxx;
-    // Light that is all but hidden may come out below 0 by a rounding; what is no number stays none.
+    // Rounding can make an almost hidden light negative. NaN stays NaN.
     light = mix(light, vec4(0.0), lessThan(light, vec4(0.0)));
-    // First the colour that the host would have multiplied: the same bits.
+    // Colour first, in the host's order of multiplication: the same bits.
     light *= COLOUR_IS_TEXEL ? colour * texelFetch(light_colours, ivec2(texel, 0), 0) : colour;
     if (ALBEDO_IS_MAP) {
         light *= texelFetch(albedo_map, at, 0);
     }
     light.w = 1.0;
-    // The first light clears what was there, which may be anything, not a number either.
+    // The first light overwrites the old content, which may be NaN.
     bool keeps = clears == 0u;
     if (GREY) {
         if (WRITES_LAYER) {

@@ -1,14 +1,13 @@
-// Computes: what a uniform sky and an environment give to every sample through its horizons in the
-// azimuths of a batch, added to what earlier batches gave.
-// Reads: lane_heights, azimuths, lattice, env_tables, dirty_samples,
-// edit_list. Reads and writes: sky_sum (exit
-// radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1, RGB).
-// One invocation is four samples side by side along the lane axis, at one march position.
+// Computes: exit radiance under a uniform sky and under an environment, from the horizons in the azimuths of a batch,
+// added to earlier batches.
+// Reads: lane_heights, azimuths, lattice, env_tables, dirty_samples, edit_list.
+// Reads and writes: sky_sum (exit radiance for sky radiance 1 and albedo 1), env_sum (exit radiance for albedo 1,
+// RGB).
+// One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
-// fetched together.
+// Eight march steps of the same lanes form a tile of the lattice. Neighbouring invocations fetch them together.
 layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
@@ -22,11 +21,11 @@ const bool OWN_PLANE_HIDES = true;
 layout(constant_id = 4) const bool HAS_SKY = true;
 layout(constant_id = 5) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
-// Only the samples marked in dirty_samples, by the list of their words.
+// Only the grid points marked in dirty_samples, from the list of their words.
 layout(constant_id = 7) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
-// One of these, by LATTICE.
+// LATTICE selects one of these.
 layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
@@ -38,7 +37,7 @@ layout(binding = 4, rgba32f) uniform image2D env_sum;
 // x: elevation node, y: moment (cos, sin, vertical), layer: azimuth.
 layout(binding = 5, rgba32f) uniform readonly image2DArray env_tables;
 
-// Sums of the four samples, and their normals.
+// Sums of the four grid points, and their normals.
 vec4 sky;
 vec4 env_red;
 vec4 env_green;
@@ -47,11 +46,11 @@ vec4 normal_east;
 vec4 normal_north;
 vec4 normal_up;
 
-// Light of azimuth `index`: `lowest` is the slope of the lowest direction that both the horizon and
-// the sample's own plane leave free.
+// Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
+// plane.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     if (HAS_SKY) {
-        // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
+        // TW10 eq. 5, with the normal integrated over the wedge instead of evaluated at its centre.
         Moments moments = elevation_moments(lowest);
         vec4 flat_part = normal_east * azimuth.wedge_cos + normal_north * azimuth.wedge_sin;
         sky += (flat_part * moments.flat_part + normal_up * azimuth.wedge_rad * moments.vertical) * (1.0 / PI);

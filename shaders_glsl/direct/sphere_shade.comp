@@ -1,11 +1,12 @@
-// Computes: what a ball of light gives to samples: some of the vertical slices that it is cut into, each in
-// closed form where the surface lets it be seen, added to what other slices and balls gave.
-// Reads: cells, maxima, ground. Reads and writes: sphere_sum (exit radiance for albedo 1).
-// One invocation is one sample.
+// Computes: direct light of a sphere light: some of its vertical slices, each in closed form over the visible
+// intervals, added to other slices and sphere lights.
+// Reads: cells, maxima, ground.
+// Reads and writes: sphere_sum (exit radiance for albedo 1).
+// One invocation is one grid point.
 //
-// Of its slice, a disc, a sample sees the elevations at which the disc is entered (or, from inside, left)
-// nearer than the surface is met. The surface up to the disc hides what is below its highest slope.
-// Between the disc's near and far ends each piece of surface that is seen has disc behind it, or not.
+// In a slice the sphere is a disc. An elevation is lit where the ray enters the disc (from inside: leaves it) before
+// it hits the surface. The surface in front of the disc hides everything below its highest slope. Between the near
+// and far ends of the disc, each visible surface piece either has disc in front of it or not.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -14,10 +15,10 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
-// A field one sample wide that does not repeat is a line: only slices along it meet it.
+// A field one grid point wide that does not repeat is a line: only slices along it hit it.
 layout(constant_id = 1) const bool THIN_ROWS = false;
 layout(constant_id = 2) const bool THIN_COLS = false;
-// More than a ray of this field can ask for; llvmpipe ends all loops together after 65,535 turns.
+// More steps than a ray of this field can take; llvmpipe ends all loops together after 65,535 iterations.
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 
 layout(binding = 0) uniform texture2D cells;
@@ -34,31 +35,31 @@ layout(push_constant) uniform SphereShadePush {
     int top_level;
     float cell_x_m;
     float cell_y_m;
-    ivec2 first;       // sample of the dispatch: column, row
-    ivec2 base;        // of the ball's middle: whole cells east of the first column, south of the first row
-    vec2 offset;       // and the rest of a cell
-    float up_m;        // of the ball's middle over the base height
+    ivec2 first;       // grid point of the dispatch: column, row
+    ivec2 base;        // of the sphere's centre: whole cells east of the first column, south of the first row
+    vec2 offset;       // the remaining fraction of a cell
+    float up_m;        // of the sphere's centre over the base height
     float radius_m;
-    float reach_m;     // farther samples get nothing
-    int slices;        // of a ball that is narrow as seen from the sample
-    int slices_around; // of one that is all around; of wide ones as many a radian
+    float reach_m;     // farther grid points get nothing
+    int slices;        // for a sphere that subtends a narrow angle at the grid point
+    int slices_around; // for one that surrounds it; wide ones use the same count per radian
     int first_slice;
-    int last_slice;    // not itself
+    int last_slice;    // exclusive
     vec4 radiance;     // w: 1 where the sum begins
 };
 
 #include "rays/walk.glsl"
 
-// The slice: its distance axis is horizontal, the sample is its origin; metres.
-vec2 disc;           // middle
+// The slice: its distance axis is horizontal, the grid point is its origin; metres.
+vec2 disc;           // centre
 float disc_radius;
-float tangent2;      // square of a tangent's length; not above 0 from inside the ball
-vec2 axis;           // a unit vector that elevations are counted from: towards the disc's middle
+float tangent2;      // square of a tangent's length; 0 or negative inside the sphere
+vec2 axis;           // origin of elevations: the unit vector towards the disc's centre
 float high_slope;    // of the disc's upper end
 // The normal within the slice.
 float flat_part;
 float normal_up;
-// Of the slice, so far: up to which slope the surface hides it, and the light of what is seen below.
+// State of the slice: the slope below which the surface hides it, and the light of the visible interval below.
 float reached;
 float seen_light;
 
@@ -72,12 +73,12 @@ vec2 turned(vec2 a, vec2 b) {
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
-// Integral over elevations between two directions of the slice of (A cos + B sin) cos, with A, B the normal's
-// parts: D = high - low and S = high + low in  A/2 (D + cos S sin D) + B/2 sin S sin D.
+// Integral over elevations between two directions of the slice of (A cos + B sin) cos, with A, B the normal's parts:
+// D = high - low and S = high + low in  A/2 (D + cos S sin D) + B/2 sin S sin D.
 float light_between(vec2 low, vec2 high) {
     vec2 sum = low + high;
     vec2 difference = high - low;
-    // tan(D/2); small discs keep their width's digits, as both are counted from their middle.
+    // tan(D/2); exact for small discs, as both are relative to their middle.
     float half_tangent = sqrt(dot(difference, difference) / max(dot(sum, sum), 1e-20));
     float width = 2.0 * arc_tangent(vec4(half_tangent)).x;
     float sine_of = low.x * high.y - low.y * high.x;
@@ -85,13 +86,13 @@ float light_between(vec2 low, vec2 high) {
     return 0.5 * (flat_part * (width + twice.x * sine_of) + normal_up * twice.y * sine_of);
 }
 
-// Takes a piece of surface in, from a distance and height to a farther one: what of the disc is seen behind
-// it, where some of the piece itself is seen.
+// Adds a surface piece, from a distance and height to a farther one: the visible interval of the disc in front of it,
+// where some of the piece itself is visible.
 void see(vec2 begin, vec2 end) {
     float slope = (end.y - begin.y) / (end.x - begin.x);
     float end_slope = end.y / end.x;
     float top_slope = min(end_slope, high_slope);
-    // The piece is seen from where it crosses `reached`; what is above the disc does not count.
+    // The piece is visible from where it crosses `reached`; the part above the disc does not count.
     float under = begin.y - reached * begin.x;
     float over = end.y - reached * end.x;
     float seen_from = begin.x + (end.x - begin.x) * clamp(under / min(under - over, -1e-30), 0.0, 1.0);
@@ -99,7 +100,7 @@ void see(vec2 begin, vec2 end) {
     float above_top = end.y - high_slope * end.x;
     float cut = begin.x + (end.x - begin.x) * clamp(below_top / min(below_top - above_top, -1e-30), 0.0, 1.0);
     float seen_to = end_slope > high_slope ? cut : end.x;
-    // The circle on the piece's line: within its half chord of the foot of the perpendicular.
+    // The circle's intersection with the piece's line: within half a chord of the foot of the perpendicular.
     float a = 1.0 + slope * slope;
     vec2 to_middle = disc - begin;
     float beside = to_middle.y - slope * to_middle.x;
@@ -111,14 +112,14 @@ void see(vec2 begin, vec2 end) {
     float leaves = clamp(foot + half_chord, seen_from, seen_to);
     enters = is_met ? enters : seen_to;
     leaves = is_met ? leaves : seen_to;
-    // Outside the disc, but between its tangents: behind it, if beyond the line through where they touch.
+    // Outside the disc, but between its tangents: behind it if beyond the line through the points of tangency.
     float before_at = 0.5 * (seen_from + enters);
     float after_at = 0.5 * (leaves + seen_to);
     float before = before_at * disc.x + (begin.y + slope * (before_at - begin.x)) * disc.y;
     float after = after_at * disc.x + (begin.y + slope * (after_at - begin.x)) * disc.y;
     float from_outside = before > tangent2 ? seen_from : enters;
     float to_outside = after > tangent2 ? seen_to : leaves;
-    // From inside, what is met within the ball hides.
+    // From inside, a hit within the sphere hides.
     float from_inside = is_met ? leaves : seen_from;
     bool is_inside = tangent2 <= 0.0;
     float from = is_inside ? from_inside : from_outside;
@@ -131,7 +132,7 @@ void see(vec2 begin, vec2 end) {
     seen_light += counts ? light : 0.0;
 }
 
-// The surface from the sample up to the disc's far end.
+// March over the surface from the grid point to the disc's far end.
 void march(Ray ray, bool going) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
@@ -144,7 +145,7 @@ void march(Ray ray, bool going) {
     Walk walk = walk_from(ray);
     going = going && !walk.leaves && t_end > 0.0;
     for (int turn = 0; turn < MOST_STEPS; turn++) {
-        // Left by all lanes together, as in horizon_sweep.
+        // All lanes leave together, as in horizon_sweep.
         if (!subgroupAny(going)) {
             break;
         }
@@ -163,7 +164,7 @@ void march(Ray ray, bool going) {
         bool is_split = t_split > walk.t && t_split < block.ahead;
         float t_middle = is_split ? t_split : walk.t;
         vec2 at_middle = clamp(from + t_middle * ray.advance, 0.0, 1.0);
-        // Not split, the middle is the entry, whose slope was taken in before.
+        // In an unsplit cell the middle is the entry, whose slope has been added already.
         vec2 middle = vec2(t_middle * step_m, (corners.x - ray.own) + at_middle.x * (corners.w - corners.x));
         vec2 exit = vec2(block.ahead * step_m, cell_rise(corners, ray.own, clamp(from + block.ahead * ray.advance, 0.0, 1.0)));
         bool in_cell = going && is_cell;
@@ -190,7 +191,7 @@ void march(Ray ray, bool going) {
     }
 }
 
-// Light of the slice at an azimuth `turn` from the ball's middle (half of it: cosine, sine), per radian.
+// Light of the slice at azimuth `turn` from the sphere's centre (half of it: cosine, sine), per radian.
 float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2 half_turn, bool alive) {
     vec2 turn = turned(half_turn, half_turn);
     vec2 e = turned(towards, turn);
@@ -204,7 +205,7 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     axis = is_inside ? vec2(1.0, 0.0) : disc / distance_m;
     float sine_half = is_inside ? 1.0 : min(disc_radius / distance_m, 1.0);
     float cosine_half = is_inside ? 0.0 : tangent_m / distance_m;
-    // The disc's ends, counted from the axis and from horizontal; none beyond the vertical.
+    // The disc's ends, relative to the axis and to horizontal; clamped at the vertical.
     vec2 low = vec2(cosine_half, -sine_half);
     vec2 high = vec2(cosine_half, sine_half);
     vec2 low_end = turned(axis, low);
@@ -219,7 +220,7 @@ float slice_light(ivec2 here, vec4 own, vec2 towards, float away, float up, vec2
     high = high_ahead ? high : vec2(axis.y, axis.x);
     alive = alive && chord2 > 0.0 && (is_inside || low_ahead || high_ahead);
     normal_up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
-    // The sample's own plane rises towards the azimuth with the field's slope.
+    // Rise of the grid point's own tangent plane along the azimuth.
     float own_slope = own.y * e.x + own.z * e.y;
     flat_part = -own_slope * normal_up;
     reached = max(low_slope, own_slope);
@@ -244,14 +245,14 @@ void main() {
     float distance_m = length(vec2(away, up));
     tangent2 = (distance_m - radius_m) * (distance_m + radius_m);
     vec2 towards = away > 0.0 ? flat_m / away : vec2(1.0, 0.0);
-    // Nothing of the ball stands over the sample's own plane.
+    // No part of the sphere is above the grid point's own plane.
     float plane_m = up - own.y * flat_m.x - own.z * flat_m.y;
     bool faces = plane_m + radius_m * sqrt(1.0 + own.y * own.y + own.z * own.z) > 0.0;
     bool alive = exists && faces && distance_m <= reach_m;
     bool around = away <= radius_m;
     float sine_widest = min(radius_m / max(away, 1e-30), 1.0);
     float widest = arc_tangent(vec4(sine_widest / sqrt(max((1.0 - sine_widest) * (1.0 + sine_widest), 1e-20)))).x;
-    // A hair less, so that rounding decides nothing at widths that divide the circle.
+    // Slightly less, so that rounding decides nothing at widths that divide the circle.
     int wide = max(int(ceil(float(slices_around) * widest / PI - 0.001)), slices);
     int count = around ? slices_around : wide;
     float light = 0.0;
@@ -260,13 +261,13 @@ void main() {
         if (!subgroupAny(has_slice)) {
             break;
         }
-        // From -1 to 1. All around: even. Else spaced so that the disc's width is smooth.
+        // From -1 to 1. Even spacing all around, else spaced so that the disc's width is smooth.
         float centre = (2.0 * float(i) + 1.0) / float(count) - 1.0;
         float u = HALF_PI * centre;
         float spaced = 0.5 * widest * sine(u);
         float half_turn = around ? u : spaced;
         float weight_around = 2.0 * PI / float(count);
-        // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+        // Narrow discs are cos u wide: midpoints sum cos² exactly, except that a single one counts it twice.
         float alone = count > 1 ? 1.0 : 0.5;
         float weight_ahead = alone * widest * cosine(u) * PI / float(count);
         float weight = around ? weight_around : weight_ahead;

@@ -1,13 +1,12 @@
-// Computes: what a sun or a key light gives to every sample through its horizons in the azimuths that it
-// covers, added to what earlier batches gave.
-// Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list. Reads and writes: sun_sum (exit radiance for
-// irradiance 1 of a sun, radiance 1 of a key light, and albedo 1).
-// One invocation is four samples side by side along the lane axis, at one march position.
+// Computes: direct light of a sun or a key light from the horizons in the azimuths that it covers, added to earlier
+// batches.
+// Reads: lane_heights, azimuths, lattice, dirty_samples, edit_list.
+// Reads and writes: sun_sum (exit radiance for albedo 1, and irradiance 1 of a sun or radiance 1 of a key light).
+// One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
-// fetched together.
+// Eight march steps of the same lanes form a tile of the lattice. Neighbouring invocations fetch them together.
 layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
@@ -18,16 +17,16 @@ const bool LATTICE_HAS_DISTANCES = false;
 const int LATTICE_STRIDE = 1;
 const int LANE_STRIDE = 1;
 const bool OWN_PLANE_HIDES = true;
-const uint SHAPE_DISC = 0u;   // the part of each chord that the horizon leaves free
+const uint SHAPE_DISC = 0u;   // the part of each chord above the horizon
 const uint SHAPE_POINT = 1u;  // lit or not
-const uint SHAPE_PATCH = 2u;  // the part of its elevations that the horizon leaves free, over each wedge
+const uint SHAPE_PATCH = 2u;  // the part of its elevations above the horizon, over each wedge
 layout(constant_id = 4) const uint SHAPE = 0u;
 layout(constant_id = 5) const bool MARCHES_ROWS = false;
-// Only the samples marked in dirty_samples, by the list of their words.
+// Only the grid points marked in dirty_samples, from the list of their words.
 layout(constant_id = 6) const bool RELIGHTS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
-// One of these, by LATTICE.
+// LATTICE selects one of these.
 layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
@@ -36,14 +35,14 @@ layout(binding = 7) uniform utexture2DArray lattice_words;
 layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, r32f) uniform image2D sun_sum;
 
-// Sums of the four samples, and their normals.
+// Sums of the four grid points, and their normals.
 vec4 sun;
 vec4 normal_east;
 vec4 normal_north;
 vec4 normal_up;
 
-// Light of azimuth `index`: `lowest` is the slope of the lowest direction that both the horizon and
-// the sample's own plane leave free.
+// Adds azimuth `index`: `lowest` is the slope of the lowest direction above both the horizon and the grid point's own
+// plane.
 void add_light(uint index, Azimuth azimuth, vec4 lowest) {
     vec4 flat_part = normal_east * azimuth.cos_phi + normal_north * azimuth.sin_phi;
     vec4 vertical = normal_up;

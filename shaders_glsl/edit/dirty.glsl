@@ -1,10 +1,9 @@
-// Which samples an edit changes the light of: a map of a bit each, and a list of the words of the map
-// in which any is set. A word is eight columns of four rows, so that four samples side by side along
-// either axis lie in one.
+// Grid points whose light an edit changes: a bitmap, and a list of its nonzero words. A word is eight columns of four
+// rows, so that four grid points side by side along either axis share one.
 
-// Passes over the list have this many workgroups across, then another row: 65535 may be the most.
+// Passes over the list have this many workgroups per row of the dispatch; 65535 is the guaranteed limit.
 const uint GROUPS_ACROSS = 1024u;
-// Words that a workgroup lights: 16 × 8 fours of samples. And resolves: 8 × 8 samples.
+// Words per shading workgroup: 16 × 8 fours of grid points. Per resolving workgroup: 8 × 8 grid points.
 const uint LIGHT_GROUP_WORDS = 16u;
 const uint RESOLVE_GROUP_WORDS = 2u;
 
@@ -16,7 +15,7 @@ uint dirty_bit(ivec2 at) {
     return 1u << uint((at.y & 3) * 8 + (at.x & 7));
 }
 
-// Column and row of a word's first sample.
+// Column and row of a word's first grid point.
 ivec2 word_corner(uint word, int cols) {
     uint across = uint((cols + 7) >> 3);
     return ivec2(word % across * 8u, word / across * 4u);

@@ -1,6 +1,6 @@
-// Computes: the words of the map that mark any sample, one after the other, and the workgroups of the
-// passes that light them.
-// Reads: dirty_samples. Reads and writes: edit_list.
+// Computes: the compact list of the bitmap's nonzero words, and the workgroup counts of the passes that shade them.
+// Reads: dirty_samples.
+// Reads and writes: edit_list.
 // One invocation is one word.
 #version 460
 

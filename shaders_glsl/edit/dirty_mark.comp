@@ -1,6 +1,7 @@
-// Computes: which samples an edited rectangle changes by itself: its own and their neighbours, whose
-// normals and first crossings it shapes. Clears what the last edit marked, listed and counted.
-// Reads: nothing. Writes: dirty_samples, edit_list.
+// Computes: the grid points that an edited rectangle changes directly: its own and their neighbours, whose normals
+// and first crossings depend on it. Clears the marks, list and counts of the last edit.
+// Reads: nothing.
+// Writes: dirty_samples, edit_list.
 // One invocation is one word: eight columns of four rows.
 #version 460
 

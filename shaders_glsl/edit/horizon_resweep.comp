@@ -1,7 +1,9 @@
-// Computes: what horizon_sweep would now find on the lines that an edited rectangle can reach, to the
-// bit: from where a line meets the rectangle to where its hull has left it behind for good.
-// Reads: heights, azimuths. Reads and writes: occluders (of each line a linked list: what a hull vertex
-// met when it was new lies under it), dirty_samples. Writes: edit_list (steps, by four lines each).
+// Computes: the occluders that horizon_sweep would now find on the lines that an edited rectangle can reach, bit for
+// bit: from where a line meets the rectangle until no hull vertex depends on it.
+// Reads: heights, azimuths.
+// Reads and writes: occluders (a linked list per line: the occluder of a hull vertex is the vertex below it),
+// dirty_samples.
+// Writes: edit_list (steps times four lines).
 // One invocation is four neighbouring lines.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -43,20 +45,20 @@ layout(push_constant) uniform HorizonResweepPush {
 const int SPACING = 1 << LINE_SHIFT;
 const int NEVER = 0x7fffffff;
 
-// Steps back that the lines of a texel met something.
+// Occluders, in steps back, of the lines of a texel.
 ivec4 steps_back(uvec2 texel) {
     return ivec4(texel.x & 0xffffu, texel.x >> 16, texel.y & 0xffffu, texel.y >> 16);
 }
 
-// Pops while the deeper vertex looks at least as high as the newer one: horizon_sweep's comparison.
+// Pops while the deeper vertex subtends at least the slope of the newer one: horizon_sweep's comparison.
 bool is_popped(float h, float x, vec2 newer, vec2 deeper) {
     precise float of_deeper = (deeper.x - h) * (x - newer.y);
     precise float of_newer = (newer.x - h) * (x - deeper.y);
     return of_deeper >= of_newer;
 }
 
-// The vertex, as height and step, under `vertex` on the hull of line `line` + k; `y` is the line's lane
-// position at step 0.
+// The vertex, as height and step, below `vertex` on the hull of line `line` + k; `y` is the line's lane position at
+// step 0.
 vec2 under(vec2 vertex, int y, int line, int k) {
     int step = int(vertex.y);
     int back = 0;
@@ -68,7 +70,7 @@ vec2 under(vec2 vertex, int y, int line, int k) {
     return back > 0 ? vec2(h, float(place)) : vec2(vertex.x > OUTSIDE ? OUTSIDE : UNDER_OUTSIDE, vertex.y - 1.0);
 }
 
-// Marks the samples that look at the line's occluder at a step: up to a line's distance away.
+// Marks the grid points that use the line's occluder at a step: up to one line spacing away.
 void mark(int y, int step) {
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     int march = march_position(azimuth, step, steps);
@@ -86,8 +88,8 @@ void main() {
     int lead = lattice_lead(shear, steps, LINE_SHIFT, false);
     int line_count = lattice_lines(lanes, lead, LINE_SHIFT, false);
 
-    // The rectangle in steps and lane positions. A sample looks along its own line, up to SPACING beside
-    // the one that proposes, at a surface between two lanes.
+    // The rectangle in steps and lane positions. A grid point's own line may lie up to SPACING beside the proposing
+    // one, and its surface between two lanes.
     bool by_row = (azimuth.flags & AZIMUTH_MARCHES_ROWS) != 0u;
     ivec2 lane_range = by_row ? ivec2(first_col, last_col) : ivec2(first_row, last_row);
     ivec2 step_range = by_row ? ivec2(first_row, last_row) : ivec2(first_col, last_col);
@@ -100,7 +102,7 @@ void main() {
     int low = (lane_range.x - 1) * CELL - SPACING;
     int high = (lane_range.y + 1) * CELL + SPACING;
 
-    // The groups are those that the rectangle's lines fall into.
+    // The groups of the rectangle's lines.
     int lowest_line = max(((low - step_range.y * shear) >> LINE_SHIFT) + lead, 0) & ~(GROUP_LINES - 1);
     int first_line = lowest_line + int(gl_WorkGroupID.x) * GROUP_LINES;
     int lowest = (first_line - lead) * SPACING;
@@ -108,7 +110,7 @@ void main() {
     if (first_line >= line_count || highest + step_range.y * shear < low || lowest + step_range.x * shear > high) {
         return;
     }
-    // The steps at which any line of the group has met the rectangle and is on the field.
+    // The steps from where any line of the group has met the rectangle to the end of the field.
     int start = step_range.x;
     int end = steps;
     if (shear > 0) {
@@ -128,9 +130,9 @@ void main() {
         newer[k] = vec2(stands ? h : OUTSIDE, float(start - 1));
         deeper[k] = under(newer[k], y, line, k);
     }
-    // Of each line: the first step in the rectangle; the newest that is in it or whose occluder has
-    // changed; and the newest on the hull that is no newer than that. Once the last lies before the
-    // first, the hull is made of nothing that has changed, and so is all that follows.
+    // Per line: the first step in the rectangle; the newest step that is in it or whose occluder has changed; and the
+    // newest hull vertex that is no newer than that. Once the last lies before the first, neither the hull nor any
+    // later result depends on the edit.
     ivec4 entered = ivec4(NEVER);
     ivec4 touched = ivec4(-1);
     ivec4 standing = ivec4(-1);
@@ -144,7 +146,7 @@ void main() {
             h[k] = line_height(y0 + k * SPACING + step * shear, step);
             pops[k] = is_popped(h[k], x, newer[k], deeper[k]);
         }
-        // Left by all lanes together: see horizon_sweep.
+        // All lanes leave together, as in horizon_sweep.
         while (subgroupAny(any(pops))) {
             for (int k = 0; k < 4; k++) {
                 vec2 next = under(deeper[k], y0 + k * SPACING, line, k);

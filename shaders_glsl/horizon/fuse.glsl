@@ -3,39 +3,39 @@
 #include "shared/quad.glsl"
 #include "horizon/surface.glsl"
 
-// Brings the lattice of a sweep back to the field's samples, four at a time. The including shader
-// declares `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE,
-// LATTICE_HAS_DISTANCES, LATTICE_STRIDE, LINE_SHIFT, BORDER, MARCHES_ROWS and LANE_STRIDE.
+// Resamples the lattice of a sweep at the field's grid points, four at a time. The including shader declares
+// `lane_heights`, `lattice`, `lattice_words` and the constants FUSE, LATTICE, LATTICE_HAS_DISTANCES, LATTICE_STRIDE,
+// LINE_SHIFT, BORDER, MARCHES_ROWS and LANE_STRIDE.
 //
-// Where data decide between two expressions, here and in what is included, `mix` selects: `c ? a + b : a - b`
-// is a branch, and SwiftShader's compiler follows every path through a loop, twice as many with each.
+// `mix` selects between two expressions, here and in included files. `c ? a + b : a - b` is a branch, and
+// SwiftShader's compiler follows every path through a loop: each branch doubles them.
 
-const uint FUSE_DIRECT = 0u;   // the lattice holds one value a sample, or a node
-const uint FUSE_NEAREST = 1u;  // the slope that the nearer line found
+const uint FUSE_DIRECT = 0u;   // the lattice holds one value per grid point or node
+const uint FUSE_NEAREST = 1u;  // the slope of the nearer line
 const uint FUSE_SLOPES = 2u;   // both lines' slopes, interpolated
-const uint FUSE_OWN = 3u;      // both lines' occluders seen from the sample's own height, interpolated
-const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the sample's own line where the nearer line's
-                                     // occluder stands; and the first crossings of its own line
-const uint FUSE_AIMED = 5u;          // the same with both lines' proposals, the higher one
+const uint FUSE_OWN = 3u;      // both lines' occluders as seen from the grid point's height, interpolated
+const uint FUSE_AIMED_NEAREST = 4u;  // the surface on the grid point's own line at the distance of the nearer
+                                     // line's occluder; and the first crossings of its own line
+const uint FUSE_AIMED = 5u;          // the same with both lines' occluders, the higher one
 
-const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing within two steps of either proposal
+const uint FUSE_AIMED_AROUND = 6u;   // the same, and every crossing within two steps of either occluder
 
-const uint FUSE_CROSSINGS = 7u;      // no lattice: the first crossings alone
+const uint FUSE_CROSSINGS = 7u;      // no lattice: first crossings only
 
 const uint LATTICE_OCCLUDERS = 0u;
 const uint LATTICE_SLOPES_F32 = 1u;
 const uint LATTICE_SLOPES_F16 = 2u;
 
-// Lines a cell apart pass four neighbouring samples at the same distance and lie in two texels.
+// Lines a cell apart pass four neighbouring grid points at the same distance and lie in two texels.
 const bool LINES_FOLLOW_LANES = LINE_SHIFT == CELL_SHIFT && BORDER != BORDER_PERIODIC && LANE_STRIDE == 1;
 
-// What four samples meet: slopes, and march steps to it.
+// Horizons of four grid points: slopes, and march steps to them.
 struct Met {
     vec4 slope;
     vec4 steps;
 };
 
-// The higher of two findings.
+// The higher of two horizons.
 Met higher(Met a, Met b) {
     bvec4 takes = greaterThan(b.slope, a.slope);
     return Met(mix(a.slope, b.slope, takes), mix(a.steps, b.steps, takes));
@@ -56,8 +56,8 @@ uint value_of_eight(uvec4 a, uvec4 b, int i) {
     return lattice_u16(mix(a.xy, b.xy, bvec2(i >= 4)), i);
 }
 
-// What the lattice holds of four lines at a step (occluders: steps back). Where lines follow lanes,
-// all of them lie in lowest .. lowest + 4.
+// Lattice values of four lines at a step (occluders: steps back). Where lines follow lanes, all of them lie in lowest
+// .. lowest + 4.
 uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int step) {
     uvec4 values;
     if (LINES_FOLLOW_LANES) {
@@ -77,7 +77,7 @@ uvec4 lattice_values(Azimuth azimuth, ivec4 line, int lowest, int lines, int ste
     return values;
 }
 
-// Values of a lattice of slopes. What f16 clamped is nothing, too.
+// Values of a lattice of slopes. A value that f16 clamped is "none", too.
 vec4 slopes_of(uvec4 values) {
     vec4 slope = uintBitsToFloat(values);
     if (LATTICE == LATTICE_SLOPES_F16) {
@@ -87,8 +87,8 @@ vec4 slopes_of(uvec4 values) {
     return mix(slope, vec4(NO_SLOPE), lessThanEqual(slope, vec4(-65504.0)));
 }
 
-// What the samples' own lines meet within their first step: the crossing with the next grid line,
-// and with the cell's diagonal where that lies across. Nearly all that unit steps miss lies here.
+// Horizon of the own lines within their first step: the crossing with the next grid line, and with the cell's
+// diagonal where that lies across. Nearly everything that unit steps miss lies here.
 Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
@@ -128,8 +128,8 @@ Met first_crossings(Azimuth azimuth, Quad q, int lanes, int steps) {
     return found;
 }
 
-// The surface where proposals stand, `back` steps ahead on lines through the lane positions `y`
-// (not flipped), seen from the samples. Nothing where `back` is 0 or the line has left the field.
+// The surface at proposed distances, `back` steps ahead on lines through the lane positions `y` (not flipped),
+// relative to the grid points. None where `back` is 0 or the line has left the field.
 Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     bool flips_march = (azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
@@ -164,8 +164,8 @@ Met seen(Azimuth azimuth, Quad q, ivec4 y, uvec4 back, int lanes, int steps) {
     return Met(mix(vec4(NO_SLOPE), slope, stands), distance);
 }
 
-// Heights of four flipped lanes from one on, at a flipped step. Lanes off a field that does not repeat have
-// some height: nothing there counts.
+// Heights of four flipped lanes from one on, at a flipped step. Lanes beyond a field that does not repeat have an
+// arbitrary height and do not count.
 vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
     int march = march_position(azimuth, neighbour(step, steps), steps);
     vec4 row;
@@ -189,9 +189,9 @@ vec4 row_at(Azimuth azimuth, int lane, int step, int lanes, int steps) {
     return mix(row, row.wzyx, bvec4(flips));
 }
 
-// Raises `best` (slope, steps) to the highest of all crossings of a sample's own line with grid lines and
-// diagonals between two numbers of steps ahead, the nearer part of a step included: `horizon_march`'s.
-// In flipped lanes and steps.
+// Raises `best` (slope, steps) to the highest crossing of a grid point's own line with grid lines and diagonals
+// between two distances in steps, rounded outwards to whole steps on the near side: as `horizon_march`. In flipped
+// lanes and steps.
 void look_around(Azimuth azimuth, int lane, int step, float own, ivec2 ahead, int lanes, int steps, inout vec2 best) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool split_along = ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
@@ -231,23 +231,23 @@ void look_around(Azimuth azimuth, int lane, int step, float own, ivec2 ahead, in
     }
 }
 
-// What unit steps miss of a ridge stands beside it: all crossings within two steps of where both lines'
-// proposals stand, `back` steps ahead; of 0 there is none. `reach` steps lie ahead.
+// Ridges that unit steps miss stand beside a proposal: all crossings within two steps of both lines' proposals,
+// `back` steps ahead; 0 for none. `reach` steps lie ahead.
 void look_around_both(Azimuth azimuth, int lane, int step, float own, ivec2 back, int reach, int lanes, int steps, inout vec2 best) {
     int first = back.x > 0 ? back.x : back.y;
     int second = back.y > 0 ? back.y : back.x;
     int near = min(first, second);
     int far = max(first, second);
     ivec2 ahead = ivec2(max(near - 1, 1), min(near + 2, reach));
-    // Then what is left of the other's: one call, as SwiftShader's compiler takes its time for each.
+    // Then the rest of the other proposal's: one call, as SwiftShader compiles each call separately.
     for (int side = 0; side < 2 && near > 0 && ahead.x <= ahead.y; side++) {
         look_around(azimuth, lane, step, own, ahead, lanes, steps, best);
         ahead = ivec2(max(far - 1, near + 3), min(far + 2, reach));
     }
 }
 
-// Slopes of the horizons of four samples and how many march steps away they stand. Above `enough` any slope
-// will do.
+// Slopes of the horizons of four grid points and their distance in march steps. Slopes above `enough` need not be
+// exact.
 Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enough) {
     bool wraps = BORDER == BORDER_PERIODIC;
     bool flips_lanes = (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u;
@@ -281,7 +281,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
     ivec4 from_origin = lane * CELL - origin;
 
     if (FUSE == FUSE_NEAREST || FUSE == FUSE_AIMED_NEAREST) {
-        // The nearer one; of two, the one before.
+        // The nearer one; on a tie, the one before.
         ivec4 line = (from_origin + (spacing / 2 - 1)) >> LINE_SHIFT;
         bool takes = wraps || first <= last;
         int lowest = clamp(mix(line.x, line.w, flips_lanes), first, last);
@@ -300,7 +300,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         met = first_crossings(azimuth, q, lanes, steps);
         return higher(met, seen(azimuth, q, q.lane * CELL, back, lanes, steps));
     }
-    // The lines around each sample: before it (or through it), and after it.
+    // The lines around each grid point: before it (or through it), and after it.
     ivec4 before = from_origin >> LINE_SHIFT;
     ivec4 offset = from_origin & (spacing - 1);
     vec4 t = vec4(offset) * (1.0 / float(spacing));
@@ -346,7 +346,7 @@ Met fused(Azimuth azimuth, Quad q, int lanes, int steps, int warm_up, vec4 enoug
         b = Met(mix(vec4(NO_SLOPE), slopes_of(before_values), has_before), vec4(0.0));
         a = Met(mix(vec4(NO_SLOPE), slopes_of(after_values), has_after), vec4(0.0));
     }
-    // Where only one line met anything, it speaks for the sample.
+    // Where only one line has an occluder, use it alone.
     bvec4 both = greaterThan(min(a.slope, b.slope), vec4(LOWEST_MET));
     bvec4 nearer_after = greaterThan(t, vec4(0.5));
     Met one = higher(a, b);

@@ -1,7 +1,8 @@
-// Computes: every level of the height pyramid at the field's own samples, by its B-spline
-// (Nowrouzezahrai & Snyder 2009, section 9: the stack of synthesised levels).
-// Reads: height_levels, level_table. Writes: height_stack at [level - 1][row][column].
-// One invocation is one sample in one level.
+// Computes: every level of the height pyramid at the field's own grid points, by its B-spline (Nowrouzezahrai &
+// Snyder 2009, section 9: the stack of synthesised levels).
+// Reads: height_levels, level_table.
+// Writes: height_stack at [level - 1][row][column].
+// One invocation is one grid point in one level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -1,7 +1,8 @@
-// Computes: one level of the height pyramid from the level an octave finer (from the field itself for
-// the first octave), each texel the mean of four bilinear samples around its place (Nowrouzezahrai &
-// Snyder 2009, section 9: repeated bilinear decimation).
-// Reads: heights, height_levels. Writes: height_levels, level_table (one texel for this level).
+// Computes: one level of the height pyramid from the level an octave finer (from the field itself for the first
+// octave). Each texel is the mean of four bilinear samples around its position (Nowrouzezahrai & Snyder 2009, section
+// 9: repeated bilinear decimation).
+// Reads: heights, height_levels.
+// Writes: height_levels, level_table (one texel for this level).
 // One invocation is one texel of the level.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -21,7 +22,7 @@ layout(push_constant) uniform HeightReducePush {
     int source_cols;
     int source_rows;
     int source_first;
-    float ratio_x;  // texels of the source a texel
+    float ratio_x;  // source texels per texel
     float ratio_y;
     float per_sample_x;
     float per_sample_y;

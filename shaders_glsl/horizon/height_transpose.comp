@@ -1,7 +1,7 @@
-// Computes: a rectangle of the heights (all, or what was edited) laid out for an axis, four neighbouring
-// lanes a texel.
-// Reads: heights (one texel a sample). Writes: lane_heights at [march position][lane / 4]; beyond the
-// last lane it is held, or follows the first where the field repeats.
+// Computes: a rectangle of the heights (all, or the edited part) transposed for a march axis, four neighbouring lanes
+// per texel.
+// Reads: heights (one texel per grid point).
+// Writes: lane_heights at [march position][lane / 4]; lanes past the last repeat it, or wrap where the field repeats.
 // One invocation is four lanes of one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require

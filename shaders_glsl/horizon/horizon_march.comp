@@ -1,8 +1,9 @@
-// Computes: horizons by testing everything a sample's own line meets: the baseline of every speed
-// claim and, with all crossings, the truth on the device. Cost grows with the side of the field.
-// Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][step][lane], and in the
-// next layer, where asked, the march steps to what is met (f32 bits); of nodes alone at their own places.
-// One invocation is one sample, or node, in one azimuth.
+// Computes: horizons by testing every crossing of a grid point's own line: the baseline of every speed-up and, with
+// all crossings, the ground truth on the device. Cost grows with the side of the field.
+// Reads: heights, azimuths.
+// Writes: slopes (f32 bits) at [layer][step][lane] and, if requested, the march steps to the horizon (f32 bits) in
+// the next layer; nodes at their own texels.
+// One invocation is one grid point, or node, in one azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
@@ -14,7 +15,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool ALL_CROSSINGS = true;
 layout(constant_id = 1) const bool PERIODIC = false;
 layout(constant_id = 2) const bool WRITES_DISTANCES = false;
-// Samples from node to node.
+// Grid points from node to node.
 layout(constant_id = 3) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
@@ -38,10 +39,10 @@ void main() {
     int reach = step + warm_up;
     for (int back = 1; back < steps + warm_up; back++) {
         int y = lane * CELL - back * azimuth.shear;
-        // Some of the segment that begins here lies on the field.
+        // Part of the segment that begins here lies on the field.
         bool on = exists && back <= reach
                && (PERIODIC || azimuth.shear == 0 || y + azimuth.shear > 0);
-        // Left by all lanes together, as in horizon_sweep.
+        // All lanes leave together, as in horizon_sweep.
         if (!subgroupAny(on)) {
             break;
         }

@@ -1,7 +1,8 @@
-// Computes: for every sample of every line of an azimuth, the earlier sample of the line that rises
-// highest (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
-// Reads: lane_heights or heights, azimuths. Writes: occluders (march steps back, 0 where nothing is
-// met; u16) and / or slopes, at [azimuth][32 lines][step][line]: a lattice, see fuse.glsl.
+// Computes: for every step of every line of an azimuth, the earlier step of that line with the steepest slope
+// (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
+// Reads: lane_heights or heights, azimuths.
+// Writes: occluders (march steps back, 0 for none; u16) and / or slopes, at [azimuth][32 lines][step][line]: a
+// lattice, see fuse.glsl.
 // One invocation is four neighbouring lines, from the horizon's side to the other end.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -14,15 +15,15 @@ layout(local_size_x_id = 0) in;
 const uint HULL_IN_PRIVATE = 0u;
 const uint HULL_IN_SHARED = 1u;
 const uint HULL_IN_OCCLUDERS = 2u;
-// Where the hull lives; in the occluders means that what was written is the stack (a linked list).
+// Hull storage. "In the occluders": the written occluders are the stack, a linked list.
 layout(constant_id = 1) const uint HULL_PLACE = 0u;
-// Entries a line keeps, a power of two: the newest. A line that needs an older one is marked as lost,
-// to be done again with its hull in the occluders.
+// Entries kept per line, a power of two: the newest. A line that needs an older one is marked as lost and swept again
+// with its hull in the occluders.
 layout(constant_id = 2) const int HULL_DEPTH = 1;
 layout(constant_id = 3) const int PRIVATE_ENTRIES = 1;
 layout(constant_id = 4) const int PRIVATE_WORDS = 1;
 layout(constant_id = 5) const int SHARED_WORDS = 1;
-// True where HULL_DEPTH holds every sample of a line: nothing can be lost.
+// True where HULL_DEPTH holds every step of a line: none can be lost.
 layout(constant_id = 6) const bool HULL_HOLDS_LINE = true;
 // An entry as f16 height and u16 step in one word (the paper's) instead of two f32.
 layout(constant_id = 7) const bool HULL_PACKED = false;
@@ -33,7 +34,7 @@ layout(constant_id = 9) const uint SLOPE_FORMAT = 0u;
 layout(constant_id = 10) const bool PERIODIC = false;
 // Lines are 2^LINE_SHIFT / 32768 cells apart.
 layout(constant_id = 11) const int LINE_SHIFT = CELL_SHIFT;
-// Does only what an earlier run of this pass has marked as lost.
+// Sweeps only lines that an earlier run of this pass has marked as lost.
 layout(constant_id = 12) const bool REDOES_LOST = false;
 
 layout(binding = 0) uniform texture2D heights;
@@ -45,8 +46,8 @@ layout(binding = 4) uniform writeonly uimage2DArray slopes;
 layout(binding = 5) buffer LostLines { uint lost_lines[]; };
 
 layout(push_constant) uniform HorizonSweepPush {
-    int lanes;           // samples across the march
-    int steps;           // samples along it
+    int lanes;           // grid points across the march
+    int steps;           // grid points along it
     int warm_up;         // steps marched before the first that counts: whole periods, or 0
     uint first_azimuth;
     float height_scale;  // packed entries: brings the largest |height| to 1
@@ -126,9 +127,8 @@ void main() {
     }
     bool lost = false;
 
-    // The newest three hull vertices of each line, as height and step. Older ones in the hull's
-    // memory, `depth` of them; entry `depth` is where the third is kept if it is not popped.
-    // Entries below `kept` have been overwritten.
+    // The newest three hull vertices of each line, as height and step. Older ones are in the hull storage, `depth` of
+    // them; entry `depth` is where the third goes if it is not popped. Entries below `kept` have been overwritten.
     vec4 h1 = vec4(OUTSIDE), h2 = vec4(UNDER_OUTSIDE), h3 = vec4(UNDER_OUTSIDE);
     vec4 x1 = vec4(float(begin - 1)), x2 = vec4(float(begin - 2)), x3 = vec4(float(begin - 3));
     ivec4 depth = ivec4(0);
@@ -143,8 +143,8 @@ void main() {
                 h[k] = line_height(y + k * spacing, step);
             }
         }
-        // Pop while the deeper vertex looks at least as high as the newer one. The first pop moves
-        // registers only; more are rare.
+        // Pop while the deeper vertex subtends at least the slope of the newer one. The first pop moves registers
+        // only; more are rare.
         bvec4 pops;
         kept = max(kept, depth + 1 - HULL_DEPTH);
         for (int k = 0; k < 4; k++) {
@@ -176,8 +176,8 @@ void main() {
             precise float newer_now = (h1[k] - h[k]) * (x - x2[k]);
             pops[k] = first && deeper_still >= newer_now;
         }
-        // Left by all lanes together: llvmpipe (Mesa 22.3) lets a lane that leaves a loop early go on
-        // computing values that are used after it.
+        // All lanes leave together: in llvmpipe (Mesa 22.3) a lane that leaves a loop early keeps computing values
+        // that are used after it.
         do {
             for (int k = 0; k < 4; k++) {
                 vec2 under;
@@ -192,7 +192,7 @@ void main() {
                                         : private_hull[k * PRIVATE_ENTRIES + slot];
                 }
                 if (HULL_PLACE == HULL_IN_OCCLUDERS) {
-                    // What the second vertex met when it was new is what lies under it.
+                    // The occluder of the second vertex is the vertex below it.
                     int second = int(x2[k]);
                     int back = 0;
                     if (pops[k] && h2[k] > OUTSIDE) {

@@ -1,8 +1,8 @@
 // Heights along the lines of a sweep. The including shader declares `heights`, `lanes`, `steps`,
 // `height_scale` and the constants PERIODIC and HULL_PACKED, and sets `azimuth`.
 
-// Where no surface is: under everything, and above what lies under it on the hull, so that it never
-// hides anything and is never popped by a height.
+// Height for "no surface": lower than everything, and above every vertex below it on the hull, so that it never
+// occludes and is never popped by a height.
 const float OUTSIDE = -1e28;
 const float UNDER_OUTSIDE = -1e34;
 
@@ -29,7 +29,7 @@ float line_height(int y, int step) {
     return sum;
 }
 
-// What a height becomes by being packed.
+// A height after packing.
 float kept_height(float h) {
     return HULL_PACKED && h > OUTSIDE ? unpackHalf2x16(packHalf2x16(vec2(h * height_scale, 0.0))).x / height_scale : h;
 }

@@ -1,7 +1,7 @@
 #include "horizon/sweep.glsl"
 
-// The field as one azimuth marches over it. The including shader declares `heights` and the
-// constant PERIODIC, and sets `azimuth`.
+// The field in the frame of one marched azimuth. The including shader declares `heights` and the constant PERIODIC,
+// and sets `azimuth`.
 
 layout(push_constant) uniform MarchPush {
     int lanes;
@@ -25,7 +25,7 @@ float height_at(int lane, int step) {
     return texelFetch(heights, at, 0).x;
 }
 
-// Whether the cells' diagonals run along the march and the lanes together.
+// Whether the cells' diagonals increase in both march and lane.
 bool splits_along() {
     return ((azimuth.flags & AZIMUTH_FLIPS_MARCH) != 0u) == ((azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u);
 }

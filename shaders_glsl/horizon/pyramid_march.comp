@@ -1,21 +1,21 @@
-// Computes: horizons from a height pyramid: along each azimuth one sample a level, at distances that
-// grow by 2^(1/k) and are rounded to whole march steps, each the angle between heights of one level at
-// both ends; then the largest value of the cubic B-spline over them, at its knots and midpoints
+// Computes: horizons from a height pyramid: along each azimuth one lookup per level, at distances that grow by
+// 2^(1/k) and are rounded to whole march steps. Each lookup gives the angle between heights of one level at both
+// ends. The horizon is the largest value of the cubic B-spline over these angles, at its knots and midpoints
 // (Nowrouzezahrai & Snyder 2009, eq. 14-17).
 // Reads: heights, height_levels or height_stack, level_table, azimuths.
-// Writes: slopes (f32 bits) at [layer][step][lane]; of nodes alone at their own places.
-// One invocation is one sample, or node, in all azimuths of a batch.
+// Writes: slopes (f32 bits) at [layer][step][lane]; nodes at their own texels.
+// One invocation is one grid point, or node, in all azimuths of a batch.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
-// Levels are there at every sample, else at their own texels.
+// Levels are stored at every grid point, else at their own texels.
 layout(constant_id = 1) const bool STACK = false;
-// Levels beside the field itself; may be none.
+// Levels besides the field itself; may be 0.
 layout(constant_id = 2) const int LEVELS = 0;
-// Samples from node to node.
+// Grid points from node to node.
 layout(constant_id = 3) const int NODE_STRIDE = 1;
 
 layout(binding = 0) uniform texture2D heights;
@@ -31,7 +31,7 @@ layout(push_constant) uniform PyramidMarchPush {
     int warm_up;  // steps marched beyond the field: whole periods, or 0
     uint first_azimuth;
     uint azimuth_count;
-    int fine_samples;  // that look at the field itself
+    int fine_samples;  // lookups in the field itself
     int width_shift;
     float growth;      // of distances: 2^(1/k)
 };
@@ -42,8 +42,8 @@ layout(push_constant) uniform PyramidMarchPush {
 
 Azimuth azimuth;
 
-// The last four angles, the newest in w, and the largest value of the spline so far. Before the first
-// and after the last, angles go on as they are, so that the spline begins and ends with them.
+// The last four angles, the newest in w, and the largest value of the spline so far. The first and last angles
+// repeat, so that the spline begins and ends with them.
 struct Blocked {
     vec4 angles;
     float highest;
@@ -58,7 +58,7 @@ Blocked blocked_by(Blocked b, float angle, bool is_first) {
     return Blocked(four, is_first ? angle : highest);
 }
 
-// Where a lane and step lie in images of the field's size.
+// Texel of a lane and step in images of the field's size.
 ivec2 texel_of(int lane, int step) {
     int lane_round = wrapped(lane, lanes);
     int step_round = wrapped(step, steps);
@@ -102,7 +102,7 @@ float level_height(int level, int cell, float f, int step) {
     return spline_height(level_of(texelFetch(level_table, ivec2(level - 1, 0), 0)), cell, f, step);
 }
 
-// The same at a sample.
+// The same at a grid point.
 float own_height(int level, int lane, int step) {
     if (STACK) {
         return texelFetch(height_stack, ivec3(texel_of(lane, step), level - 1), 0).x;
@@ -110,17 +110,17 @@ float own_height(int level, int lane, int step) {
     return level_height(level, lane, 0.0, step);
 }
 
-// Of every level, the field first: they are the same in all azimuths.
+// Per level, the field first; the same in all azimuths.
 float own_heights[LEVELS + 1];
 
-// The march: which sample is next, how far away, and whether this invocation's goes on.
+// March state: the next lookup, its distance, and whether this invocation is still marching.
 int next;
 float back;
 bool on;
 Blocked blocked;
 
-// Takes a rise `at` steps away as this sample's angle, and as that of the following ones that round to
-// as many steps: these need no look of their own.
+// Adds a rise `at` steps away as this lookup's angle, and as that of the following lookups that round to the same
+// number of steps.
 void take(float rise, int at, int whole) {
     float angle = arc_tangent(vec4(rise / (float(max(at, 1)) * azimuth.step_m))).x;
     do {
@@ -132,7 +132,7 @@ void take(float rise, int at, int whole) {
     } while (int(back + 0.5) == whole);
 }
 
-// Horizon of a sample in `azimuth`.
+// Horizon of a grid point in `azimuth`.
 float horizon(int lane, int step, bool exists) {
     // Whole steps until the march leaves the field.
     int across = lane * CELL / max(azimuth.shear, 1);
@@ -143,7 +143,7 @@ float horizon(int lane, int step, bool exists) {
     next = 0;
     back = 1.0;
     blocked = Blocked(vec4(0.0), 0.0);
-    // Both loops are left by all lanes together, as in horizon_sweep.
+    // All lanes leave both loops together, as in horizon_sweep.
     while (next < fine_samples && subgroupAny(on)) {
         int whole = int(back + 0.5);
         int at = min(whole, reach);

@@ -1,7 +1,8 @@
-// Computes: exact horizons of the triangulated surface in azimuths along grid vectors (a, b): every
-// sample lies on a line, and every crossing of a line with grid lines and diagonals is on its hull.
-// Reads: heights, azimuths. Writes: slopes (f32 bits) at [layer][step][lane], and in the
-// next layer, where asked, the march steps to what is met (f32 bits).
+// Computes: exact horizons of the triangulated surface in azimuths along grid vectors (a, b). Every grid point lies
+// on a line, and the hull includes every crossing of a line with grid lines and diagonals.
+// Reads: heights, azimuths.
+// Writes: slopes (f32 bits) at [layer][step][lane] and, if requested, the march steps to the horizon (f32 bits) in
+// the next layer.
 // One invocation is one line, from the horizon's side to the other end.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -10,7 +11,7 @@
 #include "horizon/surface.glsl"
 
 layout(local_size_x_id = 0) in;
-// Every crossing of a line: a hull can be no deeper.
+// Every crossing of a line: the largest possible hull depth.
 layout(constant_id = 1) const int HULL_DEPTH = 1;
 layout(constant_id = 2) const bool PERIODIC = false;
 layout(constant_id = 3) const bool WRITES_DISTANCES = false;
@@ -35,16 +36,15 @@ float rise_over(float own, int y, int step, float u) {
                         height_at(cell + 1, step + 1), own, u, f, split_along);
 }
 
-// Hull vertices: height, and place as whole step and the rest of one, so that differences of near
-// places keep their digits.
+// Hull vertices: height, and position as whole step and fraction, so that differences of near positions stay exact.
 float hull_h[HULL_DEPTH];
 float hull_step[HULL_DEPTH];
 float hull_rest[HULL_DEPTH];
 int depth;
 
-// Pops what a point at height h, `rest` past `step`, sees over.
+// Pops the vertices hidden from a point at height h, `rest` past `step`.
 void pop_under(float h, float step, float rest, bool exists) {
-    // Left by all lanes together, as in horizon_sweep.
+    // All lanes leave together, as in horizon_sweep.
     bool pops = exists;
     do {
         int newest = max(depth - 1, 0);
@@ -67,9 +67,9 @@ void push(float h, float step, float rest, bool exists) {
     }
 }
 
-// A crossing of the line that is at lane position y0 at `step`: on the hull where it is on the field.
+// Adds a crossing of the line that is at lane position y0 at `step`, where it is on the field.
 void cross_at(float u, int y0, int step, bool on) {
-    // Not before the first step, nor before the line entered across the first lane.
+    // Not before the first step, nor before the line has entered across the first lane.
     bool exists = on && u <= 1.0 && step >= 0
                && (PERIODIC || float(y0) + u * float(azimuth.vector_lane) >= -1e-3);
     float h = rise_over(0.0, y0, step, u);
@@ -109,7 +109,7 @@ void main() {
         float f = float(y - cell * march) / float(march);
         float h = height_at(cell, step);
         h += f > 0.0 ? f * (height_at(cell + 1, step) - h) : 0.0;
-        // As the end of its segment: places of one step are told apart by their rests.
+        // As the end of its segment: positions within one step differ by their fractions.
         pop_under(h, float(step - 1), 1.0, on);
         if (on && y == cell * march && step >= warm_up) {
             float slope = NO_SLOPE;

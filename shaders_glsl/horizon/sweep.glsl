@@ -12,8 +12,8 @@ int lane_position(Azimuth azimuth, int lane, int lanes) {
     return (azimuth.flags & AZIMUTH_FLIPS_LANES) != 0u ? flipped : lane;
 }
 
-// Remainders of negative numbers are undefined in Vulkan. Names, not expressions, are chosen between:
-// glslang makes branches of the latter, which SwiftShader's compiler takes minutes and gigabytes over.
+// Remainders of negative numbers are undefined in Vulkan. The selection is between names: glslang makes branches of
+// selected expressions, for which SwiftShader's compiler takes minutes and gigabytes.
 int wrapped(int i, int n) {
     bool below = i < 0;
     int mirrored = -1 - i;

@@ -1,13 +1,12 @@
-// Computes: the horizon of every sample in the azimuths of a batch, from the lattice of a sweep.
-// Reads: lane_heights, azimuths, lattice. Writes: horizon_angles (elevation, radians),
-// horizon_distances (world length to what makes the horizon, 0 where nothing does), [azimuth][row][column].
-// One invocation is four samples side by side along the lane axis, at one march position, in one
-// azimuth.
+// Computes: the horizon of every grid point in the azimuths of a batch, from the lattice of a sweep.
+// Reads: lane_heights, azimuths, lattice.
+// Writes: horizon_angles (elevation, radians), horizon_distances (world length to the horizon, 0 for none), at
+// [azimuth][row][column].
+// One invocation is four grid points side by side along the lane axis, at one march position, in one azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Eight march steps of the same lanes lie together in a tile of the lattice: side by side, they are
-// fetched together.
+// Eight march steps of the same lanes form a tile of the lattice. Neighbouring invocations fetch them together.
 layout(local_size_x = 8, local_size_y = 16) in;
 
 layout(constant_id = 0) const uint FUSE = 5u;
@@ -21,7 +20,7 @@ const int LANE_STRIDE = 1;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
-// One of these, by LATTICE.
+// LATTICE selects one of these.
 layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 

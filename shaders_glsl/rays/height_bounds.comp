@@ -1,7 +1,7 @@
-// Computes: one level of the hierarchy that rays skip by: the highest of the cells under each block of
-// 4^level by 4^level. Lowest heights are not kept: rays start on the surface and stay above it until
-// they hit, so nothing ever asks for them.
-// Reads: cells (level 1), maxima (level - 1). Writes: maxima (see level_top in rays/trace.glsl).
+// Computes: one level of the maximum hierarchy with which rays skip blocks: the highest point of the cells in each
+// block of 4^level by 4^level. Minima are not needed: rays start on the surface and stay above it until they hit.
+// Reads: cells (level 1), maxima (level - 1).
+// Writes: maxima (see level_top in rays/trace.glsl).
 // One invocation is one block.
 #version 460
 
@@ -23,7 +23,7 @@ layout(push_constant) uniform HeightBoundsPush {
 
 void main() {
     ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-    // Parts that exist: cells, or blocks of the level below.
+    // Existing parts: cells, or blocks of the level below.
     int below = LEVEL_BITS * (level - 1);
     ivec2 parts = (ivec2(cells_x, cells_y) + (1 << below) - 1) >> below;
     ivec2 blocks = (parts + (1 << LEVEL_BITS) - 1) >> LEVEL_BITS;

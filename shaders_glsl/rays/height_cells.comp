@@ -1,9 +1,9 @@
-// Computes: what rays over the surface look at: the corners of each cell in one texel, and height and
-// slope of each sample in another.
-// May begin the sums of path_trace, too.
-// Reads: heights. Writes: cells (north-west, north-east, south-west, south-east, above the base),
-// ground (height, slope towards east, slope towards north), batch_mean (none yet), lost_rays (0).
-// One invocation is one sample and the cell to its south-east.
+// Computes: the surface in the layout that rays read: the corners of each cell in one texel, and height and slope of
+// each grid point in another. Optionally initialises the sums of path_trace.
+// Reads: heights.
+// Writes: cells (north-west, north-east, south-west, south-east, above the base), ground (height, slope towards east,
+// slope towards north), batch_mean (0 batches), lost_rays (0).
+// One invocation is one grid point and the cell to its south-east.
 #version 460
 
 #include "shared/conventions.glsl"
@@ -26,7 +26,7 @@ layout(push_constant) uniform HeightCellsPush {
     float cell_y_m;
 };
 
-// A neighbour along an axis of n samples: wrapped where the field repeats, else held at the edge.
+// A neighbour along an axis of n grid points: wrapped where the field repeats, else clamped.
 int neighbour(int i, int n) {
     int wrapped = i < 0 ? i + n : (i >= n ? i - n : i);
     return PERIODIC ? wrapped : clamp(i, 0, n - 1);
@@ -50,9 +50,8 @@ void main() {
     float s = texelFetch(heights, ivec2(x.y, y.z), 0).x;
     float se = texelFetch(heights, ivec2(x.z, y.z), 0).x;
     imageStore(cells, ivec2(c, r), vec4(own, e, s, se));
-    // The mean of the gradients of the adjoining quads that exist, which is the direction of the sum
-    // of their unnormalised normals. Across an axis without quads the slope is 0, and its one line of
-    // samples stands for them.
+    // The mean gradient of the adjoining quads: the direction of the sum of their unnormalised normals. Across an
+    // axis one grid point wide the slope is 0, and the single line of grid points stands for the quads.
     bool wraps_x = PERIODIC && cols > 1;
     bool wraps_y = PERIODIC && rows > 1;
     float west = wraps_x || c > 0 ? 1.0 : 0.0;
@@ -69,7 +68,7 @@ void main() {
     float slope_north = both_y > 0.0 ? rise_y / (both_y * cell_y_m) : 0.0;
     imageStore(ground, ivec2(c, r), vec4(own, slope_east, slope_north, 0.0));
     if (BEGINS_PATHS) {
-        // The sums of a list of samples are no larger than the field.
+        // The sums of a list of grid points are no larger than the field.
         if (all(lessThan(ivec2(c, r), imageSize(batch_mean)))) {
             imageStore(batch_mean, ivec2(c, r), vec4(0.0));
         }

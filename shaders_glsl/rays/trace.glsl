@@ -1,31 +1,30 @@
-// What a ray over the triangulated surface meets. Needs bindings cells and maxima, constants BORDER, THIN_ROWS,
+// First hit of a ray on the triangulated surface. Needs bindings cells and maxima, constants BORDER, THIN_ROWS,
 // THIN_COLS, MOST_STEPS, and push constants cells_x, cells_y, padded_rows, top_level, highest_m before it.
 //
-// The surface is hit before the first of the ray's crossings (see walk.glsl) at which it does not stand
-// below the ray.
-// The start itself never counts: only crossings at t > 0 are looked at. Where the surface already rises
-// faster than the ray in the very first triangle, the hit lies at t = 0: the ground right there.
+// The hit lies before the first crossing (see walk.glsl) at which the surface is not below the ray. The start is
+// excluded: only crossings at t > 0 count. If the surface rises faster than the ray within the very first triangle,
+// the hit is at t = 0.
 
 #include "rays/walk.glsl"
 
-const uint RAY_FREE = 0u;     // left the field, or rose above all of it, or came to its end
+const uint RAY_FREE = 0u;     // left the field, or rose above all of it, or reached its end
 const uint RAY_HIT = 1u;
-const uint RAY_GROUND = 2u;   // left level or falling, where the ground goes on level and black
-const uint RAY_LOST = 3u;     // took more steps than there can be
+const uint RAY_GROUND = 2u;   // left level or falling, where the ground continues level and black
+const uint RAY_LOST = 3u;     // exceeded the step limit
 
 struct Met {
     uint what;
-    float t;       // where it was hit
+    float t;       // of the hit
     ivec2 cell;    // the cell, wrapped into the field
-    vec2 offset;   // the place in it
+    vec2 offset;   // position in it
     bool lower;    // in its southern triangle
 };
 
-// What a ray meets before t_end.
+// First hit of a ray before t_end.
 Met trace(Ray ray, float t_end, bool going) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     Walk walk = walk_from(ray);
-    // From here on a rising ray is over everything.
+    // From here on a rising ray is above everything.
     float t_over = ray.rise > 0.0 ? max(highest_m - ray.own, 0.0) / ray.rise : 1e30;
     t_end = min(t_end, t_over);
     if (BORDER == BORDER_PERIODIC) {
@@ -37,7 +36,7 @@ Met trace(Ray ray, float t_end, bool going) {
     for (int turn = 0; turn < MOST_STEPS; turn++) {
         Block block = block_of(walk, ray);
         float ahead = block.ahead;
-        // Held inside: lanes that are done go on fetching.
+        // Clamped: finished lanes keep fetching.
         ivec2 fetched = clamp(walk.at, ivec2(0), cells_of - 1);
         vec4 corners = texelFetch(cells, fetched, 0);
         int shown = max(walk.level, 1);
@@ -59,7 +58,7 @@ Met trace(Ray ray, float t_end, bool going) {
         going = going && !hits;
         walk_on(walk, ray, block, going, clear, top_level);
         going = going && !walk.leaves && walk.t < t_end;
-        // Left by all lanes together, as in horizon_sweep; asked last, as llvmpipe runs a turn to its end.
+        // All lanes leave together, as in horizon_sweep; tested last, as llvmpipe completes an iteration.
         if (!subgroupAny(going)) {
             break;
         }
@@ -68,7 +67,7 @@ Met trace(Ray ray, float t_end, bool going) {
     Met met;
     met.t = t;
     met.cell = clamp(walk.at, ivec2(0), cells_of - 1);
-    // Where in its cell: the surface is linear before and behind the diagonal.
+    // Position in its cell: the surface is linear before and behind the diagonal.
     vec4 corners = texelFetch(cells, met.cell, 0);
     vec2 from = ray.offset + vec2(ray.base - walk.cell);
     float apart = ray.advance.x - ray.advance.y;
@@ -85,7 +84,7 @@ Met trace(Ray ray, float t_end, bool going) {
     float t_b = first ? t_middle : t_next;
     float over_a = first ? t * ray.rise - cell_rise(corners, ray.own, at_start) : over_middle;
     float over_b = first ? over_middle : t_next * ray.rise - cell_rise(corners, ray.own, at_end);
-    // At the start the ray is on the surface, whatever rounding says.
+    // At the start the ray is on the surface, despite rounding.
     over_a = t_a == 0.0 ? 0.0 : max(over_a, 0.0);
     float s = over_a / max(over_a - over_b, 1e-30);
     met.t = t_a + clamp(s, 0.0, 1.0) * (t_b - t_a);
@@ -93,7 +92,7 @@ Met trace(Ray ray, float t_end, bool going) {
     vec2 between = from + 0.5 * (t_a + t_b) * ray.advance;
     met.lower = between.y > between.x;
     bool below = BORDER == BORDER_PLANE && walk.leaves && ray.rise <= 0.0;
-    // A ray that repetitions have not met within its reach rises free or sinks into the ground.
+    // On a repeating field, a ray without a hit within its reach rises free or sinks into the ground.
     bool sinks = BORDER == BORDER_PERIODIC && ray.rise <= 0.0 && t_end >= REACH_CELLS;
     met.what = going ? RAY_LOST : (hit ? RAY_HIT : (below || sinks ? RAY_GROUND : RAY_FREE));
     return met;

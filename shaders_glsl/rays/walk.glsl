@@ -1,58 +1,57 @@
-// How a ray walks over the field's cells, skipping blocks of them. Needs constants BORDER, THIN_ROWS, THIN_COLS
-// and push constants cells_x, cells_y before it.
+// Traversal of the field's cells by a ray, with block skipping. Needs constants BORDER, THIN_ROWS, THIN_COLS and push
+// constants cells_x, cells_y before it.
 //
-// A ray starts at a place on the surface: cell `base` (counted past the edge in neither direction),
-// `offset` in it (0 .. 1 towards east and south), height `own`. Everything is counted from there, so a
-// short ray keeps its digits however large the field. Positions along the ray are t, in cells of the
-// axis along which it runs faster. The surface along the ray is linear between its crossings with
-// columns, rows and diagonals.
+// A ray starts at a point of the surface: cell `base` (within the field), `offset` in it (0 .. 1 towards east and
+// south), height `own`. Coordinates are relative to the start, so short rays stay exact however large the field.
+// Positions along the ray are t, in cells of its faster axis. Along the ray the surface is linear between crossings
+// with columns, rows and diagonals.
 
 #include "rays/bounds.glsl"
 
-// A ray over a field that repeats is given up after this many cells. What goes on so long is within
-// relief / REACH_CELLS of horizontal; what falls there counts as ground.
+// A ray over a repeating field stops after this many cells. Its direction is then within relief / REACH_CELLS of
+// horizontal; a falling one counts as hitting the ground.
 const float REACH_CELLS = 16384.0;
 
 struct Ray {
     ivec2 base;
     vec2 offset;
     float own;
-    vec2 advance;  // cells a unit of t, towards east and south; the larger is 1 or -1
-    float rise;    // height a unit of t
-    float scale;   // t a metre
+    vec2 advance;  // cells per unit of t, towards east and south; the larger is 1 or -1
+    float rise;    // height per unit of t
+    float scale;   // t per metre
 };
 
 Ray ray_from(ivec2 base, vec2 offset, float own, vec3 e, vec2 cell_m) {
     vec2 direction = vec2(e.x, -e.y) / cell_m;
-    // Steeper than this, a ray is over all heights before it has left its first cell: 1e-9 m a metre.
+    // A steeper ray is above all heights before it leaves its first cell: 1e-9 m per metre.
     float along = max(max(abs(direction.x), abs(direction.y)), 1e-9 / max(cell_m.x, cell_m.y));
     vec2 advance = direction / along;
-    // What moves by less than this never leaves its column.
+    // A ray that moves by less than this never leaves its column.
     advance = mix(advance, vec2(0.0), lessThan(abs(advance), vec2(1e-20)));
     return Ray(base, offset, own, advance, e.z / along, along);
 }
 
-// Height over `own` at a place (u, v) of a cell with these corners.
+// Height over `own` at a position (u, v) of a cell with these corners.
 float cell_rise(vec4 corners, float own, vec2 at) {
     float north = (corners.x - own) + at.x * (corners.y - corners.x) + at.y * (corners.w - corners.y);
     float south = (corners.x - own) + at.y * (corners.z - corners.x) + at.x * (corners.w - corners.z);
     return at.y <= at.x ? north : south;
 }
 
-// Where a ray has got to.
+// Traversal state.
 struct Walk {
-    ivec2 cell;   // counted on where the field repeats
-    ivec2 at;     // the same within the field
+    ivec2 cell;   // not wrapped where the field repeats
+    ivec2 at;     // wrapped into the field
     float t;      // where it entered the block
-    int level;    // of the block that it looks at; 0 is the cell
+    int level;    // of the current block; 0 is the cell
     bool leaves;  // has left the field
 };
 
-// The block that it looks at.
+// The current block.
 struct Block {
     ivec2 low;
     ivec2 high;
-    ivec2 seen;    // how far the field's repetition is away
+    ivec2 seen;    // offset of the field's repetition
     float ahead;   // t at which the ray leaves it
     bool by_x;     // across an edge to the east or west
 };
@@ -60,7 +59,7 @@ struct Block {
 Walk walk_from(Ray ray) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));
-    // On a grid line a ray belongs to the cell that it runs into; along the last line, to the last cell.
+    // On a grid line a ray belongs to the cell that it enters; along the last line, to the last cell.
     ivec2 cell = ray.base;
     cell.x -= ray.offset.x == 0.0 && !onward.x ? 1 : 0;
     cell.y -= ray.offset.y == 0.0 && !onward.y ? 1 : 0;
@@ -89,14 +88,14 @@ Block block_of(Walk walk, Ray ray) {
     ivec2 high = min(low + (1 << bits), cells_of);
     ivec2 seen = BORDER == BORDER_PERIODIC ? walk.at - walk.cell : ivec2(0);
     ivec2 edge = ivec2(onward.x ? high.x : low.x, onward.y ? high.y : low.y) - seen - ray.base;
-    // Along a grid line the edges beside it are never reached, not even where it is one of them.
+    // Edges parallel to the ray are never reached, even where the ray runs along one.
     vec2 to_edge = mix((vec2(edge) - ray.offset) * inverse, vec2(1e30), along_line);
     float ahead = max(min(to_edge.x, to_edge.y), walk.t);
     return Block(low, high, seen, ahead, to_edge.x <= to_edge.y);
 }
 
-// On to the next block of the level, exactly across the edge and never back along the other axis, where
-// this one is `clear`; a coarser one where that is entered, else a finer look at this one.
+// Steps to the next block of the level, exactly across the edge and never back along the other axis, if this one is
+// `clear`. Goes to a coarser level on entering a coarser block, else to a finer one.
 void walk_on(inout Walk walk, Ray ray, Block block, bool going, bool clear, int top_level) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     bvec2 onward = greaterThanEqual(ray.advance, vec2(0.0));

@@ -1,14 +1,16 @@
-// Computes: one more batch of 2^SET_BITS light paths from each sample of some rows, and the mean of all batches
-// so far with its standard error, from the spread between batches. Or, from the samples of a list, of bounced light alone.
-// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map, phong_map, places. Reads and writes:
-// batch_mean (mean of the batches; w: how many), batch_spread (sum of squares about it; w: rays), part_sum (of
-// a batch in parts, light so far; w: rays). Writes: radiance, standard_error (w: rays so far). Adds to lost_rays.
-// One invocation is one sample, or one place of the list.
+// Computes: one more batch of 2^SET_BITS paths from each grid point of some rows, and the mean of all batches so far
+// with its standard error, from the variance between batches. Or the same for a list of grid points, indirect light
+// only.
+// Reads: cells, maxima, ground, lights, environment, environment_cdf, albedo_map, phong_map, places.
+// Reads and writes: batch_mean (mean of the batches; w: batch count), batch_spread (sum of squared deviations; w:
+// rays), part_sum (of a batch in parts, light so far; w: rays).
+// Writes: radiance, standard_error (w: rays so far). Adds to lost_rays.
+// One invocation is one grid point, or one entry of the list.
 //
-// A batch may come in parts: some of the paths, or some of the lights at each of their vertices. Each part
-// goes the same ways; sky and environment belong to the part of the first light.
+// A batch may be split into parts: some of the paths, or some of the lights at each of their vertices. Each part
+// follows the same paths; sky and environment belong to the part of the first light.
 //
-// Of what a scene has not, nothing is compiled: llvmpipe runs every branch for all lanes. Only loops end.
+// Features that a scene lacks are not compiled: llvmpipe runs every branch for all lanes. Only loops exit early.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -20,19 +22,19 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint BORDER = 0u;
-// A field one sample wide that does not repeat is a line: only rays along it meet it.
+// A field one grid point wide that does not repeat is a line: only rays along it hit it.
 layout(constant_id = 1) const bool THIN_ROWS = false;
 layout(constant_id = 6) const bool THIN_COLS = false;
 layout(constant_id = 2) const uint SET_BITS = 4u;
 layout(constant_id = 3) const bool ALBEDO_IS_MAP = false;
 layout(constant_id = 4) const bool HAS_ENVIRONMENT = false;
 layout(constant_id = 5) const bool HAS_LOBE = false;
-layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or balls
+layout(constant_id = 7) const bool HAS_LIGHTS = false;  // suns, key lights or sphere lights
 layout(constant_id = 11) const bool HAS_KEYS = false;
 layout(constant_id = 8) const bool HAS_BALLS = false;
 layout(constant_id = 9) const bool HAS_BOUNCES = false;
-// More than a ray of this field can ask for; 60,000 at most, as llvmpipe ends all loops of an invocation
-// together after 65,535 turns.
+// More steps than a ray of this field can take; 60,000 at most, as llvmpipe ends all loops of an invocation together
+// after 65,535 iterations.
 layout(constant_id = 10) const int MOST_STEPS = 60000;
 layout(constant_id = 12) const bool IN_PARTS = false;
 layout(constant_id = 13) const bool LOBE_IS_MAP = false;
@@ -41,13 +43,13 @@ layout(constant_id = 14) const bool AT_PLACES = false;
 layout(binding = 0) uniform texture2D cells;
 layout(binding = 1) uniform texture2D maxima;
 layout(binding = 2) uniform texture2D ground;
-// One a row: suns, key lights, balls. A sun: its direction and 1 - cos of its radius; irradiance facing it, spread over its cone.
-// A key light: where it begins and how wide it is, in turns; sin² of half the zenith angle of its highest
-// and lowest elevation; radiance times solid angle. A ball: its place above the base and its radius; radiance.
+// One per row: suns, key lights, sphere lights. Sun: direction and 1 - cos of its radius; irradiance facing it,
+// spread over its cone. Key light: start and width in turns; sin² of half the zenith angle of its highest and lowest
+// elevation; radiance times solid angle. Sphere light: position above the base and radius; radiance.
 layout(binding = 3) uniform texture2D lights;
-// Radiance; w: how densely a texel's directions are chosen, 1/sr.
+// Radiance; w: sampling density of the texel's directions, 1/sr.
 layout(binding = 4) uniform texture2D environment;
-// First column: the share of the rows down to each. Then each row's own: of its texels up to each.
+// First column: CDF over the rows. Then each row's own CDF over its texels.
 layout(binding = 5) uniform texture2D environment_cdf;
 layout(binding = 6) uniform texture2D albedo_map;
 layout(binding = 7, rgba32f) uniform image2D batch_mean;
@@ -56,9 +58,9 @@ layout(binding = 9, rgba32f) uniform writeonly image2D radiance;
 layout(binding = 10, rgba32f) uniform writeonly image2D standard_error;
 layout(binding = 11) buffer LostRays { uint lost_rays[]; };
 layout(binding = 12, rgba32f) uniform image2D part_sum;
-// Exponent and scale of the lobe.
+// Phong exponent and scale.
 layout(binding = 13) uniform texture2D phong_map;
-// Column and row of the samples of a list, -1 behind its end. The sums and pictures have its size.
+// Column and row of the grid points of a list, -1 past its end. The sums and images have its size.
 layout(binding = 14) uniform texture2D places;
 
 layout(push_constant) uniform PathTracePush {
@@ -72,8 +74,8 @@ layout(push_constant) uniform PathTracePush {
     float cell_y_m;
     float highest_m;
     float rotation_turns;  // of the environment
-    float exponent;        // of the lobe, where it is constant
-    float lobe_share;      // what it reflects
+    float exponent;        // Phong exponent, where it is constant
+    float lobe_share;      // Phong scale, where it is constant
     int bounces;
     int suns;
     int light_count;
@@ -82,7 +84,7 @@ layout(push_constant) uniform PathTracePush {
     vec4 sky;
     int first_row;
     int keys;              // after the suns
-    int first_path;        // of the part; the paths' and the lights' ends are not among them
+    int first_path;        // of the part; the ends of the path and light ranges are constants
     int last_path;
     int first_light;
     int last_light;
@@ -90,18 +92,18 @@ layout(push_constant) uniform PathTracePush {
 
 #include "rays/trace.glsl"
 
-// Where a path stands: on the surface, or at a sample, whose normal is smooth.
+// A path vertex: on the surface, or at a grid point, whose normal is smooth.
 struct Place {
     ivec2 base;
     vec2 offset;
     float own;
     vec3 normal;
     vec3 albedo;
-    vec2 lobe;    // exponent, and what it reflects
-    vec3 mirror;  // the direction about which it lies
+    vec2 lobe;    // exponent and scale
+    vec3 mirror;  // axis of the Phong lobe
 };
 
-// First entry above u of n entries of the CDF from `at` on, `step` apart.
+// First entry above u among n entries of the CDF from `at` on, `step` apart.
 int picked(float u, ivec2 at, ivec2 step, int n) {
     int low = 0;
     int high = n - 1;
@@ -123,11 +125,11 @@ ivec2 texel_towards(vec3 e, ivec2 size) {
     return min(ivec2(vec2(turn, angle.y / PI) * vec2(size)), size - 1);
 }
 
-// A direction of the environment, by the light of its texels.
+// An environment direction, drawn in proportion to its texels' light.
 vec3 towards_light(vec2 u, vec2 v, ivec2 size, out ivec2 texel) {
     texel.y = picked(u.x, ivec2(0), ivec2(0, 1), size.y);
     texel.x = picked(u.y, ivec2(1, texel.y), ivec2(1, 0), size.x);
-    // 1 - cos of the zenith angle: 2 sin² of half of it, here in turns, and evenly on.
+    // 1 - cos of the zenith angle: 2 sin² of its half, uniform within the texel.
     float half_row = 0.25 / float(size.y);
     float top = on_circle(float(texel.y) * half_row).y;
     float bottom = on_circle(float(texel.y + 1) * half_row).y;
@@ -137,7 +139,7 @@ vec3 towards_light(vec2 u, vec2 v, ivec2 size, out ivec2 texel) {
     return vec3(round, 1.0 - below);
 }
 
-// A direction of a key light, evenly over its solid angle.
+// A direction of a key light, uniform over its solid angle.
 vec3 towards_key(vec4 key, vec2 u) {
     float turn = key.x + key.y * u.y;
     float below = 2.0 * mix(key.z, key.w, u.x);
@@ -145,7 +147,7 @@ vec3 towards_key(vec4 key, vec2 u) {
     return vec3(round, 1.0 - below);
 }
 
-// Of what a ray along e has met.
+// The vertex where a ray along e has hit.
 Place place_of(Met met, vec3 e) {
     vec4 corners = texelFetch(cells, met.cell, 0);
     float east = met.lower ? corners.w - corners.z : corners.y - corners.x;
@@ -158,7 +160,7 @@ Place place_of(Met met, vec3 e) {
     place.albedo = albedo.rgb;
     place.lobe = vec2(exponent, lobe_share);
     place.mirror = e - 2.0 * dot(e, place.normal) * place.normal;
-    // Cells of a field that repeats lead from its last samples to its first.
+    // Cells of a repeating field connect its last grid points to its first.
     ivec2 next = ivec2((met.cell.x + 1) % cols, (met.cell.y + 1) % rows);
     ivec2 third = met.lower ? ivec2(met.cell.x, next.y) : ivec2(next.x, met.cell.y);
     float far = met.lower ? met.offset.x : met.offset.y;
@@ -172,14 +174,14 @@ Place place_of(Met met, vec3 e) {
     if (LOBE_IS_MAP) {
         vec2 nw = texelFetch(phong_map, met.cell, 0).xy;
         vec2 se = texelFetch(phong_map, next, 0).xy;
-        // No rounding makes an exponent or a share less than nothing.
+        // Clamps exponent and scale against rounding.
         place.lobe = max(near * nw + far * se + rest * texelFetch(phong_map, third, 0).xy, vec2(0.0));
     }
     return place;
 }
 
-// What a place reflects from e, the cosine included; how densely scattered rays are sent there, 1/sr; and the
-// first over the second.
+// Reflection at a vertex from e, cosine included; the density of scattered rays there, 1/sr; and the quotient of the
+// two.
 struct Reflected {
     float facing;
     vec3 light;
@@ -187,7 +189,7 @@ struct Reflected {
     vec3 scattered;
 };
 
-// Share of scattered rays that the lobe sends, where there is one.
+// Fraction of scattered rays drawn from the Phong lobe, where there is one.
 float lobe_choice(Place place) {
     float most_diffuse = max(place.albedo.r, max(place.albedo.g, place.albedo.b));
     return place.lobe.y / max(most_diffuse + place.lobe.y, 1e-30);
@@ -206,9 +208,9 @@ Reflected reflected_from(Place place, vec3 e) {
     return of;
 }
 
-// Two points of the sets that belong to ray r of a vertex. Those of the first vertex come in the order of their
-// first coordinate, so that neighbouring lanes' rays are about as steep, and as long; a later vertex
-// must not know the order of the first.
+// Two points of the sets that belong to ray r of a vertex. Sets of the first vertex are ordered by their first
+// coordinate, so that neighbouring lanes' rays have similar steepness and length; a later vertex must be independent
+// of the first one's order.
 void points_of(uint index, uvec3 key, uint r, bool is_first, out vec2 u, out vec2 v) {
     uvec4 of_u = words_of(uvec4(key.xy, 2u * r, key.z));
     uvec4 of_v = words_of(uvec4(key.xy, 2u * r + 1u, key.z));
@@ -217,7 +219,7 @@ void points_of(uint index, uvec3 key, uint r, bool is_first, out vec2 u, out vec
     v = net_point(shuffled(index, SET_BITS, of_v.z), SET_BITS, of_v);
 }
 
-// Light of one path that begins at the sample. Adds to rays: how many were traced, how many lost.
+// Light of one path that starts at the grid point. Adds to rays: traced and lost counts.
 vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays) {
     vec2 cell_m = vec2(cell_x_m, cell_y_m);
     ivec2 env_size = HAS_ENVIRONMENT ? textureSize(environment, 0) : ivec2(1);
@@ -227,10 +229,10 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
     vec2 v;
     for (int bounce = 0; bounce <= bounces; bounce++) {
         bool is_first = bounce == 0;
-        // Of a list direct light is known better than by paths.
+        // Direct light of a list comes from elsewhere, without Monte Carlo noise.
         bool counts = !AT_PLACES || !is_first;
         uint first_ray = uint(bounce * (light_count + 2));
-        // Where a field that repeats begins again stands its first sample.
+        // At the seam of a repeating field stands its first grid point.
         vec2 from = vec2(place.base) + place.offset;
         from = BORDER == BORDER_PERIODIC ? mix(from, vec2(0.0), equal(from, vec2(cols, rows))) : from;
         vec3 centre = vec3(from.x * cell_x_m, (float(rows - 1) - from.y) * cell_y_m, place.own);
@@ -246,7 +248,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 float sine2 = source.w / away;
                 sine2 *= sine2;
                 float cone = is_far ? source.w : sine2 / (1.0 + sqrt(max(1.0 - sine2, 0.0)));
-                // Inside a ball the scattered ray finds it.
+                // From inside a sphere light, the scattered ray hits it.
                 bool shines = is_far || sine2 < 1.0;
                 float off = u.x * cone;
                 vec3 e = direction_about(away > 0.0 ? to / away : vec3(0.0, 0.0, 1.0), off, u.y);
@@ -267,7 +269,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
                 bool in_view = met.what == RAY_FREE || (!is_far && (met.what != RAY_HIT || met.t >= t_end));
                 light += going && in_view ? carried * brought : vec3(0.0);
             }
-            // A loop that was ended before its time.
+            // The driver ended a loop early.
             rays.y += r < last_light ? 1u : 0u;
         }
         bool has_sky = first_light == 0;
@@ -286,7 +288,7 @@ vec3 path_light(Place place, uint index, uvec3 key, bool alive, inout uvec2 rays
         }
         points_of(index, key, first_ray + uint(light_count + 1), is_first, u, v);
         bool by_lobe = HAS_LOBE && v.x < lobe_choice(place);
-        // Evenly over a sphere that touches the place, seen from there: as the cosine.
+        // Uniform over a sphere tangent to the surface point, seen from there: cosine-distributed.
         vec3 e = normalize(place.normal + vec3(on_circle(u.y) * sqrt(4.0 * u.x * (1.0 - u.x)), 1.0 - 2.0 * u.x));
         if (HAS_LOBE) {
             float near_mirror = pow(max(u.x, 1e-30), 1.0 / (place.lobe.x + 1.0));
@@ -335,7 +337,7 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
     ivec2 size = AT_PLACES ? textureSize(places, 0) : ivec2(cols, rows);
     bool alive = at.x < size.x && at.y < size.y;
-    // Of the sums, and of the sample.
+    // Texel of the sums, and of the grid point.
     ivec2 slot = min(at, size - 1);
     ivec2 here = slot;
     if (AT_PLACES) {
@@ -357,10 +359,10 @@ void main() {
     if (LOBE_IS_MAP) {
         place.lobe = texelFetch(phong_map, here, 0).xy;
     }
-    // Seen from straight above.
+    // Viewed from straight above.
     place.mirror = 2.0 * place.normal.z * place.normal - vec3(0.0, 0.0, 1.0);
     vec4 before = imageLoad(batch_mean, slot);
-    // A sample that a list has twice has other paths each time.
+    // A grid point listed twice gets different paths each time.
     uvec3 key = uvec3(uint(slot.y * cols + slot.x), uint(before.w), seed);
     uvec2 rays = uvec2(0u);
     vec3 sum = vec3(0.0);
@@ -394,7 +396,7 @@ void main() {
     vec3 spread = before.w > 0.0 ? kept.rgb : vec3(0.0);
     float rays_so_far = float(rays.x) + (before.w > 0.0 ? kept.w : 0.0);
     spread += off * (batch - mean);
-    // One batch says nothing of the spread.
+    // One batch has no variance.
     vec3 error = n > 1.0 ? sqrt(max(spread, 0.0) / (n * (n - 1.0))) : vec3(uintBitsToFloat(0x7f800000u));
     if (alive) {
         imageStore(batch_mean, at, vec4(mean, n));

@@ -15,15 +15,15 @@ uvec4 mixed(uvec4 v) {
     return v;
 }
 
-// Words for a place. Mixed once, those of neighbouring samples still go together a little: over 200 seeds
-// the mean of a picture strays 1.1 times as far as independent samples let it; mixed twice, 0.93 times
-// (each ± 0.05).
+// Words for a grid point. Mixed once, those of neighbouring grid points stay slightly correlated: over 200 seeds the
+// standard deviation of an image mean is 1.1 times that of independent samples; mixed twice, 0.93 times (each ±
+// 0.05).
 uvec4 words_of(uvec4 place) {
     return mixed(mixed(place).yzwx);
 }
 
-// A random permutation of words in which each bit is flipped by the bits below it alone (Laine &
-// Karras 2011 with the constants of Vegdahl 2021): of bit-reversed fractions, an Owen scramble.
+// A random permutation of words in which each bit is flipped by lower bits only (Laine & Karras 2011 with the
+// constants of Vegdahl 2021): an Owen scramble of bit-reversed fractions.
 uint nested(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -34,8 +34,8 @@ uint nested(uint x, uint seed) {
 }
 
 // Point of an Owen-scrambled Sobol' net of 2^bits points in [0, 1)^2 (bits up to 8; Burley 2020, "Practical
-// hash-based Owen scrambling"): the one whose first coordinate lies in the part `order` of 2^bits.
-// Every point is uniform by itself; sets of other words are independent of it.
+// hash-based Owen scrambling"): the one whose first coordinate lies in interval `order` of 2^bits. Each point is
+// uniform; sets of other words are independent of it.
 vec2 net_point(uint order, uint bits, uvec4 words) {
     uint reversed = bitfieldReverse(order << (32u - bits));
     uint mask = (1u << bits) - 1u;
@@ -49,13 +49,13 @@ vec2 net_point(uint order, uint bits, uvec4 words) {
     return vec2(bitfieldReverse(x) >> 8u, bitfieldReverse(y) >> 8u) * (1.0 / 16777216.0);
 }
 
-// The place of `order` in a shuffled row of 2^bits.
+// Position of `order` in a shuffled row of 2^bits.
 uint shuffled(uint order, uint bits, uint word) {
     return nested(bitfieldReverse(order << (32u - bits)), word) & ((1u << bits) - 1u);
 }
 
-// (cos, sin) of `turn` turns, 0 .. 1. Drivers may be off by 2^-11 (Vulkan's bound); Taylor's series
-// over an eighth of a turn by 2e-9.
+// (cos, sin) of `turn` turns, 0 .. 1. Drivers may have an error of 2^-11 (Vulkan's bound); Taylor's series over an
+// eighth of a turn has 2e-9.
 vec2 on_circle(float turn) {
     float quarter = floor(4.0 * turn + 0.5);
     float x = (turn - 0.25 * quarter) * 6.28318530717959;

@@ -1,7 +1,8 @@
-// Computes: the environment summed around each of its rows: integrals over azimuth of L times 1, cos m phi
-// and sin m phi, m below the light's order.
-// Reads: environment (equirectangular, row 0 at the zenith), constants. Writes: env_rotation at [row][turn].
-// One invocation is one turn of one row.
+// Computes: Fourier sums of each environment row: integrals over azimuth of L times 1, cos m phi and sin m phi, m
+// below the light's order.
+// Reads: environment (equirectangular, row 0 at the zenith), constants.
+// Writes: env_rotation at [row][turn].
+// One invocation is one Fourier term of one row.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,12 +14,12 @@ layout(binding = 2) writeonly buffer EnvRotation { vec4 env_rotation[]; };
 
 layout(push_constant) uniform EnvRotationPush {
     int width;
-    int rows;         // of the environment, from the zenith down, that count
+    int rows;         // of the environment, from the zenith down, that are used
     int turns;        // 2n - 1
-    int column_first; // in constants: weights of four columns a texel, turn after turn
+    int column_first; // in constants: weights of four columns per texel, term after term
 };
 
-// Columns of a sum of its own, in texels of constants: sums of sums lose fewer digits.
+// Columns per partial sum, in texels of constants: sums of sums round less.
 const int BLOCK = 8;
 
 void main() {

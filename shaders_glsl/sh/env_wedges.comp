@@ -1,6 +1,6 @@
 // Computes: the environment summed over each azimuth's wedge, row by row: three azimuthal moments.
-// Reads: environment (equirectangular, row 0 at the zenith), azimuths. Writes: wedge_rows, as
-// [azimuth][row][moment]: integrals over the wedge of L cos, L sin and L.
+// Reads: environment (equirectangular, row 0 at the zenith), azimuths.
+// Writes: wedge_rows, as [azimuth][row][moment]: integrals over the wedge of L cos, L sin and L.
 // One invocation is one row of the environment in one azimuth.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -15,7 +15,7 @@ layout(binding = 2) writeonly buffer WedgeRows { vec4 wedge_rows[]; };
 
 layout(push_constant) uniform EnvWedgesPush {
     int width;
-    int rows;          // of the environment, from the zenith down, that light arrives from
+    int rows;          // of the environment, from the zenith down, with light that can arrive
     float rotation_rad;
 };
 
@@ -33,13 +33,13 @@ void main() {
     vec3 along = vec3(0.0);
     vec3 across = vec3(0.0);
     vec3 plain = vec3(0.0);
-    // From less than a width before the image to less than two past it. Ends are told from the middle:
-    // a wedge far narrower than a column keeps its width.
+    // From up to one width before the image to up to two past it. Ends are relative to the middle: a wedge far
+    // narrower than a column keeps its width.
     for (int x = int(floor(middle - half_wedge)); x < int(ceil(middle + half_wedge)); x++) {
         float low = max(float(x) - middle, -half_wedge);
         float high = min(float(x + 1) - middle, half_wedge);
         vec3 radiance = texelFetch(environment, ivec2((x + 2 * width) % width, row), 0).rgb;
-        // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
+        // Counter-clockwise from the wedge's middle, at the middle of the covered part.
         float turn = -0.5 * (low + high) / per_rad;
         float width_rad = max(high - low, 0.0) / per_rad;
         // The integral of cos over an arc is its chord, 2 sin(half), times cos of its middle.

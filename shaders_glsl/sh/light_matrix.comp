@@ -1,8 +1,8 @@
-// Computes: what the environment makes of what is seen: the matrix that takes a series of visibility to
-// exit radiance. First the environment's own series, from the sums of its rows, and a uniform sky's beside it;
-// then the matrix, which is linear in it.
-// Reads: env_rotation (where there are rows), constants. Writes: light_matrix at [row of the receiver][coefficient], RGB.
-// One group is all; one invocation is a coefficient of the series, then some entries.
+// Computes: the matrix that maps a series of visibility to exit radiance under the environment. First the SH series
+// of the environment, from the sums of its rows, plus that of a uniform sky; then the matrix, which is linear in it.
+// Reads: env_rotation (where there are rows), constants.
+// Writes: light_matrix at [row of the receiver][coefficient], RGB.
+// One workgroup is the whole dispatch; one invocation is a coefficient of the series, then some matrix entries.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -15,20 +15,20 @@ layout(binding = 2, rgba32f) uniform writeonly image2D light_matrix;
 layout(push_constant) uniform LightMatrixPush {
     int rows;         // of the environment; 0 where there is none
     int light_order;
-    int order;        // of what is seen
+    int order;        // of the visibility series
     int receivers;    // rows of the matrix
-    int row_first;    // in constants: weights of four rows a texel, (l, m) after (l, m), m from 0
+    int row_first;    // in constants: weights of four rows per texel, (l, m) after (l, m), m from 0
     int matrix_first; // in constants: entry after entry, four coefficients a texel
-    vec4 sky;         // radiance of a sky that this matrix lights, too
+    vec4 sky;         // radiance of a sky included in this matrix
 };
 
 const int MAX_COUNT = 36;
-// Rows of a sum of its own, in texels of constants.
+// Rows per partial sum, in texels of constants.
 const int BLOCK = 8;
 
 shared vec4 series[MAX_COUNT];
 
-// Of the environment, place l (l + 1) + m.
+// Of the environment, at l (l + 1) + m.
 vec3 coefficient(int place) {
     int l = 0;
     while ((l + 1) * (l + 1) <= place) {
@@ -58,7 +58,7 @@ void main() {
     int self = int(gl_LocalInvocationIndex);
     int count = light_order * light_order;
     if (self < count) {
-        // A constant has Y_00 alone, sqrt(4 pi) of it.
+        // A constant has only Y_00: sqrt(4 pi) times it.
         vec3 of_sky = self == 0 ? 3.5449077018110318 * sky.rgb : vec3(0.0);
         series[self] = vec4(coefficient(self) + of_sky, 0.0);
     }

@@ -1,8 +1,9 @@
-// Computes: the light of an environment at every sample from what it sees, or from what the nodes around it
-// see: a series of visibility times the light's matrix, for the sample's own normal.
-// Reads: lane_heights, visibility, light_matrix, nodes, phong_map. Writes: env_sum (exit radiance for albedo 1, or
-// of a lobe, RGB; in A 1 where a colour was below 0 and is now 0).
-// One invocation is four samples side by side along the lane axis, at one march position.
+// Computes: exit radiance under an environment at every grid point from its visibility series, or those of the nodes
+// around it: the series times the light's matrix, for the grid point's own normal.
+// Reads: lane_heights, visibility, light_matrix, nodes, phong_map.
+// Writes: env_sum (exit radiance for albedo 1, or of the Phong specular, RGB; A: 1 where a negative colour was
+// clamped to 0).
+// One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -12,10 +13,10 @@ layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
 const uint RECEIVER_COSINE = 0u; // polynomials of N, bands 0 to 2 (band 1 at order 2)
-const uint RECEIVER_PLANE = 1u;  // N_y, N_z, N_x alone
+const uint RECEIVER_PLANE = 1u;  // N_y, N_z, N_x only
 const uint RECEIVER_GLOSS = 2u;  // Y_lm of the mirror direction of the view from straight above
 layout(constant_id = 3) const uint RECEIVER = 1u;
-// Samples from node to node: 1, 2 or 4.
+// Grid points from node to node: 1, 2 or 4.
 layout(constant_id = 4) const int NODE_STRIDE = 1;
 layout(constant_id = 5) const bool LOBE_IS_MAP = false;
 const int LANE_STRIDE = 1;
@@ -26,7 +27,7 @@ layout(binding = 2) uniform texture2D light_matrix;
 layout(binding = 3, rgba32f) uniform writeonly image2D env_sum;
 // Height, slopes towards east and north.
 layout(binding = 4, rgba32f) uniform readonly image2D nodes;
-// Exponent and scale of the lobe.
+// Phong exponent and scale.
 layout(binding = 5) uniform texture2D phong_map;
 
 layout(push_constant) uniform ShShadePush {
@@ -46,8 +47,8 @@ vec4 harmonics[36];
 #include "shared/harmonics.glsl"
 #include "specular/lobe_bands.glsl"
 
-// Nodes across that four samples lie between, at two march positions: where they are stored, and what each
-// counts for each of the four.
+// The nodes on both sides across the lanes of four grid points, at two march positions: their texels, and their
+// weights for each of the four.
 const int ACROSS = 4 / NODE_STRIDE + 1;
 ivec2 node_texels[2 * ACROSS];
 vec4 node_weights[2 * ACROSS];
@@ -73,7 +74,7 @@ void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
         int across = q.lane.x / NODE_STRIDE + (i >> 1);
         int here = node_place(across, lanes, NODE_STRIDE);
         int before = node_place(across - 1, lanes, NODE_STRIDE);
-        // Beyond the last node nothing lies between two.
+        // Past the last node there is no interval.
         int next = node_place(across + 1, lanes, NODE_STRIDE);
         int beyond = here + 1;
         int after = across < last_across ? next : beyond;
@@ -97,7 +98,7 @@ void find_nodes(Quad q, int lanes, int steps, vec4 east, vec4 north) {
     }
 }
 
-// Four coefficients of what the four samples see: [coefficient][sample].
+// Four visibility coefficients of the four grid points: [coefficient][grid point].
 mat4 seen_at(int layer, int lane, int march, int lanes) {
     mat4 four = mat4(0.0);
     if (NODE_STRIDE > 1) {
@@ -155,7 +156,8 @@ void add_coefficient(int column, vec4 seen, vec4 x, vec4 y, vec4 z) {
     blue += b * seen;
 }
 
-// The same of the lobe, for all coefficients of a layer: one loop, as SwiftShader compiles each for seconds.
+// The same for the Phong specular, for all coefficients of a layer: one loop, as SwiftShader compiles each for
+// seconds.
 void add_gloss(int layer, mat4 four) {
     for (int k = 0; k < 4 && 4 * layer + k < ORDER * ORDER; k++) {
         vec4 seen = four[k];

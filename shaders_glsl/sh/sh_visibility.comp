@@ -1,8 +1,9 @@
-// Computes: what every sample, or every node among them, sees through its horizons in the azimuths of a
-// batch, as a series of spherical harmonics, added to what earlier batches gave.
-// Reads: lane_heights, azimuths, lattice. Reads and writes: visibility, four coefficients a layer. Writes:
-// nodes (height, slopes towards east and north), where not every sample is one.
-// One invocation is four samples or nodes side by side along the lane axis, at one march position.
+// Computes: visibility of every grid point, or of every node, above its horizons in the azimuths of a batch, as a
+// series of spherical harmonics, added to earlier batches.
+// Reads: lane_heights, azimuths, lattice.
+// Reads and writes: visibility, four coefficients per layer.
+// Writes: nodes (height, slopes towards east and north), where not every grid point is one.
+// One invocation is four grid points or nodes side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -18,14 +19,14 @@ layout(constant_id = 4) const int ORDER = 4;
 layout(constant_id = 5) const bool BY_NLP = false;
 layout(constant_id = 6) const bool MARCHES_ROWS = false;
 const bool RELIGHTS = false;
-// Whether the sample's own plane hides what lies below it.
+// Whether the grid point's own plane hides directions below it.
 layout(constant_id = 7) const bool OWN_PLANE_HIDES = true;
-// Samples from node to node; and where marches stored horizons for nodes alone, the same, else 1.
+// Grid points from node to node; and, where marches stored horizons for nodes alone, the same, else 1.
 layout(constant_id = 8) const int LANE_STRIDE = 1;
 layout(constant_id = 9) const int LATTICE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
-// One of these, by LATTICE.
+// LATTICE selects one of these.
 layout(binding = 1, rg32ui) uniform readonly uimage2DArray lattice;
 layout(binding = 7) uniform utexture2DArray lattice_words;
 
@@ -35,7 +36,7 @@ layout(binding = 2) uniform textureBuffer azimuths;
 layout(binding = 3, rgba32f) uniform image2DArray visibility;
 layout(binding = 4, rgba32f) uniform writeonly image2D nodes;
 
-// Of the four samples; and the azimuth's weights.
+// Of the four grid points; and the azimuth's weights.
 #define SEEN vec4
 vec4 series[36];
 float turn[11];
@@ -60,7 +61,7 @@ float dark_slope(Azimuth azimuth) {
 
 #include "direct/gather.glsl"
 
-// Adds what earlier batches left in a layer to four coefficients of nodes, and leaves them.
+// Adds the sums of earlier batches in a layer to four coefficients of nodes, and stores them.
 void keep(int layer, int across, int along, int count, vec4 a, vec4 b, vec4 c, vec4 d) {
     if (4 * layer >= ORDER * ORDER) {
         return;

@@ -1,9 +1,10 @@
-// Computes: what every sample, or every node among them, sees between the horizons of neighbouring azimuths,
-// as a series of spherical harmonics, from a table of wedges (Snyder & Nowrouzezahrai 2008; Nowrouzezahrai's
-// thesis, section 4.2.1).
-// Reads: lane_heights, horizon_angles, constants. Writes: visibility, four coefficients a layer; nodes
-// (height, slopes towards east and north), where not every sample is one.
-// One invocation is four samples or nodes side by side along the lane axis, at one march position.
+// Computes: visibility of every grid point, or of every node, between the horizons of neighbouring azimuths, as a
+// series of spherical harmonics, from a table of wedges (Snyder & Nowrouzezahrai 2008; Nowrouzezahrai's thesis,
+// section 4.2.1).
+// Reads: lane_heights, horizon_angles, constants.
+// Writes: visibility, four coefficients per layer; nodes (height, slopes towards east and north), where not every
+// grid point is one.
+// One invocation is four grid points or nodes side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,7 +14,7 @@ layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const int ORDER = 4;
 layout(constant_id = 3) const bool OWN_PLANE_HIDES = true;
-// Samples from node to node.
+// Grid points from node to node.
 layout(constant_id = 4) const int LANE_STRIDE = 1;
 
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
@@ -30,8 +31,8 @@ layout(push_constant) uniform ShWedgesPush {
     int azimuth_count;
     int azimuth_first; // in constants: layer, cosine, sine, in the circle's order
     int table_first;   // in constants: [first horizon][last horizon], four coefficients a texel
-    int side;          // horizons of either side of the table
-    float lowest_rad;  // of them, to the zenith
+    int side;          // horizons on either axis of the table
+    float lowest_rad;  // of the table, which ends at the zenith
 };
 
 #include "shared/quad.glsl"
@@ -40,14 +41,14 @@ layout(push_constant) uniform ShWedgesPush {
 
 const int LAYERS = (ORDER * ORDER + 3) / 4;
 
-// Of the four samples; and of one wedge, as the table has it.
+// Of the four grid points; and of one wedge from the table.
 #define SEEN vec4
 vec4 series[4 * LAYERS];
 vec4 wedge[4 * LAYERS];
 
 #include "sh/wedge.glsl"
 
-// Where in the table the horizons of the four samples in an azimuth stand.
+// Table position of the four grid points' horizons in an azimuth.
 vec4 places(vec4 of_azimuth, ivec4 lane, int march, vec4 east, vec4 north) {
     vec4 angle;
     for (int k = 0; k < 4; k++) {
@@ -60,7 +61,7 @@ vec4 places(vec4 of_azimuth, ivec4 lane, int march, vec4 east, vec4 north) {
     return clamp(place, 0.0, float(side - 1));
 }
 
-// Between the four nearest texels, for each sample.
+// Interpolates between the four nearest texels, for each grid point.
 void look_up(vec4 first, vec4 last) {
     ivec4 row = min(ivec4(first), side - 2);
     ivec4 col = min(ivec4(last), side - 2);

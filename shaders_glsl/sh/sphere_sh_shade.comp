@@ -1,14 +1,16 @@
-// Computes: what a ball of light gives to samples by spherical harmonics: what is seen up to the ball's distance,
-// times the ball, times the receiver, all three as series, in a frame turned so that the ball stands towards
-// azimuth 0. Some of the azimuths at a time: the light of all is in A until it is whole.
-// Reads: ground, constants; cells and maxima, or heights and the levels of a pyramid. Reads and writes:
-// sphere_sum (RGB: exit radiance for albedo 1; A: of this ball, of radiance 1, before what is below 0 is set to 0).
-// One invocation is one sample.
+// Computes: direct light of a sphere light by spherical harmonics: visibility up to the sphere's distance, times the
+// sphere, times the receiver, all three as series, in a frame rotated so that the sphere is at azimuth 0. Some of the
+// azimuths at a time: A holds the light of all until they are complete.
+// Reads: ground, constants; cells and maxima, or heights and the levels of a pyramid.
+// Reads and writes: sphere_sum (RGB: exit radiance for albedo 1; A: of this sphere, for radiance 1, before clamping
+// at 0).
+// One invocation is one grid point.
 //
-// The thesis on local lights on height fields, sections 4.3 and 5.3, appendix A, after Snyder & Nowrouzezahrai
-// 2008: horizons of all azimuths, of both ends of wedges of a table. By slices instead (Nowrouzezahrai & Snyder
-// 2009, section 6): azimuths across the ball alone, as far to either side as it reaches; beyond, the horizons of
-// both ends go on around. What hides none of the ball then takes none of its light, however few bands blur it.
+// Follows the thesis on local lights on height fields, sections 4.3 and 5.3, appendix A, after Snyder &
+// Nowrouzezahrai 2008: horizons of all azimuths, of both ends of wedges of a table. With slices instead
+// (Nowrouzezahrai & Snyder 2009, section 6): azimuths across the sphere alone, as far to either side as it reaches;
+// the horizons at both ends continue around the rest. Terrain that does not hide the sphere then does not darken it,
+// however few bands blur it.
 #version 460
 #extension GL_KHR_shader_subgroup_vote : require
 
@@ -22,7 +24,7 @@ layout(constant_id = 1) const bool THIN_ROWS = false;
 layout(constant_id = 2) const bool THIN_COLS = false;
 layout(constant_id = 3) const int MOST_STEPS = 60000;
 layout(constant_id = 4) const int ORDER = 4;
-// What azimuths become: slices, slices of n Legendre coefficients, wedges between two from a table.
+// Treatment of azimuths: slices, slices of n Legendre coefficients, wedges between two from a table.
 layout(constant_id = 5) const uint WEDGES = 0u;
 layout(constant_id = 6) const bool OWN_PLANE_HIDES = true;
 // Horizons come from a height pyramid, else from the surface.
@@ -33,8 +35,8 @@ layout(constant_id = 9) const int LEVELS = 0;
 const bool PERIODIC = BORDER == BORDER_PERIODIC;
 const uint BY_NLP = 1u;
 const uint BY_TABLE = 2u;
-// Even wedges from the one end of the azimuths across the ball around to the other, whose horizons are not looked
-// for: enough for the own plane of the sample, which is a smooth curve.
+// Equal wedges from one end of the azimuths across the sphere around to the other, without horizons of their own:
+// enough for the grid point's own plane, which is a smooth curve.
 const int BEYOND = 32;
 
 layout(binding = 0) uniform texture2D cells;
@@ -64,8 +66,8 @@ layout(push_constant) uniform SphereShShadePush {
     float reach_m;
     int azimuths;
     int first_azimuth;
-    int last_azimuth;  // not itself
-    int entry_first;   // in constants: row of the receiver, place in what is seen, place in the ball's, factor
+    int last_azimuth;  // exclusive
+    int entry_first;   // in constants: row of the receiver, index in visibility, index in the sphere, factor
     int entry_count;
     int table_first;   // in constants: wedges of the whole sphere, as in sh_wedges
     int side;
@@ -80,8 +82,8 @@ layout(push_constant) uniform SphereShShadePush {
 #include "shared/spline.glsl"
 #include "sh/within.glsl"
 
-// Of the ball: places of m below 0 are 0, as it stands towards azimuth 0. Of what is seen. Of one wedge. The
-// azimuth's weights.
+// Of the sphere: coefficients of m below 0 are 0, as it is at azimuth 0. Of visibility. Of one wedge. The azimuth's
+// weights.
 #define SEEN float
 float light[36];
 float series[36];
@@ -102,9 +104,9 @@ vec2 direction(float angle) {
     return turned(half_, half_);
 }
 
-// A cap of half-angle a about an axis of this sine and cosine of elevation: of band l 2 pi times the integral of
-// P_l over the cap's z (1 - cos a, or sin^2 a P_l'(cos a) / (l (l + 1)) by Legendre's equation) times Y_lm of the
-// axis. From within, the whole sphere: asin(r / d) has no value there.
+// A cap of half-angle a about an axis of this sine and cosine of elevation. Band l: 2 pi times the integral of P_l
+// over the cap's z (1 - cos a, or sin^2 a P_l'(cos a) / (l (l + 1)) by Legendre's equation) times Y_lm of the axis.
+// From inside, the whole sphere: asin(r / d) has no value there.
 void find_light(float distance_m, vec2 elevation) {
     bool is_inside = distance_m < radius_m;
     float share = min(radius_m / max(distance_m, 1e-30), 1.0);
@@ -154,7 +156,7 @@ void find_light(float distance_m, vec2 elevation) {
     }
 }
 
-// Adds what is seen above a slope along an azimuth to the series.
+// Adds visibility above a slope along an azimuth to the series.
 void add_slice(float width_rad, vec2 one, float lowest) {
     turn_to(width_rad, one);
     float cos_ = inversesqrt(1.0 + lowest * lowest);
@@ -166,7 +168,7 @@ void add_slice(float width_rad, vec2 one, float lowest) {
     }
 }
 
-// Adds what the table has seen above two horizons, at places in it.
+// Adds the table's visibility above two horizons, at table positions.
 void add_wedge(vec2 one, float near, float far) {
     int row = min(int(near), side - 2);
     int col = min(int(far), side - 2);
@@ -187,7 +189,7 @@ void add_wedge(vec2 one, float near, float far) {
     add_turned(one);
 }
 
-// The sample: texel, height and slopes; and towards the ball.
+// The grid point: texel, height and slopes; and the direction to the sphere.
 ivec2 here;
 vec4 own;
 vec2 towards;
@@ -197,7 +199,7 @@ float own_slope(vec2 one) {
     return own.y * e.x + own.z * e.y;
 }
 
-// Slope of the lowest direction that is free up to a distance, but for the sample's own plane.
+// Slope of the lowest visible direction up to a distance, ignoring the grid point's own plane.
 float free_above(vec2 one, float within_m, bool alive) {
     vec2 e = turned(towards, one);
     Ray ray = ray_from(here, vec2(0.0), own.x, vec3(e, 0.0), vec2(cell_x_m, cell_y_m));
@@ -211,7 +213,7 @@ float lowest_of(float free, vec2 one) {
     return OWN_PLANE_HIDES ? max(free, own_slope(one)) : free;
 }
 
-// Slices across the ball, and on from both ends around.
+// Slices across the sphere, and on from both ends around.
 void add_slices_across(float half_width, float within_m, bool alive) {
     float width = 2.0 * half_width / float(azimuths);
     float beyond = (PI - half_width) / float(BEYOND / 2);
@@ -231,7 +233,7 @@ void add_slices_across(float half_width, float within_m, bool alive) {
     }
 }
 
-// Where in the table the horizon of an azimuth of the whole circle stands.
+// Table position of the horizon of an azimuth of the whole circle.
 float place_of(int i, float within_m, bool alive) {
     // From -pi on.
     vec2 one = direction(PI * (2.0 * float(i) / float(azimuths) - 1.0));
@@ -251,7 +253,7 @@ void add_wedges_around(float within_m, bool alive) {
     }
 }
 
-// Series of the ball and of what is seen, times the receiver.
+// Series of the sphere and of visibility, times the receiver.
 float product() {
     float z = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     vec2 level = vec2(-own.y, -own.z) * z;
@@ -288,8 +290,8 @@ void main() {
     vec2 up_there = vec2(away, up) / max(distance_m, 1e-30);
     vec2 straight_up = vec2(0.0, 1.0);
     find_light(distance_m, distance_m > 0.0 ? up_there : straight_up);
-    // As far as the ball's middle, or as the farthest place in the plane where a ray touches it: t cos(omega - a),
-    // t the tangents' length. From within, as far as it is wide.
+    // Range: the sphere's centre, or the farthest point in the plane where a ray touches it: t cos(omega - a), t the
+    // tangents' length. From inside, its radius.
     float tangent2 = max((distance_m - radius_m) * (distance_m + radius_m), 0.0);
     float share = radius_m / max(distance_m, 1e-30);
     float touched_m = up_there.x * (tangent2 / max(distance_m, 1e-30)) + sqrt(tangent2) * share * abs(up_there.y);
@@ -298,7 +300,7 @@ void main() {
     if (WEDGES == BY_TABLE) {
         add_wedges_around(within_m, alive);
     } else {
-        // asin(r / away), and the whole circle from where the ball stands above or around, without a jump.
+        // asin(r / away), continuous to the whole circle from where the sphere is overhead or around.
         float seen = min(radius_m / max(away, 1e-30), 1.0);
         float half_angle = arc_tangent(vec4(seen * inversesqrt(max((1.0 - seen) * (1.0 + seen), 1e-20)))).x;
         add_slices_across(max(half_angle, PI * seen * seen * seen), within_m, alive);

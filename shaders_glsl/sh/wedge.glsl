@@ -1,5 +1,5 @@
-// Adds the wedge, turned about the vertical by an azimuth of this cosine and sine, to the series. The including
-// shader declares ORDER, SEEN (a type: of one sample or of four), SEEN series[] and SEEN wedge[].
+// Adds the wedge, rotated about the vertical by an azimuth of this cosine and sine, to the series. The including
+// shader declares ORDER, SEEN (a type: of one grid point or of four), SEEN series[] and SEEN wedge[].
 void add_turned(vec2 one) {
     for (int l = 0; l < ORDER; l++) {
         series[l * (l + 1)] += wedge[l * (l + 1)];

@@ -1,12 +1,12 @@
-// Slopes of horizons up to a distance, in any direction: the surface's own, and a height pyramid's. Below
-// horizontal where the ground falls away, NO_SLOPE where none is met. Includes after `walk.glsl` and
-// `spline.glsl`, and needs the images and push constants that these and the two functions name.
+// Slopes of horizons up to a distance, in any direction: of the surface itself, and of a height pyramid. Negative
+// where the ground falls away, NO_SLOPE for none. Include after `walk.glsl` and `spline.glsl`; needs the images and
+// push constants that these and the two functions name.
 
-// On a field that repeats a ray is given up after this many cells: two rays of a wedge fit what llvmpipe
-// lets loops turn.
+// A ray over a repeating field stops after this many cells: two rays of a wedge fit llvmpipe's limit on loop
+// iterations.
 const float WITHIN_CELLS = 8192.0;
 
-// Of the triangulated surface. What the sample's own triangle hides it does from however near.
+// Of the triangulated surface. The grid point's own triangle occludes at any distance.
 float surface_within(Ray ray, float reach_m, bool going) {
     ivec2 cells_of = ivec2(cells_x, cells_y);
     float highest = texelFetch(maxima, ivec2(0, level_top(top_level, padded_rows)), 0).x - ray.own;
@@ -19,7 +19,7 @@ float surface_within(Ray ray, float reach_m, bool going) {
     Walk walk = walk_from(ray);
     going = going && !walk.leaves;
     for (int turn_ = 0; turn_ < MOST_STEPS; turn_++) {
-        // Left by all lanes together, as in horizon_sweep.
+        // All lanes leave together, as in horizon_sweep.
         if (!subgroupAny(going)) {
             break;
         }
@@ -31,7 +31,7 @@ float surface_within(Ray ray, float reach_m, bool going) {
         float rise = reached * step_m;
         bool is_cell = walk.level == 0;
         bool clear = is_cell || min(walk.t * rise, block.ahead * rise) >= top;
-        // The cell: its diagonal, and where the ray leaves it, neither beyond the end.
+        // The cell: its diagonal, and where the ray leaves it, both clamped to the end.
         vec2 from = ray.offset + vec2(ray.base - walk.cell);
         float apart = ray.advance.x - ray.advance.y;
         float t_split = abs(apart) < 1e-30 ? -1.0 : (from.y - from.x) / apart;
@@ -58,7 +58,7 @@ float surface_within(Ray ray, float reach_m, bool going) {
     return reached;
 }
 
-// Of every level of the pyramid at the sample, the field first.
+// Of every level of the pyramid at the grid point, the field first.
 float own_heights[LEVELS + 1];
 
 ivec2 texel_within(ivec2 at) {
@@ -72,7 +72,7 @@ float between(float h, float next, float f) {
     return h + f * (next - h);
 }
 
-// Height of a level where a line between columns (`crosses_row`) or between rows is crossed.
+// Height of a level where a line crosses between columns (`crosses_row`) or between rows.
 float height_within(int level, vec2 place, bool crosses_row) {
     vec2 low = floor(place);
     vec2 part = place - low;
@@ -100,8 +100,8 @@ void find_own_heights(ivec2 here) {
     }
 }
 
-// The last four angles, the newest in w, how many there were, and the largest value of their B-spline up to
-// the end, where it is looked at too.
+// The last four angles, the newest in w, their count, and the largest value of their B-spline up to the end, where it
+// is evaluated too.
 vec4 angles;
 int taken;
 float blocked;
@@ -125,14 +125,14 @@ void take_within(float angle, float u_end, bool on) {
     taken += on ? 1 : 0;
 }
 
-// Of the pyramid: as pyramid_march, with the spline looked at up to the distance instead of to its end
-// (Nowrouzezahrai & Snyder 2009, eq. 14-17; the thesis, eq. 4.24, 4.25). It takes in the two samples beyond that it
-// depends on there, so that it does not jump where the distance passes a sample's.
+// Of the pyramid: as pyramid_march, with the spline evaluated up to the distance instead of to its end
+// (Nowrouzezahrai & Snyder 2009, eq. 14-17; the thesis, eq. 4.24, 4.25). Includes the two lookups beyond that it
+// depends on, so that it is continuous where the distance passes a lookup's.
 float pyramid_within(ivec2 here, Ray ray, float reach_m, bool going) {
     vec2 last = vec2(cols - 1, rows - 1) - vec2(here);
     vec2 room = mix(vec2(here), last, greaterThan(ray.advance, vec2(0.0)));
     vec2 steps = mix(room / abs(ray.advance), vec2(1e8), lessThan(abs(ray.advance), vec2(1e-8)));
-    // A hair more, so that rounding does not leave the field a step early.
+    // Slightly more, so that rounding does not leave the field a step early.
     float inside = min(steps.x, steps.y) + 1e-4;
     float endless = 1e8;
     int reach = int(PERIODIC ? endless : inside);

@@ -1,7 +1,7 @@
 #include "shared/conventions.glsl"
 
-// Arc tangent to 1.2e-7 rad: Abramowitz & Stegun 4.4.49 on [0, 1], atan(x) = pi/2 - atan(1/x)
-// beyond. The built-in may be off by 4096 ULP.
+// Arc tangent to 1.2e-7 rad: Abramowitz & Stegun 4.4.49 on [0, 1], atan(x) = pi/2 - atan(1/x) beyond. The built-in
+// may have an error of 4096 ULP.
 vec4 arc_tangent(vec4 x) {
     vec4 a = abs(x);
     vec4 z = min(a, 1.0) / max(a, 1.0);
@@ -19,9 +19,9 @@ vec4 arc_tangent(vec4 x) {
     return mix(p, -p, lessThan(x, vec4(0.0)));
 }
 
-// Integrals over elevation from the one of this slope to the zenith, of cos^2 (x) and of sin cos (y):
-// what a slice of the sky gives to the horizontal and to the vertical part of a normal
-// (Timonen & Westerholm 2010, eq. 5, with elevation instead of zenith angle).
+// Integrals over elevation from the one of this slope to the zenith, of cos^2 (x) and of sin cos (y): contribution of
+// a slice of the sky to the horizontal and the vertical component of a normal (Timonen & Westerholm 2010, eq. 5, with
+// elevation instead of zenith angle).
 //   int cos^2 = pi/4 - omega/2 - sin(omega) cos(omega)/2,   int sin cos = cos(omega)^2 / 2.
 struct Moments {
     vec4 flat_part;
@@ -33,7 +33,7 @@ Moments elevation_moments(vec4 slope) {
     return Moments(0.25 * PI - 0.5 * arc_tangent(slope) - 0.5 * slope * cos2, 0.5 * cos2);
 }
 
-// Sine on [-pi/2, pi/2] to 6e-8: Taylor to the 11th power. The built-in may be off by 2^-11.
+// Sine on [-pi/2, pi/2] to 6e-8: Taylor to the 11th power. The built-in may have an error of 2^-11.
 float sine(float x) {
     float s = x * x;
     return x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * (1.0 / 362880.0 - s / 39916800.0)))));
@@ -44,8 +44,8 @@ float cosine(float x) {
     return sine(HALF_PI - abs(x));
 }
 
-// Tangent on (-pi/2, pi/2), to 3e-8 of itself on [0, pi/4] (Abramowitz & Stegun 4.3.101), its
-// reciprocal at the complement beyond. The built-in may be off by 2^-11 in its sine and cosine.
+// Tangent on (-pi/2, pi/2), to a relative 3e-8 on [0, pi/4] (Abramowitz & Stegun 4.3.101), the reciprocal of its
+// complement beyond. The built-in may have an error of 2^-11 in its sine and cosine.
 float tangent(float x) {
     float a = abs(x);
     float complement = max(HALF_PI - a, 1e-9);

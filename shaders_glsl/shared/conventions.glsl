@@ -1,25 +1,24 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // World: right-handed, x east = increasing column, y north = decreasing row, z up.
-// Sample (row r, column c) stands at x = c * cell.x, y = (rows - 1 - r) * cell.y, z = height.
+// Grid point (row r, column c) is at x = c * cell.x, y = (rows - 1 - r) * cell.y, z = height.
 // Surface: two flat triangles a cell, split from (r, c) to (r + 1, c + 1).
 // Azimuth phi: radians, counter-clockwise from east. Elevation omega: up from horizontal.
 // Slopes are tangents of elevations: rise over horizontal world distance.
 //
-// A sweep marches towards the receiver along the field's axis that its azimuth follows more closely
-// (the march axis); lines lie side by side along the other (the lane axis). Both axes are flipped
-// where needed, so that march steps count up away from the horizon's side and lane positions grow
-// with the shear. Lane positions are integers in 1/32768 of a cell, so that a line is exactly
-// straight however long: line l is at  y = (l - lead) * spacing + step * shear  at a march step.
-// Its samples lie on grid lines, where the surface is exactly the linear interpolation of two
-// neighbouring samples.
+// A sweep marches towards the receiver along the field axis nearest to its azimuth (the march axis); lines lie side
+// by side along the other (the lane axis). Both axes are flipped where needed, so that march steps count up away from
+// the horizon's side and lane positions grow with the shear. Lane positions are integers in 1/32768 of a cell, so
+// that a line is exactly straight however long: line l is at  y = (l - lead) * spacing + step * shear  at a march
+// step. Its steps lie on grid lines, where the surface is exactly the linear interpolation of two neighbouring grid
+// points.
 
 const float PI = 3.14159265358979;
 const float HALF_PI = 1.57079632679490;
 
-// Below every slope that a field can have, and safe to square.
+// Below every slope of a field, and safe to square.
 const float NO_SLOPE = -1e9;
-// What lies at or under it stands for nothing met.
+// Values at or below it mean "no horizon".
 const float LOWEST_MET = -1e8;
 
 const int CELL_SHIFT = 15;
@@ -33,7 +32,7 @@ const uint AZIMUTH_MARCHES_ROWS = 1u;
 const uint AZIMUTH_FLIPS_MARCH = 2u;
 const uint AZIMUTH_FLIPS_LANES = 4u;
 
-// One direction of a sweep and what it weighs.
+// One direction of a sweep and its weights.
 struct Azimuth {
     float cos_phi;    // direction swept: the wedge's centre, but for exact azimuths
     float sin_phi;

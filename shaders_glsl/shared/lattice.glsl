@@ -1,8 +1,8 @@
 #include "horizon/sweep.glsl"
 
-// What a sweep leaves behind: one value a line and step. Lines are stored 32 together, step after
-// step, four lines a texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines
-// writes one contiguous stretch of memory, whatever the azimuth.
+// Result of a sweep: one value per line and step. 32 lines are stored together, step after step, four lines per
+// texel: a tile of 8 texels by `steps`, one layer of an image. A group of lines writes one contiguous range of memory
+// in any azimuth.
 
 // Lines before lane 0 at step 0 that the shear brings onto the field later.
 int lattice_lead(int shear, int total_steps, int line_shift, bool periodic) {

@@ -1,18 +1,18 @@
 #include "horizon/sweep.glsl"
 
-// The levels of a height pyramid: B-spline coefficients on grids whose first and last texels stand
-// on the field's first and last samples (whose texels divide a period, where the field repeats).
-// Level 0 is the field itself; the others lie one behind the other, row after row, in one image as
-// wide as a power of two. The including shader declares the constant PERIODIC.
+// The levels of a height pyramid: B-spline coefficients on grids whose first and last texels coincide with the
+// field's first and last grid points (on a repeating field the texels divide a period). Level 0 is the field itself;
+// the others are stored one after the other, row after row, in one image whose width is a power of two. The including
+// shader declares the constant PERIODIC.
 
 struct Level {
-    int first;  // texel of all
+    int first;  // texel index
     int cols;
     int rows;
-    vec2 per_sample;  // texels a sample
+    vec2 per_sample;  // texels per grid point
 };
 
-// As height_reduce leaves it in the table of levels.
+// As height_reduce writes it in the table of levels.
 Level level_of(uvec4 words) {
     return Level(int(words.x), int(words.y & 0xffffu), int(words.y >> 16), uintBitsToFloat(words.zw));
 }
@@ -31,9 +31,9 @@ struct Taps {
     vec4 weight;
 };
 
-// The uniform cubic B-spline at a place (in texels) of an axis of `count`. At the ends of a field that
-// does not repeat, coefficients go on as their point reflection, so that the spline meets the end
-// texel and a plane stays a plane: what would be beyond is added to the weights of what is there.
+// The uniform cubic B-spline at a position (in texels) of an axis of `count`. At the ends of a field that does not
+// repeat, coefficients continue by point reflection, so that the spline meets the end texel and a plane stays a
+// plane: the weights of texels beyond are folded into existing ones.
 Taps spline_taps(float place, int count) {
     int cell = int(floor(place));
     int held = clamp(cell, 0, max(count - 2, 0));
@@ -44,7 +44,7 @@ Taps spline_taps(float place, int count) {
     if (PERIODIC) {
         int before = wrapped(cell - 1, count);
         ivec4 at = before + ivec4(0, 1, 2, 3);
-        // A level may have fewer texels than the spline reaches over.
+        // A level may have fewer texels than the spline's support.
         at = ivec4(at.x, at.y % count, at.z % count, at.w % count);
         return Taps(at, weight);
     }

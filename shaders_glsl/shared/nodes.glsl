@@ -1,4 +1,4 @@
-// Every `stride`-th sample along an axis, from the first, and the last: nodes.
+// Nodes: every `stride`-th grid point along an axis, from the first, and the last.
 
 int node_count(int samples, int stride) {
     return (samples + stride - 2) / stride + 1;
@@ -8,7 +8,7 @@ int node_place(int node, int samples, int stride) {
     return min(node * stride, samples - 1);
 }
 
-// Of nodes as many, every second and the last are those of twice the stride: the i-th, and whether a node is one.
+// Relation to nodes of twice the stride (every second and the last): the i-th of them, and whether a node is one.
 int second_node(int i, int count) {
     return min(2 * i, count - 1);
 }
@@ -17,7 +17,7 @@ bool is_second(int node, int count) {
     return (node & 1) == 0 || node == count - 1;
 }
 
-// The node at a sample that is one.
+// The node at a grid point that is one.
 int node_of(int place, int stride) {
     return (place + stride - 1) / stride;
 }

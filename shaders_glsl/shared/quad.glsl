@@ -1,9 +1,9 @@
 #include "horizon/sweep.glsl"
 
-// Four samples side by side along the lane axis, and the samples around them. Lanes and march
-// positions are the field's own here, whatever an azimuth flips, so that all azimuths of an axis
-// share them. Where LANE_STRIDE is not 1 they are nodes, that many lanes apart. The including shader
-// declares `lane_heights` and the constants LANE_STRIDE, BORDER and MARCHES_ROWS.
+// Four grid points side by side along the lane axis, and the grid points around them. Lanes and march positions are
+// the field's own here, not flipped, so that all azimuths of an axis share them. Where LANE_STRIDE is not 1 they are
+// nodes, that many lanes apart. The including shader declares `lane_heights` and the constants LANE_STRIDE, BORDER
+// and MARCHES_ROWS.
 
 // One march position: the four lanes, and those beside each.
 struct Strip {
@@ -15,7 +15,7 @@ struct Strip {
 struct Quad {
     ivec4 lane;  // those beyond the last lane are not on the field
     int march;
-    Strip before;  // held at the edges of the field where it does not repeat, as are the lanes
+    Strip before;  // clamped at the edges of the field where it does not repeat, as are the lanes
     Strip here;
     Strip after;
 };
@@ -33,7 +33,7 @@ float height_at(int lane, int march) {
     return mix(two.x, two.y, (lane & 1) != 0);
 }
 
-// Index of a neighbour along one axis: wrapped where the field repeats, else held at the edge.
+// Index of a neighbour along one axis: wrapped where the field repeats, else clamped.
 int neighbour(int i, int n) {
     return BORDER == BORDER_PERIODIC ? wrapped(i, n) : clamp(i, 0, n - 1);
 }
@@ -68,13 +68,12 @@ Quad quad_at(int lane, int march, int lanes, int steps) {
     return q;
 }
 
-// Slopes of the surface towards east and north: the mean over the adjoining quads of samples that
-// exist, which is the direction of the sum of their unnormalised normals. Where a field is one
-// sample wide there is no quad across it: the slope across is 0.
+// Slopes of the surface towards east and north: the mean over the adjoining quads, which is the direction of the sum
+// of their unnormalised normals. Where a field is one grid point wide there is no quad across it, and the slope
+// across is 0.
 void quad_slopes(Quad q, int lanes, int steps, vec2 cell_m, out vec4 east, out vec4 north) {
     bool wraps = BORDER == BORDER_PERIODIC;
-    // How many quads lie to each side: 0 or 1. Across an axis without any, the one line of samples
-    // stands for them.
+    // Number of quads to each side: 0 or 1. Across an axis without any, the one line of grid points stands for them.
     float before = steps > 1 && (wraps || q.march > 0) ? 1.0 : 0.0;
     float after = steps > 1 && (wraps || q.march < steps - 1) ? 1.0 : 0.0;
     float marches = before + after;

@@ -1,13 +1,13 @@
 #include "shared/levels.glsl"
 
-// A level's texel: the mean of four bilinear samples of its source around its place (Nowrouzezahrai & Snyder
-// 2009, section 9: repeated bilinear decimation). The including shader defines TEXEL, declares the
-// constants PERIODIC and HOLDS_ENDS and `source_cols`, `source_rows`, and has `TEXEL source_at(int x, int y)`.
+// A level's texel: the mean of four bilinear samples of its source around its position (Nowrouzezahrai & Snyder 2009,
+// section 9: repeated bilinear decimation). The including shader defines TEXEL, declares the constants PERIODIC and
+// HOLDS_ENDS and `source_cols`, `source_rows`, and has `TEXEL source_at(int x, int y)`.
 
 TEXEL source_at(int x, int y);
 
-// Two neighbouring texels of an axis, and how far between them. Beyond the ends the last two go on
-// straight, or the last as it is.
+// Two neighbouring texels of an axis, and the fraction between them. Beyond the ends the last two are extrapolated
+// linearly, or the last is held.
 struct Between {
     int low;
     int high;
@@ -37,7 +37,7 @@ TEXEL bilinear(Between x, Between y) {
 }
 
 TEXEL reduced(ivec2 at, vec2 ratio) {
-    // At ratio 1 all four are the texel itself, at 2 they weigh 1, 2, 1.
+    // At ratio 1 all four are the texel itself, at 2 their weights are 1, 2, 1.
     float beside_x = 0.5 * (ratio.x - 1.0);
     float beside_y = 0.5 * (ratio.y - 1.0);
     precise float place_x = float(at.x) * ratio.x;

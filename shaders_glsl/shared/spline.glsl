@@ -1,6 +1,6 @@
 #include "shared/levels.glsl"
 
-// Height of a level at a place in its texels, by its cubic B-spline. The including shader declares
+// Height of a level at a position in its texels, by its cubic B-spline. The including shader declares
 // `height_levels`.
 float spline_at(Level level, vec2 place, int width_shift) {
     Taps x = spline_taps(place.x, level.cols);

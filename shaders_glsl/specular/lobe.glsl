@@ -1,8 +1,8 @@
-// How densely a Phong lobe of unit integral, (n + 1) / (2 pi) cos^n of the angle to its axis, reflects from a
-// direction that lies `apart` from the axis; both are unit vectors.
+// Value of a Phong lobe of unit integral, (n + 1) / (2 pi) cos^n of the angle to its axis, in a direction that
+// differs by `apart` from the axis; both are unit vectors.
 //
-// The built-in power is off by 1e-3 at exponents of 1e4. 1 - cos from the difference keeps its digits
-// near the axis, and ln(1 - m) = -2 atanh(m / (2 - m)), a series to 1e-7 up to m = 1/2.
+// The built-in power has an error of 1e-3 at exponents of 1e4. 1 - cos from the difference stays exact near the axis,
+// and ln(1 - m) = -2 atanh(m / (2 - m)), a series to 1e-7 up to m = 1/2.
 float lobe_density(vec3 apart, float n) {
     float m = 0.5 * dot(apart, apart);
     float z = m / (2.0 - m);

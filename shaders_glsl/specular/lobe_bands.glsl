@@ -1,4 +1,4 @@
-// Multiplies Y_lm of four directions by what four Phong lobes of unit integral keep of a band, as
+// Multiplies Y_lm of four directions by the band factors of four Phong lobes of unit integral, as
 // basis::zonal::phong_bands, and by their scales. The including shader declares ORDER and vec4 harmonics[36].
 void keep_bands(vec4 exponent, vec4 scale) {
     vec4 even = scale;

@@ -1,23 +1,25 @@
-// Computes: what leaves every sample of the light that arrives there: what its lobe mirrors straight upwards, and
-// what it throws on, diffuse light beside it: as a series of spherical harmonics, or as one number, seen from above.
-// Reads: arriving, ground, exit_radiance (diffuse), gloss_direct, phong_map, constants. Reads and writes: gloss_bounced
-// (RGB, of all bounces so far). Writes: exit_vectors or exit_seen.
-// One invocation is one sample.
+// Computes: exit radiance of every grid point from its incident light: the Phong specular straight upwards, and for
+// the next bounce specular plus diffuse light, as a series of spherical harmonics or as one number towards straight
+// above.
+// Reads: arriving, ground, exit_radiance (diffuse), gloss_direct, phong_map, constants.
+// Reads and writes: gloss_bounced (RGB, of all bounces so far).
+// Writes: exit_vectors or exit_seen.
+// One invocation is one grid point.
 //
-// A lobe about the mirror direction r of o reflects towards o what the light, smoothed by the lobe, is at r. r is o
-// turned by half a turn about the normal, so exit radiance is that smoothed series turned so: its coefficients are
-// integrals over directions, by a rule that is exact for such products.
+// A Phong lobe about the mirror direction r of o reflects towards o the incident light, smoothed by the lobe, at r. r
+// is o rotated by half a turn about the normal, so exit radiance is the smoothed series under that rotation: its
+// coefficients are integrals over directions, by a rule that is exact for such products.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int ORDER = 4;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 1) const bool GREY = false;
 layout(constant_id = 2) const bool LOBE_IS_MAP = false;
-// Of direct light: its lobe has been seen already.
+// For direct light, whose specular has been added already.
 layout(constant_id = 3) const bool IS_DIRECT = false;
-// Whether it is thrown on, and as what.
+// Whether another bounce follows, and its representation.
 layout(constant_id = 4) const bool THROWS = true;
 layout(constant_id = 5) const bool VECTORS = true;
 // Vectors of f16, whose largest number is 65504.
@@ -37,9 +39,9 @@ layout(push_constant) uniform SpecularExitPush {
     int cols;
     int rows;
     uint begins;      // 1 for the first bounce
-    int first_texel;  // in constants: of four directions their x, y and z, then each one's Y_lm times its weight
+    int first_texel;  // in constants: x, y and z of four directions, then each one's Y_lm times its weight
     int fours;        // of directions
-    float exponent;   // of the lobe, where it is constant
+    float exponent;   // Phong exponent, where it is constant
     float scale;
 };
 
@@ -51,9 +53,9 @@ vec4 harmonics[36];
 #include "shared/harmonics.glsl"
 #include "specular/lobe_bands.glsl"
 
-// What arrives, smoothed by the lobe and scaled.
+// Incident light, smoothed by the lobe and scaled.
 vec3 smoothed[36];
-// What leaves.
+// Exit radiance.
 vec4 leaving[27];
 
 void find_smoothed(ivec2 at, vec2 lobe) {
@@ -79,7 +81,7 @@ vec3 mirrored(vec3 normal) {
     for (int i = 0; i < COUNT; i++) {
         sum += harmonics[i].x * smoothed[i];
     }
-    // Series ring; what is seen is not below 0.
+    // Series ring; clamped at 0 where it is displayed.
     vec3 light = max(sum, vec3(0.0));
     return GREY ? light.xxx : light;
 }
@@ -116,7 +118,7 @@ void throw_vectors(ivec2 at, vec3 normal, vec3 diffuse) {
         texel += 4 * FOURS;
     }
     for (int c = 0; c < CHANNELS; c++) {
-        // A constant has Y_00 alone, sqrt(4 pi) of it.
+        // A constant has only Y_00: sqrt(4 pi) times it.
         leaving[c * FOURS].x += 3.5449077018110318 * diffuse[c];
         for (int i = 0; i < FOURS; i++) {
             vec4 four = leaving[c * FOURS + i];

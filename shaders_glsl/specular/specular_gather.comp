@@ -1,28 +1,28 @@
-// Computes: what the surface throws at every sample by pyramids of heights and of exit radiance, as bounce_gather with
-// an exact cosine, and the same light as a series of spherical harmonics, for the sample's lobe. Radiance is that
-// towards the sample, from series of exit radiance (vectors), or one number a texel (scalars: Nowrouzezahrai &
-// Snyder 2009, section 5.3).
-// Reads: heights, height_levels or height_stack, level_table, ground, exit_vectors and vector_levels, or exit_radiance
-// and shade_levels or shade_stack; shade_table.
-// Reads and writes: bounce_sum (exit radiance for albedo 1; until the last azimuths not yet divided by its A, what
-// whole hemispheres would have given), arriving (four coefficients a layer, channel after channel).
-// One invocation is one sample.
+// Computes: indirect light at every grid point from pyramids of heights and of exit radiance, as bounce_gather with
+// an exact cosine, and the same light as a series of spherical harmonics, for the Phong specular. Radiance towards
+// the grid point comes from series of exit radiance (vectors), or from one number per texel (scalars: Nowrouzezahrai
+// & Snyder 2009, section 5.3).
+// Reads: heights, height_levels or height_stack, level_table, ground, exit_vectors and vector_levels, or
+// exit_radiance and shade_levels or shade_stack; shade_table.
+// Reads and writes: bounce_sum (exit radiance for albedo 1; divided by A, the sum for whole hemispheres, after the
+// last azimuths), arriving (four coefficients per layer, channel after channel).
+// One invocation is one grid point.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_KHR_shader_subgroup_vote : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const bool PERIODIC = false;
-// Levels are there at every sample, else at their own texels.
+// Levels are stored at every grid point, else at their own texels.
 layout(constant_id = 1) const bool STACK = false;
-// Levels beside the field itself; may be none.
+// Levels besides the field itself; may be 0.
 layout(constant_id = 2) const int LEVELS = 0;
 layout(constant_id = 3) const int SHADE_LEVELS = 0;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 4) const bool GREY = false;
 layout(constant_id = 5) const bool VECTORS = true;
 layout(constant_id = 6) const int ORDER = 4;
-// Knots of a march, at most.
+// Largest number of knots in a march.
 layout(constant_id = 7) const int MOST_KNOTS = 64;
 
 layout(binding = 0) uniform texture2D heights;
@@ -44,17 +44,17 @@ layout(push_constant) uniform SpecularGatherPush {
     int rows;
     float cell_x_m;
     float cell_y_m;
-    int azimuths;       // of the circle, at the middles of equal parts
+    int azimuths;       // in the circle, at the middles of equal parts
     int first_azimuth;  // of this dispatch
-    int last_azimuth;   // not itself
-    int warm_up_cols;   // samples marched beyond the field, along columns: whole periods, or 0
+    int last_azimuth;   // exclusive
+    int warm_up_cols;   // grid points marched beyond the field, along columns: whole periods, or 0
     int warm_up_rows;
-    int fine_samples;   // that look at the field itself
+    int fine_samples;   // lookups in the field itself
     int width_shift;
     float growth;       // of distances: 2^(1/k)
-    int shade_fine;     // the same of radiance
+    int shade_fine;     // the same for radiance
     int shade_shift;
-    int step_shade;     // levels an octave of radiance, and of heights
+    int step_shade;     // levels per octave of radiance, and of heights
     int step_height;
 };
 
@@ -67,7 +67,7 @@ const int CHANNELS = GREY ? 1 : 3;
 vec4 harmonics[36];
 #include "shared/harmonics.glsl"
 
-// What is seen above an elevation, in this azimuth; all 0 in between.
+// Visibility above an elevation, in this azimuth; 0 between uses.
 #define SEEN float
 float series[36];
 float turn[11];
@@ -77,19 +77,19 @@ float turn[11];
 // The slice.
 Facing facing;
 vec2 azimuth;
-vec2 reached;    // direction up to which the surface is seen
+vec2 reached;    // direction up to which the surface has been visited
 float top;       // its elevation
 vec3 thrown;
-vec3 last;       // radiance of what was seen last
+vec3 last;       // radiance of the last visible knot
 vec3 arrived[36];
 
-// Four texels of an image or a level, and what each weighs.
+// Four texels of an image or a level, and their weights.
 struct Taps4 {
     ivec2 at[4];
     vec4 weight;
 };
 
-// Two neighbouring texels of an axis, and how far between them.
+// Two neighbouring texels of an axis, and the fraction between them.
 void two_of(float place, int count, out ivec2 two, out float t) {
     int cell = int(floor(place));
     int held = clamp(cell, 0, max(count - 2, 0));
@@ -147,8 +147,7 @@ vec4 vector_at(int level, Taps4 taps, int layer) {
     return taps.weight.x * a + taps.weight.y * b + taps.weight.z * c + taps.weight.w * d;
 }
 
-// Radiance that leaves a place towards the sample, which sees it in a direction of its slice. Series ring; what
-// radiates is not below 0.
+// Radiance from a point towards the grid point, in a direction of its slice. Series ring; clamped at 0.
 vec3 radiance_towards(vec2 direction, int level, vec2 place) {
     if (!VECTORS) {
         return radiance_at(level, place);
@@ -167,7 +166,7 @@ vec3 radiance_towards(vec2 direction, int level, vec2 place) {
     return GREY ? light.xxx : light;
 }
 
-// From `reached` on up so much more arrives than below it.
+// Change of incident radiance at `reached`, for all elevations above it.
 void add_arriving(vec3 more) {
     add_slices(HALF_PI - top, reached.y, reached.x);
     for (int i = 0; i < COUNT; i++) {
@@ -176,12 +175,12 @@ void add_arriving(vec3 more) {
     }
 }
 
-// What is seen along the azimuth: elevation, place, level. Kept first and looked at after: lanes see their next
-// at different steps of a march.
+// The visible knots along the azimuth: elevation, place, level. Stored first and evaluated later: lanes find their
+// next one at different steps of a march.
 vec4 knots[MOST_KNOTS];
 int knot_count;
 
-// Seen where it is above all before.
+// Visible where it rises above all before.
 void cast_light(float angle, vec2 place, int level, bool on) {
     if (on && angle > top) {
         knots[knot_count] = vec4(angle, place, float(level));
@@ -190,7 +189,7 @@ void cast_light(float angle, vec2 place, int level, bool on) {
     }
 }
 
-// Of each knot the radiance arrives between the knot before and itself, in place of the last one's.
+// Each knot's radiance replaces the previous knot's between that knot and itself.
 void add_knots() {
     for (int i = 0; i < MOST_KNOTS; i++) {
         bool on = i < knot_count;
@@ -221,7 +220,7 @@ void main() {
     float up = inversesqrt(1.0 + own.y * own.y + own.z * own.z);
     find_own_heights();
     for (int i = 0; i < 36; i++) {
-        // Beyond the last coefficient: none.
+        // Zero past the last coefficient.
         harmonics[i] = vec4(0.0);
         series[i] = 0.0;
         arrived[i] = vec3(0.0);
@@ -230,7 +229,7 @@ void main() {
     for (int k = first_azimuth; k < last_azimuth; k++) {
         azimuth = turn_march(k, azimuths, vec2(cell_x_m, cell_y_m));
         turn_to(2.0 * PI / float(azimuths), azimuth);
-        // The sample's own plane rises towards the azimuth with the field's slope.
+        // Rise of the grid point's own tangent plane along the azimuth.
         float own_slope = own.y * azimuth.x + own.z * azimuth.y;
         facing = Facing(-own_slope * up, up);
         reached = direction_of(own_slope);
@@ -240,7 +239,7 @@ void main() {
         float whole = light_between(facing, reached, vec2(0.0, 1.0));
         float own_top = top;
         knot_count = 0;
-        // What a lane without a knot looks at.
+        // Lookup of a lane without a knot.
         knots[0] = vec4(0.0, vec2(here), 0.0);
         march(exists);
         top = own_top;
@@ -254,7 +253,7 @@ void main() {
     vec4 both = before + sum;
     bool begins = first_azimuth == 0;
     sum = begins ? sum : both;
-    // Weights of a whole hemisphere sum to 1: light of equal radiance all around arrives as it is.
+    // Weights over a whole hemisphere sum to 1: uniform incident radiance is preserved.
     vec4 light = vec4(max(sum.rgb, vec3(0.0)) / max(sum.a, 1e-30), 1.0);
     bool is_whole = last_azimuth == azimuths;
     imageStore(bounce_sum, at, is_whole ? light : sum);

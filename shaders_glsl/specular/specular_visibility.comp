@@ -1,13 +1,14 @@
-// Computes: what arrives of sky and environment at every sample as a series of spherical harmonics: the product of
-// what is seen and of the light.
-// Reads: visibility, light_matrix. Writes: arriving (four coefficients a layer, channel after channel).
-// One invocation is one sample.
+// Computes: incident light of sky and environment at every grid point as a series of spherical harmonics: the product
+// of visibility and light.
+// Reads: visibility, light_matrix.
+// Writes: arriving (four coefficients per layer, channel after channel).
+// One invocation is one grid point.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int ORDER = 4;
-// Radiance of one channel.
+// One channel of radiance.
 layout(constant_id = 1) const bool GREY = false;
 
 layout(binding = 0) uniform texture2DArray visibility;

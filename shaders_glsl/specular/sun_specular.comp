@@ -1,10 +1,10 @@
-// Computes: what a lobe about the mirror direction of the view from straight above reflects of a sun at every
-// sample: the lobe towards the sun's middle, times the part of the sun that is seen. That part is what it gives to
-// diffuse ground over what all of it would.
-// Where light is thrown on, what arrives of the sun as a series besides: all of it from its middle.
-// Reads: lane_heights, sun_sum, phong_map. Reads and writes: gloss_sum (exit radiance, RGB), arriving (four coefficients
-// a layer, channel after channel).
-// One invocation is four samples side by side along the lane axis, at one march position.
+// Computes: Phong specular reflection of a sun towards a view from straight above, at every grid point: the lobe
+// towards the sun's centre, times the sun's visible fraction. That fraction is the sun's diffuse light over its
+// unoccluded diffuse light. Where another bounce follows, also the incident light of the sun as a series, all of it
+// from its centre.
+// Reads: lane_heights, sun_sum, phong_map.
+// Reads and writes: gloss_sum (exit radiance, RGB), arriving (four coefficients per layer, channel after channel).
+// One invocation is four grid points side by side along the lane axis, at one march position.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,7 +13,7 @@ layout(local_size_x = 8, local_size_y = 16) in;
 layout(constant_id = 0) const uint BORDER = 0u;
 layout(constant_id = 1) const bool MARCHES_ROWS = false;
 layout(constant_id = 2) const bool LOBE_IS_MAP = false;
-// Of the series; 0 for none. Radiance of one channel.
+// Order of the series; 0 for none. One channel of radiance.
 layout(constant_id = 3) const int ORDER = 0;
 layout(constant_id = 4) const bool GREY = false;
 const int LANE_STRIDE = 1;
@@ -21,7 +21,7 @@ const int LANE_STRIDE = 1;
 layout(binding = 0, rgba32f) uniform readonly image2D lane_heights;
 layout(binding = 1) uniform texture2D sun_sum;
 layout(binding = 2, rgba32f) uniform image2D gloss_sum;
-// Exponent and scale of the lobe.
+// Phong exponent and scale.
 layout(binding = 3) uniform texture2D phong_map;
 layout(binding = 4, rgba32f) uniform image2DArray arriving;
 
@@ -30,9 +30,9 @@ layout(push_constant) uniform SunSpecularPush {
     int rows;
     float cell_x_m;
     float cell_y_m;
-    vec4 towards;  // the sun's middle
+    vec4 towards;  // the sun's centre
     vec4 colour;   // irradiance; w: 1 where the sum begins
-    vec2 lobe;     // exponent and scale, where they are constant
+    vec2 lobe;     // Phong exponent and scale, where they are constant
 };
 
 #include "shared/quad.glsl"
@@ -70,7 +70,7 @@ void main() {
     vec4 north;
     quad_slopes(q, lanes, steps, vec2(cell_x_m, cell_y_m), east, north);
     if (ORDER > 0) {
-        // Beyond the last coefficient: none.
+        // Zero past the last coefficient.
         for (int i = 0; i < 36; i++) {
             harmonics[i] = vec4(0.0);
         }
@@ -86,10 +86,10 @@ void main() {
             of = texelFetch(phong_map, at, 0).xy;
         }
         float facing = dot(normal, towards.xyz);
-        // Of a disc that the sample's own plane cuts, more may be seen than faces it in the mean.
+        // Where the own plane cuts the disc, the visible fraction can exceed the mean cosine's.
         float seen = min(PI * texelFetch(sun_sum, at, 0).x / max(facing, 1e-30), 1.0);
         float density = facing > 0.0 ? of.y * lobe_density(towards.xyz - mirror, of.x) : 0.0;
-        // A: what harmonics have left there.
+        // A: written by earlier SH passes.
         vec4 before = imageLoad(gloss_sum, at);
         vec4 light = vec4(colour.rgb * (seen * density), 0.0);
         vec4 sum = before + light;

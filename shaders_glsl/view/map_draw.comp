@@ -1,7 +1,7 @@
-// Computes: a lit field from above as 8-bit sRGB, by steps of radiance: a code is how many of them it reaches, so
-// that every pixel is the host's own to the bit.
+// Computes: a shaded field from above as 8-bit sRGB, by thresholds of radiance: a code is the number of thresholds
+// reached, so that every pixel equals the host's bit for bit.
 // Reads: radiance, tone_steps (texel k: the least radiance of code k, NaN where no radiance has it), voids.
-// Writes: picture, four bytes a pixel.
+// Writes: picture, four bytes per pixel.
 // One invocation is one pixel.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -23,8 +23,8 @@ layout(push_constant) uniform MapDrawPush {
     float first_col;          // of the picture's upper left corner
     float first_row;
     float samples_per_pixel;
-    uint swaps;               // not 0: blue comes first
-    uint beyond;              // the pixel where there is no field
+    uint swaps;               // not 0: BGRA order
+    uint beyond;              // the pixel outside the field
 };
 
 uint code(float light) {

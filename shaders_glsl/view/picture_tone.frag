@@ -1,11 +1,11 @@
-// Computes: how radiance looks: times exposure, clipped to 0..1, sRGB-encoded (IEC 61966-2-1).
+// Computes: the displayed colour: radiance times exposure, clipped to 0..1, sRGB-encoded (IEC 61966-2-1).
 // Reads: radiance.
 // Writes: picture.
 // One invocation is one pixel.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Where the image does not encode by itself.
+// Where the image format does not encode.
 layout(constant_id = 0) const bool ENCODES = true;
 
 layout(binding = 0) uniform texture2D radiance;

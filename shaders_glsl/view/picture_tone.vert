@@ -1,6 +1,6 @@
 // Computes: a triangle that covers the picture.
 // Reads: nothing.
-// Writes: nothing beside.
+// Writes: position only.
 // One invocation is one corner of it.
 #version 460
 

@@ -1,4 +1,4 @@
-// Computes: what is behind the field: a uniform sky and an environment, by direction.
+// Computes: the background behind the field: a uniform sky and an environment, by direction.
 // Reads: environment.
 // Writes: picture.
 // One invocation is one pixel.
@@ -24,7 +24,7 @@ layout(location = 0) out vec4 picture;
 const float PI = 3.14159265358979;
 
 // Texel (col, row) covers azimuths pi - 2 pi [col, col + 1] / width and zenith angles pi [row, row + 1] / height;
-// between the middles of texels radiance is bilinear.
+// radiance is bilinear between texel centres.
 vec3 environment_towards(vec3 e) {
     ivec2 size = textureSize(environment, 0);
     float turn = fract(0.5 - atan(e.y, e.x) / (2.0 * PI) + rotation_turns);

@@ -1,6 +1,6 @@
-// Computes: a triangle that covers the picture, infinitely far away.
+// Computes: a triangle that covers the picture, at infinity.
 // Reads: nothing.
-// Writes: the place in the picture, -1 to 1 from left to right and from top to bottom.
+// Writes: position in the picture, -1 to 1 from left to right and from top to bottom.
 // One invocation is one corner of it.
 #version 460
 

@@ -1,4 +1,4 @@
-// What the mesh of a field is told: src/passes/terrain_draw.rs.
+// Push constants of a field's mesh: src/passes/view/terrain_draw.rs.
 layout(push_constant) uniform TerrainDrawPush {
     vec4 clip_per_col;
     vec4 clip_per_row;

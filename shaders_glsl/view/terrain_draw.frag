@@ -1,4 +1,4 @@
-// Computes: the exit radiance of a place of the surface, bilinear between the samples of its cell.
+// Computes: the exit radiance of a point of the surface, bilinear between the grid points of its cell.
 // Reads: radiance, voids.
 // Writes: picture.
 // One invocation is one pixel of one triangle; triangles with a void corner are holes.

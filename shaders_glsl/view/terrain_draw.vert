@@ -1,6 +1,6 @@
-// Computes: where a sample of the surface stands in the picture.
+// Computes: the picture position of a grid point of the surface.
 // Reads: heights.
-// Writes: the vertex's place on the field, in samples from its tile's first.
+// Writes: the vertex's position on the field, in grid points from its tile's first.
 // One invocation is one vertex of a tile of 16 × 16 cells of the mesh; an instance is a tile.
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,7 +9,7 @@ layout(binding = 0) uniform texture2D heights;
 
 #include "view/terrain.glsl"
 
-// Vertices a side of a tile.
+// Vertices per side of a tile.
 const int SIDE = 17;
 
 layout(location = 0) centroid out vec2 offset;
@@ -19,10 +19,10 @@ void main() {
     ivec2 tile = ivec2(gl_InstanceIndex % tiles_across, gl_InstanceIndex / tiles_across);
     ivec2 corner = ivec2(gl_VertexIndex % SIDE, gl_VertexIndex / SIDE);
     first = tile * (SIDE - 1) * step_samples;
-    // The last row and column are vertices whatever the step; cells beyond them have no area.
+    // The last row and column are vertices at any step; cells beyond them have no area.
     ivec2 place = min(first + corner * step_samples, ivec2(cols, rows) - 1);
     offset = vec2(place - first);
-    // Whole numbers, and heights, away from a place by the eye: what is near it is exact.
+    // Positions are integers and heights relative to an origin near the camera: exact close to it.
     vec2 away = vec2(place - ivec2(origin_col, origin_row));
     float rise = texelFetch(heights, place, 0).x - origin_m;
     gl_Position = clip_at_origin + away.x * clip_per_col + away.y * clip_per_row + rise * clip_per_metre;
