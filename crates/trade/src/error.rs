@@ -1,28 +1,27 @@
-//! How far a result is from a reference: pure functions on planes.
+//! Errors of a result against a reference: pure functions on planes.
 //!
-//! NaN marks samples without data. A sample that is NaN on both sides is masked and left out; NaN on
-//! one side only is a mismatch, left out of the numbers and counted, and never within a bound. An
-//! infinity that the other side does not share is an infinite error.
+//! NaN marks voids. A value that is NaN on both sides is masked and ignored. NaN on one side only
+//! is a mismatch: it is counted, excluded from the statistics, and never within a bound. An
+//! infinity on one side only is an infinite error.
 
 use super::statistics::quantiles;
 use ridgelight::{Error, Result};
 
-/// Error of a plane of radiance, in its own unit unless said otherwise.
+/// Error of a plane of radiance, in its own unit unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageError {
-    /// Samples compared.
+    /// Values compared.
     pub count: usize,
-    /// Samples that are NaN in both.
+    /// Values that are NaN in both.
     pub masked: usize,
-    /// Samples that are NaN in exactly one: a result that holds data where it should not, or none
-    /// where it should.
+    /// Values that are NaN in exactly one: data where there should be none, or the reverse.
     pub mismatched: usize,
-    /// Mean of the reference over the samples compared.
+    /// Mean of the reference over the values compared.
     pub mean_reference: f64,
     /// Root of the mean squared difference.
     pub rmse: f64,
-    /// `rmse` over |`mean_reference`|; 0 when `rmse` is, else infinite when the mean is 0 or itself
-    /// no finite number.
+    /// `rmse` over |`mean_reference`|. 0 when `rmse` is 0, else infinite when the mean is 0 or not
+    /// finite.
     pub relative_rmse: f64,
     /// Mean of (result - reference): above 0 the result is too bright.
     pub mean_shift: f64,
@@ -46,7 +45,7 @@ impl ImageError {
     /// Compares row-major planes of `cols` columns.
     ///
     /// # Errors
-    /// Planes of different size, not of whole rows, or without one sample that both hold.
+    /// Planes of different size, not of whole rows, or without a value that both have.
     pub fn of<A, B>(result: &[A], reference: &[B], cols: usize) -> Result<Self>
     where
         A: Copy + Into<f64>,
@@ -91,7 +90,7 @@ impl ImageError {
         })
     }
 
-    /// Whether the relative RMSE is at most `bound` and no sample is NaN on one side only.
+    /// Whether the relative RMSE is at most `bound` and no value is NaN on one side only.
     pub fn within(&self, bound: f64) -> bool {
         self.mismatched == 0 && self.relative_rmse <= bound
     }
@@ -124,7 +123,7 @@ impl HorizonError {
     /// Compares elevations in radians, laid out [azimuths, `rows`, `cols`].
     ///
     /// # Errors
-    /// Arrays of different size, not of whole planes, or without one horizon that both hold.
+    /// Arrays of different size, not of whole planes, or without a horizon that both have.
     pub fn of<A, B>(result: &[A], reference: &[B], rows: usize, cols: usize) -> Result<Self>
     where
         A: Copy + Into<f64>,
@@ -158,7 +157,7 @@ impl HorizonError {
     }
 }
 
-/// Differences of all pairs that hold numbers.
+/// Differences of all pairs of numbers.
 struct Pairs {
     differences: Vec<f64>,
     reference_sum: f64,
@@ -192,7 +191,7 @@ impl Pairs {
             match (a.is_nan(), b.is_nan()) {
                 (true, true) => pairs.masked += 1,
                 (false, false) => {
-                    // Equal infinities are no error, though their difference is no number.
+                    // Equal infinities are no error, though their difference is NaN.
                     let difference = if a == b { 0.0 } else { a - b };
                     pairs.differences.push(difference);
                     pairs.reference_sum += b;
@@ -213,7 +212,7 @@ impl Pairs {
         Ok(pairs)
     }
 
-    /// Differences without their sign, in place.
+    /// Absolute differences, in place.
     fn magnitudes(&mut self) -> &mut [f64] {
         self.differences.iter_mut().for_each(|d| *d = d.abs());
         &mut self.differences
@@ -226,8 +225,8 @@ mod tests {
 
     const NAN: f64 = f64::NAN;
 
-    /// Reference 2 everywhere, errors +3, -1, 0, 0 over 4 samples: rmse √(10/4), shift 2/4, mean 2;
-    /// |errors| sorted 0 0 1 3: rank 0.99·3 = 2.97 stands at 1 + 0.97·2.
+    /// Reference 2 everywhere, errors +3, -1, 0, 0 over 4 values: rmse √(10/4), shift 2/4, mean 2;
+    /// |errors| sorted 0 0 1 3: rank 0.99·3 = 2.97 is at 1 + 0.97·2.
     #[test]
     fn known_differences_have_their_known_errors() {
         let e = ImageError::of(&[5.0_f32, 1.0, 2.0, 2.0], &[2.0_f64; 4], 2).unwrap();
@@ -253,7 +252,7 @@ mod tests {
         assert!(!e.within(0.0) && e.worst > 0.0 && e.p99 > 0.0 && e.mean_shift > 0.0);
     }
 
-    /// A hole in one of the two is never within any bound, nor is an infinity.
+    /// NaN on one side is never within a bound, nor is an infinity.
     #[test]
     fn holes_and_infinities_are_reported() {
         for (a, b) in [([NAN, 1.0, 1.0], [1.0; 3]), ([1.0; 3], [NAN, 1.0, 1.0])] {
@@ -275,8 +274,8 @@ mod tests {
         assert!(ImageError::of(&[1.0, 1.0, 1.0], &[1.0; 3], 2).is_err());
     }
 
-    /// One peak of 1e200 among 1e6 values: rmse 1e200/1e3, though its square has no f64. A black
-    /// reference makes any error infinite relative to it, none 0.
+    /// One peak of 1e200 among 1e6 values: rmse 1e200/1e3, though its square overflows. With a
+    /// black reference any error is relatively infinite, and none is 0.
     #[test]
     fn peaks_and_black_references_are_safe() {
         let reference = vec![0.0; 1_000_000];

@@ -1,9 +1,9 @@
-//! How different two pictures look when one takes the other's place: LDR-ꟻLIP.
+//! LDR-ꟻLIP: the perceived difference when two pictures alternate.
 //!
 //! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild, "ꟻLIP: A
 //! Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
-//! 2020; "§" below is a section of it. An error is 0 where nothing can be seen and at most 1. It is
-//! symmetric in the two pictures and depends on how large a pixel is to the eye.
+//! 2020; "§" below is a section of it. An error is from 0 (no visible difference) to 1. It is
+//! symmetric in the two pictures and depends on the angular size of a pixel.
 
 mod eye;
 
@@ -13,21 +13,20 @@ use ridgelight::{Error, Result};
 use std::f64::consts::PI;
 use std::sync::Mutex;
 
-/// Pixels a degree that the paper assumes (§4.1.1): 3840 columns over 0.7 m, seen from 0.7 m:
+/// Pixels per degree in the paper (§4.1.1): 3840 columns over 0.7 m at a distance of 0.7 m:
 /// distance · columns / width · π/180.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * PI / 180.0;
 
-/// Rows computed at a time by a thread: memory stays small, and the rows above and below that
-/// the filters reach are a small share.
+/// Rows per thread and step: small enough for memory, large enough that the rows above and below
+/// that the filters reach are a small share.
 const BAND: usize = 128;
 
 /// ꟻLIP of every pixel, in [0..1], row-major.
 ///
-/// Pictures are linear light of sRGB primaries as a display shows it: values are clipped to
-/// [0..1], infinities too. A pixel that is NaN in any channel of either picture is a void: seen as
-/// black in both, and NaN in the answer. At the edges, the outermost pixels go on.
-/// `pixels_per_degree` is in [1..1000], usually [`PIXELS_PER_DEGREE`]; more makes small
-/// differences harder to see.
+/// Pictures are linear light of sRGB primaries as a display shows it: values are clipped to [0..1],
+/// infinities too. A pixel that is NaN in any channel of either picture is a void: black in both
+/// pictures, NaN in the result. Edge pixels extend outwards. `pixels_per_degree` is in [1..1000],
+/// usually [`PIXELS_PER_DEGREE`]; a higher value hides small differences.
 ///
 /// # Errors
 /// Pictures of different size or not of whole rows of `cols`; pixels per degree out of range.
@@ -81,17 +80,18 @@ pub fn map(
     Ok(errors)
 }
 
-/// A picture's [`map`] in few numbers, each in [0..1].
+/// A picture's [`map`] as statistics, each in [0..1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlipError {
     /// Pixels compared.
     pub count: usize,
     /// Pixels without data in one picture or both.
     pub masked: usize,
-    /// Mean: what one usually quotes.
+    /// Mean: the usual figure.
     pub mean: f64,
     /// Quartiles weighted by the error itself (§6): a quarter, half and three quarters of the sum
-    /// of all errors lie in pixels of at most this error. Large pale areas do not hide a few pixels.
+    /// of all errors lie in pixels of at most this error. Large areas of low error do not hide a
+    /// few pixels.
     pub weighted_quartiles: [f64; 3],
     /// 99th percentile.
     pub p99: f64,
@@ -104,10 +104,10 @@ pub struct FlipError {
 }
 
 impl FlipError {
-    /// Pools a map of `cols` columns.
+    /// Summarizes a map of `cols` columns.
     ///
     /// # Errors
-    /// A map without one pixel that has data.
+    /// A map without a pixel that has data.
     pub fn of(map: &[f32], cols: usize) -> Result<Self> {
         let (mut worst, mut at) = (-1.0, 0);
         let mut errors = Vec::with_capacity(map.len());
@@ -122,7 +122,7 @@ impl FlipError {
             return Err(Error::setting("comparison", found, "at least one pixel with data"));
         };
         let total: f64 = errors.iter().sum();
-        // In order, from `quantiles`.
+        // Sorted by `quantiles`.
         let weighted = |share: f64| {
             let mut sum = 0.0;
             let reached = |e: &&f64| {
@@ -153,7 +153,7 @@ mod tests {
     const COLS: usize = 64;
     const ROWS: usize = 48;
 
-    /// Stripes, checks, and a disc and a texture that only the second has, in codes of sRGB.
+    /// Stripes and checks; the second picture adds a disc and a texture. Values are sRGB codes.
     fn pair() -> [Picture; 2] {
         let light = |code: usize| {
             let v = (code % 256) as f64 / 255.0;
@@ -175,9 +175,10 @@ mod tests {
         map(a, b, cols, PIXELS_PER_DEGREE).unwrap()
     }
 
-    /// The authors' own program, flip-evaluator 1.7, on the same pair at its default of 67.02 pixels
-    /// a degree: mean 0.214314. It computes in f32: some 50 roundings of L*a*b* of up to 100 err by
-    /// 50 · 6e-8 · 100 = 3e-4, times the steepest slope of the error by it, 0.04 at a distance of 1.
+    /// The authors' own program, flip-evaluator 1.7, on the same pair at its default of 67.02
+    /// pixels per degree: mean 0.214314. It computes in f32: some 50 roundings of L*a*b* of up to
+    /// 100 err by 50 · 6e-8 · 100 = 3e-4, times the steepest slope of the error by it, 0.04 at a
+    /// distance of 1.
     #[test]
     fn errors_are_those_of_the_published_program() {
         let [a, b] = pair();
@@ -206,13 +207,13 @@ mod tests {
         let e = FlipError::of(&seen(&b, &a, COLS), COLS).unwrap();
         assert!(e.mean > 0.0 && e.worst > 0.1, "{e:?}");
         assert!(e.worst_row.abs_diff(20) < 4 && e.worst_col.abs_diff(9) < 4, "{e:?}");
-        // Beyond the display's range nothing differs.
+        // Beyond the display's range there is no difference.
         let bright = [[7.0, 1.0, f32::INFINITY], [-3.0, 0.0, f32::NEG_INFINITY]];
         let clipped = [[1.0; 3], [0.0; 3]];
         assert_eq!(seen(&bright, &clipped, 2), [0.0; 2]);
     }
 
-    /// Which of two comes first does not matter, nor from which side both are looked at.
+    /// The order of the pictures does not matter, nor does transposing or mirroring both.
     #[test]
     fn pictures_may_change_places_and_be_turned() {
         let [a, b] = pair();
@@ -234,7 +235,7 @@ mod tests {
         }
     }
 
-    /// The same 120 rows, once with a seam between bands among them and once without.
+    /// The same 120 rows, once across a seam between bands and once without.
     #[test]
     fn bands_leave_no_seam() {
         let [a, b] = pair();

@@ -1,9 +1,11 @@
-//! How far results are off, in numbers and to the eye, and how far they may be.
+//! Error metrics, and the search for settings.
 //!
-//! - [`error`]: root mean square, mean shift, 99th percentile and worst texel with its place, of light and of horizons;
-//! - [`flip`]: ꟻLIP, how far two pictures are apart to an eye;
-//! - [`statistics`]: median, percentiles of times and of errors;
-//! - [`auto`] and [`trade`]: settings for an error or a time asked for, and the frontier between them;
+//! - [`error`]: root mean square, mean shift, 99th percentile and worst texel, of radiance and of
+//! horizons;
+//! - [`flip`]: ꟻLIP, the perceived difference of two pictures;
+//! - [`statistics`]: median and percentiles of times and of errors;
+//! - [`auto`]: settings for a given error or time, chosen while rendering;
+//! - [`trade`]: the frontier of speed and accuracy.
 
 #![deny(clippy::missing_errors_doc)]
 

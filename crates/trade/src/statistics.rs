@@ -1,22 +1,22 @@
-//! Order statistics of samples.
+//! Order statistics.
 
-/// Five quantiles of a set of samples.
+/// Five quantiles of a set of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// Smallest.
     pub min: f64,
-    /// A tenth of the samples is at most this.
+    /// A tenth of the values is at most this.
     pub p10: f64,
-    /// Half of the samples is at most this.
+    /// Half of the values is at most this.
     pub median: f64,
-    /// Nine tenths of the samples are at most this.
+    /// Nine tenths of the values are at most this.
     pub p90: f64,
     /// Largest.
     pub max: f64,
 }
 
 impl Summary {
-    /// Quantiles by linear interpolation; `None` for no samples or where one is NaN.
+    /// Quantiles by linear interpolation; `None` for no values or a NaN.
     pub fn of(samples: &[f64]) -> Option<Self> {
         if samples.is_empty() || samples.iter().any(|s| s.is_nan()) {
             return None;
@@ -27,10 +27,10 @@ impl Summary {
     }
 }
 
-/// Quantiles `shares`, each in [0..1], of samples that are put in order; `None` for no samples.
+/// Quantiles `shares`, each in [0..1]; sorts the values. `None` for no values.
 ///
-/// Quantile q of n samples stands at rank q·(n - 1) counted from 0, linearly between its neighbours
-/// (type 7 of Hyndman & Fan 1996). NaN sorts above everything.
+/// Quantile q of n values is at rank q·(n - 1) counted from 0, linear between neighbours (type 7 of
+/// Hyndman & Fan 1996). NaN sorts above everything.
 pub fn quantiles<const N: usize>(samples: &mut [f64], shares: [f64; N]) -> Option<[f64; N]> {
     samples.sort_unstable_by(f64::total_cmp);
     let last = samples.len().checked_sub(1)?;
@@ -38,7 +38,7 @@ pub fn quantiles<const N: usize>(samples: &mut [f64], shares: [f64; N]) -> Optio
         let rank = share.clamp(0.0, 1.0) * last as f64;
         let below = rank.floor() as usize;
         let (low, high) = (samples[below], samples[(below + 1).min(last)]);
-        // Equal neighbours are answered as they are: an infinity minus itself is no number.
+        // Equal neighbours need no interpolation: an infinity minus itself is NaN.
         if low == high { low } else { low + (rank - below as f64) * (high - low) }
     }))
 }

@@ -1,34 +1,38 @@
-//! What errors and costs are expected of bounces.
+//! Expected errors and costs of bounces.
 
 use super::statistics::Statistics;
 use ridgelight::scene::{BounceEngine, Lines, Method, Quality, Scene};
 
-/// Parts of the error: pyramids in place of what is seen, azimuths, nodes between samples, bounces that are left out.
+/// Parts of the error: pyramids instead of exact visibility, azimuths, interpolation between nodes,
+/// omitted bounces.
 pub(super) const PARTS: usize = 4;
 
-/// Shares of bounced light that each part is off at 32 azimuths, 2× sub-sampled, from columns "bounced" that
-/// `cargo run --release --example bounce` and the same with `-- table` print (`benches/results/bounce.txt`,
-/// `bounce_table.txt`). Pyramids: √(pyramid² - chance²) of Mt Washington under the sky, one bounce; nodes: sweep, one
-/// bounce, 2×; azimuths: √(sweep's 32² - sweep's three bounces, 2×²), as what is off there are both. Of what is left
-/// out, all. Second: the standard deviation of their ln, no fit: a factor of two either way (ln 2), of what is left
-/// out, which depends on where light stays, e.
+/// Relative error of bounced light by each part at 32 azimuths, 2× sub-sampled. Source: columns
+/// "bounced" of `cargo run --release --example bounce` and the same with `-- table`
+/// (`benches/results/bounce.txt`, `bounce_table.txt`). Pyramids: √(pyramid² - noise²) of Mt
+/// Washington under the sky, one bounce. Nodes: sweep, one bounce, 2×. Azimuths: √(sweep's 32² -
+/// sweep's three bounces, 2×²), which removes the error common to both. Omitted bounces: all of
+/// their light.
+///
+/// Second number: the standard deviation of the logarithm. It is assumed, not fitted: a factor of
+/// two either way (ln 2), or e for omitted bounces, which depend on where light is trapped.
 const SHARES: [[f64; 2]; PARTS] = [[0.2, 0.7], [0.018, 0.7], [0.03, 0.7], [1.0, 1.0]];
 
-/// The engines that an engine can come to, in the order of [`work`].
+/// The engines that can run, in the order of [`work`].
 pub(super) const ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Sweep, BounceEngine::Brute, BounceEngine::Pyramid];
+    [BounceEngine::Sweep, BounceEngine::BruteForce, BounceEngine::Pyramid];
 
-/// What of a scene says how much its bounces matter.
+/// A scene's bounced light, estimated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BouncedLight {
     albedo: f64,
-    /// Light of the first bounce over direct light: what the ground hides of the lights, thrown by an albedo.
+    /// First bounce over direct light: the occluded share of the lights, times the albedo.
     share: f64,
 }
 
 impl BouncedLight {
     pub fn of(scene: &Scene, statistics: &Statistics) -> Self {
-        let albedo = scene.surface.most_reflected();
+        let albedo = scene.surface.max_reflectance();
         Self { albedo, share: (albedo * statistics.hidden).clamp(1e-6, 1.0) }
     }
 
@@ -37,10 +41,11 @@ impl BouncedLight {
         SHARES.map(|[share, spread]| ((share * self.share).ln(), spread))
     }
 
-    /// What each part is of that with some settings.
+    /// Factor of each part for these settings.
     pub fn factors(&self, quality: &Quality) -> [f64; PARTS] {
-        let drawn = quality.bounces.worth_drawing(self.albedo);
-        // Each bounce is the last one's share of it; light that stays in hollows loses the albedo alone, no less.
+        let drawn = quality.bounces.needed_bounces(self.albedo);
+        // Each bounce is a fixed share of the last. Light trapped in hollows decreases by no more
+        // than the albedo.
         let left_out: f64 = (drawn..quality.bounces.count).map(|k| self.share.powi(k as i32)).sum();
         if drawn == 0 {
             return [0.0, 0.0, 0.0, left_out];
@@ -55,34 +60,35 @@ impl BouncedLight {
     }
 }
 
-/// What the planner takes: see [`BounceEngine::Auto`].
+/// The planner's choice: see [`BounceEngine::Auto`].
 pub(super) fn engine(quality: &Quality) -> BounceEngine {
     let has_lines =
-        quality.lines != Lines::Exact && !matches!(quality.method, Method::Brute | Method::Pyramid);
+        quality.lines != Lines::Exact && !matches!(quality.method, Method::BruteForce | Method::Pyramid);
     match quality.bounces.engine {
         BounceEngine::Auto if has_lines => BounceEngine::Sweep,
-        BounceEngine::Auto => BounceEngine::Brute,
+        BounceEngine::Auto => BounceEngine::BruteForce,
         chosen => chosen,
     }
 }
 
-/// ns an azimuth and sample of a walk, of a march and each sample of the side, of a gather, on lavapipe: "ms" of one
-/// bounce, 1×, of `cargo run --release --example bounce -- table` (`benches/results/bounce_table.txt`, sub-sampled
-/// bounces) over 32 · 128² · 10⁻⁶, of brute force over 128 more. The frames that are drawn correct each.
+/// ns per azimuth and texel: of a walk, of a march per texel of the side, of a gather; on lavapipe.
+/// Source: "ms" of one bounce, 1×, of `cargo run --release --example bounce -- table`
+/// (`benches/results/bounce_table.txt`, sub-sampled bounces) over 32 · 128² · 10⁻⁶, for brute force
+/// over 128 more. Measured frames correct each.
 const WALK: f64 = 110.0;
 const MARCH: f64 = 4.8;
 const GATHER: f64 = 330.0;
-/// Of a walk's time at every sample what a later, sub-sampled bounce takes that reads what the first has met: sweep, 2×,
-/// there, (three bounces - one) / 2 over one bounce's 1×.
+/// Time of a later, sub-sampled bounce, which reads the first bounce's visibility cache, over that
+/// of a walk at every texel: sweep, 2×, same file, (three bounces - one) / 2 over one bounce's 1×.
 const CAST: f64 = 0.033;
 
-/// Work of walks, marches and gathers, one of which there is where bounces are drawn.
+/// Work of walks, marches and gathers; only one of them is above 0.
 pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
-    let drawn = f64::from(quality.bounces.worth_drawing(scene.surface.most_reflected()));
+    let drawn = f64::from(quality.bounces.needed_bounces(scene.surface.max_reflectance()));
     let azimuths = f64::from(quality.bounces.azimuths);
     let side = scene.field.rows().max(scene.field.cols()) as f64;
-    // Nodes are the square of it fewer, but each still costs the sweep or levels of all: "over 1×" of one bounce, sweep;
-    // every eighth sample by halving once more.
+    // Nodes are fewer by the square of the stride, but each still needs the sweep or levels of all.
+    // Every second: "over 1×" of one bounce, sweep. Every eighth: halved once more.
     let nodes = |stride: u32| match stride {
         1 => 1.0,
         2 => 0.42,
@@ -97,7 +103,7 @@ pub(super) fn work(scene: &Scene, quality: &Quality) -> [f64; ENGINES.len()] {
         return all;
     }
     match engine(quality) {
-        BounceEngine::Brute => all[1] = azimuths * found * MARCH * side,
+        BounceEngine::BruteForce => all[1] = azimuths * found * MARCH * side,
         BounceEngine::Pyramid => all[2] = azimuths * found * GATHER,
         _ if stride == 1 => all[0] = azimuths * found * WALK,
         _ => all[0] = azimuths * WALK * (nodes(stride) + CAST * (drawn - 1.0)),
@@ -110,8 +116,9 @@ mod tests {
     use super::*;
     use ridgelight::scene::Bounces;
 
-    /// Shares of 0.1 with three bounces asked: all is left out 1 + 0.1 + 0.01 of the first, of one drawn 0.1 + 0.01.
-    /// Half the azimuths err twice as much, every fourth sample twice every second, every sample not at all.
+    /// A share of 0.1 and three requested bounces: without any, 1 + 0.1 + 0.01 of the first is
+    /// omitted; with one, 0.1 + 0.01. Half the azimuths double the error; every fourth texel has
+    /// twice the error of every second, every texel none.
     #[test]
     fn finer_bounces_err_less() {
         let light = BouncedLight { albedo: 0.5, share: 0.1 };
@@ -131,7 +138,7 @@ mod tests {
         assert_eq!(light.factors(&quality)[0], 1.0);
         assert_eq!(
             engine(&Quality { lines: Lines::Exact, ..Quality::default() }),
-            BounceEngine::Brute
+            BounceEngine::BruteForce
         );
     }
 }

@@ -1,4 +1,4 @@
-//! What is chosen among.
+//! Candidate settings.
 
 use super::model::{Part, fuse_row, spacing};
 use crate::trade::start;
@@ -11,22 +11,23 @@ const LINES: [Lines; 5] =
     [Lines::FourCells, Lines::TwoCells, Lines::Cell, Lines::HalfCell, Lines::QuarterCell];
 const FUSES: [Fuse; 3] = [Fuse::AimedNearest, Fuse::Aimed, Fuse::AimedAround];
 
-/// Engines of bounces, and at every so many samples.
+/// Bounce engines and sub-sampling strides.
 const ENGINES: [(BounceEngine, u32); 6] = [
     (BounceEngine::Pyramid, 2),
     (BounceEngine::Pyramid, 1),
     (BounceEngine::Auto, 4),
     (BounceEngine::Auto, 2),
     (BounceEngine::Auto, 1),
-    (BounceEngine::Brute, 1),
+    (BounceEngine::BruteForce, 1),
 ];
 const BOUNCE_AZIMUTHS: [u32; 5] = [8, 16, 32, 64, 128];
-/// Shares of the direct light's energy that the last bounces may carry to be left out.
+/// Bounces are omitted where they carry at most this share of the direct light's energy.
 const CUTOFFS: [f64; 5] = [1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0, 1.0 / 1024.0, 1.0 / 65536.0];
 
-/// Every combination of what changes how a scene is lit. Where no lines are close enough, horizons are
-/// exact: by brute force, or along grid vectors (of large fields the cheaper), which suns and key
-/// lights do not have. With bounces, which multiply them, every second step of each count.
+/// Every combination of settings that affects a scene's direct light. Where no lines are close
+/// enough, horizons are exact: by brute force, or along grid vectors (faster for large fields),
+/// which suns and key lights cannot use. With bounces, which multiply the combinations, every
+/// second step of each count.
 pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
     let step = if bounces > 0 { 2 } else { 1 };
     let of = |part: Part, values: &[u32], default: u32| -> Vec<u32> {
@@ -38,7 +39,7 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
     if !Part::Geometry.is_in(scene) {
         all.push(plain);
     } else {
-        all.push(Quality { method: Method::Brute, ..plain });
+        all.push(Quality { method: Method::BruteForce, ..plain });
         if scene.lights.suns.is_empty() && scene.lights.keys.is_empty() {
             all.push(Quality { lines: Lines::Exact, ..plain });
         }
@@ -64,12 +65,12 @@ pub(super) fn candidates(scene: &Scene, bounces: u32) -> Vec<Quality> {
     if bounces == 0 { all } else { with_bounces(scene, bounces, &all) }
 }
 
-/// Each with every combination of what changes its bounces.
+/// Each candidate with every combination of bounce settings.
 fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
-    let albedo = scene.surface.most_reflected();
+    let albedo = scene.surface.max_reflectance();
     let mut cutoffs: Vec<f64> = Vec::new();
     for cutoff in CUTOFFS {
-        let drawn = |cutoff| Bounces { count, cutoff, ..Bounces::NONE }.worth_drawing(albedo);
+        let drawn = |cutoff| Bounces { count, cutoff, ..Bounces::NONE }.needed_bounces(albedo);
         if cutoffs.last().is_none_or(|last| drawn(*last) != drawn(cutoff)) {
             cutoffs.push(cutoff);
         }
@@ -77,7 +78,7 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     let mut bounced = Vec::new();
     for cutoff in cutoffs {
         let none = Bounces { count, cutoff, ..Bounces::NONE };
-        if none.worth_drawing(albedo) == 0 {
+        if none.needed_bounces(albedo) == 0 {
             bounced.push((none, 1));
             continue;
         }
@@ -89,8 +90,8 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     }
     let with = |q: &Quality| {
         let (quality, is_exact) = (*q, is_exact(q));
-        // Without lines to walk over the planner takes brute force itself.
-        let is_other = move |b: &&(Bounces, u32)| !is_exact || b.0.engine != BounceEngine::Brute;
+        // Without lines the planner itself uses brute force.
+        let is_other = move |b: &&(Bounces, u32)| !is_exact || b.0.engine != BounceEngine::BruteForce;
         bounced
             .iter()
             .filter(is_other)
@@ -104,7 +105,7 @@ fn with_bounces(scene: &Scene, count: u32, all: &[Quality]) -> Vec<Quality> {
     all.iter().flat_map(with).collect()
 }
 
-/// Whether horizons are those of the surface itself, of no lines between its samples.
+/// Whether horizons are exact.
 pub(super) fn is_exact(quality: &Quality) -> bool {
     spacing(quality) == LINES.len()
 }
@@ -123,9 +124,10 @@ pub(super) fn is_finer(fine: &Quality, coarse: &Quality) -> bool {
             match q.bounces.engine {
                 BounceEngine::Pyramid => 0,
                 BounceEngine::Auto | BounceEngine::Sweep => 1,
-                BounceEngine::Brute => 2,
+                BounceEngine::BruteForce => 2,
             },
-            // A share of 1 or less: the smaller, the more its bits are above.
+            // A share of at most 1: smaller values are finer, and the order of their bits is that
+            // of the numbers.
             u32::MAX - (q.bounces.cutoff as f32).to_bits(),
         ]
     };

@@ -1,4 +1,4 @@
-//! Which settings to draw next, and which to take.
+//! Which settings to render next, and which to choose.
 
 use std::cmp::Ordering;
 
@@ -8,38 +8,38 @@ use super::probes::Measured;
 use super::statistics::Statistics;
 use ridgelight::scene::{BounceEngine, Bounces, Quality, Scene};
 
-/// Frames that are tried at most, and exact ones beyond them.
+/// Most frames to try, and most exact ones beyond them.
 const TRIALS: usize = 16;
 const RESORTS: usize = 2;
-/// Where estimates turned out too low twice: how far within the error others must be.
+/// Margins within the error after two estimates were too low.
 const MARGIN: f64 = 1.5;
-/// One time of a frame may be so many times another of the same settings.
+/// Factor between two times of the same settings that counts as timing noise.
 const WAVER: f64 = 1.25;
-/// What a further frame must be expected to save of the cost or to take off the error, in ln.
+/// Least expected gain of a further frame, in ln of cost or error.
 const WORTH: f64 = 0.05;
-/// How much more accurate than what is asked for the control should be, and at least is, unless so many
-/// frames were not; and how much dearer it may be than what is expected to hold.
+/// Accuracy of the control relative to the goal: aimed for, and required, unless this many frames
+/// miss it; and its highest cost over that of the settings expected to reach the goal.
 const CONTROL: f64 = 3.0;
 const COARSEST_CONTROL: f64 = 2.0;
 const CONTROLS: usize = 4;
 const DEAREST_CONTROL: f64 = 6.0;
-/// Where nothing is expected to reach the goal: how much less accurate than the best that is drawn next may
-/// be for being cheaper.
+/// If nothing is expected to reach the goal: how much less accurate than the best the next frame
+/// may be, if it is faster.
 const NEARLY: f64 = 2.0;
-/// Frames that are expected to take longer are not drawn: half a minute.
+/// Frames expected to take longer are not rendered: half a minute.
 const LONGEST_NS: f64 = 30e9;
 
-/// What settings are chosen for.
+/// The goal of a choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The cheapest of at most this relative RMSE, above 0.
+    /// The fastest of at most this relative RMSE, above 0.
     MaxError(f64),
-    /// The most accurate of at most so many nanoseconds a frame, above 0.
+    /// The most accurate of at most this time per frame, ns, above 0.
     MaxCost(f64),
 }
 
 impl Goal {
-    /// Whether settings that were drawn reach it: an error by its bound, not by its estimate.
+    /// Whether a trial reaches the goal: an error by its bound, not by its estimate.
     pub fn is_reached(&self, trial: &Trial) -> bool {
         match self {
             Goal::MaxError(most) => trial.measured.at_most <= *most,
@@ -47,8 +47,8 @@ impl Goal {
         }
     }
 
-    /// Whether they are known not to: an error by as much less than its estimate as its bound is more, a
-    /// time that is more by what times waver.
+    /// Whether a trial certainly misses the goal: an error by a margin below its estimate as large
+    /// as its bound's above; a time by more than the timing noise.
     pub fn is_missed(&self, trial: &Trial) -> bool {
         match self {
             Goal::MaxError(most) => 2.0 * trial.measured.error - trial.measured.at_most > *most,
@@ -57,19 +57,19 @@ impl Goal {
     }
 }
 
-/// Settings that were drawn.
+/// Rendered settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     /// The settings.
     pub quality: Quality,
-    /// Their error on the probes.
+    /// Their error at the probes.
     pub measured: Measured,
-    /// Nanoseconds of a frame.
+    /// Nanoseconds per frame.
     pub ns: f64,
 }
 
-/// Walks settings towards a goal: [`next`](Self::next) says what to draw, [`drawn`](Self::drawn) and
-/// [`judged`](Self::judged) take what came of it.
+/// Searches settings for a goal: [`next`](Self::next) returns what to render,
+/// [`drawn`](Self::drawn) and [`judged`](Self::judged) take the results.
 #[derive(Clone, Debug)]
 pub struct Chooser<'a> {
     scene: &'a Scene,
@@ -82,7 +82,7 @@ pub struct Chooser<'a> {
 }
 
 impl<'a> Chooser<'a> {
-    /// For a scene with so many bounces and what [`Statistics`] say of it.
+    /// For a scene with this many bounces and its [`Statistics`].
     pub fn new(scene: &'a Scene, statistics: &Statistics, goal: Goal, bounces: u32) -> Self {
         let model = Model::of(scene, statistics, bounces);
         let samples = scene.field.rows() * scene.field.cols();
@@ -97,7 +97,7 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// What to draw next; none where nothing is expected to be better than [`best`](Self::best).
+    /// Settings to render next; none where nothing is expected to improve on [`best`](Self::best).
     pub fn next(&self) -> Option<Quality> {
         if self.trials.len() >= TRIALS {
             return None;
@@ -119,8 +119,8 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// First a control for [`Probes::error`](super::Probes::error), finer than the goal; then the cheapest
-    /// that is expected to hold; where nothing is, the most accurate.
+    /// First a control for [`Probes::error`](super::Probes::error), finer than the goal; then the
+    /// fastest settings expected to reach the goal, or else the most accurate.
     fn next_within(&self, most: f64) -> Option<Quality> {
         let is_controlled = self.trials.iter().any(|t| t.measured.error <= most / COARSEST_CONTROL);
         if !is_controlled && self.trials.len() < CONTROLS {
@@ -130,7 +130,7 @@ impl<'a> Chooser<'a> {
         let Some(best) = self.best() else {
             return self.cheapest_within(most).or_else(|| self.most_accurate());
         };
-        // What is saved, in ln, times the chance that it holds.
+        // Expected saving, in ln, times the probability of reaching the goal.
         let gain = |q: &Quality| {
             let expected = self.model.expected(q);
             let deviations = (most / expected.error).ln() / expected.factor.ln().max(0.05);
@@ -141,7 +141,7 @@ impl<'a> Chooser<'a> {
         (gain > WORTH).then_some(*next)
     }
 
-    /// A frame to hold others against: finer than the goal, where that is not too dear.
+    /// A control frame: finer than the goal, unless that is too slow.
     fn control(&self, most: f64) -> Option<Quality> {
         let Some(holds) = self.cheapest_within(most) else { return self.most_accurate() };
         let affordable = |q: &Quality| self.cost(q) <= DEAREST_CONTROL * self.cost(&holds);
@@ -151,14 +151,14 @@ impl<'a> Chooser<'a> {
         })
     }
 
-    /// Takes nanoseconds of a frame by label of each pass; its error follows by [`judged`](Self::judged).
+    /// Records nanoseconds of a frame by pass label; [`judged`](Self::judged) records its error.
     pub fn drawn(&mut self, quality: &Quality, passes: &[(String, f64)]) {
         let ns = passes.iter().map(|p| p.1).sum();
         self.costs.learn(self.scene, quality, passes);
         self.trials.push(Trial { quality: *quality, measured: Measured::UNKNOWN, ns });
     }
 
-    /// Takes errors of all that was drawn, in order: none where one stays as it was.
+    /// Records errors of all rendered settings, in order; none where one is unchanged.
     pub fn judged(&mut self, measured: &[Option<Measured>]) {
         self.model = self.first_guess.clone();
         let mut trials = std::mem::take(&mut self.trials);
@@ -171,16 +171,17 @@ impl<'a> Chooser<'a> {
         self.trials = trials;
     }
 
-    /// Takes error and nanoseconds of what was drawn once more.
+    /// Records error and nanoseconds of settings rendered again.
     pub fn confirmed(&mut self, quality: &Quality, measured: Measured, ns: f64) -> Option<&Trial> {
         let trial = self.trials.iter_mut().find(|t| t.quality == *quality)?;
         (trial.measured, trial.ns) = (measured, ns);
         Some(trial)
     }
 
-    /// What to draw where nothing holds, or all that was chosen turned out not to: of exact horizons, which
-    /// have no errors that few samples see, what is well expected to hold; with bounces of every sample and what it
-    /// sees itself. None where one holds.
+    /// Settings to render where nothing reaches the goal, or all choices were refuted: exact
+    /// horizons that are well expected to reach it, since they have no errors confined to few
+    /// texels; with bounces, those at every texel with its own visibility. None where one reaches
+    /// the goal.
     pub fn last_resort(&self, has_failed: bool) -> Option<Quality> {
         let Goal::MaxError(most) = self.goal else { return None };
         let is_held = |t: &Trial| self.goal.is_reached(t) && (!has_failed || is_surest(&t.quality));
@@ -196,12 +197,12 @@ impl<'a> Chooser<'a> {
             .copied()
     }
 
-    /// Of what was drawn the cheapest that is well within an error, else that of the least.
+    /// The fastest rendered settings well within the error, else those of the least error.
     pub fn surest(&self) -> Option<&Trial> {
         self.surest_of(|_| true)
     }
 
-    /// The same of exact horizons alone, where any reach the goal.
+    /// The same among exact horizons, where any reach the goal.
     pub fn exact(&self) -> Option<&Trial> {
         self.surest_of(|t| is_surest(&t.quality)).or_else(|| self.surest())
     }
@@ -219,13 +220,13 @@ impl<'a> Chooser<'a> {
 
     fn learn(&mut self, trial: &Trial) {
         let Measured { error, at_most } = trial.measured;
-        // At most is 2.7 standard deviations or more above, in ln about so of it.
+        // `at_most` is 2.7 or more standard deviations above, in ln about that much of it.
         let spread = (at_most / error.max(1e-6)).max(1.0).ln() / 2.7;
         self.model.learn(&trial.quality, error, spread);
     }
 
-    /// Whether something that was drawn may be better than [`best`](Self::best), by its estimate: more
-    /// probes would tell.
+    /// Whether some rendered settings may improve on [`best`](Self::best), by their estimate: more
+    /// probes would decide.
     pub fn is_undecided(&self) -> bool {
         let Goal::MaxError(most) = self.goal else { return false };
         let best_ns = self.best().map_or(f64::INFINITY, |b| b.ns);
@@ -233,7 +234,7 @@ impl<'a> Chooser<'a> {
         self.trials.iter().any(|t| may(t) && t.ns < best_ns)
     }
 
-    /// Whether a trial's picture may still be asked for: it is the best so far, or may become it.
+    /// Whether a trial's picture may still be needed: it is the best so far, or may become it.
     pub fn may_be_best(&self, trial: &Trial) -> bool {
         let Some(best) = self.best() else { return !self.goal.is_missed(trial) };
         let is_better = match self.goal {
@@ -243,12 +244,13 @@ impl<'a> Chooser<'a> {
         is_better && !self.goal.is_missed(trial)
     }
 
-    /// Leaves out settings that cannot be drawn, and all that are no cheaper in any.
+    /// Excludes settings that cannot be rendered, and all that are at least as slow in every
+    /// setting.
     pub fn refuse(&mut self, quality: &Quality) {
         self.candidates.retain(|q| !is_finer(q, quality));
     }
 
-    /// Of what was drawn, that which reaches the goal best; none where nothing reaches it.
+    /// The best rendered settings that reach the goal; none where nothing does.
     pub fn best(&self) -> Option<&Trial> {
         match self.goal {
             Goal::MaxError(_) => self.reached().min_by(|a, b| a.ns.total_cmp(&b.ns)),
@@ -256,7 +258,7 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// What a refusal lacks: that which ended the search.
+    /// For a refusal: what ended the search.
     pub fn lacks(&self) -> String {
         let is_drawn = |q: &Quality| self.trials.iter().any(|t| t.quality == *q);
         if self.trials.len() >= TRIALS {
@@ -268,17 +270,17 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// All that was drawn, in order.
+    /// All trials, in order.
     pub fn trials(&self) -> &[Trial] {
         &self.trials
     }
 
-    /// The error that was expected of settings before anything was drawn.
+    /// Expected error of settings before anything was rendered.
     pub fn expected(&self, quality: &Quality) -> super::Expected {
         self.first_guess.expected(quality)
     }
 
-    /// Nanoseconds expected of a frame.
+    /// Expected nanoseconds of a frame.
     pub fn cost(&self, quality: &Quality) -> f64 {
         self.costs.expected_ns(self.scene, quality)
     }
@@ -293,8 +295,8 @@ impl<'a> Chooser<'a> {
         last.map_or(1.05, |t| t.measured.at_most / t.measured.error.max(1e-12)).clamp(1.0, 1.5)
     }
 
-    /// Not drawn, and not known to miss the goal: settings no finer in anything than some that were
-    /// estimated beyond the error, or no coarser than some beyond the time.
+    /// Not rendered, and not known to miss the goal: settings no finer in any respect than some
+    /// with an estimate beyond the error, or no coarser than some beyond the time.
     fn open(&self) -> impl Iterator<Item = &Quality> {
         self.candidates.iter().filter(|q| {
             let is_open = |t: &Trial| {
@@ -315,14 +317,14 @@ impl<'a> Chooser<'a> {
             .copied()
     }
 
-    /// Of what is nearly as accurate as anything the cheapest.
+    /// The fastest of those nearly as accurate as the best.
     fn most_accurate(&self) -> Option<Quality> {
         let least = self.open().map(|q| self.error(q)).min_by(f64::total_cmp)?;
         self.cheapest_within(NEARLY * least)
     }
 }
 
-/// Exact horizons, and bounces of every sample without means of the ground in place of what is seen.
+/// Exact horizons, and bounces at every texel without averages instead of exact visibility.
 fn is_surest(quality: &Quality) -> bool {
     let Bounces { count, engine, .. } = quality.bounces;
     is_exact(quality) && (count == 0 || quality.subsample == 1 && engine != BounceEngine::Pyramid)

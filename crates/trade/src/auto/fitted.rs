@@ -1,6 +1,6 @@
-//! Numbers found by `cargo run --release --example auto -- FOLDER --fit`, which prints this table: each
-//! part of the error measured alone, by frames that differ in its setting only, on half of the scenes
-//! of a folder; linear least squares on logarithms (ridge, see there).
+//! Fitted by `cargo run --release --example auto -- FOLDER --fit`, which prints this table. Each
+//! part of the error is measured alone, by frames that differ in its setting only, on half of the
+//! scenes of a folder; linear least squares on logarithms (ridge, see there).
 
 use super::model::Fitted;
 
@@ -33,9 +33,9 @@ pub(super) const FITTED: [Fitted; 4] = [
     },
 ];
 
-/// ln of the geometry's error beside that of lines one cell apart with `aimed-nearest`: for 4, 2, 1,
-/// 1/2, 1/4 cells, with `aimed-nearest`, with `aimed` and with `aimed-around`; all of the middle 128² of
-/// each field.
+/// ln of the geometry's error over that of lines one cell apart with `aimed-nearest`: for 4, 2, 1,
+/// 1/2, 1/4 cells, with `aimed-nearest`, with `aimed` and with `aimed-around`; all of the middle
+/// 128² of each field.
 pub(super) const GEOMETRY: [[f64; 5]; 3] = [
     [1.312, 0.598, 0.000, -0.396, -0.529],
     [1.078, 0.347, -0.389, -0.604, -0.649],

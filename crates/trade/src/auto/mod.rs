@@ -1,9 +1,9 @@
-//! The cheapest settings that hold an error, or the most accurate within a time. Pure but for the
-//! oracle on the processor: the caller draws, and traces bounced light, [`Probes`] judge, [`Chooser`] says what to draw
-//! next; [`choose`] is all three.
+//! The fastest settings within an error, or the most accurate within a time.
 //!
-//! [`Statistics`] of the scene give a first guess of each part of the error ([`Model`]); every frame
-//! that is measured corrects the guess, and the costs.
+//! Pure except for the oracle on the CPU. The caller renders and traces bounced light, [`Probes`]
+//! measure errors, [`Chooser`] selects what to render next; [`choose`] combines all three.
+//! [`Statistics`] of the scene give a first guess of each part of the error ([`Model`]); every
+//! measured frame corrects it, and the costs.
 
 mod bounced;
 mod candidates;

@@ -1,28 +1,28 @@
-//! What errors and costs are expected of settings: a first guess from fitted numbers, corrected by
-//! every frame that is measured.
+//! Expected errors and costs of settings: a first guess from fitted numbers, corrected by every
+//! measured frame.
 
 use super::bounced::{self, BouncedLight};
 use super::fitted::{FITTED, GEOMETRY};
 use super::statistics::Statistics;
 use ridgelight::scene::{Fuse, Lines, Method, Quality, Scene};
 
-/// Logarithms of a scene's statistics that the parts are fitted on.
+/// Logarithms of a scene's statistics, the features of the fit.
 pub const FEATURES: usize = 8;
 
-/// A part of the error, which one kind of setting makes. Their squares add up.
+/// A part of the error, caused by one kind of setting. Their squares add up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Lines and fuse: horizons.
+    /// Horizons: lines and fuse.
     Geometry,
     /// Azimuths: of sky and environment.
     Azimuths,
     /// Elevations of an environment's table.
     Table,
-    /// Slices of a sun's disc, of a key light or of a ball of light.
+    /// Slices of a sun's disc, of a key light or of a sphere light.
     Strips,
 }
 
-/// All, in the order of what is fitted.
+/// All parts, in the order of the fit.
 pub const PARTS: [Part; 4] = [Part::Geometry, Part::Azimuths, Part::Table, Part::Strips];
 
 /// ln error = bias + weights · features - power · ln(setting / its default).
@@ -30,13 +30,13 @@ pub(super) struct Fitted {
     pub bias: f64,
     pub weights: [f64; FEATURES],
     pub power: f64,
-    /// Standard deviation of what is left, in ln.
+    /// Standard deviation of the residual, in ln.
     pub spread: f64,
 }
 
 impl Part {
-    /// ln of how much finer than the default a setting is, in the part's own measure: the error's ln
-    /// falls by it times a fitted power.
+    /// ln of how much finer than the default a setting is, in the part's own measure. ln of the
+    /// error falls by this times a fitted power.
     pub fn fineness(self, quality: &Quality) -> f64 {
         let finer = |value: u32, default: u32| (f64::from(value) / f64::from(default)).ln();
         match self {
@@ -50,13 +50,13 @@ impl Part {
         }
     }
 
-    /// Whether a scene has it.
+    /// Whether a scene has this part.
     pub fn is_in(self, scene: &Scene) -> bool {
         let lights = &scene.lights;
         match self {
             Part::Geometry => {
                 let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
-                Part::Azimuths.is_in(scene) || !are_none_aimed || lights.spheres.is_empty()
+                Part::Azimuths.is_in(scene) || !are_none_aimed || lights.sphere_lights.is_empty()
             }
             Part::Azimuths => {
                 lights.sky.is_some_and(|s| s != [0.0; 3]) || lights.environment.is_some()
@@ -67,10 +67,10 @@ impl Part {
     }
 }
 
-/// Of exact horizons: what f32 leaves of the geometry's error, e⁻¹².
+/// For exact horizons: what f32 leaves of the geometry's error, e⁻¹².
 const EXACT_FINENESS: f64 = 12.0;
 
-/// Place of a fuse among those that are chosen from.
+/// Index of a fuse among the candidates.
 pub(super) fn fuse_row(fuse: Fuse) -> usize {
     match fuse {
         Fuse::Aimed => 1,
@@ -79,10 +79,10 @@ pub(super) fn fuse_row(fuse: Fuse) -> usize {
     }
 }
 
-/// Number of the spacing of lines, from 4 cells to a quarter; then exact horizons.
+/// Index of the line spacing, from 4 cells to a quarter; then exact horizons.
 pub(super) fn spacing(quality: &Quality) -> usize {
     match quality.lines {
-        _ if quality.method == Method::Brute => 5,
+        _ if quality.method == Method::BruteForce => 5,
         Lines::FourCells => 0,
         Lines::TwoCells => 1,
         Lines::Cell => 2,
@@ -92,20 +92,21 @@ pub(super) fn spacing(quality: &Quality) -> usize {
     }
 }
 
-/// An error expected of settings that were not measured.
+/// Expected error of settings that were not measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Relative RMSE.
     pub error: f64,
-    /// A standard deviation in ln, as a factor of 1 or more: before frames are measured that of the scenes
-    /// that were fitted, by which others' is underestimated.
+    /// A standard deviation in ln, as a factor of at least 1. Before any measurement it is that of
+    /// the fitted scenes, which underestimates that of others.
     pub factor: f64,
 }
 
-/// Those of direct light, then those of bounces.
+/// Parts of direct light, then those of bounces.
 const ALL: usize = PARTS.len() + bounced::PARTS;
 
-/// Errors by settings: each part's ln with its variance, an iterated extended Kalman filter over frames.
+/// Errors by settings: each part's ln with its variance, an iterated extended Kalman filter over
+/// frames.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// ln of each part at the defaults, none where the scene does not have it.
@@ -115,7 +116,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The fitted guess for a scene with so many bounces.
+    /// The fitted guess for a scene with this many bounces.
     pub fn of(scene: &Scene, statistics: &Statistics, bounces: u32) -> Self {
         let features = statistics.features();
         let bounced = (bounces > 0).then(|| BouncedLight::of(scene, statistics));
@@ -127,7 +128,7 @@ impl Model {
         for (i, (part, fitted)) in PARTS.iter().zip(&FITTED).enumerate() {
             if part.is_in(scene) {
                 let sum: f64 = fitted.weights.iter().zip(features).map(|(w, x)| w * x).sum();
-                // No part was ever seen beyond these: a guess outside them is one of the fit's line.
+                // No part was measured beyond these: a guess outside them extrapolates the fit.
                 model.logs[i] = Some((fitted.bias + sum).clamp(1e-6_f64.ln(), 0.0));
                 model.covariance[i][i] = fitted.spread.powi(2);
             }
@@ -163,22 +164,22 @@ impl Model {
         (with.iter().zip(shares).map(|(c, s): (&f64, &f64)| c * s).sum(), with)
     }
 
-    /// What is expected of settings.
+    /// Expected error of settings.
     pub fn expected(&self, quality: &Quality) -> Expected {
         let (shares, sum) = self.shares(quality);
         Expected { error: sum.sqrt(), factor: self.variance(&shares).0.max(0.0).sqrt().exp() }
     }
 
-    /// Takes a measured relative RMSE in; `spread` is the standard deviation of its ln.
+    /// Adds a measured relative RMSE; `spread` is the standard deviation of its ln.
     ///
     /// The parts' ln θ move to θ₀ + K (ln measured - ln expected(θ) - hᵀ(θ₀ - θ)) with K = P h /
-    /// (hᵀP h + R), h the shares at θ, taken anew until θ stays (the iterated extended Kalman filter,
-    /// Bell & Cathey 1993; by halves, as one step goes far beyond where a small part becomes the
-    /// largest); P falls by K hᵀP. Below 1e-6 no frame of f32 tells errors apart.
+    /// (hᵀP h + R), h the shares at θ, recomputed until θ converges (the iterated extended Kalman
+    /// filter, Bell & Cathey 1993; with halved steps, as one step overshoots where a small part
+    /// becomes the largest). P falls by K hᵀP. Below 1e-6 f32 frames do not resolve errors.
     pub fn learn(&mut self, quality: &Quality, error: f64, spread: f64) {
         let before = self.logs;
         let told = error.max(1e-6).ln();
-        // Squares of parts with fitted powers are themselves a tenth off or so.
+        // Squares of parts with fitted powers have an error of about a tenth themselves.
         let noise = spread.powi(2) + 0.1_f64.powi(2);
         for _ in 0..STEPS {
             let (shares, sum) = self.shares(quality);
@@ -206,13 +207,13 @@ impl Model {
     }
 }
 
-/// Of the filter: halves of a step, 2⁻²⁰ of which is nothing.
+/// Of the filter: halvings of a step, 2⁻²⁰ of which is negligible.
 const STEPS: usize = 20;
 
-/// Nanoseconds of each kind of pass: an overhead, and so many for a unit of its work.
+/// Nanoseconds of each kind of pass: an overhead, and a time per unit of its work.
 ///
-/// Work is in proportion to azimuths: relative costs by spacing and fuse are lavapipe's (README's tables
-/// of accuracy and of forms, ms an azimuth and megasample), and measured frames set each kind's own
+/// Work is proportional to azimuths. Relative costs by spacing and fuse are lavapipe's (README's
+/// tables of accuracy and of forms, ms per azimuth and megatexel); measured frames set each kind's
 /// scale.
 #[derive(Clone, Debug)]
 pub struct Costs {
@@ -223,25 +224,26 @@ pub struct Costs {
     seen: [Vec<[f64; 2]>; KINDS],
 }
 
-/// Sweeps along lines, exact horizons, shading, tables, balls of light, all else; bounces by each engine.
+/// Sweeps along lines, exact horizons, shading, tables, sphere lights, all else; bounces by each
+/// engine.
 const KINDS: usize = 6 + bounced::ENGINES.len();
 
 const SWEEP: [f64; 5] = [0.9, 1.65, 2.15, 6.3, 12.7];
-/// Lines through all samples: the more azimuths to a side, the longer the grid vectors near them and the
-/// shorter the lines. Second: in proportion to azimuths over side.
+/// Lines through all grid points: the more azimuths per side, the longer the grid vectors near them
+/// and the shorter the lines. Second: proportional to azimuths over side.
 const EXACT: [f64; 2] = [130.0, 480.0];
-/// In proportion to the side.
+/// Proportional to the side.
 const BRUTE: f64 = 4.7;
 const SHADE: [[f64; 6]; 3] = [
     [2.16, 2.16, 2.46, 2.91, 4.22, 2.12],
     [3.2, 3.35, 3.39, 3.97, 5.35, 2.12],
     [40.0, 37.0, 35.0, 33.0, 35.0, 2.12],
 ];
-/// A slice of a ball of light, on a fractal field of 512².
+/// A slice of a sphere light, on a fractal field of 512².
 const SLICE: f64 = 200.0;
 
 impl Costs {
-    /// lavapipe's, before anything is measured, for so many samples.
+    /// lavapipe's costs, before any measurement, for this many texels.
     pub fn guessed(samples: usize) -> Self {
         let samples = samples as f64;
         // Tables: README's 2.2 ms for 64 azimuths of 512 elevations.
@@ -266,23 +268,23 @@ impl Costs {
         let side = scene.field.rows().max(scene.field.cols()) as f64;
         let [sweep, exact] = match SWEEP.get(spacing) {
             Some(each) => [*each, 0.0],
-            None if quality.method == Method::Brute => [0.0, BRUTE * side],
+            None if quality.method == Method::BruteForce => [0.0, BRUTE * side],
             None => [0.0, EXACT[0] + EXACT[1] * all / side],
         };
         let shade = SHADE[fuse_row(quality.fuse)][spacing];
-        let balls = f64::from(quality.sun_azimuths) * scene.lights.spheres.len() as f64;
+        let balls = f64::from(quality.sun_azimuths) * scene.lights.sphere_lights.len() as f64;
         let [walk, march, gather] = bounced::work(scene, quality);
         [all * sweep, all * exact, all * shade, table, balls * SLICE, 1.0, walk, march, gather]
     }
 
-    /// Nanoseconds that a frame will take.
+    /// Expected nanoseconds of a frame.
     pub fn expected_ns(&self, scene: &Scene, quality: &Quality) -> f64 {
         let work = Self::work(scene, quality);
         let each = work.iter().zip(self.overheads_ns).zip(self.units_ns);
         each.filter(|((w, _), _)| **w > 0.0).map(|((w, overhead), unit)| overhead + w * unit).sum()
     }
 
-    /// Takes a measured frame in: nanoseconds by label of the pass.
+    /// Adds a measured frame: nanoseconds by pass label.
     pub fn learn(&mut self, scene: &Scene, quality: &Quality, passes: &[(String, f64)]) {
         let mut sums = [0.0; KINDS];
         let engine = bounced::engine(quality);
@@ -308,11 +310,11 @@ impl Costs {
     }
 }
 
-/// Shorter times are as uncertain: a microsecond, some devices' step of time.
+/// Shorter times are as uncertain: a microsecond, some devices' timestamp period.
 const TICK_NS: f64 = 1e3;
 
-/// [a, b] of y ≈ a + b x with the least squares of relative errors, neither below 0: where the free line
-/// has one below, that is 0. Of one x all is b's.
+/// [a, b] of y ≈ a + b x with the least squares of relative errors, neither below 0: a negative one
+/// is set to 0. For a single x, b takes everything.
 fn line(points: &[[f64; 2]]) -> [f64; 2] {
     let (mut s, mut sx, mut sxx, mut sy, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for [x, y] in points {

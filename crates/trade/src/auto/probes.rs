@@ -9,51 +9,50 @@ const FEWEST: usize = 64;
 const MOST: usize = 1000;
 /// Cells that the oracle's rays may cross: some seconds of one core.
 const CELLS: usize = 1 << 29;
-/// Probes that tell how far the oracle itself is off.
+/// Probes that measure the oracle's own error.
 const SELVES: usize = 64;
-/// Samples about a difference of pictures in which others' errors are expected, too: a shadow of 40 cells
-/// moves its edge by so much for the 3° of 64 azimuths.
+/// Radius about a difference of pictures, in texels, within which other settings' errors are
+/// expected: a shadow of 40 cells moves its edge by this much for the 3° of 64 azimuths.
 const REACH: usize = 2;
 
-/// Samples all over a field, and their light by the f64 oracle.
+/// Texels spread over a field, and their radiance by the f64 oracle.
 #[derive(Clone, Debug)]
 pub struct Probes {
     is_whole: bool,
     places: Vec<usize>,
-    /// 1 / (count · chance of the place): 1 where all are as likely.
+    /// 1 / (count · probability of the texel): 1 where all have the same probability.
     factors: Vec<f64>,
     light: Vec<[f64; 3]>,
-    /// Variance of each light's paths, mean of the channels; 0 of direct light.
+    /// Variance of the path-traced part, mean of the channels; 0 without bounces.
     noise: Vec<f64>,
-    /// Root mean square by which the oracle's light is off that of half its rays, and of light that no path may have
-    /// met.
+    /// Root mean square error of the oracle: its difference to half its rays, and unsampled light.
     off: f64,
 }
 
-/// Bounced light of a sample by light paths.
+/// Path-traced bounced light of a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traced {
-    /// Exit radiance, linear RGB, of what has been reflected at least once before.
+    /// Exit radiance, linear RGB, after at least one earlier reflection.
     pub mean: [f64; 3],
-    /// Of the mean, by the spread of independent batches of paths.
+    /// Of the mean, from independent batches of paths.
     pub standard_error: [f64; 3],
 }
 
-/// A relative RMSE as probes tell it.
+/// A relative RMSE measured at probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The estimate: RMSE over all samples and channels, over the mean of the truth.
+    /// The estimate: RMSE over all texels and channels, over the mean of the ground truth.
     pub error: f64,
-    /// It is no more than this: see [`Probes::error`].
+    /// Upper bound: see [`Probes::error`].
     pub at_most: f64,
 }
 
 impl Measured {
-    /// Of what was not yet judged, or holds values beyond f32.
+    /// Not yet measured, or with values beyond f32.
     pub(super) const UNKNOWN: Self = Self { error: f64::INFINITY, at_most: f64::INFINITY };
 }
 
-/// A mean square with its bound, and the mean of the truth.
+/// A mean square with its bound, and the mean of the ground truth.
 #[derive(Clone, Copy)]
 struct Square {
     estimate: f64,
@@ -62,32 +61,35 @@ struct Square {
 }
 
 impl Probes {
-    /// One-sided, by the normal approximation of a mean of 64 or more, corrected for its skewness (Chen
-    /// 1995).
+    /// One-sided, by the normal approximation of a mean of 64 or more, corrected for its skewness
+    /// (Chen 1995).
     pub const CONFIDENCE: f64 = 0.95;
 
-    /// Deviations of the normal distribution that 5 % lie beyond: of a bound that is looked at once.
+    /// Standard normal deviate with 5 % beyond: for a single bound.
     pub const ONE_LOOK: f64 = 1.645;
 
-    /// That 5 %/4 lie beyond: four bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
+    /// With 5 %/4 beyond: four bounds hold together with [`CONFIDENCE`](Self::CONFIDENCE)
     /// (Bonferroni).
     pub const FOUR_LOOKS: f64 = 2.241;
 
-    /// That 5 %/8 lie beyond: with bounces, each of four looks may miss by its probes or by light that no path has met
-    /// ([`CHANCE_OF_UNMET`](Self::CHANCE_OF_UNMET)), and eight bounds hold together.
+    /// With 5 %/8 beyond: with bounces each of four bounds may fail by its probes or by unsampled
+    /// light ([`UNSAMPLED_PROBABILITY`](Self::UNSAMPLED_PROBABILITY)), so eight bounds hold
+    /// together.
     pub const EACH_OF_FOUR_LOOKS: f64 = 2.498;
 
-    /// Of more light being left unmet than is said, in one of four looks: the other 5 %/8.
+    /// Probability that more light is unsampled than estimated, for one of four bounds: the other 5
+    /// %/8.
     pub const CHANCE_OF_UNMET: f64 = (1.0 - Self::CONFIDENCE) / 8.0;
 
-    /// So many samples without void, or all; the same `seed`, number and chances give the same samples. On
-    /// all cores.
+    /// `wanted` texels without void, or all. The same `seed`, count and probabilities give the same
+    /// texels. Runs on all cores.
     ///
-    /// `unsure`, of each sample how far pictures of it lie apart ([`apart`]), draws half of the probes to
-    /// where errors are: shadows' edges are few samples with nearly all of the error. Empty: all alike.
+    /// `unsure`, the difference of pictures at each texel ([`apart`]), directs half of the probes
+    /// to where errors are: few texels at shadow edges have nearly all of the error. Empty:
+    /// uniform.
     ///
     /// # Errors
-    /// A field of voids alone.
+    /// A field of voids only.
     pub fn of(scene: &Scene, wanted: usize, seed: u64, unsure: &[f64]) -> Result<Self> {
         let field = &scene.field;
         let known: Vec<usize> = (0..field.rows() * field.cols())
@@ -115,16 +117,16 @@ impl Probes {
         Ok(Self { is_whole: places.len() == known.len(), places, factors, light, noise, off })
     }
 
-    /// Where they are: samples by their place, row-major; some may be there twice.
+    /// Row-major indices of the texels; some may occur twice.
     pub fn places(&self) -> &[usize] {
         &self.places
     }
 
-    /// Adds what paths know of bounced light to that of the oracle, `unmet` by which light that no path has met may
-    /// be off in each channel, root mean square.
+    /// Adds path-traced bounced light to the oracle's. `unsampled` is the root mean square error of
+    /// each channel from light that no path has sampled.
     ///
     /// # Panics
-    /// Of another number of samples.
+    /// Another number of texels.
     pub fn add_bounced(&mut self, traced: &[Traced], unmet: [f64; 3]) {
         assert_eq!(traced.len(), self.len(), "one a probe");
         for ((light, noise), more) in self.light.iter_mut().zip(&mut self.noise).zip(traced) {
@@ -135,9 +137,10 @@ impl Probes {
         self.off = (self.off.powi(2) + unmet).sqrt();
     }
 
-    /// Relative RMSE that the chance of paths alone may add to the bound, so many `deviations` above, of a picture that
-    /// is off by a relative `error` everywhere: the bound is the root of the sum of both squares. Of `count` probes
-    /// like these whose paths leave a `share` of these' variance.
+    /// Relative RMSE that Monte Carlo noise alone may add to the bound, at this many `deviations`,
+    /// for a picture with a uniform relative `error`. The bound is the root of the sum of both
+    /// squares. For `count` probes like these, whose paths leave a `share` of these probes'
+    /// variance.
     pub fn chance(&self, error: f64, share: f64, count: usize, deviations: f64) -> f64 {
         let square = (error * self.mean()).powi(2);
         let each = self.noise.iter().zip(&self.factors);
@@ -145,19 +148,19 @@ impl Probes {
         self.relative(deviations * (sum / self.len() as f64 / count as f64).sqrt())
     }
 
-    /// Mean of the light.
+    /// Mean radiance.
     fn mean(&self) -> f64 {
         let each = self.light.iter().zip(&self.factors);
         let sum: f64 = each.map(|(l, f)| f * l.iter().sum::<f64>() / 3.0).sum();
         (sum / self.len() as f64).abs()
     }
 
-    /// The root of a mean square over the mean of the light.
+    /// The root of a mean square over the mean radiance.
     fn relative(&self, square: f64) -> f64 {
         if square == 0.0 { 0.0 } else { square.sqrt() / self.mean() }
     }
 
-    /// Takes others in, of another seed and by the same `unsure`; nothing where all samples are known.
+    /// Adds probes of another seed and the same `unsure`; nothing where all texels are known.
     pub fn extend(&mut self, others: &Self) {
         if self.is_whole {
             return;
@@ -174,54 +177,56 @@ impl Probes {
         self.noise.extend(&others.noise);
     }
 
-    /// How many to take so that they cost some seconds of one core: 64 to 1000, fewer the larger the field.
+    /// Number of probes for some seconds of one core: 64 to 1000, fewer for larger fields.
     pub fn affordable(scene: &Scene) -> usize {
         let side = scene.field.rows().max(scene.field.cols());
-        // Rays over a field that repeats may go on through that many periods.
+        // Rays over a periodic field may continue through that many periods.
         let periods = if scene.surface.border == Border::Periodic { PERIOD_CAP } else { 1 };
         (CELLS / (Lit::of(scene).rays() * side * periods).max(1)).clamp(FEWEST, MOST)
     }
 
-    /// By how much the oracle's light may be off itself, over the mean of it.
+    /// The oracle's own error, over the mean radiance.
     pub fn own_error(&self) -> f64 {
         self.relative(self.off.powi(2))
     }
 
-    /// By how much more it may be off than that of the `same` probes before [`add_bounced`](Self::add_bounced): by light
-    /// that no path has met, over the mean of all light.
+    /// The part of the own error that [`add_bounced`](Self::add_bounced) has added since the `same`
+    /// probes: unsampled light, over the mean radiance.
     pub(super) fn off_since(&self, same: &Self) -> f64 {
-        // Below 0 by rounding alone: each is added to the square.
+        // Below 0 by rounding only: both are sums of squares.
         self.relative((self.off.powi(2) - same.off.powi(2)).max(0.0))
     }
 
-    /// How many there are.
+    /// Number of probes.
     pub fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// Whether they are all samples without void.
+    /// Whether they are all texels without void.
     pub fn is_whole(&self) -> bool {
         self.is_whole
     }
 
-    /// Never: a field of voids alone has none to give.
+    /// Always false: a field of voids only has no probes.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids; its bound
-    /// lies so many `deviations` above, and by how far the oracle is off by itself: as far as by half of
-    /// its rays, as errors fall with their number or faster.
+    /// The relative RMSE of a picture: planes of one or three channels, row-major, NaN at voids.
+    /// Its bound lies `deviations` standard deviations above, plus the oracle's own error: its
+    /// difference to half its rays, as errors fall at least in proportion to their number.
     ///
-    /// A `control` is a better picture of the same scene, of which all samples are known: with T, C and
-    /// L for picture, control and truth, mean (T-L)² = mean of (T-C)² over all samples + mean of
-    /// (T-L)² - (T-C)² over the probes (the difference estimator, Cochran 1977 §7.9 with slope 1), each by
-    /// its chance (Hansen & Hurwitz 1943). The nearer the control is to the truth, the less is left to
-    /// chance. Without one the picture is its own: so too where the probes find the control worse,
-    /// or where the sum, a difference, is no square.
+    /// A `control` is a better picture of the same scene, known at all texels. With T, C and L for
+    /// picture, control and ground truth, mean (T-L)² = mean of (T-C)² over all texels + mean of
+    /// (T-L)² - (T-C)² over the probes (the difference estimator, Cochran 1977 §7.9 with slope 1),
+    /// each weighted by its probability (Hansen & Hurwitz 1943). The closer the control is to the
+    /// ground truth, the smaller the sampling error. The picture is its own control where none is
+    /// given, where the probes find the control worse, or where the sum, a difference, is not
+    /// positive.
     ///
-    /// Where L wavers, as bounced light by paths does, its variance is in (T-L)² and is taken off: the mean is right,
-    /// its own spread over the probes is in the bound, and an estimate that comes out below 0 is told as 0.
+    /// Path-traced bounced light makes L noisy. Its variance is subtracted from (T-L)²: the mean is
+    /// unbiased, its spread over the probes is in the bound, and an estimate below 0 is reported as
+    /// 0.
     pub fn error(
         &self,
         picture: &[Vec<f32>],
@@ -242,7 +247,7 @@ impl Probes {
         let off = relative(self.off.powi(2));
         let [error, at_most] = [square.estimate, square.at_most].map(|s| relative(s.max(0.0)));
         let measured = Measured { error, at_most: at_most + off };
-        // Of a picture with values beyond f32 nothing is known.
+        // Nothing is known of a picture with values beyond f32.
         if measured.at_most.is_finite() { measured } else { Measured::UNKNOWN }
     }
 
@@ -277,7 +282,7 @@ impl Probes {
         let mean_rest = rest.iter().sum::<f64>() / count;
         let variance =
             rest.iter().map(|r| (r - mean_rest).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-        // Of a field that is probed whole nothing but the paths is left to chance.
+        // Where every texel is a probe only the path tracing is random.
         let variance = if self.is_whole { wavering / count } else { variance };
         let deviation = (variance / count).sqrt();
         let cubes = rest.iter().map(|r| (r - mean_rest).powi(3)).sum::<f64>() / count;
@@ -290,20 +295,20 @@ impl Probes {
     }
 }
 
-/// Variance of (d + ε)² - s², of d² and the variance of ε, of channels that waver together: 4 d² ε² + 2 ε⁴, and 2 ε⁴ of
-/// s², its estimate, which is as much as two batches leave of it.
+/// Variance of (d + ε)² - s², for d² and the variance of ε, of fully correlated channels: 4 d² ε² +
+/// 2 ε⁴, and 2 ε⁴ of s², its estimate, as two batches leave it.
 fn wavering(square: f64, noise: f64) -> f64 {
     4.0 * (square * noise + noise.powi(2))
 }
 
-/// Deviations from a mean of so many values to its bound: z, more where few values are large (Chen 1995,
-/// eq. for upper-tailed tests of positively skewed means).
+/// Standard deviations from a mean of `count` values to its bound: z, more for a skewed
+/// distribution (Chen 1995, eq. for upper-tailed tests of positively skewed means).
 fn quantile(z: f64, skew: f64, count: f64) -> f64 {
     let a = skew.max(0.0) / (6.0 * count.sqrt());
     z + a * (1.0 + 2.0 * z * z) + 4.0 * a * a * (z + 2.0 * z.powi(3))
 }
 
-/// Light of samples, on all cores.
+/// Radiance of texels, on all cores.
 fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
@@ -317,7 +322,7 @@ fn lights(lit: &Lit<'_>, cols: usize, places: &[usize]) -> Vec<[f64; 3]> {
     })
 }
 
-/// How far two pictures of a scene lie apart at each sample, the farthest within 2 samples.
+/// Difference of two pictures at each texel, the largest within 2 texels.
 pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
     let last = |planes: &[Vec<f32>], c: usize, i: usize| planes[c.min(planes.len() - 1)][i];
     let count = a[0].len();
@@ -334,9 +339,9 @@ pub fn apart(a: &[Vec<f32>], b: &[Vec<f32>], cols: usize) -> Vec<f64> {
     (0..count).map(|i| farthest(&along, i, i / cols, count / cols, cols)).collect()
 }
 
-/// `wanted` of the weights' places, half by weight and half by number alone, one in each of as many equal
-/// parts of the chances in reading order, within a part by chance; and 1 / (number · chance) of each.
-/// All once where all are wanted.
+/// `wanted` of the weights' indices: half of the probability by weight and half uniform, stratified
+/// into `wanted` equal parts in reading order; and 1 / (count · probability) of each. All once
+/// where all are wanted.
 fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     let count = weights.len();
     if wanted >= count {
@@ -344,7 +349,7 @@ fn picks(weights: &[f64], wanted: usize, seed: u64) -> (Vec<usize>, Vec<f64>) {
     }
     let chance = |k: u64| unit(mixed(seed.wrapping_add((k + 1).wrapping_mul(STEP))));
     let sum: f64 = weights.iter().sum();
-    // In units of the mean chance.
+    // In units of the mean probability.
     let of = |i: usize| {
         if sum > 0.0 { 0.5 + 0.5 * weights[i] / sum * count as f64 } else { 1.0 }
     };

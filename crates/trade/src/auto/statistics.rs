@@ -4,38 +4,37 @@ use ridgelight_cpu::light;
 use ridgelight_cpu::oracle::Oracle;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Samples that what is hidden is averaged over; columns and rows of the map of lights there.
+/// Texels over which the occluded light is averaged; columns and rows of the map of lights there.
 const PLACES: usize = 128;
 const COLUMNS: usize = 64;
 const ROWS: usize = 16;
-/// Samples between which the slopes of the large forms are taken.
+/// Distance, in texels, of the slopes of the large forms.
 const FAR: usize = 8;
 
-/// What of a scene decides how hard it is to light.
+/// Statistics that predict the difficulty of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Root mean square of the light that the field keeps out over the mean of what it lets in, 0 or
-    /// more.
+    /// Root mean square of the occluded light over the mean of the unoccluded, 0 or more.
     pub hidden: f64,
-    /// Root mean square of the slopes between neighbouring samples, rise over run.
+    /// Root mean square slope between neighbouring grid points, rise over run.
     pub slope: f64,
-    /// That over the same between samples 8 apart: the share of fine forms in the spectrum.
+    /// The same over that between grid points 8 apart: the share of fine forms in the spectrum.
     pub roughness: f64,
-    /// Highest less lowest sample over the longer side.
+    /// Highest less lowest height over the longer side.
     pub relief: f64,
-    /// Standard deviation over azimuth of what the environment gives to level ground, over the mean of
-    /// what all lights give.
+    /// Standard deviation over azimuth of the environment's light on level ground, over the mean of
+    /// all lights.
     pub azimuth_contrast: f64,
     /// The same over elevation.
     pub elevation_contrast: f64,
-    /// Share of the suns and key lights in what all lights give to free level ground, [0..1].
+    /// Share of the suns and key lights in all light on unoccluded level ground, [0..1].
     pub sun_share: f64,
     /// Mean angular diameter of the suns and width of the key lights, radians; 0 without.
     pub sun_diameter_rad: f64,
 }
 
 impl Statistics {
-    /// Looks at all heights and texels once, and along 64 azimuths from 128 samples.
+    /// Reads all heights and texels once, and traces 64 azimuths from 128 grid points.
     pub fn of(scene: &Scene) -> Self {
         let field = &scene.field;
         let slope = slope(field, 1);
@@ -68,7 +67,7 @@ impl Statistics {
         }
     }
 
-    /// As the model takes them: logarithms, of order 1.
+    /// Features for the model: logarithms, of order 1.
     pub fn features(&self) -> [f64; FEATURES] {
         let ln = |x: f64| x.clamp(1e-4, 1e4).ln();
         [
@@ -84,8 +83,8 @@ impl Statistics {
     }
 }
 
-/// Root mean square of the light that the field keeps out over the mean of what it lets in, by horizons
-/// in the middles of a coarse map's columns.
+/// Root mean square of the occluded light over the mean of the unoccluded, by horizons at the
+/// centres of a coarse map's columns.
 fn hidden(scene: &Scene) -> f64 {
     let (field, border) = (&scene.field, scene.surface.border);
     let (oracle, map) = (Oracle::new(field, border), radiance(&scene.lights));
@@ -116,9 +115,9 @@ fn hidden(scene: &Scene) -> f64 {
     if squares > 0.0 { squares.sqrt() / sum.max(f64::MIN_POSITIVE) } else { 0.0 }
 }
 
-/// Radiance of all lights above horizontal, mean of the colours: columns counter-clockwise from east,
-/// rows of each up from horizontal. A sun fills the place that its middle is in, a key light its share of
-/// each.
+/// Radiance of all lights above horizontal, mean of the colours: columns counter-clockwise from
+/// east, rows of each up from horizontal. A sun fills the cell of its centre, a key light its share
+/// of each.
 fn radiance(lights: &Lights) -> Vec<f64> {
     let sky = lights.sky.map_or(0.0, grey);
     let mut map = vec![sky; COLUMNS * ROWS];
@@ -152,7 +151,7 @@ fn radiance(lights: &Lights) -> Vec<f64> {
                 let [begins, ends] = [at, at + 1].map(|at| cell * at as f64);
                 ((ends.min(to) - begins.max(from)) / cell).max(0.0)
             };
-            // One that goes on past east is met a second time from there.
+            // A light that crosses east is counted again from there.
             let turns = [0.0, TAU].map(|t| [first - t, first - t + key.width_rad]);
             let across: f64 = turns.iter().map(|part| share(cell[0], i / ROWS, *part)).sum();
             *radiance += grey(key.radiance) * across * share(cell[1], i % ROWS, [low, high]);
@@ -165,12 +164,13 @@ fn grey(colour: [f32; 3]) -> f64 {
     colour.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0
 }
 
-/// Multiples of the golden ratio's share of the field: no two near each other.
+/// Multiples of the golden ratio's share of the field: no two are close.
 fn golden(k: usize, count: usize) -> usize {
     (((k + 1) as f64 * 0.618_033_988_749_895).fract() * count as f64) as usize
 }
 
-/// Root mean square slope between samples `apart`, along rows and columns; 0 where there are none.
+/// Root mean square slope between grid points `apart`, along rows and columns; 0 where there are
+/// none.
 fn slope(field: &HeightField, apart: usize) -> f64 {
     let (rows, cols, h) = (field.rows(), field.cols(), field.heights_m());
     let [cell_x, cell_y] = field.cell_m().map(|c| c * apart as f64);
@@ -190,17 +190,18 @@ fn slope(field: &HeightField, apart: usize) -> f64 {
     (sum / count.max(1.0)).sqrt()
 }
 
-/// The same, or of a field too small for it another.
+/// The same, or a fallback for a field too small for it.
 fn slope_or(field: &HeightField, apart: usize, other: f64) -> f64 {
     if field.rows().max(field.cols()) > apart { slope(field, apart) } else { other }
 }
 
-/// What an environment gives to level ground of albedo 1, and the standard deviations over azimuth and
-/// over elevation of what each column and each row give, in the same unit.
+/// Light of an environment on level ground of albedo 1, and the standard deviations over azimuth
+/// and over elevation of each column's and each row's light, in the same unit.
 fn contrasts(environment: &Environment) -> [f64; 3] {
     let (width, height) = (environment.width(), environment.height());
     let (mut columns, mut rows) = (vec![0.0; width], Vec::new());
-    // (sin²high - sin²low) of a row sums to 1 over the hemisphere: a constant sky gives its radiance.
+    // (sin²high - sin²low) of a row sums to 1 over the hemisphere: a constant sky gives its
+    // radiance.
     for row in 0..height.div_ceil(2) {
         let edge = |r: usize| (FRAC_PI_2 - PI * r as f64 / height as f64).max(0.0).sin().powi(2);
         let weight = edge(row) - edge(row + 1);
@@ -223,9 +224,9 @@ mod tests {
     use super::*;
     use ridgelight::scene::{KeyLight, Sun, Surface};
 
-    /// A plane rising by 0.5 east: mean square of slopes along rows 0.25, along columns 0; as rough
-    /// near as far. Relief: 15 steps of 0.5 over a side of 16. It hides nothing but from itself, which
-    /// its normal says; a wall in it hides something.
+    /// A plane rising by 0.5 east: mean square of slopes along rows 0.25, along columns 0; the same
+    /// roughness at both scales. Relief: 15 steps of 0.5 over a side of 16. Only its own tangent
+    /// plane occludes it; a wall in it occludes more.
     #[test]
     fn a_ramp_has_the_slope_it_has() {
         let heights: Vec<f64> = (0..256).map(|i| 0.5 * (i % 16) as f64).collect();
@@ -245,9 +246,9 @@ mod tests {
         assert!(of(&walled).hidden > 0.1, "{:?}", of(&walled));
     }
 
-    /// What the map gives to level ground is what the lights do: a sky its radiance, an environment its
-    /// mean (every texel is in one place), a sun irradiance · sin elevation / π as of somewhere in a row of
-    /// 5.6°: within 10 % at 30°.
+    /// The map's light on level ground matches the lights: a sky its radiance, an environment its
+    /// mean (every texel is in one cell), a sun irradiance · sin elevation / π at some elevation in
+    /// a row of 5.6°: within 10 % at 30°.
     #[test]
     fn the_map_of_lights_has_their_light() {
         let texels = (0..64 * 32).map(|i| [i as f32 % 7.0; 3]).collect();
@@ -268,7 +269,7 @@ mod tests {
         let lit = level(Lights { suns: vec![sun], ..none });
         let expected = 4.0 * elevation_rad.sin() / PI;
         assert!((lit / expected - 1.0).abs() < 0.1, "{lit} {expected}");
-        // Over east and whole rows: exactly its light.
+        // Across east and whole rows: exactly its light.
         let rows = FRAC_PI_2 / ROWS as f64;
         let key = KeyLight {
             azimuth_rad: 0.1,
@@ -281,7 +282,7 @@ mod tests {
         assert!((lit / expected - 1.0).abs() < 1e-9, "{lit} {expected}");
     }
 
-    /// Of 8 columns one shines 8: mean 1, standard deviation √7; all rows alike. A sun at 30° of
+    /// One of 8 columns has 8: mean 1, standard deviation √7; all rows are equal. A sun at 30° of
     /// irradiance 2π gives 1, half of all.
     #[test]
     fn an_environment_has_its_contrast() {

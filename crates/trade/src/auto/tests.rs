@@ -1,4 +1,4 @@
-//! Choices on a small field whose pictures the oracle draws: no device, and costs that are made up.
+//! Choices on a small field whose pictures come from the oracle: no device, invented costs.
 
 mod bounces;
 
@@ -26,7 +26,7 @@ fn scene() -> Scene {
     }
 }
 
-/// The sky in so many azimuths, a millisecond each: nothing else changes the picture.
+/// The sky in this many azimuths, a millisecond each: nothing else changes the picture.
 fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
     let oracle = Oracle::new(&scene.field, scene.surface.border);
     let at =
@@ -38,7 +38,7 @@ fn draw(scene: &Scene, quality: &Quality) -> Result<Drawn> {
     })
 }
 
-/// Every sample is a probe; any seed.
+/// Every texel is a probe; any seed.
 const WHOLE: (usize, u64) = (SIDE * SIDE, 7);
 
 fn error(probes: &Probes, picture: &[Vec<f32>], control: Option<&[Vec<f32>]>) -> Measured {
@@ -54,7 +54,7 @@ fn chosen(goal: Goal) -> Result<Chosen> {
     choose(&scene, goal, WHOLE, None, |quality| draw(&scene, quality))
 }
 
-/// All samples are probed, so that nothing is left to chance: what is chosen holds, and half of its
+/// With every texel as a probe nothing is random: the choice reaches the goal, and half of its
 /// azimuths would not.
 #[test]
 fn the_cheapest_that_holds_is_chosen() {
@@ -76,12 +76,12 @@ fn the_cheapest_that_holds_is_chosen() {
 #[test]
 fn what_nothing_reaches_is_refused() {
     for (goal, says) in [
-        (Goal::MaxError(1e-12), ["--max-error 0.000000000001: needs exact light", "half"]),
+        (Goal::MaxError(1e-12), ["`max_error 0.000000000001`: needs exact light", "half"]),
         (
             Goal::MaxError(2e-5),
-            ["--max-error 0.00002: needs more than the 18 frames", "nearest found"],
+            ["`max_error 0.00002`: needs more than the 18 frames", "nearest found"],
         ),
-        (Goal::MaxCost(1e6), ["--time-budget 1: needs 8.00 ms", "the limit is 1 ms"]),
+        (Goal::MaxCost(1e6), ["`time_budget 1`: needs 8.00 ms", "the limit is 1 ms"]),
     ] {
         let error = chosen(goal).unwrap_err();
         assert!(matches!(error, Error::Limit { .. }), "{error}");
@@ -98,8 +98,8 @@ fn what_nothing_reaches_is_refused() {
     assert!(broken.unwrap_err().to_string().contains("lost"));
 }
 
-/// 16 azimuths take 16 ms, 24 take 24: of 20 ms the most is made by 16. A memory that holds no more
-/// than 12 azimuths leaves those.
+/// 16 azimuths take 16 ms, 24 take 24: within 20 ms, 16 are best. A memory for at most 12 azimuths
+/// allows 12.
 #[test]
 fn a_time_budget_is_kept() {
     let found = chosen(Goal::MaxCost(20e6)).unwrap();
@@ -113,8 +113,8 @@ fn a_time_budget_is_kept() {
     assert_eq!(small.unwrap().trial.quality.azimuths, 12);
 }
 
-/// Finer settings are never expected to be less accurate or cheaper; a measured error moves its own
-/// expectation most of the way and makes it surer.
+/// Finer settings are never expected to be less accurate or faster. A measured error moves its own
+/// expectation most of the way and reduces its uncertainty.
 #[test]
 fn expectations_are_monotone_and_learn() {
     let scene = scene();
@@ -135,7 +135,8 @@ fn expectations_are_monotone_and_learn() {
     assert!(after.factor < before.factor);
 }
 
-/// Half a second and 2 ms an azimuth, seen of 8, 64 and 256 azimuths: 128 are expected to take what they would.
+/// Half a second and 2 ms per azimuth, measured at 8, 64 and 256 azimuths: the expectation for 128
+/// is right.
 #[test]
 fn costs_have_an_overhead() {
     let scene = scene();
@@ -150,7 +151,7 @@ fn costs_have_an_overhead() {
     assert!((last / ns(128) - 1.0).abs() < 0.01, "{last}");
 }
 
-/// A device that takes a second an azimuth ends the search before all is drawn, and says so; pilots that
+/// A device that takes a second per azimuth ends the search early, which is reported. Pilots that
 /// do not fit leave no confidence.
 #[test]
 fn what_ends_a_search_and_what_bounds_it_are_said() {
@@ -172,14 +173,14 @@ fn what_ends_a_search_and_what_bounds_it_are_said() {
     }
 }
 
-/// So large that probes are few of its samples.
+/// Large enough that probes are few of its texels.
 const LARGE: usize = 40;
 const SEEDS: u64 = 40;
 
-/// What is stated of a choice, by a few of 1600 samples, holds as often as it says: 95 of 100 seeds, less
-/// three standard deviations of so many. Errors are those of fewer slices of a sun along the slopes of a ridge
-/// that shades the field, none elsewhere; the bare estimate would not do as a bound. Nearly no seed
-/// refuses: an error of 0 is drawn with 128 slices.
+/// The stated bound, from a few of 1600 texels, holds as often as stated: for 95 of 100 seeds, less
+/// three standard deviations of that many. The errors come from fewer slices of a sun along the
+/// slopes of a ridge that shades the field, with none elsewhere; the bare estimate would fail as a
+/// bound. Nearly no seed is refused: 128 slices have an error of 0.
 #[test]
 fn choices_hold_as_often_as_they_say() {
     let sun = Sun { azimuth_rad: 0.3, elevation_rad: 0.6, diameter_rad: 0.3, irradiance: [1.0; 3] };
@@ -227,16 +228,16 @@ fn choices_hold_as_often_as_they_say() {
     assert!((bare as f64) < promised * chosen as f64, "{said}");
 }
 
-/// Lines between samples that hold when first drawn and a tenth off when drawn again, as errors are that
-/// few samples see: exact horizons are chosen in the end, not refused.
+/// Settings with lines reach the goal when first rendered and have an error of a tenth when
+/// rendered again, like errors in few texels: exact horizons are chosen in the end, not refused.
 #[test]
 fn where_all_that_was_chosen_fails_exact_horizons_are_drawn() {
     let scene = scene();
-    let is_exact = |q: &Quality| q.method == Method::Brute || q.lines == Lines::Exact;
+    let is_exact = |q: &Quality| q.method == Method::BruteForce || q.lines == Lines::Exact;
     let mut seen = Vec::new();
     let found = choose(&scene, Goal::MaxError(0.02), WHOLE, None, |quality| {
         let mut drawn = draw(&scene, quality)?;
-        // Exact ones are a hundred times as dear: nothing but their accuracy speaks for them.
+        // Exact ones are a hundred times slower: only their accuracy is in their favour.
         drawn.passes[0].1 *= if is_exact(quality) { 100.0 } else { 1.0 };
         if seen.contains(quality) && !is_exact(quality) {
             drawn.planes[0].iter_mut().for_each(|v| *v *= 1.1);
@@ -249,7 +250,7 @@ fn where_all_that_was_chosen_fails_exact_horizons_are_drawn() {
     assert!(found.trial.measured.at_most <= 0.02, "{found:?}");
 }
 
-/// Whatever a device says that has to do with no setting is not lost.
+/// Device errors unrelated to settings are returned.
 #[test]
 fn what_stands_in_every_settings_way_is_told() {
     let too_long = || Error::Limit {
@@ -261,7 +262,7 @@ fn what_stands_in_every_settings_way_is_told() {
     assert_eq!(refused.unwrap_err().to_string(), too_long().to_string());
 }
 
-/// Pictures beyond f32 are known to hold nothing.
+/// Pictures beyond f32 do not reach a goal.
 #[test]
 fn pictures_of_infinities_are_not_chosen() {
     let scene = scene();
@@ -273,9 +274,9 @@ fn pictures_of_infinities_are_not_chosen() {
     assert!(matches!(refused.unwrap_err(), Error::Limit { .. }));
 }
 
-/// 64 azimuths are 0.075 % off, 8 azimuths along lines four cells apart 1.3 % (as two peaks were): no
-/// azimuths of the model are then thought worse than what was measured of fewer, and exact horizons in
-/// 1024 azimuths still better than 64 were.
+/// 64 azimuths have an error of 0.075 %, 8 azimuths along lines four cells apart 1.3 % (as measured
+/// on two peaks). The model then expects no azimuths to be worse than a measurement with fewer, and
+/// 1024 azimuths with exact horizons to be better than 64.
 #[test]
 fn one_bad_frame_does_not_spoil_the_others() {
     let scene = scene();
@@ -284,12 +285,13 @@ fn one_bad_frame_does_not_spoil_the_others() {
     model.learn(&Quality::default(), 0.00075, 0.0);
     model.learn(&rough, 0.0133, 0.0);
     assert!((model.expected(&rough).error / 0.0133).ln().abs() < 0.3, "{model:?}");
-    let fine = Quality { azimuths: 1024, method: Method::Brute, ..Quality::default() };
+    let fine = Quality { azimuths: 1024, method: Method::BruteForce, ..Quality::default() };
     assert!(model.expected(&fine).error < 0.00075, "{model:?}");
 }
 
-/// Of a picture a tenth too bright everywhere: RMSE a tenth of the root mean square of the light. By 64
-/// of 144 probes the control leaves less to chance, and does not move the estimate beyond its bound.
+/// A picture a tenth too bright everywhere: RMSE a tenth of the root mean square of the light. With
+/// 64 of 144 probes the control reduces the sampling error, and does not move the estimate beyond
+/// its bound.
 #[test]
 fn probes_see_a_wrong_picture_and_controls_help() {
     let scene = scene();
@@ -310,13 +312,14 @@ fn probes_see_a_wrong_picture_and_controls_help() {
     assert!(alone.at_most > alone.error && truth <= alone.at_most, "{alone:?} {truth}");
     assert!((helped.error / truth - 1.0).abs() < 1e-3, "{helped:?} {truth}");
     assert!(helped.at_most - helped.error < 0.1 * (alone.at_most - alone.error));
-    // A colour that is off is seen beside grey light.
+    // An error in one colour is measured beside grey light.
     let blue = vec![right[0].clone(), right[0].clone(), bright];
     let seen = error(&all, &blue, None).error;
     assert!((seen / expected * 3.0_f64.sqrt() - 1.0).abs() < 1e-3, "{seen}");
 }
 
-/// A sun or a key light needs horizons, whatever balls are there: those look for themselves.
+/// A sun or a key light needs horizons, with or without sphere lights, which compute their own
+/// visibility.
 #[test]
 fn key_lights_beside_balls_have_geometry() {
     use super::Part;
@@ -330,6 +333,6 @@ fn key_lights_beside_balls_have_geometry() {
     let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
     let spheres = vec![ball];
     let of = |lights: Lights| Part::Geometry.is_in(&Scene { lights, ..scene() });
-    assert!(of(Lights { keys: vec![key], spheres: spheres.clone(), ..Lights::default() }));
-    assert!(!of(Lights { spheres, ..Lights::default() }));
+    assert!(of(Lights { keys: vec![key], sphere_lights: spheres.clone(), ..Lights::default() }));
+    assert!(!of(Lights { sphere_lights: spheres, ..Lights::default() }));
 }

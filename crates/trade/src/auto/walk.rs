@@ -1,46 +1,47 @@
-//! Draws, judges, draws again: the whole of a choice, for a caller who can draw.
+//! The whole choice, for a caller that can render: render, measure, render again.
 
 use super::chooser::{Chooser, Goal, Trial};
 use super::model::{Expected, PARTS, Part};
 use super::probes::{Probes, Traced, apart};
 use super::statistics::Statistics;
 use crate::trade::start;
-use ridgelight::plan::{REFERENCE_BATCH, unmet_bounced_error};
+use ridgelight::plan::{REFERENCE_BATCH, unsampled_bounce_error};
 use ridgelight::scene::{
     Basis, Bounces, Fuse, Hull, Levels, LightBasis, Lines, Method, Precision, Quality, Receiver,
     Scene, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 
-/// A frame that was drawn with some settings.
+/// A rendered frame.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// Radiance: one plane or three, row-major, NaN at voids.
     pub planes: Vec<Vec<f32>>,
-    /// Nanoseconds by label of each pass: of a typical draw, not of one that compiles.
+    /// Nanoseconds by pass label: of a typical frame, not of one that compiles.
     pub passes: Vec<(String, f64)>,
 }
 
-/// Settings that reach a goal, and what is known of them.
+/// Settings that reach a goal, with measurements.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    /// The settings; their error by probes that did not choose them; their time, of a frame drawn again.
+    /// The settings; their error by probes that did not choose them; the time of a frame rendered
+    /// again.
     pub trial: Trial,
-    /// The error that the scene's statistics alone had led to expect.
+    /// The error expected from the scene's statistics alone.
     pub expected: Expected,
-    /// How many samples of the oracle tell that error.
+    /// Number of probes of that error.
     pub probes: usize,
-    /// Light paths from each, that tell bounced light; 0 without.
+    /// Paths from each probe, for bounced light; 0 without.
     pub paths: u32,
-    /// Of the bound; none where the first frames did not fit the device, so that probes are spread evenly
-    /// and may miss shadows' edges.
+    /// Of the bound. None where the first frames did not fit the device: probes are then uniform
+    /// and may miss shadow edges.
     pub confidence: Option<f64>,
-    /// All that was drawn, in order, the chosen among it.
+    /// All trials, in order, including the chosen one.
     pub trials: Vec<Trial>,
 }
 
-/// Settings that are drawn first: where their pictures differ most probes are taken. The second are the
-/// defaults.
+/// Settings of the first frames: probes are taken where their pictures differ most. The second are
+/// the defaults.
 const COARSE: Quality = Quality {
     method: Method::Sweep,
     azimuths: 8,
@@ -52,7 +53,7 @@ const COARSE: Quality = Quality {
     precision: Precision::F32,
     hull: Hull::Auto,
     table_elevations: 64,
-    // Of pyramids alone.
+    // For pyramids only.
     level_step: 4,
     level_offset: 2,
     levels: Levels::Stack,
@@ -66,45 +67,47 @@ const COARSE: Quality = Quality {
     bounces: Bounces { azimuths: 8, ..Bounces::NONE },
 };
 
-/// Bounced light that a choice is to hold, too.
+/// Bounced light, which the choice must also get right.
 pub struct Bounced<'t> {
-    /// Times that light may be reflected: [`Bounces::count`], above 0.
+    /// Number of bounces: [`Bounces::count`], above 0.
     pub count: u32,
-    /// Traces bounced light of samples, by their place, in so many batches of paths ([`REFERENCE_BATCH`]) of a seed.
+    /// Traces bounced light of texels, by index, in this many batches of paths
+    /// ([`REFERENCE_BATCH`]) of a seed.
     pub trace: &'t mut Trace<'t>,
 }
 
 /// See [`Bounced::trace`].
 pub type Trace<'t> = dyn FnMut(&[usize], u32, u32) -> Result<Vec<Traced>> + 't;
 
-/// Batches that tell how many are wanted; at most.
+/// Batches of the first estimate; at most.
 const FIRST_BATCHES: u32 = 8;
 const MOST_BATCHES: u32 = 256;
-/// Share of the goal that the chance of paths may be of the bound of what is chosen ([`Probes::chance`]): so much is
-/// wanted, which takes the bound of such an error up by √(1 + 0.4²), 8 %; more, up to √(1 + 0.8²), 28 %, is taken where
-/// [`MOST_BATCHES`] tell no better, and beyond that the goal is refused.
+/// Monte Carlo noise in the bound of the chosen settings, as a share of the goal
+/// ([`Probes::path_noise`]). The target increases the bound of such an error by √(1 + 0.4²), 8 %.
+/// Up to the limit, √(1 + 0.8²), 28 %, is accepted where [`MOST_BATCHES`] do no better; beyond it
+/// the goal is refused.
 const CHANCE_WANTED: f64 = 0.4;
 const CHANCE_AT_MOST: f64 = 0.8;
-/// Share of that which light that no path has met may be.
+/// Unsampled light, as a share of that target.
 const UNMET: f64 = 0.25;
-/// What is wanted of the light where the goal is a time.
+/// The target where the goal is a time.
 const CHANCE_OF_TIMED: f64 = 0.002;
 
-/// Where bounds alone stand in the way probes are added up to so many times the first.
+/// Where only bounds decide, probes are added up to this many times the first.
 const MOST_PROBES: usize = 4;
 
-/// What is chosen is judged once more by probes that had no part in choosing it, so many times the first:
-/// its bound is theirs. Where it does not hold, others are chosen, so many times in all: twice the cheapest,
-/// then what holds by a margin, then exact horizons.
+/// The choice is measured once more by probes that had no part in it, this many times the first;
+/// its bound is theirs. If it misses the goal, others are chosen, this many times in all: twice the
+/// fastest, then settings with a margin, then exact horizons.
 const CONFIRMING_PROBES: usize = 3;
 const CONFIRMATIONS: u64 = 4;
 
-/// Probes, and the pictures that may still be asked for, in the order of what was drawn.
+/// Probes, and the pictures that may still be needed, in the order of rendering.
 struct Judge<'a> {
     scene: &'a Scene,
     bounced: Option<Bounced<'a>>,
     batches: u32,
-    /// Where probes are drawn to, how many at a time, and of which seed the next.
+    /// Where probes concentrate, how many at a time, and the next seed.
     unsure: Vec<f64>,
     step: usize,
     seed: u64,
@@ -149,7 +152,8 @@ impl<'a> Judge<'a> {
         };
         let least = chance(MOST_BATCHES, error);
         if error > 0.0 && least > CHANCE_AT_MOST * error {
-            // The chance grows with the root of the error or less: each step halves what is wrong of the logarithm.
+            // The noise grows at most with the root of the error: each step halves the error of the
+            // logarithm.
             let told = (0..30).fold(error, |e, _| chance(MOST_BATCHES, e) / CHANCE_AT_MOST);
             return Err(Error::Limit {
                 what: format!("a goal of {}", figures(error)),
@@ -162,7 +166,7 @@ impl<'a> Judge<'a> {
                 ),
             });
         }
-        // What was not met falls with the number of paths itself.
+        // Unsampled light falls in proportion to the number of paths.
         let unmet = judge.probes.off_since(&direct) / (UNMET * wanted) * f64::from(FIRST_BATCHES);
         let enough = (FIRST_BATCHES..MOST_BATCHES)
             .find(|b| chance(*b, error) <= wanted && unmet <= f64::from(*b))
@@ -175,7 +179,7 @@ impl<'a> Judge<'a> {
         Ok(judge)
     }
 
-    /// Probes that were not yet drawn.
+    /// Probes of a new seed.
     fn fresh(&mut self, wanted: usize) -> Result<Probes> {
         self.seed = self.seed.wrapping_add(1 << 32);
         let mut probes = Probes::of(self.scene, wanted, self.seed, &self.unsure)?;
@@ -190,7 +194,7 @@ impl<'a> Judge<'a> {
         Ok(())
     }
 
-    /// Adds bounced light, where there is any, by paths that no others have gone.
+    /// Adds bounced light, where there is any, by new paths.
     fn trace(&mut self, probes: &mut Probes) -> Result<()> {
         let Some(bounced) = &mut self.bounced else { return Ok(()) };
         self.seed = self.seed.wrapping_add(1 << 32);
@@ -199,12 +203,12 @@ impl<'a> Judge<'a> {
         let traced = (bounced.trace)(probes.places(), self.batches, seed as u32)?;
         let of = (self.batches * REFERENCE_BATCH, probes.len());
         let chance = Probes::CHANCE_OF_UNMET;
-        probes.add_bounced(&traced, unmet_bounced_error(self.scene, bounced.count, of, chance));
+        probes.add_bounced(&traced, unsampled_bounce_error(self.scene, bounced.count, of, chance));
         Ok(())
     }
 
-    /// Judges a frame, and, where it is the best control or there are more probes than before, all others
-    /// once more; takes more probes where they would decide.
+    /// Measures a frame and, where it is the best control or probes were added, all others again.
+    /// Takes more probes where they would decide.
     fn take(&mut self, chooser: &mut Chooser<'_>, quality: &Quality, drawn: Drawn) -> Result<()> {
         self.pictures.push(Some(drawn.planes));
         chooser.drawn(quality, &drawn.passes);
@@ -246,15 +250,17 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Chooses settings for a goal: `draw` draws the scene with what it is told, so many samples of exact
-/// light judge, others for another `seed`.
+/// Chooses settings for a goal: `draw` renders the scene with given settings, this many probes of
+/// exact light measure it, others for another `seed`.
 ///
-/// What is chosen is drawn again: its time is that of this frame, and its bound is one by samples that
-/// had no part in the choice. What is `bounced` is judged, and its settings are chosen, too.
+/// The choice is rendered again: its time is that of this frame, and its bound comes from probes
+/// that had no part in it. With `bounced`, bounced light is measured and its settings are chosen,
+/// too.
 ///
 /// # Errors
-/// A goal out of range, or finer than paths can tell; one that nothing reaches, with the nearest that was; what `draw` answers, but for
-/// [`Error::Limit`], which leaves out the settings and all that are dearer, unless all are.
+/// A goal out of range, or finer than paths can measure; one that nothing reaches, with the nearest
+/// result; errors of `draw`, except [`Error::Limit`], which excludes the settings and all slower
+/// ones, unless all are refused.
 pub fn choose<'a>(
     scene: &'a Scene,
     goal: Goal,
@@ -263,8 +269,8 @@ pub fn choose<'a>(
     mut draw: impl FnMut(&Quality) -> Result<Drawn>,
 ) -> Result<Chosen> {
     let (name, bound) = match goal {
-        Goal::MaxError(most) => ("--max-error", most),
-        Goal::MaxCost(ns) => ("--time-budget", ns / 1e6),
+        Goal::MaxError(most) => ("max_error", most),
+        Goal::MaxCost(ns) => ("time_budget", ns / 1e6),
     };
     if !(bound > 0.0 && bound.is_finite()) {
         return Err(Error::setting(name, bound.to_string(), "a number above 0"));
@@ -284,7 +290,7 @@ pub fn choose<'a>(
     }
     let unsure = match (pilots.as_slice(), refused) {
         ([(_, a), (_, b)], _) => apart(&a.planes, &b.planes, scene.field.cols()),
-        // The coarsest do not fit either: what is in the way is no setting.
+        // The coarsest do not fit either: no setting is the cause.
         ([], Some(limit)) => return Err(limit),
         _ => Vec::new(),
     };
@@ -295,7 +301,7 @@ pub fn choose<'a>(
         && own >= most
     {
         return Err(Error::Limit {
-            what: format!("--max-error {most}"),
+            what: format!("`max_error {most}`"),
             needs: "exact light that is known so well".into(),
             limit: format!(
                 "{}, by which half of its rays are off{}",
@@ -363,7 +369,7 @@ fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> 
     let flags = flags(&nearest.quality, scene);
     match goal {
         Goal::MaxError(most) => Error::Limit {
-            what: format!("--max-error {most}"),
+            what: format!("`max_error {most}`"),
             needs: chooser.lacks(),
             limit: format!(
                 "{}, the nearest found ({flags}; measured {}, by {probes} probes)",
@@ -372,7 +378,7 @@ fn out_of_reach(goal: Goal, chooser: &Chooser, probes: usize, scene: &Scene) -> 
             ),
         },
         Goal::MaxCost(ns) => Error::Limit {
-            what: format!("--time-budget {}", ns / 1e6),
+            what: format!("`time_budget {}`", ns / 1e6),
             needs: format!("{} ms a frame ({flags})", figures(nearest.ns / 1e6)),
             limit: format!("{} ms", ns / 1e6),
         },
@@ -385,34 +391,34 @@ fn figures(x: f64) -> String {
     format!("{x:.*}", decimals.clamp(0.0, 12.0) as usize)
 }
 
-/// Settings that are chosen, as the command line spells them: those that a scene has.
+/// Chosen settings that affect the scene, as "`lines 1` `azimuths 64`".
 pub fn flags(quality: &Quality, scene: &Scene) -> String {
     let mut all = match (quality.method, quality.lines) {
         _ if !Part::Geometry.is_in(scene) => String::new(),
-        (Method::Brute, _) => "--method brute".to_owned(),
+        (Method::BruteForce, _) => "`method brute-force`".to_owned(),
         (Method::Pyramid, _) => {
             let Quality { level_step, level_offset, .. } = quality;
-            format!("--method pyramid --level-step {level_step} --level-offset {level_offset}")
+            format!("`method pyramid` `level_step {level_step}` `level_offset {level_offset}`")
         }
-        (_, Lines::Exact) => "--lines exact".to_owned(),
-        (_, lines) => format!("--lines {} --fuse {}", lines.name(), quality.fuse.name()),
+        (_, Lines::Exact) => "`lines exact`".to_owned(),
+        (_, lines) => format!("`lines {}` `fuse {}`", lines.name(), quality.fuse.name()),
     };
     for part in PARTS.into_iter().filter(|p| p.is_in(scene)) {
         match part {
             Part::Geometry => {}
-            Part::Azimuths => all += &format!(" --azimuths {}", quality.azimuths),
+            Part::Azimuths => all += &format!(" `azimuths {}`", quality.azimuths),
             Part::Table if quality.basis == Basis::Sh => {
-                all += &format!(" --basis sh --sh-order {}", quality.sh_order);
+                all += &format!(" `basis sh` `sh_order {}`", quality.sh_order);
             }
-            Part::Table => all += &format!(" --table-elevations {}", quality.table_elevations),
-            Part::Strips => all += &format!(" --sun-azimuths {}", quality.sun_azimuths),
+            Part::Table => all += &format!(" `table_elevations {}`", quality.table_elevations),
+            Part::Strips => all += &format!(" `sun_azimuths {}`", quality.sun_azimuths),
         }
     }
     let Bounces { count, engine, azimuths, cutoff, .. } = quality.bounces;
     if count > 0 {
-        all += &format!(" --bounces {count} --bounce-engine {}", engine.name());
-        all += &format!(" --bounce-azimuths {azimuths} --bounce-cutoff {cutoff}");
-        all += &format!(" --subsample {}", quality.subsample);
+        all += &format!(" `bounces {count}` `bounce_engine {}`", engine.name());
+        all += &format!(" `bounce_azimuths {azimuths}` `bounce_cutoff {cutoff}`");
+        all += &format!(" `subsample {}`", quality.subsample);
     }
     all.trim_start().to_owned()
 }

@@ -1,12 +1,12 @@
-//! What an eye makes of a picture, and of the difference of two: the pixel's part of ꟻLIP.
+//! The visual model of ꟻLIP: filtered colours, features, and the difference of a pixel.
 //!
-//! "§" is a section of the paper that [`super`] names.
+//! "§" is a section of the paper cited in [`super`].
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Weight and b (square degrees) of the Gaussians e^(-b f²), f in cycles a degree, of which the
-/// contrast sensitivity of a channel is the sum (§4.1.1, table 1).
+/// Weight and b (square degrees) of the Gaussians e^(-b f²), f in cycles per degree. Their sum is
+/// the contrast sensitivity of a channel (§4.1.1, table 1).
 const ACHROMATIC: &[[f64; 2]] = &[[1.0, 0.0047]];
 const RED_GREEN: &[[f64; 2]] = &[[1.0, 0.0053]];
 const BLUE_YELLOW: &[[f64; 2]] = &[[34.1, 0.04], [13.5, 0.025]];
@@ -17,11 +17,11 @@ const COLOUR_EXPONENT: f64 = 0.7;
 /// Share of the largest colour difference that is mapped to [`KNEE_ERROR`] (§4.1.4).
 const KNEE: f64 = 0.4;
 const KNEE_ERROR: f64 = 0.95;
-/// Width of the feature that the eye finds best, degrees (§4.2.1).
+/// Width of the most visible feature, degrees (§4.2.1).
 const FEATURE_WIDTH_DEG: f64 = 0.082;
 /// Exponent of the feature difference (§4.2.2).
 const FEATURE_EXPONENT: f64 = 0.5;
-/// What is seen at one pixel.
+/// Filtered values of one pixel.
 pub(super) struct Seen {
     /// L*, a*, b* after filtering, a* and b* adjusted to lightness.
     colour: DVec3,
@@ -30,15 +30,15 @@ pub(super) struct Seen {
     point: f64,
 }
 
-/// Filters in one direction; those of two dimensions are products of them.
+/// One-dimensional filters; the two-dimensional ones are products of them.
 pub(super) struct Eye {
     to_xyz: DMat3,
     to_rgb: DMat3,
     white: DVec3,
     largest: f64,
-    /// Pixels that any filter reaches beyond its middle.
+    /// Radius of the widest filter, pixels.
     reach: usize,
-    /// Per channel of YCxCz: the share of each Gaussian and the Gaussian, of sum 1.
+    /// Per channel of YCxCz: the weight of each Gaussian and the Gaussian, of sum 1.
     sensitivity: [Vec<(f64, Vec<f64>)>; 3],
     feature_gaussian: Vec<f64>,
     feature_edge: Vec<f64>,
@@ -51,7 +51,7 @@ impl Eye {
         // e^(-b f²) is the transform of a Gaussian of variance b/(2π²) square degrees (§4.1.1).
         let sigma = |b: f64| (b / 2.0).sqrt() / PI * pixels_per_degree;
         let reach = (3.0 * sigma(WIDEST)).ceil() as usize;
-        // §4.1.1 carries the weights of one dimension, a √(π/b), over to two.
+        // §4.1.1 uses the one-dimensional weights, a √(π/b), in two dimensions.
         let filter = |parts: &[[f64; 2]]| {
             let raw: Vec<_> = parts
                 .iter()
@@ -64,7 +64,7 @@ impl Eye {
             let total: f64 = raw.iter().map(|(weight, _)| weight).sum();
             raw.into_iter().map(|(weight, line)| (weight / total, line)).collect()
         };
-        // §4.2.1: derivatives of a Gaussian, and sums of positive and of negative weights are 1.
+        // §4.2.1: derivatives of a Gaussian; positive and negative weights each sum to 1.
         let sigma = 0.5 * FEATURE_WIDTH_DEG * pixels_per_degree;
         let radius = (3.0 * sigma).ceil() as usize;
         let gaussian = gaussian(sigma, radius);
@@ -83,12 +83,12 @@ impl Eye {
             feature_point: weighted(&|x| (x / sigma).powi(2) - 1.0),
             feature_gaussian: scaled(&gaussian, 1.0 / gaussian.iter().sum::<f64>()),
         };
-        // §4.1.4: no two colours of sRGB are farther apart than its green and blue.
+        // §4.1.4: green and blue have the largest colour distance in sRGB.
         eye.largest = hyab(eye.colour(DVec3::Y), eye.colour(DVec3::Z)).powf(COLOUR_EXPONENT);
         eye
     }
 
-    /// `rows` is the first row and their number.
+    /// `rows` is the first row and the number of rows.
     pub fn looks_at(
         &self,
         picture: &[[f32; 3]],
@@ -100,7 +100,7 @@ impl Eye {
         let opponent = |i: usize| {
             let shown = |v: f32| if voids[i] { 0.0 } else { f64::from(v).clamp(0.0, 1.0) };
             let xyz = self.to_xyz * DVec3::from(picture[i].map(shown)) / self.white;
-            // YCxCz, linear kin of L*a*b* (§4.1.1).
+            // YCxCz, a linear relative of L*a*b* (§4.1.1).
             [116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)]
         };
         let inside = |i: usize, side: usize| i.saturating_sub(reach).min(side - 1);
@@ -122,7 +122,7 @@ impl Eye {
             sum
         };
         let colour = [0, 1, 2].map(filtered);
-        // §4.2.1 looks for features in the unfiltered Y, of 0 to 1.
+        // §4.2.1 detects features in the unfiltered Y, of 0 to 1.
         let mut grey = std::mem::take(&mut window[0]);
         grey.iter_mut().for_each(|y| *y = (*y + 16.0) / 116.0);
         let strength = |line: &[f64]| -> Vec<f64> {
@@ -201,7 +201,7 @@ fn balanced(mut line: Vec<f64>) -> Vec<f64> {
     line
 }
 
-/// Filters a window of `width` columns by `across` · `down`; the answer is smaller by `reach` on
+/// Filters a window of `width` columns by `across` · `down`. The result is smaller by `reach` on
 /// every side.
 fn convolved(window: &[f64], width: usize, reach: usize, across: &[f64], down: &[f64]) -> Vec<f64> {
     let cols = width - 2 * reach;
@@ -228,15 +228,15 @@ mod tests {
     use super::super::{PIXELS_PER_DEGREE, map};
     use super::*;
 
-    /// Error of two pictures of one colour each: no filter changes them, and there are no features.
+    /// Error of two uniform pictures: filters do not change them, and there are no features.
     fn flat(a: [f32; 3], b: [f32; 3]) -> f64 {
         let errors = map(&[a; 35], &[b; 35], 7, PIXELS_PER_DEGREE).unwrap();
         assert!(errors.iter().all(|e| (e - errors[0]).abs() < 1e-6), "{errors:?}");
         errors[0].into()
     }
 
-    /// §4.1.4 of a distance, with the largest from L*a*b* of sRGB's green and blue as colour tables
-    /// have them: (87.735, -86.183, 83.179) and (32.297, 79.188, -107.860); Hunt: a*, b* · L*/100.
+    /// §4.1.4 of a distance, with the largest from L*a*b* of sRGB's green and blue in published
+    /// tables: (87.735, -86.183, 83.179) and (32.297, 79.188, -107.860); Hunt: a*, b* · L*/100.
     fn mapped(hyab: f64) -> f64 {
         let (green, blue) = ([87.735, -86.183, 83.179], [32.297, 79.188, -107.860]);
         let hunt = |c: [f64; 3]| [c[0], c[1] * c[0] / 100.0, c[2] * c[0] / 100.0];
@@ -246,13 +246,13 @@ mod tests {
         if share < 0.4 { 0.95 * share / 0.4 } else { 0.95 + 0.05 * (share - 0.4) / 0.6 }
     }
 
-    /// Tables round L*a*b* to 0.001 and their white to 1e-4, which moves a* and b* by 500e-4/3 and
-    /// less: 1e-4 of a distance of 203, times an error of at most 1.
+    /// Tables round L*a*b* to 0.001 and their white to 1e-4, which changes a* and b* by at most
+    /// 500e-4/3: 1e-4 of a distance of 203, times an error of at most 1.
     const TABLES: f64 = 1e-4;
 
     #[test]
     fn colours_have_their_known_errors() {
-        // By definition: the largest there is.
+        // The maximum by definition.
         assert!((flat([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]) - 1.0).abs() < 1e-7);
         // L* 100 and 0.
         assert!((flat([1.0; 3], [0.0; 3]) - mapped(100.0)).abs() < TABLES);
@@ -271,9 +271,9 @@ mod tests {
         assert!((flat([1.0, 0.0, 0.0], grey(0.5)) - mapped(red)).abs() < TABLES);
     }
 
-    /// A grating of f cycles a degree comes through with S(f) of its contrast. In two dimensions the
-    /// weights a √(π/b) stand before Gaussians of area b/π: shares a √b. Filters end at three
-    /// deviations of the widest Gaussian, which cuts and gives back at most erfc(3/√2) = 0.0027 of it.
+    /// A grating of f cycles per degree keeps S(f) of its contrast. In two dimensions the weights a
+    /// √(π/b) multiply Gaussians of area b/π: shares a √b. Filters end at three deviations of the
+    /// widest Gaussian, an error of at most erfc(3/√2) = 0.0027 of it.
     #[test]
     fn contrast_sensitivity_is_that_of_the_formula() {
         let eye = Eye::new(PIXELS_PER_DEGREE);
@@ -302,8 +302,8 @@ mod tests {
     }
 
     /// Black left of column 20 and white from there on: the weights on one side sum to 1, so both
-    /// columns at the step have an edge of 1. A black band of the columns where the point filter is
-    /// below 0 (|x| < σ = 2.75) in white: the rest sum to 1, and its middle has no edge.
+    /// columns at the step have an edge of 1. A black band in white where the point filter is
+    /// negative (|x| < σ = 2.75): the rest sum to 1, and its centre has no edge.
     #[test]
     fn features_have_their_known_strength() {
         let eye = Eye::new(PIXELS_PER_DEGREE);
@@ -323,8 +323,8 @@ mod tests {
         }
         let band = looked(&|col: usize| col.abs_diff(20) > 2);
         assert!(near(band[60].point, 1.0) && near(band[60].edge, 0.0));
-        // Against plain white, an edge or point of 1 is a difference of (1/√2)^0.5 (§4.2.2), which
-        // leaves the colour difference the exponent 1 - 0.8409; colour is the same here.
+        // Against uniform white, an edge or point of 1 is a difference of (1/√2)^0.5 (§4.2.2), so
+        // the colour difference has the exponent 1 - 0.8409; the colour is the same here.
         let plain = |edge| Seen { colour: DVec3::new(50.0, 0.0, 0.0), edge, point: 0.0 };
         let dark = |edge| Seen { colour: DVec3::new(40.0, 0.0, 0.0), edge, point: 0.0 };
         let (without, with) =

@@ -1,6 +1,6 @@
-//! What nothing beats, and which of it to take.
+//! The frontier of cost and error, and the choice of one of its points.
 
-/// What settings cost and how far they are from the truth. Both finite, 0 or more; less is better.
+/// Cost and error of settings. Both finite, 0 or more; less is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
     /// Time, in any unit.
@@ -10,19 +10,19 @@ pub struct Value {
 }
 
 impl Value {
-    /// Whether this is no dearer and no less accurate: whoever has this needs no `other`.
+    /// Whether this is no slower and no less accurate than `other`.
     pub fn covers(&self, other: &Value) -> bool {
         self.cost <= other.cost && self.error <= other.error
     }
 
-    /// Natural logarithms of cost and error, 0 as the smallest number there is.
+    /// Natural logarithms of cost and error, 0 as the smallest positive number.
     pub(super) fn logs(&self) -> [f64; 2] {
         [self.cost, self.error].map(|x| x.max(f64::MIN_POSITIVE).ln())
     }
 }
 
-/// Positions of the values that no other covers, from cheap to dear: costs rise, errors fall. Of
-/// equal ones the first.
+/// Indices of the values that no other covers, from fast to slow: costs rise, errors fall. Of equal
+/// ones the first.
 pub fn frontier(values: &[Value]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     let key = |i: usize| (values[i].cost, values[i].error);
@@ -39,28 +39,28 @@ pub fn frontier(values: &[Value]) -> Vec<usize> {
     order
 }
 
-/// How one of the frontier is picked.
+/// The rule for picking a point of the frontier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     /// The least product of cost and error: the tangent of slope -1 on log axes. From there, twice
-    /// the cost nowhere buys half the error, and half the cost nowhere comes for twice the error.
+    /// the cost nowhere halves the error, and half the cost nowhere only doubles it.
     Knee,
-    /// The cheapest of at most this error.
+    /// The fastest of at most this error.
     MaxError(f64),
     /// The most accurate of at most this cost.
     MaxCost(f64),
 }
 
-/// One of the frontier.
+/// A point of the frontier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recommendation {
-    /// Its position in the values.
+    /// Its index in the values.
     pub point: usize,
-    /// Whether it keeps the rule's bound; where none does it is the one nearest to it.
+    /// Whether it keeps the rule's bound; where none does it is the nearest one.
     pub holds: bool,
 }
 
-/// Picks by `rule`; nothing where there is nothing to pick from.
+/// Picks by `rule`; none for no values.
 pub fn recommend(values: &[Value], rule: Rule) -> Option<Recommendation> {
     let front = frontier(values);
     let [first, last] = [*front.first()?, *front.last()?];
@@ -98,8 +98,8 @@ mod tests {
         all.iter().map(|&(cost, error)| Value { cost, error }).collect()
     }
 
-    /// By hand: (1, 9), (2, 4), (4, 3) and (9, 0) are covered by none; (2, 5) and (5, 3) are; of the
-    /// two (4, 3) the first stays.
+    /// By hand: none covers (1, 9), (2, 4), (4, 3) and (9, 0); (2, 5) and (5, 3) are covered; of
+    /// the two (4, 3) the first stays.
     #[test]
     fn a_frontier_is_what_nothing_covers() {
         let all = values(&[
@@ -128,7 +128,7 @@ mod tests {
         let halved: Vec<Value> =
             all.iter().map(|v| Value { cost: v.cost / 2.0, error: v.error / 2.0 }).collect();
         assert_eq!(recommend(&halved, Rule::Knee), recommend(&all, Rule::Knee));
-        // A result without error is worth any time; of several the cheapest.
+        // A result without error is worth any time; of several the fastest.
         let exact = values(&[(1.0, 8.0), (5.0, 0.0), (9.0, 0.0)]);
         assert_eq!(recommend(&exact, Rule::Knee).unwrap().point, 1);
         assert_eq!(recommend(&[], Rule::Knee), None);

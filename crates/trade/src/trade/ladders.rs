@@ -1,31 +1,31 @@
-//! The settings that trade speed for accuracy, each as a ladder from cheap to dear. Whoever adds a
-//! method or a setting registers its knob in [`ladders`]; search, frontier and report know none by name.
+//! The settings that trade speed for accuracy, each as a ladder from fast to slow. To add a method
+//! or a setting, add its ladder in [`ladders`]; search, frontier and report know none by name.
 //!
-//! Where the hull lives is no knob: it costs time and never changes the result.
+//! Hull storage has no ladder: it costs time and never changes the result.
 
 use ridgelight::scene::{
-    Basis, BounceEngine, BounceGloss, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision,
+    Basis, BounceEngine, BounceSpecular, Bounces, Fuse, LightBasis, Lights, Lines, Method, Precision,
     Quality, Scene,
 };
 use std::ops::RangeInclusive;
 
-/// One setting, or two that exclude each other, and the values that are walked.
+/// One setting, or two that exclude each other, and the values to search.
 #[derive(Clone, Debug)]
 pub struct Ladder {
-    /// What it is called.
+    /// Name of the setting.
     pub name: &'static str,
     /// Its values as the command line spells them, flag and all, from cheap to dear.
     pub steps: Vec<String>,
-    /// What a count may be, of which the steps are a few; none for a choice, whose steps are all there
-    /// are.
+    /// The range of a count, of which the steps are a few values; none for a choice, whose steps
+    /// are complete.
     pub range: Option<RangeInclusive<u32>>,
-    /// The step that the default is.
+    /// Index of the default step.
     pub default: usize,
-    /// Which way is dearer, and what that is thought to buy.
+    /// What the slower end buys.
     pub dearer: &'static str,
-    /// Gives a quality the value of a step.
+    /// Applies a step to a quality.
     set: fn(&mut Quality, usize),
-    /// Whether all its values do the same beside the others.
+    /// Whether it has no effect beside the other settings.
     idle: fn(&Quality) -> bool,
 }
 
@@ -48,49 +48,50 @@ const LIGHT_BASES: [LightBasis; 2] = [LightBasis::Sh, LightBasis::Exact];
 const PRECISIONS: [Precision; 3] = [Precision::Packed, Precision::F16, Precision::F32];
 
 const BOUNCE_ENGINES: [BounceEngine; 3] =
-    [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::Brute];
-const BOUNCE_GLOSSES: [BounceGloss; 3] =
-    [BounceGloss::Scalar, BounceGloss::VectorF16, BounceGloss::Vector];
+    [BounceEngine::Pyramid, BounceEngine::Auto, BounceEngine::BruteForce];
+const BOUNCE_GLOSSES: [BounceSpecular; 3] =
+    [BounceSpecular::Scalar, BounceSpecular::VectorF16, BounceSpecular::Vector];
 const BOUNCE_AZIMUTHS: [u32; 4] = [8, 16, 32, 64];
 const LEVEL_STEPS: [u32; 5] = [1, 2, 4, 8, 16];
 const LEVEL_OFFSETS: [u32; 5] = [0, 1, 2, 3, 4];
 
 fn has_no_lines(quality: &Quality) -> bool {
-    matches!(quality.method, Method::Brute | Method::Pyramid) || quality.lines == Lines::Exact
+    matches!(quality.method, Method::BruteForce | Method::Pyramid) || quality.lines == Lines::Exact
 }
 
 fn has_no_levels(quality: &Quality) -> bool {
     quality.method != Method::Pyramid
 }
 
-/// The lights that give any light: of others no setting changes anything.
+/// The lights with radiance above 0: for others no setting changes anything.
 fn shining(lights: &Lights) -> Lights {
     let is_lit = |c: &[f32; 3]| c.iter().any(|v| *v > 0.0);
     let mut shining = lights.clone();
     shining.sky = lights.sky.filter(is_lit);
     shining.suns.retain(|sun| is_lit(&sun.irradiance));
     shining.keys.retain(|key| is_lit(&key.radiance));
-    shining.spheres.retain(|ball| is_lit(&ball.radiance));
+    shining.sphere_lights.retain(|ball| is_lit(&ball.radiance));
     shining
 }
 
-/// Whether the surface mirrors anything.
+/// Whether the surface has Phong specular.
 fn has_lobe(scene: &Scene) -> bool {
-    scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
+    scene.surface.specular.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0)
 }
 
-/// The ladders that change how a scene is lit with so many bounces: no azimuths without a sky, no table without
-/// an environment. Lobes are lit by harmonics alone, and throw light on by pyramids alone, from every sample.
+/// The ladders that affect a scene with this many bounces: no azimuths without a sky, no table
+/// without an environment. Phong specular is lit by harmonics only; its bounces use pyramids only,
+/// at every texel.
 pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     let (lights, has_lobe) = (&shining(&scene.lights), has_lobe(scene));
-    let spell = |flag: &str, values: &[u32]| values.iter().map(|v| format!("{flag} {v}")).collect();
+    let spell = |setting: &str, values: &[u32]| values.iter().map(|v| format!("`{setting} {v}`")).collect();
     let mut all = vec![
         Ladder {
             name: "sweep",
             steps: LINES
                 .iter()
-                .map(|(_, name)| format!("--lines {name}"))
-                .chain(["pyramid", "brute"].map(|method| format!("--method {method}")))
+                .map(|(_, name)| format!("`lines {name}`"))
+                .chain(["pyramid", "brute-force"].map(|method| format!("`method {method}`")))
                 .collect(),
             range: None,
             default: 0,
@@ -99,13 +100,13 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             set: |quality, step| match LINES.get(step) {
                 Some((lines, _)) => (quality.method, quality.lines) = (Method::Sweep, *lines),
                 None if step == LINES.len() => quality.method = Method::Pyramid,
-                None => quality.method = Method::Brute,
+                None => quality.method = Method::BruteForce,
             },
             idle: |_| false,
         },
         Ladder {
             name: "fuse",
-            steps: FUSES.iter().map(|f| format!("--fuse {}", f.name())).collect(),
+            steps: FUSES.iter().map(|f| format!("`fuse {}`", f.name())).collect(),
             range: None,
             default: 0,
             dearer: "more of the lines' results, then the surface itself, then all around there: horizons of each \
@@ -115,7 +116,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         },
         Ladder {
             name: "precision",
-            steps: PRECISIONS.iter().map(|p| format!("--precision {}", p.name())).collect(),
+            steps: PRECISIONS.iter().map(|p| format!("`precision {}`", p.name())).collect(),
             range: None,
             default: 0,
             dearer: "more bits: heights on the hull, stored slopes",
@@ -124,7 +125,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         },
         Ladder {
             name: "level step",
-            steps: spell("--level-step", &LEVEL_STEPS),
+            steps: spell("level_step", &LEVEL_STEPS),
             range: Some(Quality::LEVEL_STEP),
             default: 0,
             dearer: "more levels of a pyramid: what stands between two samples",
@@ -133,7 +134,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         },
         Ladder {
             name: "level offset",
-            steps: spell("--level-offset", &LEVEL_OFFSETS),
+            steps: spell("level_offset", &LEVEL_OFFSETS),
             range: Some(Quality::LEVEL_OFFSET),
             default: 0,
             dearer: "finer levels of a pyramid: sharp distant horizons",
@@ -141,7 +142,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             idle: has_no_levels,
         },
     ];
-    // Balls of light look themselves for what hides them.
+    // Sphere lights compute their own visibility.
     let are_none_aimed = lights.suns.is_empty() && lights.keys.is_empty();
     if lights.sky.is_none() && lights.environment.is_none() && are_none_aimed {
         all.clear();
@@ -149,7 +150,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     if lights.sky.is_some() || lights.environment.is_some() {
         all.push(Ladder {
             name: "azimuths",
-            steps: spell("--azimuths", &AZIMUTHS),
+            steps: spell("azimuths", &AZIMUTHS),
             range: Some(Quality::AZIMUTHS),
             default: 0,
             dearer: "more azimuths: sharp silhouettes",
@@ -160,7 +161,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     if lights.have_slices() {
         all.push(Ladder {
             name: "sun azimuths",
-            steps: spell("--sun-azimuths", &SUN_AZIMUTHS),
+            steps: spell("sun_azimuths", &SUN_AZIMUTHS),
             range: Some(Quality::SUN_AZIMUTHS),
             default: 0,
             dearer: "more slices of a sun's disc, a key light or a ball of light: soft shadows",
@@ -168,10 +169,10 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
             idle: |_| false,
         });
     }
-    if !lights.spheres.is_empty() {
+    if !lights.sphere_lights.is_empty() {
         all.push(Ladder {
             name: "light basis",
-            steps: LIGHT_BASES.iter().map(|b| format!("--light-basis {}", b.name())).collect(),
+            steps: LIGHT_BASES.iter().map(|b| format!("`light_basis {}`", b.name())).collect(),
             range: None,
             default: 0,
             dearer: "each slice of a ball of light exact: sharp shadows",
@@ -182,7 +183,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     if lights.environment.is_some() && !has_lobe {
         all.push(Ladder {
             name: "table elevations",
-            steps: spell("--table-elevations", &TABLE_ELEVATIONS),
+            steps: spell("table_elevations", &TABLE_ELEVATIONS),
             range: Some(Quality::TABLE_ELEVATIONS),
             default: 0,
             dearer: "more elevations a table: small bright places",
@@ -191,8 +192,8 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
         });
     }
     if lights.environment.is_some() || (lights.sky.is_some() && has_lobe) {
-        let orders = SH_ORDERS.map(|n| format!("--basis sh --sh-order {n}"));
-        let table = (!has_lobe).then(|| "--basis table".to_owned());
+        let orders = SH_ORDERS.map(|n| format!("`basis sh` `sh_order {n}`"));
+        let table = (!has_lobe).then(|| "`basis table`".to_owned());
         all.push(Ladder {
             name: "basis",
             steps: orders.into_iter().chain(table).collect(),
@@ -210,7 +211,7 @@ pub fn ladders(scene: &Scene, bounces: u32) -> Vec<Ladder> {
     if (lights.environment.is_some() || bounces > 0) && !is_sampled_all {
         all.push(Ladder {
             name: "sub-sampling",
-            steps: spell("--subsample", &SUBSAMPLES),
+            steps: spell("subsample", &SUBSAMPLES),
             range: None,
             default: 0,
             dearer: "what is seen, and thrown, at more samples: sharp shadows",
@@ -232,16 +233,16 @@ fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
     let by = match has_lobe {
         true => Ladder {
             name: "bounce gloss",
-            steps: BOUNCE_GLOSSES.iter().map(|g| format!("--bounce-gloss {}", g.name())).collect(),
+            steps: BOUNCE_GLOSSES.iter().map(|g| format!("`bounce_gloss {}`", g.name())).collect(),
             range: None,
             default: 0,
             dearer: "radiance by direction, then in full precision: what lobes throw on",
-            set: |quality, step| quality.bounces.gloss = BOUNCE_GLOSSES[step],
+            set: |quality, step| quality.bounces.specular = BOUNCE_GLOSSES[step],
             idle: |_| false,
         },
         false => Ladder {
             name: "bounce engine",
-            steps: BOUNCE_ENGINES.iter().map(|e| format!("--bounce-engine {}", e.name())).collect(),
+            steps: BOUNCE_ENGINES.iter().map(|e| format!("`bounce_engine {}`", e.name())).collect(),
             range: None,
             default: 0,
             dearer: "one sample a level of pyramids; every stretch of surface that a sample sees",
@@ -253,7 +254,7 @@ fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
         by,
         Ladder {
             name: "bounce azimuths",
-            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("--bounce-azimuths {m}")).collect(),
+            steps: BOUNCE_AZIMUTHS.iter().map(|m| format!("`bounce_azimuths {m}`")).collect(),
             range: Some(Bounces::AZIMUTHS),
             default: 0,
             dearer: "more azimuths of bounces: narrow things that shine",
@@ -263,12 +264,12 @@ fn bounce_knobs(has_lobe: bool) -> [Ladder; 2] {
     ]
 }
 
-/// What the defaults walk from: sweeps and tables, which is what they come to.
+/// The start of the defaults: sweeps and tables, to which they resolve.
 pub fn start() -> Quality {
     Quality { method: Method::Sweep, basis: Basis::Table, ..Quality::default() }
 }
 
-/// The same for a scene: lobes are lit by harmonics.
+/// The start for a scene: Phong specular is lit by harmonics.
 pub fn start_of(scene: &Scene) -> Quality {
     let Lights { sky, environment, .. } = shining(&scene.lights);
     let is_mirrored = has_lobe(scene) && (sky.is_some() || environment.is_some());
@@ -285,17 +286,17 @@ fn default_step(knob: &Ladder, start: &Quality) -> usize {
     (0..knob.steps.len()).find(is_default).expect("every default is on its ladder")
 }
 
-/// Settings, and where they stand on each knob's ladder.
+/// Settings, and their step on each ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The settings.
     pub quality: Quality,
-    /// A step for each knob; none where the knob is idle.
+    /// A step for each ladder; none where it has no effect.
     pub steps: Vec<Option<usize>>,
 }
 
 impl Place {
-    /// As the command line spells it.
+    /// Its settings, as "`lines 1` `azimuths 64`".
     pub fn flags(&self, ladders: &[Ladder]) -> String {
         let each =
             ladders.iter().zip(&self.steps).filter_map(|(k, s)| Some(k.steps[(*s)?].as_str()));
@@ -303,8 +304,7 @@ impl Place {
     }
 }
 
-/// Every combination of steps that does something of its own, from cheap to dear, the others of
-/// `start`'s settings as they are.
+/// Every distinct combination of steps, from fast to slow; other settings as in `start`.
 pub fn places(ladders: &[Ladder], start: &Quality) -> Vec<Place> {
     let mut all = Vec::new();
     let mut steps = vec![0; ladders.len()];

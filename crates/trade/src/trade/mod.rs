@@ -1,5 +1,5 @@
-//! Speed against accuracy: which settings are worth measuring next, which are the frontier, which to
-//! take. Pure: the caller measures.
+//! Speed against accuracy: which settings are worth measuring next, which are on the frontier,
+//! which to choose. Pure: the caller measures.
 
 mod frontier;
 mod ladders;

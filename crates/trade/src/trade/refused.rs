@@ -1,11 +1,12 @@
-//! Settings that would be refused, known before any is measured.
+//! Settings that would be refused, found before any is measured.
 
 use super::ladders::{Ladder, Place};
 
 /// Places that are refused whatever their counts are, with the reason.
 ///
-/// `why` is asked of the places that differ from the defaults in one choice or two: no refusal is known that needs three, and
-/// none of a count within its range. Whatever has what is refused of those is refused, too.
+/// `why` is called for places that differ from the defaults in one or two choices: no known refusal
+/// needs three, and none depends on a count within its range. Every place with a refused
+/// combination is refused, too.
 pub fn refused(
     ladders: &[Ladder],
     places: &[Place],
@@ -45,8 +46,8 @@ mod tests {
         Fuse, HeightField, Lights, Lines, Method, Precision, Scene, Sun, Surface,
     };
 
-    /// Under a sky and a sun exact lines are refused, and here packed heights with the slopes' fuse; every place that has
-    /// either, and no other, by questions about few of them.
+    /// Under a sky and a sun exact lines are refused, and here packed heights with the slopes'
+    /// fuse: every place with either, and no other, by few calls.
     #[test]
     fn what_is_refused_is_known_of_all_counts() {
         let sun =
@@ -60,7 +61,7 @@ mod tests {
         let places = places(&ladders, &start());
         let why = |place: &Place| {
             let quality = &place.quality;
-            let is_swept = !matches!(quality.method, Method::Brute | Method::Pyramid);
+            let is_swept = !matches!(quality.method, Method::BruteForce | Method::Pyramid);
             let two = quality.fuse == Fuse::Slopes && quality.precision == Precision::Packed;
             if is_swept && quality.lines == Lines::Exact {
                 Some("exact".to_owned())

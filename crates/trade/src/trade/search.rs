@@ -1,45 +1,45 @@
-//! The walk over the ladders: what to measure next, and what need not be.
+//! The search over the ladders: what to measure next, and what can be skipped.
 //!
-//! First each knob alone from the start, outwards; then, of what is left, the settings that are
-//! expected to lie farthest beyond the frontier. What is left out is left out by proof, under one
-//! assumption: a dearer step never costs less and is never less accurate. Then the dearest measured
-//! settings below a place bound its cost, the most inaccurate above it its error, and where one
-//! measured point is within both, the place has nothing to add. Every measured pair tests the
-//! assumption; a knob that breaks it bounds nothing any more, and what it had ruled out is open again.
+//! First each ladder alone from the start, outwards; then, of the rest, the settings expected to
+//! lie farthest beyond the frontier. Places are skipped by proof, under one assumption: a slower
+//! step never costs less and is never less accurate. The slowest measured settings below a place
+//! then bound its cost, the most inaccurate above it its error. Where one measured point is within
+//! both, the place cannot improve the frontier. Every measured pair tests the assumption; a ladder
+//! that breaks it loses its bounds, and the places skipped by it are open again.
 
 use super::frontier::{Value, frontier};
 
-/// A dearer step that is worse by no more than this share is taken to be no worse: times waver, and
-/// errors that other settings dominate do, too. A place left out may be better by as much a step.
+/// A slower step that is worse by no more than this share counts as no worse, because of timing
+/// noise and errors dominated by other settings. A skipped place may be better by as much per step.
 pub const SLACK: f64 = 0.05;
 
-/// What a knob bounds.
+/// What a ladder bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Dearer steps cost no less.
+    /// Slower steps cost no less.
     Cost,
-    /// Dearer steps are no less accurate.
+    /// Slower steps are no less accurate.
     Error,
 }
 
-/// Two measured places that a ladder has the wrong way round.
+/// Two measured places that break a ladder's order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Break {
     /// The ladders in which they differ.
     pub ladders: Vec<usize>,
-    /// What is the wrong way round.
+    /// Which order is broken.
     pub side: Side,
-    /// The place that should be the cheaper and less accurate.
+    /// The place that should be faster and less accurate.
     pub lower: usize,
-    /// The place that should be the dearer and more accurate.
+    /// The place that should be slower and more accurate.
     pub higher: usize,
 }
 
 /// Why a place need not be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Skip {
-    /// It costs at least what `dearer_than` does and errs at least as `worse_than` does (none: as the
-    /// truth itself), which `by` undercuts.
+    /// It costs at least as much as `slower_than` and has at least the error of `worse_than` (none:
+    /// of the ground truth itself), and `by` undercuts both.
     Covered {
         /// The measured place that is better.
         by: usize,
@@ -48,44 +48,45 @@ pub enum Skip {
         /// The measured place above.
         worse_than: Option<usize>,
     },
-    /// It costs at least what `than` does, which was given up.
+    /// It costs at least as much as `than`, which was abandoned.
     TooDear {
-        /// The place given up.
+        /// The abandoned place.
         than: usize,
     },
 }
 
-/// Steps on every ladder; none where the knob is idle.
+/// Steps on every ladder; none where it has no effect.
 type Steps = Vec<Option<usize>>;
 
-/// What is known of places so far.
+/// The state of the search.
 #[derive(Clone, Debug)]
 pub struct Search {
     steps: Vec<Steps>,
     start: usize,
-    /// The error that the truth itself may have: nothing can be told apart below it.
+    /// The error of the ground truth itself: smaller differences are not resolved.
     floor: f64,
     values: Vec<Option<Value>>,
     given_up: Vec<bool>,
     /// Measured places, in order.
     measured: Vec<usize>,
-    /// Given up for their cost.
+    /// Abandoned for their cost.
     too_dear: Vec<usize>,
-    /// Whether each knob bounds cost, and error.
+    /// Whether each ladder bounds cost, and error.
     trusted: [Vec<bool>; 2],
     breaks: Vec<Break>,
-    /// For each place the largest bound from below and whose it is: cost, error.
+    /// For each place the largest lower bound and its source: cost, error.
     bounds: Vec<[Option<(f64, usize)>; 2]>,
     front: Vec<usize>,
-    /// For each knob, by its step + 1 (0: idle), what was measured with all others as at the start.
+    /// For each ladder, by its step + 1 (0: no effect), the measurement with all others as at the
+    /// start.
     alone: Vec<Vec<Option<Value>>>,
 }
 
 impl Search {
-    /// A walk over `steps` from number `start` on; errors below `floor` are all the same.
+    /// A search over `steps` from index `start`; errors below `floor` are equal.
     ///
     /// # Panics
-    /// When `start` is not one of the places, or they are not of one number of ladders.
+    /// `start` out of range, or places of different numbers of ladders.
     pub fn new(steps: Vec<Steps>, start: usize, floor: f64) -> Self {
         let ladders = steps[start].len();
         assert!(steps.iter().all(|s| s.len() == ladders), "one step a knob");
@@ -108,7 +109,7 @@ impl Search {
         }
     }
 
-    /// The place to measure next; none where every place is measured, given up or ruled out.
+    /// The place to measure next; none where every place is measured, abandoned or skipped.
     pub fn next(&self) -> Option<usize> {
         if self.is_open(self.start) {
             return Some(self.start);
@@ -122,7 +123,7 @@ impl Search {
         scored.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).map(|(_, i)| i)
     }
 
-    /// Takes in what was measured at a place.
+    /// Records a measurement.
     pub fn measured(&mut self, place: usize, value: Value) {
         let value = Value { cost: value.cost, error: value.error.max(self.floor) };
         self.values[place] = Some(value);
@@ -145,7 +146,7 @@ impl Search {
         self.front = frontier(&values).into_iter().map(|i| self.measured[i]).collect();
     }
 
-    /// Takes in another value of a measured place, as if it had been the first.
+    /// Replaces the measurement of a place, as if it had been the first.
     pub fn measured_again(&mut self, place: usize, value: Value) {
         let steps = std::mem::take(&mut self.steps);
         let fresh = Self::new(steps, self.start, self.floor);
@@ -159,7 +160,7 @@ impl Search {
         }
     }
 
-    /// Takes in that a place cannot be measured; `too_dear`: and nothing that costs more.
+    /// Records that a place cannot be measured; with `too_slow`, nor can slower ones.
     pub fn give_up(&mut self, place: usize, too_dear: bool) {
         self.given_up[place] = true;
         if too_dear {
@@ -167,32 +168,32 @@ impl Search {
         }
     }
 
-    /// What was measured at a place, its error at least the truth's own.
+    /// The measurement of a place, its error at least that of the ground truth.
     pub fn value(&self, place: usize) -> Option<Value> {
         self.values[place]
     }
 
-    /// Measured places that no other covers, from cheap to dear.
+    /// Measured places that no other covers, from fast to slow.
     pub fn frontier(&self) -> &[usize] {
         &self.front
     }
 
-    /// Measured places, in the order in which they were.
+    /// Measured places, in the order of measurement.
     pub fn order(&self) -> &[usize] {
         &self.measured
     }
 
-    /// Where a ladder was found the wrong way round.
+    /// The broken orders found.
     pub fn breaks(&self) -> &[Break] {
         &self.breaks
     }
 
-    /// Whether a place is neither measured, nor given up, nor ruled out.
+    /// Whether a place is neither measured, nor abandoned, nor skipped.
     pub fn is_open(&self, place: usize) -> bool {
         self.values[place].is_none() && !self.given_up[place] && self.skip(place).is_none()
     }
 
-    /// Why a place that was neither measured nor given up need not be; none where it should.
+    /// Why a place that was neither measured nor abandoned can be skipped; none where it cannot.
     pub fn skip(&self, place: usize) -> Option<Skip> {
         if self.values[place].is_some() || self.given_up[place] {
             return None;
@@ -210,9 +211,9 @@ impl Search {
         by.map(|by| Skip::Covered { by, dearer_than, worse_than })
     }
 
-    /// What a place is expected to have: the nearest measured one's value, changed as each knob that
-    /// differs changes it at the start. Costs multiply; squares of errors add, as those of
-    /// independent causes do. Nearest are those whose every difference was seen at the start.
+    /// The expected value of a place: the nearest measured one's, changed by each differing ladder
+    /// as at the start. Costs multiply; squares of errors add, as for independent causes. Nearest
+    /// are those whose every difference was measured at the start.
     pub fn predicted(&self, place: usize) -> Value {
         let alone =
             |knob: usize, i: usize| self.alone[knob][self.steps[i][knob].map_or(0, |s| s + 1)];
@@ -233,13 +234,13 @@ impl Search {
                 squared += to.error.powi(2) - from.error.powi(2);
             }
         }
-        // Where causes do not add up, no more than a tenfold gain is believed.
+        // Where causes do not add up, a gain is limited to a factor of ten.
         let error = squared.max((0.1 * value.error).powi(2)).sqrt().max(self.floor);
         Value { cost, error }
     }
 
-    /// How far a place is expected to lie beyond the frontier: the natural logarithm of the factor by
-    /// which some point of it would have to be better, in cost or in error, to cover it. Below 0:
+    /// Expected distance beyond the frontier: the natural logarithm of the factor by which some
+    /// point of it would have to improve, in cost or in error, to cover the place. Below 0:
     /// covered.
     pub fn merit(&self, place: usize) -> f64 {
         let [cost, error] = self.predicted(place).logs();
@@ -250,7 +251,7 @@ impl Search {
         self.front.iter().map(past).fold(f64::INFINITY, f64::min)
     }
 
-    /// Knobs on different steps in two places; an idle one is on every step.
+    /// Ladders on different steps in two places; one without effect is on every step.
     fn differing(&self, a: usize, b: usize) -> impl Iterator<Item = usize> + '_ {
         let pairs = self.steps[a].iter().zip(&self.steps[b]).enumerate();
         pairs.filter(|(_, (a, b))| matches!((a, b), (Some(a), Some(b)) if a != b)).map(|(k, _)| k)
@@ -261,7 +262,7 @@ impl Search {
         pairs.map(|(a, b)| a.zip(*b).map_or(0, |(a, b)| a.abs_diff(b))).sum()
     }
 
-    /// Whether no knob of `a` is on a dearer step than in `b`, and none that is not trusted on
+    /// Whether no ladder of `a` is on a slower step than in `b`, and none that lost its bounds on
     /// another.
     fn is_below(&self, a: usize, b: usize, side: Side) -> bool {
         let trusted = &self.trusted[side as usize];
@@ -273,7 +274,7 @@ impl Search {
         compared.all(|below| below)
     }
 
-    /// Bounds all places by a measured one.
+    /// Updates the bounds of all places by a measured one.
     fn bound_by(&mut self, from: usize) {
         let Some(value) = self.values[from] else { return };
         for place in 0..self.steps.len() {
@@ -290,10 +291,10 @@ impl Search {
         }
     }
 
-    /// Holds a new value against all others; whether a knob has lost its trust.
+    /// Checks a new value against all others; returns whether a ladder lost its bounds.
     fn find_breaks(&mut self, new: usize) -> bool {
         let mut any = false;
-        // Nearest pairs first: they say best which knob it is.
+        // Nearest pairs first: they identify the ladder best.
         let mut others = self.measured.clone();
         others.sort_by_key(|&i| self.differing(i, new).count());
         for other in others {

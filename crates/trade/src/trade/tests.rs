@@ -1,4 +1,4 @@
-//! Walks over models whose whole grid is known.
+//! Searches over models whose whole grid is known.
 
 use super::*;
 use ridgelight::basis::random::{STEP, mixed, unit};
@@ -15,8 +15,8 @@ impl Random {
 
 type Steps = Vec<Option<usize>>;
 
-/// Every combination; the last knob idle on the dearest step of the first, as fuses are under brute
-/// force.
+/// Every combination. The last ladder has no effect on the slowest step of the first, like fuses
+/// under brute force.
 fn grid(sides: &[usize]) -> Vec<Steps> {
     let mut all = vec![vec![]];
     for side in sides {
@@ -30,7 +30,7 @@ fn grid(sides: &[usize]) -> Vec<Steps> {
         .collect()
 }
 
-/// Costs multiply and squared errors add, by steps of random size that never go the wrong way.
+/// Costs multiply and squared errors add, by steps of random size that never break the order.
 fn monotone(sides: &[usize], random: &mut Random) -> impl Fn(&Steps) -> Value + use<> {
     let ladders: Vec<Vec<[f64; 2]>> = sides
         .iter()
@@ -53,10 +53,10 @@ fn monotone(sides: &[usize], random: &mut Random) -> impl Fn(&Steps) -> Value + 
         })
         .collect();
     move |steps| {
-        // An idle knob costs nothing and does all it can.
+        // A ladder without effect costs nothing and has the error of its best step.
         let at = |(k, s): (usize, &Option<usize>)| s.map_or([1.0, 0.0], |s| ladders[k][s]);
         let each = || steps.iter().enumerate().map(at);
-        // The first ladder's last step makes up for any step of the idle one.
+        // The first ladder's last step compensates for any step of the one without effect.
         let idle = steps.iter().any(Option::is_none);
         let dear: f64 = if idle { ladders.last().unwrap().last().unwrap()[0] } else { 1.0 };
         Value {
@@ -66,7 +66,7 @@ fn monotone(sides: &[usize], random: &mut Random) -> impl Fn(&Steps) -> Value + 
     }
 }
 
-/// Walks until nothing is open, or `most` places are measured.
+/// Searches until nothing is open, or `most` places are measured.
 fn walk(steps: &[Steps], model: impl Fn(&Steps) -> Value, floor: f64, most: usize) -> Search {
     let mut search = Search::new(steps.to_vec(), steps.len() / 2, floor);
     while let Some(place) = search.next().filter(|_| search.order().len() < most) {
@@ -79,7 +79,7 @@ fn walk(steps: &[Steps], model: impl Fn(&Steps) -> Value, floor: f64, most: usiz
     search
 }
 
-/// Every point of the whole grid's frontier is in what the walk found, by value.
+/// Every point of the whole grid's frontier is among the found values.
 fn lost(steps: &[Steps], model: &impl Fn(&Steps) -> Value, floor: f64, search: &Search) -> usize {
     let all: Vec<Value> = steps
         .iter()
@@ -111,7 +111,7 @@ fn pruning_loses_no_point_of_a_monotone_frontier() {
                 Some(Skip::Covered { by, dearer_than, worse_than }) => {
                     let of = |i: usize| search.value(i).unwrap();
                     let error = worse_than.map_or(floor, |i| of(i).error);
-                    // What it says holds: the bounds do, and the one that covers covers it.
+                    // The reported reason is true: the bounds hold, and the covering place covers.
                     assert!(of(dearer_than).cost <= value.cost && error <= value.error.max(floor));
                     assert!(of(by).cost <= value.cost && of(by).error <= value.error.max(floor));
                     pruned += 1;
@@ -124,7 +124,7 @@ fn pruning_loses_no_point_of_a_monotone_frontier() {
     assert!(pruned > 300, "{pruned} places were ruled out");
 }
 
-/// The check itself: rules that throw away a frontier's point are seen.
+/// Tests the check itself: it detects rules that lose a frontier point.
 #[test]
 fn a_lost_point_is_seen() {
     let sides = [4, 5, 3];
@@ -135,8 +135,8 @@ fn a_lost_point_is_seen() {
     assert!(lost(&steps, &model, 0.0, &walk(&steps, &model, 0.0, 3)) > 0);
 }
 
-/// The first knob's cost falls where it should rise, the second's error rises at its last step: both
-/// are said, bound nothing from then on, and the frontier is whole.
+/// The first ladder's cost falls where it should rise, the second's error rises at its last step:
+/// both are reported, bound nothing from then on, and the frontier is complete.
 #[test]
 fn a_ladder_the_wrong_way_round_is_noticed() {
     let sides = [3, 4, 3];
@@ -165,9 +165,8 @@ fn a_ladder_the_wrong_way_round_is_noticed() {
     }
 }
 
-/// On a grid of 1,152 places with measured-like ladders, the first 45 hold a frontier whose gaps are
-/// small: no point of the whole frontier is better than one found by more than a factor of 1.5 in
-/// both.
+/// On a grid of 1,152 places with realistic ladders, the first 45 give a frontier with small gaps:
+/// no point of the whole frontier is better than a found one by more than a factor of 1.5 in both.
 #[test]
 fn a_short_walk_comes_near_the_whole_frontier() {
     let sides = [6, 4, 6, 8];
@@ -185,7 +184,7 @@ fn a_short_walk_comes_near_the_whole_frontier() {
     }
 }
 
-/// What was given up for its cost rules out what costs more, and says so.
+/// A place abandoned for its cost excludes slower ones, with that reason.
 #[test]
 fn too_dear_is_too_dear_for_all_above() {
     let steps = grid(&[4, 4]);
@@ -201,7 +200,8 @@ fn too_dear_is_too_dear_for_all_above() {
     assert!(!search.is_open(at(1, 1)) && search.is_open(at(0, 2)) && search.is_open(at(2, 0)));
 }
 
-/// A value corrected afterwards leaves what it would have left at first: frontier, breaks, reasons.
+/// A value corrected afterwards has the same result as if it had been first: frontier, breaks,
+/// reasons.
 #[test]
 fn a_corrected_value_is_as_if_it_were_the_first() {
     let sides = [3, 4, 3];
@@ -231,8 +231,8 @@ fn a_corrected_value_is_as_if_it_were_the_first() {
     }
 }
 
-/// A dear place beside which a knob is idle differs from a cheap one in a single knob, too; but how that
-/// knob changes costs is not known, so what is expected of the cheap one comes from the start.
+/// A slow place where one ladder has no effect differs from a fast one in a single ladder, too. The
+/// change in cost by that ladder is unknown, so the fast place's expectation comes from the start.
 #[test]
 fn what_is_expected_comes_from_differences_that_were_seen() {
     let steps = grid(&[3, 3, 3]);

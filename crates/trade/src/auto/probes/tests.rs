@@ -9,8 +9,8 @@ fn noise(k: u64) -> f64 {
     ((z ^ (z >> 29)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
 }
 
-/// Shares of seeds whose bound, and whose bare estimate, is no less than the true error of a picture
-/// of light 1 with `off` at each sample; and the mean of the estimate's square over it.
+/// Shares of seeds whose bound, and whose bare estimate, is at least the true error of a picture of
+/// light 1 with an `error` at each texel; and the mean of the estimate's square over it.
 fn covered(
     off: impl Fn(usize) -> f64,
     probes: usize,
@@ -42,18 +42,18 @@ fn covered(
     sums.map(|s| s / SEEDS as f64)
 }
 
-/// The share of seeds whose bound must hold: that of one of four looks, less three standard deviations
-/// of so many seeds.
+/// The share of seeds whose bound must hold: that of one of four bounds, less three standard
+/// deviations of that many seeds.
 fn promised() -> f64 {
     let confidence = 1.0 - (1.0 - Probes::CONFIDENCE) / 4.0;
     confidence - 3.0 * (confidence * (1.0 - confidence) / SEEDS as f64).sqrt()
 }
 
-/// Errors everywhere, errors along a twentieth of the samples (as shadows' edges make), errors that
-/// grow across the field: the bound holds as often as it says, less three standard deviations of so
-/// many seeds; the estimate's square is right in the mean (that of the twentieth wavers by
-/// √(19 / probes), here by no more than 0.55, and its mean by 0.55/√200); and the bare estimate
-/// would not do as a bound, but across, where equal parts leave nothing to chance.
+/// Uniform errors, errors in a twentieth of the texels (like shadow edges), errors that grow across
+/// the field. The bound holds as often as stated, less three standard deviations of that many
+/// seeds. The estimate's square is unbiased (for the twentieth its standard error is √(19 /
+/// probes), here at most 0.55, and that of its mean 0.55/√200). The bare estimate would fail as a
+/// bound, except for the growing errors, where stratification leaves no sampling error.
 #[test]
 fn the_bound_covers_as_often_as_it_says() {
     let everywhere = |i: usize| 0.02 * noise(i as u64);
@@ -72,9 +72,9 @@ fn the_bound_covers_as_often_as_it_says() {
     }
 }
 
-/// All of the error in 9 of 4096 samples, as the edge of a short shadow makes it: even probes mostly
-/// miss them, and their bound does not hold. Where pictures lay apart within 2 samples of them (and in
-/// 300 samples elsewhere), half of the probes are there, and it does.
+/// All of the error in 9 of 4096 texels, like the edge of a short shadow: uniform probes mostly
+/// miss them, and their bound fails. Where pictures differ within 2 texels of them (and in 300
+/// texels elsewhere), half of the probes are there, and the bound holds.
 #[test]
 fn errors_of_few_samples_are_found_where_pictures_differ() {
     let is_edge = |i: usize| i / SIDE == 20 && (30..39).contains(&(i % SIDE));
@@ -92,7 +92,8 @@ fn errors_of_few_samples_are_found_where_pictures_differ() {
     assert!(aimed[0] >= promised(), "{aimed:?}");
 }
 
-/// A far better picture than its control is judged by itself: no noise of the control's, no 0.
+/// A picture far better than its control is its own control: no noise of the control, no estimate
+/// of 0.
 #[test]
 fn a_better_picture_than_its_control_has_an_error() {
     let count = SIDE * SIDE;
@@ -116,8 +117,8 @@ fn a_better_picture_than_its_control_has_an_error() {
     }
 }
 
-/// One in each of as many equal parts, the same for the same seed; all where all are wanted. Of
-/// weights, the factors' mean over draws is 1 and heavy places are met often.
+/// One in each of as many equal parts, the same for the same seed; all where all are wanted. With
+/// weights, the factors' mean over draws is 1 and heavy texels are drawn often.
 #[test]
 fn probes_are_spread() {
     let even = vec![0.0; 1000];
@@ -136,15 +137,16 @@ fn probes_are_spread() {
     assert!((mean - 1.0).abs() < 0.02, "{mean}");
 }
 
-/// A number of mean 0 and variance 1, near to normal: twelve even ones.
+/// A random number of mean 0 and variance 1, near to normal: the sum of twelve uniform ones.
 fn normal(k: u64) -> f64 {
     let even = |j: u64| unit(mixed((12 * k + j + 1).wrapping_mul(STEP))) - 0.5;
     (0..12).map(even).sum()
 }
 
-/// Of a whole field, in which nothing but paths is left to chance, the chance is what takes the bound of an error above
-/// its estimate: a picture off by 0.04 everywhere, of a light of 1 that wavers by 0.02. Of four times the probes and
-/// half the variance it is what they would have.
+/// Where every texel is a probe only the path tracing is random, and its noise alone lifts the
+/// bound above the estimate: a picture with an error of 0.04 everywhere, of a light of 1 with a
+/// noise of 0.02. The prediction for four times the probes and half the variance matches a
+/// measurement.
 #[test]
 fn the_chance_of_paths_is_that_of_a_bound() {
     let count = SIDE * SIDE;
@@ -152,7 +154,7 @@ fn the_chance_of_paths_is_that_of_a_bound() {
         is_whole: true,
         places: (0..count).collect(),
         factors: vec![1.0; count],
-        // The mean of a square is then that of what is off and of what wavers.
+        // The mean of a square is then that of the error and that of the noise.
         light: vec![[1.0; 3]; count],
         noise: vec![noise; count],
         off: 0.0,
@@ -169,8 +171,9 @@ fn the_chance_of_paths_is_that_of_a_bound() {
     near(few, chance);
 }
 
-/// Direct light of 1 that is off by 0.01, bounced light of 0.3 of which 0.008 may be unmet: 0.008 / 1.3 of all. Over
-/// the mean of direct light alone the oracle's share would be the greater one, and nothing left.
+/// Direct light of 1 with an error of 0.01, bounced light of 0.3 of which 0.008 may be unsampled:
+/// 0.008 / 1.3 of all. Over the mean of direct light alone the oracle's share would exceed it, and
+/// nothing would remain.
 #[test]
 fn unmet_light_is_over_the_mean_of_all_light() {
     let direct = Probes {
@@ -190,7 +193,8 @@ fn unmet_light_is_over_the_mean_of_all_light() {
     assert_eq!(direct.off_since(&direct), 0.0);
 }
 
-/// Eight bounds of 5 %/8 each: the normal distribution's tail beyond z, by Simpson's rule, and what is unmet.
+/// Eight bounds of 5 %/8 each: the normal distribution's tail beyond z, by Simpson's rule, and the
+/// unsampled light.
 #[test]
 fn bounds_of_bounced_light_share_what_may_miss() {
     let density = |x: f64| (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt();
@@ -199,7 +203,7 @@ fn bounds_of_bounced_light_share_what_may_miss() {
         let weight = |k: u32| if k == 0 || k == 4000 { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
         (0..=4000).map(|k| weight(k) * density(z + f64::from(k) * step)).sum::<f64>() * step / 3.0
     };
-    // To the last digit that is written of each.
+    // To the last written digit of each.
     for (z, looks) in
         [(Probes::ONE_LOOK, 1.0), (Probes::FOUR_LOOKS, 4.0), (Probes::EACH_OF_FOUR_LOOKS, 8.0)]
     {
@@ -210,9 +214,9 @@ fn bounds_of_bounced_light_share_what_may_miss() {
     assert!((all - (1.0 - Probes::CONFIDENCE)).abs() < 1e-4, "{all}");
 }
 
-/// Light that wavers by as much as the picture is off: its variance, known to √(2 / 7) of itself as of eight batches, is
-/// taken off. Without that the square would be twice what it is; the bound holds as often as it says, of a part of the
-/// samples and of all, where the paths alone leave anything to chance.
+/// Noise as large as the picture's error: its variance, known to √(2 / 7) of itself from eight
+/// batches, is subtracted. Otherwise the square would be twice as large. The bound holds as often
+/// as stated, for a part of the texels and for all, where only the path tracing is random.
 #[test]
 fn light_that_wavers_leaves_errors_as_they_are() {
     const WAVER: f64 = 0.02;
@@ -247,9 +251,11 @@ fn light_that_wavers_leaves_errors_as_they_are() {
             mean += seen.error.powi(2) / truth.powi(2) / SEEDS as f64;
             let steady = Probes { noise: vec![0.0; probes.len()], ..probes.clone() };
             bare += steady.error(&picture, None, 0.0).error.powi(2) / truth.powi(2) / SEEDS as f64;
-            // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 + 2/7) times as much.
-            // χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: its square wavers by 1.13 of itself, the fourth
-            // root of a mean by a quarter of 1.13 / √probes, s² by less, and the mean light by s / √probes. Five of these.
+            // √(z √(4 (d² s² + s⁴) / probes)), of a mean light of 1, s⁴ as of eight batches (1 +
+            // 2/7) times as much. χ² / 7 of seven has a fourth moment of 7·9·11·13 / 7⁴: the
+            // standard error of its square is 1.13 of itself, that of the fourth root of a mean a
+            // quarter of 1.13 / √probes, that of s² less, and that of the mean light s / √probes.
+            // Five of these.
             let squared: f64 = 1.0 + 2.0 / 7.0;
             let one = (9009.0_f64 / 2401.0 - squared.powi(2)).sqrt() / squared;
             let slack = 5.0 * (0.25 * one + WAVER) / (wanted as f64).sqrt();
@@ -262,9 +268,10 @@ fn light_that_wavers_leaves_errors_as_they_are() {
         }
         let said = format!("{wanted}: {held} held, mean {mean}, bare {bare}");
         assert!(held as f64 >= promised() * SEEDS as f64, "{said}");
-        // One look's square wavers by a fifth or less of 300 or more.
+        // The standard error of one square is a fifth or less of 300 or more.
         assert!((mean - 1.0).abs() < 3.0 * 0.2 / (SEEDS as f64).sqrt(), "{said}");
-        // d² + s², of which one look's mean wavers by √((4 d² s² + 2 s⁴ + 0.8 d⁴) / probes): an even d² by 0.8 d⁴.
+        // d² + s²; the standard error of one mean is √((4 d² s² + 2 s⁴ + 0.8 d⁴) / probes): a
+        // uniform d² varies by 0.8 d⁴.
         let (d, s) = (truth.powi(2), WAVER.powi(2));
         let one = ((4.0 * d * s + 2.0 * s * s + 0.8 * d * d) / wanted as f64).sqrt() / d;
         assert!((bare - (1.0 + s / d)).abs() < 3.0 * one / (SEEDS as f64).sqrt(), "{said}");

@@ -1,13 +1,14 @@
-//! Choices of bounces, whose light paths are made up of the quadrature's.
+//! Choices of bounces, with simulated paths around the quadrature's result.
 
 use super::*;
 use ridgelight::scene::{Albedo, BounceEngine, Bounces};
 use ridgelight_cpu::indirect::{self, Fineness};
 
-/// Two bounces of an albedo of 0.8, by the f64 quadrature, which the paths that are told waver about by 5 % of it. Pictures
-/// are the truth but for what settings of bounces leave: of bounces that are not drawn all, of what azimuths they have
-/// 32nds / azimuths · 10 % of the second bounce's light. What is chosen holds by the truth without chance, and is
-/// cheaper than the defaults; a goal below what paths tell is refused; so is one that drawing all bounces does not reach.
+/// Two bounces of an albedo of 0.8, by the f64 quadrature; the simulated paths have a noise of 5 %
+/// of it. Pictures are the ground truth except for the settings of bounces: omitted bounces lack
+/// all their light, and azimuths leave 32nds / azimuths · 10 % of the second bounce's light. The
+/// choice reaches the goal without noise and is faster than the defaults. A goal below the paths'
+/// noise is refused, as is one that all bounces do not reach.
 #[test]
 fn choices_of_bounces_hold_and_walk_their_settings() {
     let mut scene = scene();
@@ -18,7 +19,7 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     let direct: Vec<f64> = (0..SIDE * SIDE).map(|i| lit.at(i / SIDE, i % SIDE)[0]).collect();
     let thrown = |i: usize, count: usize| all[count][i][0] - all[0][i][0];
     let picture = |quality: &Quality| -> Vec<f32> {
-        let drawn = quality.bounces.worth_drawing(f64::from(0.8_f32)) as usize;
+        let drawn = quality.bounces.needed_bounces(f64::from(0.8_f32)) as usize;
         let off = 3.2 / f64::from(quality.bounces.azimuths) * f64::from(u8::from(drawn > 0));
         (0..SIDE * SIDE)
             .map(|i| (direct[i] + thrown(i, drawn) + off * thrown(i, 1)) as f32)
@@ -35,7 +36,7 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     };
     let cost = |quality: &Quality| {
         let Bounces { azimuths, .. } = quality.bounces;
-        let drawn = quality.bounces.worth_drawing(f64::from(0.8_f32));
+        let drawn = quality.bounces.needed_bounces(f64::from(0.8_f32));
         1e6 * f64::from(quality.azimuths) + 1e6 * f64::from(drawn * azimuths)
     };
     let found = |most: f64, waver: f64| {
@@ -45,7 +46,7 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
             let error = waver / f64::from(batches).sqrt();
             let of = |(k, i): (usize, &usize)| {
                 let turn = (f64::from(seed % 1009) + 1.0) * (k as f64 + 1.0) * 2.399_963;
-                // A sine of evenly spread turns has the variance ½.
+                // A sine of evenly spread phases has the variance ½.
                 let mean = thrown(*i, 2) * (1.0 + error * std::f64::consts::SQRT_2 * turn.sin());
                 Traced { mean: [mean; 3], standard_error: [thrown(*i, 2) * error; 3] }
             };
@@ -72,15 +73,15 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
                     ..Quality::default()
                 })
         );
-        // As many as the probes that judged what is chosen were traced with, the last.
+        // The last count is that of the probes that measured the choice.
         assert_eq!(chosen.paths, told[told.len() - 1] * ridgelight::plan::REFERENCE_BATCH);
         assert!(told.iter().all(|batches| (8..=256).contains(batches)), "{told:?}");
         let azimuths: Vec<u32> = chosen.trials.iter().map(|t| t.quality.bounces.azimuths).collect();
         assert!(azimuths.iter().any(|a| *a != azimuths[0]), "{azimuths:?}");
         let text = flags(&quality, &scene);
-        assert!(text.contains("--bounces 2 --bounce-engine"), "{text}");
+        assert!(text.contains("`bounces 2` `bounce_engine"), "{text}");
     }
-    // Ten times the light that is thrown: of 256 batches 60 % are left of each sample.
+    // Ten times the bounced light: with 256 batches 60 % of each texel remain.
     let refused = found(0.001, 10.0).0.unwrap_err().to_string();
     assert!(
         refused.contains("a goal of 0.00100: needs bounced light that is known so well"),
@@ -92,8 +93,9 @@ fn choices_of_bounces_hold_and_walk_their_settings() {
     assert!(refused.contains("nearest found"), "{refused}");
 }
 
-/// A goal that all are expected to hold: exact horizons are the last resort, and with bounces every sample's own,
-/// though at every second one and by means of the ground they are cheaper.
+/// A goal that all settings are expected to reach: exact horizons are the last resort, and with
+/// bounces every texel's own visibility, although every second texel and averages of the surface
+/// are faster.
 #[test]
 fn the_last_resort_leaves_nothing_to_means() {
     let mut scene = scene();
@@ -115,7 +117,8 @@ fn the_last_resort_leaves_nothing_to_means() {
     }
 }
 
-/// Candidates of bounces are valid and none is there twice; of few bounces no two energies leave out the same ones.
+/// Candidates of bounces are valid and none occurs twice; with few bounces no two energies omit the
+/// same ones.
 #[test]
 fn what_is_chosen_among_differs() {
     let mut scene = scene();

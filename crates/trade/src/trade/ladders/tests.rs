@@ -1,5 +1,5 @@
 use super::*;
-use ridgelight::scene::{HeightField, KeyLight, Lobe, Phong, SphereLight, Sun, Surface};
+use ridgelight::scene::{HeightField, KeyLight, Specular, PhongSpecular, SphereLight, Sun, Surface};
 
 fn scene(lights: Lights) -> Scene {
     let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).unwrap();
@@ -26,12 +26,12 @@ fn only_knobs_that_change_something_are_walked() {
     let ball = SphereLight { position_m: [0.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
     let spheres = vec![ball];
     assert_eq!(
-        names(Lights { spheres: spheres.clone(), ..Lights::default() }),
+        names(Lights { sphere_lights: spheres.clone(), ..Lights::default() }),
         ["sun azimuths", "light basis"]
     );
     let balls_too = with(&["sun azimuths", "light basis"]);
-    assert_eq!(names(Lights { spheres: spheres.clone(), ..sun(0.0) }), balls_too);
-    // A patch of the sky needs horizons as a sun does; a dark sky and a dark sun none.
+    assert_eq!(names(Lights { sphere_lights: spheres.clone(), ..sun(0.0) }), balls_too);
+    // A key light needs horizons as a sun does; a black sky and a black sun need none.
     let keys = vec![KeyLight {
         azimuth_rad: 0.0,
         width_rad: 1.0,
@@ -39,13 +39,14 @@ fn only_knobs_that_change_something_are_walked() {
         radiance: [1.0; 3],
     }];
     assert_eq!(names(Lights { keys, ..Lights::default() }), with(&["sun azimuths"]));
-    let mut dark = Lights { sky: Some([0.0; 3]), spheres, ..sun(0.01) };
+    let mut dark = Lights { sky: Some([0.0; 3]), sphere_lights: spheres, ..sun(0.01) };
     dark.suns[0].irradiance = [0.0; 3];
     assert_eq!(names(dark), ["sun azimuths", "light basis"]);
 }
 
-/// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute alone
-/// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none twice, the default is among them.
+/// 5 spacings × (2 fuses × 3 precisions + 4 fuses × 2 precisions) and exact and brute force alone
+/// and 25 pyramids, each with 6 numbers of azimuths. Every quality is valid, none occurs twice, the
+/// default is among them.
 #[test]
 fn places_are_all_that_differ() {
     let ladders = ladders(&scene(sky()), 0);
@@ -57,21 +58,21 @@ fn places_are_all_that_differ() {
         assert!(!all[..i].iter().any(|p| p.quality == place.quality), "{place:?}");
     }
     let default = all.iter().find(|p| p.quality == start).unwrap();
-    let flags = "--lines 1 --fuse aimed-nearest --precision f32 --azimuths 64";
+    let flags = "`lines 1` `fuse aimed-nearest` `precision f32` `azimuths 64`";
     assert_eq!(default.flags(&ladders), flags);
-    let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::Brute).collect();
+    let brute: Vec<&Place> = all.iter().filter(|p| p.quality.method == Method::BruteForce).collect();
     assert_eq!(brute.len(), 6);
-    assert_eq!(brute[0].flags(&ladders), "--method brute --azimuths 8");
+    assert_eq!(brute[0].flags(&ladders), "`method brute-force` `azimuths 8`");
     assert_eq!(brute[0].steps, [Some(7), None, None, None, None, Some(0)]);
 }
 
-/// A lobe mirrors sky and environment by harmonics, throws light by pyramids from every sample, and needs neither under
-/// a sun alone; one of nothing changes nothing.
+/// Phong specular is lit by sky and environment through harmonics, its bounces use pyramids at
+/// every texel, and it needs neither under a sun alone; a scale of 0 changes nothing.
 #[test]
 fn lobes_have_knobs_of_their_own() {
     let names = |lights: Lights, scale: f32, bounces: u32| {
         let mut scene = scene(lights);
-        scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale }));
+        scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale }));
         ladders(&scene, bounces).iter().map(|k| k.name).collect::<Vec<_>>()
     };
     let always = ["sweep", "fuse", "precision", "level step", "level offset"];
@@ -82,12 +83,12 @@ fn lobes_have_knobs_of_their_own() {
     let thrown = ["azimuths", "basis", "bounce gloss", "bounce azimuths"];
     assert_eq!(names(sky(), 0.2, 2), with(&thrown));
     let mut scene = scene(sky());
-    scene.surface.phong = Some(Lobe::Constant(Phong { exponent: 5.0, scale: 0.2 }));
+    scene.surface.specular = Some(Specular::Constant(PhongSpecular { exponent: 5.0, scale: 0.2 }));
     let all = ladders(&scene, 1);
     let found: Vec<&str> = all.iter().map(|k| k.steps[k.default].as_str()).collect();
     let [.., basis, gloss, _] = found[..] else { panic!("{found:?}") };
-    assert_eq!([basis, gloss], ["--basis sh --sh-order 4", "--bounce-gloss vector"]);
-    assert!(!all.iter().flat_map(|k| &k.steps).any(|step| step == "--basis table"));
+    assert_eq!([basis, gloss], ["`basis sh` `sh_order 4`", "`bounce_gloss vector`"]);
+    assert!(!all.iter().flat_map(|k| &k.steps).any(|step| step == "`basis table`"));
 }
 
 /// Steps rise within the range, differ, and the default is the command line's.
@@ -103,18 +104,18 @@ fn knobs_say_their_range_and_default() {
     let found: Vec<(&str, &str)> =
         all.iter().map(|k| (k.name, k.steps[k.default].as_str())).collect();
     let expected = [
-        ("sweep", "--lines 1"),
-        ("fuse", "--fuse aimed-nearest"),
-        ("precision", "--precision f32"),
-        ("level step", "--level-step 4"),
-        ("level offset", "--level-offset 2"),
-        ("azimuths", "--azimuths 64"),
-        ("sun azimuths", "--sun-azimuths 8"),
-        ("table elevations", "--table-elevations 256"),
-        ("basis", "--basis table"),
-        ("sub-sampling", "--subsample 1"),
-        ("bounce engine", "--bounce-engine auto"),
-        ("bounce azimuths", "--bounce-azimuths 32"),
+        ("sweep", "`lines 1`"),
+        ("fuse", "`fuse aimed-nearest`"),
+        ("precision", "`precision f32`"),
+        ("level step", "`level_step 4`"),
+        ("level offset", "`level_offset 2`"),
+        ("azimuths", "`azimuths 64`"),
+        ("sun azimuths", "`sun_azimuths 8`"),
+        ("table elevations", "`table_elevations 256`"),
+        ("basis", "`basis table`"),
+        ("sub-sampling", "`subsample 1`"),
+        ("bounce engine", "`bounce_engine auto`"),
+        ("bounce azimuths", "`bounce_azimuths 32`"),
     ];
     assert_eq!(found, expected);
     for knob in &all {
