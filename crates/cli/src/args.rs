@@ -1,4 +1,4 @@
-//! What can be asked for, and how it is spelled.
+//! Subcommands, their flags and help.
 
 mod auto;
 mod bake;
@@ -7,6 +7,7 @@ mod camera;
 mod compare;
 mod quality;
 mod reference;
+mod renamed;
 mod scene;
 mod values;
 mod view;
@@ -14,7 +15,9 @@ mod view;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{
+    Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
+};
 
 use crate::scene_file::SceneFile;
 pub use auto::AutoArgs;
@@ -26,46 +29,89 @@ pub use quality::{
     PrecisionName, QualityArgs, ReceiverName, SETTINGS, SubsampleName, WedgesName, WindowName,
 };
 pub use reference::ReferenceArgs;
+pub use renamed::Renamed;
 pub use scene::{BorderName, FieldArgs, LightArgs, SurfaceArgs};
 use values::bytes;
 #[cfg(feature = "window")]
 pub use values::sun;
-pub use values::{PhongArg, albedo_colour};
+pub use values::{SpecularArg, albedo_colour};
 pub use view::ViewArgs;
 
-/// Lights height fields: exact horizons under sky, environment, suns, key lights and balls of light, and what the
-/// ground throws back, as Vulkan passes.
+/// Renders height fields on Vulkan: exact horizons under sky, environment, suns, key lights and sphere lights, and
+/// indirect light.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
-    /// What `--scene` gave.
+    /// The file of `--scene`.
     #[arg(skip)]
     pub scene: SceneFile,
 }
 
-/// Why a command line cannot be taken.
+/// Why a command line is refused.
 pub enum Refused {
-    /// By the parser; help and version too.
+    /// By the parser. Help and version come this way too.
     Parser(clap::Error),
     /// By a scene file.
     Scene(ridgelight::Error),
 }
 
+/// Help headings, in the order of `--help`. Others stand before "Output".
+const HEADINGS: [&str; 8] =
+    ["Input", "Lights", "Surface", "Quality", "Camera", "Output", "Device", "Expert"];
+
+/// The parser: arguments sorted by heading, `-h` on one screen.
+fn parser() -> clap::Command {
+    let mut parser = Cli::command();
+    for command in parser.get_subcommands_mut() {
+        *command = arranged(std::mem::take(command));
+    }
+    parser
+}
+
+fn arranged(command: clap::Command) -> clap::Command {
+    let help = Arg::new("help").short('h').long("help").action(ArgAction::Help);
+    let help = help.help("Print help; --help describes every flag").help_heading("Output");
+    let command = command.disable_help_flag(true).arg(help);
+    let rank = |heading: &str| {
+        let [at, output] = [heading, "Output"].map(|h| HEADINGS.iter().position(|k| *k == h));
+        (at.or(output), at.is_some())
+    };
+    let mut args: Vec<Arg> = command.get_arguments().cloned().collect();
+    args.sort_by_key(|arg| arg.get_help_heading().map(rank));
+    let mut args = args.into_iter().map(|arg| match arg.get_help_heading() {
+        Some("Expert") => arg.hide_short_help(true),
+        _ => arg,
+    });
+    let command = command.mut_args(|_| args.next().expect("as many as there are"));
+    if !command.get_arguments().any(Arg::is_hide_short_help_set) {
+        return command;
+    }
+    let last = format!("`ridgelight {} --help` lists all flags and examples.", command.get_name());
+    let long = command.get_after_help().cloned().unwrap_or_default();
+    command.after_help(last).after_long_help(long)
+}
+
 impl Cli {
-    /// What the user wrote, and what a scene file adds to it.
+    /// Reads the command line and the scene file that it names.
     ///
     /// # Errors
-    /// Clap's sentence on what cannot be read; the scene file's line and key.
+    /// What the parser refuses; the line and key of the scene file.
     pub fn read() -> Result<Self, Refused> {
-        let mut parser = Self::command();
+        let mut parser = parser();
         let mut words: Vec<OsString> = std::env::args_os().collect();
-        let scene = SceneFile::add_to(&parser, &mut words).map_err(Refused::Scene)?;
+        let mut renamed = Renamed::default();
+        let scene = SceneFile::add_to(&parser, &mut words, &mut renamed).map_err(Refused::Scene)?;
+        renamed.replace(&parser, &mut words);
         let parsed = parser.try_get_matches_from_mut(words);
         let cli = parsed.and_then(|matches| {
             let mut cli = Self::from_arg_matches(&matches).map_err(|e| e.format(&mut parser))?;
             cli.remember(&matches, &scene);
+            let quiet = matches.subcommand().and_then(|(_, m)| m.try_get_one("quiet").ok()?);
+            if quiet != Some(&true) {
+                renamed.warn();
+            }
             Ok(cli)
         });
         match cli {
@@ -100,26 +146,25 @@ impl Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Light a field: one pixel a sample, seen from above, or from a camera
+    /// Render a height field, from straight above or from a camera
     Render(RenderArgs),
-    /// Horizons of every sample: f32 [azimuths, rows, cols], elevation in radians
+    /// Write the horizon of every texel: f32 [azimuths, rows, cols], elevation in radians
     Horizon(HorizonArgs),
-    /// Which passes would run, why, their traffic and memory; runs nothing
+    /// Print the passes, their reasons, traffic and memory; runs nothing
     Plan(PlanArgs),
-    /// GPU times of each pass, beside a scalar sweep on the processor; verifies before it times
+    /// Time each pass on the GPU, after a check against the CPU
     Bench(BenchArgs),
-    /// Differences of two results; exit status 1 beyond a bound
+    /// Compare two results; exit status 1 beyond a bound
     Compare(CompareArgs),
-    /// What Vulkan offers here and what is missing
+    /// List Vulkan devices and what each lacks
     Devices(DevicesArgs),
-    /// Speed against accuracy: measures settings and writes table, plot, frontier, recommendation
+    /// Measure time against error over many settings; writes a table, a plot and a recommendation
     Trade(TradeArgs),
-    /// The truth, slowly: light paths with all bounces, and how far off they may still be
+    /// Path-traced reference with all bounces and its standard error; slow
     Reference(ReferenceArgs),
-    /// Maps for engines, of ground that does not move: horizons, sky view, bent normals, harmonics,
-    /// scattered light, BRDFs
+    /// Bake maps of static ground for engines: horizons, sky view, bent normals, harmonics, scattered light, BRDFs
     Bake(BakeArgs),
-    /// A window: look around, move the sun, try methods
+    /// Open a window: move the camera and the sun, try methods
     View(ViewArgs),
 }
 
@@ -135,8 +180,10 @@ Examples:
 pub struct RenderArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Where to write: .exr (linear, named layers) or .png (sRGB), either with the settings used
-    #[arg(short, long, value_name = "OUT.{exr,png}")]
+    /// Output: .exr (linear, layers) or .png (sRGB)
+    ///
+    /// Both store the settings used as metadata.
+    #[arg(short, long, value_name = "OUT.{exr,png}", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
     pub lights: LightArgs,
@@ -148,12 +195,26 @@ pub struct RenderArgs {
     pub auto: AutoArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
-    /// Further layers of an .exr: lights (one a light), sky-view, horizon (the mean elevation); with --camera depth
-    /// (Z, the distance along the view)
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    /// Add layers to an .exr
+    ///
+    /// lights is one layer per light, horizon the mean elevation, depth (with --camera) the distance Z along the view.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "LIST",
+        hide_short_help = true,
+        help_heading = "Output"
+    )]
     pub layers: Vec<Layer>,
-    /// Factor before the picture curve of a .png, which clips at 1 and is sRGB
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", allow_negative_numbers = true)]
+    /// Multiply radiance of a .png before sRGB, which clips at 1
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Output",
+        default_value_t = 1.0,
+        value_name = "FACTOR",
+        allow_negative_numbers = true
+    )]
     pub exposure: f32,
     #[command(flatten)]
     pub global: GlobalArgs,
@@ -163,11 +224,11 @@ pub struct RenderArgs {
 pub struct HorizonArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Where to write: .npy (f32 [azimuths, rows, cols]) or .exr (a channel an azimuth)
-    #[arg(short, long, value_name = "OUT.{npy,exr}")]
+    /// Output: .npy (f32 [azimuths, rows, cols]) or .exr (one channel per azimuth)
+    #[arg(short, long, value_name = "OUT.{npy,exr}", help_heading = "Output")]
     pub output: PathBuf,
-    /// Also the distance to what makes each horizon, metres, 0 where nothing does (.npy)
-    #[arg(long, value_name = "OUT.npy")]
+    /// Write the distance to each horizon's occluder too, metres, 0 where there is none (.npy)
+    #[arg(long, value_name = "OUT.npy", help_heading = "Output")]
     pub distances: Option<PathBuf>,
     #[command(flatten)]
     pub surface: FieldArgs,
@@ -189,8 +250,8 @@ pub struct PlanArgs {
     pub quality: QualityArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
-    /// text for people, json for machines, dot for graphviz
-    #[arg(long, default_value = "text")]
+    /// Format of the plan
+    #[arg(long, default_value = "text", help_heading = "Output")]
     pub format: PlanFormat,
     #[command(flatten)]
     pub global: GlobalArgs,
@@ -198,11 +259,11 @@ pub struct PlanArgs {
 
 #[derive(Args)]
 pub struct BenchArgs {
-    /// A height field; else --size
-    #[arg(value_name = "INPUT")]
+    /// Height field; without one, a fractal of --size
+    #[arg(value_name = "INPUT", help_heading = "Input")]
     pub input: Option<PathBuf>,
-    /// Side of a fixed fractal field
-    #[arg(long, default_value_t = 1024, value_name = "N")]
+    /// Side of a fixed fractal field, texels
+    #[arg(long, help_heading = "Input", default_value_t = 1024, value_name = "N")]
     pub size: usize,
     #[command(flatten)]
     pub lights: LightArgs,
@@ -210,23 +271,32 @@ pub struct BenchArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
-    /// Only passes of these names
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    /// Time only passes of these names
+    #[arg(long, help_heading = "Output", value_delimiter = ',', value_name = "LIST")]
     pub passes: Vec<String>,
-    /// Times each pass is run after warming up
-    #[arg(long, default_value_t = 20, value_name = "K")]
-    pub samples: usize,
-    /// Beside the frame, every form of the sweep, brute force and a scalar sweep on the processor
-    #[arg(long)]
+    /// Timed runs of each pass after warming up
+    ///
+    /// Fewer are faster and noisier.
+    #[arg(long, default_value_t = 20, value_name = "K", help_heading = "Quality")]
+    pub runs: usize,
+    /// Time every form of the sweep too, brute force, and a scalar sweep on the CPU
+    #[arg(long, help_heading = "Output")]
     pub forms: bool,
-    /// Instead: whole frames of fractal fields of these sides
-    #[arg(long, value_delimiter = ',', value_name = "N,N,…", conflicts_with_all = ["input", "forms", "trace", "passes"])]
+    /// Time whole frames of fractal fields of these sides instead
+    #[arg(long, help_heading = "Input", value_delimiter = ',', value_name = "N,N,…", conflicts_with_all = ["input", "forms", "trace", "passes"])]
     pub sizes: Vec<usize>,
-    /// With --sizes: each with these numbers of azimuths
-    #[arg(long, value_delimiter = ',', value_name = "M,M,…", requires = "sizes")]
+    /// Time each of --sizes with these numbers of azimuths
+    #[arg(
+        long,
+        help_heading = "Quality",
+        hide_short_help = true,
+        value_delimiter = ',',
+        value_name = "M,M,…",
+        requires = "sizes"
+    )]
     pub azimuth_list: Vec<u32>,
-    /// A Chrome / Perfetto trace of one frame
-    #[arg(long, value_name = "FILE")]
+    /// Write a Chrome / Perfetto trace of one frame
+    #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub trace: Option<PathBuf>,
     #[command(flatten)]
     pub global: GlobalArgs,
@@ -236,34 +306,55 @@ pub struct BenchArgs {
 pub struct TradeArgs {
     #[command(flatten)]
     pub input: Input,
-    /// A folder, made where it is missing, for trade.html, trade.json and trade.csv; one that holds
-    /// anything else is refused
-    #[arg(short, long, value_name = "DIR")]
+    /// Output folder for trade.html, trade.json and trade.csv
+    ///
+    /// Made where it is missing; refused where it holds anything else.
+    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
     pub output: PathBuf,
     #[command(flatten)]
     pub lights: LightArgs,
     #[command(flatten)]
     pub surface: SurfaceArgs,
-    /// The truth of this scene as .exr; its layer "standard_error" is taken off the errors, and a header of
-    /// another scene is refused. Default: brute force in many azimuths, or dense sweeps where that is too dear
-    #[arg(long, value_name = "FILE")]
+    /// Ground truth of this scene, .exr
+    ///
+    /// The layer "standard_error" is subtracted from the errors. A header of another scene is refused. Default: brute force in
+    /// many azimuths, or dense sweeps where brute force is too slow.
+    #[arg(long, help_heading = "Quality", value_name = "FILE")]
     pub reference: Option<PathBuf>,
-    /// Times that light may be reflected on its way to a sample, 0..64; above 0 only with --reference
-    #[arg(long, value_name = "B", default_value_t = 0, value_parser = values::whole, allow_negative_numbers = true)]
+    /// Bounces of indirect light, 0 to 64; above 0 only with --reference
+    #[arg(long, help_heading = "Quality", value_name = "B", default_value_t = 0, value_parser = values::whole, allow_negative_numbers = true)]
     pub bounces: u32,
-    /// Seconds after which no further settings are tried
-    #[arg(long, value_name = "SECONDS", default_value_t = 120.0, allow_negative_numbers = true)]
+    /// Seconds after which no further settings are measured
+    ///
+    /// Fewer find worse settings.
+    #[arg(
+        long,
+        help_heading = "Quality",
+        value_name = "SECONDS",
+        default_value_t = 120.0,
+        allow_negative_numbers = true
+    )]
     pub budget: f64,
-    /// Stop after this many measured settings instead of after a time: the same work on every machine
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
+    /// Stop after this many measured settings instead of --budget
+    ///
+    /// Does the same work on every machine.
+    #[arg(long, help_heading = "Quality", value_name = "N", conflicts_with = "budget", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub evaluations: Option<u32>,
-    /// Recommend the cheapest settings of at most this relative RMSE (0.01 is 1 %); exit status 1
-    /// where none were found
-    #[arg(long, value_name = "E", allow_negative_numbers = true, conflicts_with = "time_budget")]
+    /// Recommend the fastest settings of at most this relative RMSE (0.01 is 1 %)
+    ///
+    /// Exit status 1 where no settings reach it.
+    #[arg(
+        long,
+        help_heading = "Quality",
+        value_name = "E",
+        allow_negative_numbers = true,
+        conflicts_with = "time_budget"
+    )]
     pub max_error: Option<f64>,
-    /// Recommend the most accurate settings of at most this time a frame; exit status 1 where none
-    /// were found
-    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    /// Recommend the most accurate settings of at most this GPU time a frame, milliseconds
+    ///
+    /// Exit status 1 where no settings reach it.
+    #[arg(long, help_heading = "Quality", value_name = "MS", allow_negative_numbers = true)]
     pub time_budget: Option<f64>,
     #[command(flatten)]
     pub global: GlobalArgs,
@@ -271,52 +362,63 @@ pub struct TradeArgs {
 
 #[derive(Args)]
 pub struct DevicesArgs {
-    /// The same for machines
-    #[arg(long, value_name = "FILE")]
+    /// Write the list as JSON
+    #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
 }
 
 #[derive(Args)]
 pub struct Input {
     /// Height field: PNG, EXR, TIFF or GeoTIFF, SRTM .hgt, ESRI .asc, NPY, NPZ
-    #[arg(value_name = "INPUT")]
+    #[arg(value_name = "INPUT", help_heading = "Input")]
     pub path: PathBuf,
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "Everywhere")]
+#[command(next_help_heading = "Device")]
 pub struct GlobalArgs {
-    /// Part of a device's name, or its number in `ridgelight devices`. Default the first GPU that
-    /// will do, else a software driver
+    /// Device: part of its name, or its number in `ridgelight devices`
+    ///
+    /// Default the first GPU that has what is needed, else a software driver.
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
-    /// Most memory that images and buffers may take on the device, as 512MiB or 2GiB; default half
-    /// of the device's
-    #[arg(long, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]
+    /// Largest memory of images and buffers, as 512MiB or 2GiB; default half of the device's
+    ///
+    /// Less makes the planner choose slower settings, or refuse.
+    #[arg(long, hide_short_help = true, value_name = "SIZE", value_parser = bytes, allow_negative_numbers = true)]
     pub memory_budget: Option<u64>,
-    /// Settings really used, times and figures, for machines
-    #[arg(long, value_name = "FILE")]
+    /// Write settings used, times and figures as JSON
+    #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Prints nothing but errors
-    #[arg(long)]
+    /// Print only errors
+    #[arg(long, hide_short_help = true, help_heading = "Output")]
     pub quiet: bool,
-    /// Field, surface, lights and quality from a file (docs/scene.schema.json), as far as the command takes them;
-    /// flags that are written out go before
-    #[arg(long, value_name = "FILE.json")]
+    /// Read field, lights and settings from a JSON file
+    ///
+    /// docs/scene.schema.json describes it. The command ignores keys that it has no flag for. Flags override the file.
+    #[arg(long, help_heading = "Input", value_name = "FILE.json")]
     pub scene: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Layer {
+    /// One layer per light
     Lights,
+    /// Sky view factor
+    #[value(alias = "svf")]
     SkyView,
+    /// Mean elevation of the horizon
     Horizon,
+    /// Distance along the view, with --camera
     Depth,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum PlanFormat {
+    /// For people
     Text,
+    /// For programs
     Json,
+    /// For Graphviz
     Dot,
 }

@@ -1,17 +1,17 @@
-//! Flags that were written out and change nothing: each is said, none is an error.
+//! Notes on flags that change nothing. None is an error.
 
 use std::io::Write as _;
 
 use crate::args::SETTINGS;
 
-/// Says on stderr which of the flags that were `written` are not among the settings that were `used`.
+/// Prints a note for each `written` setting that is not among the `used`.
 pub fn say(quiet: bool, written: &[(String, String)], used: &[(String, String)]) {
     if !quiet {
-        notes(written, used).iter().for_each(|line| tell(line));
+        notes(written, used).iter().for_each(|line| print(line));
     }
 }
 
-/// The same where the command itself may know why.
+/// The same, with reasons of the command itself.
 pub fn say_why(
     quiet: bool,
     written: &[(String, String)],
@@ -19,11 +19,11 @@ pub fn say_why(
     why: &dyn Fn(&str) -> Option<String>,
 ) {
     if !quiet {
-        lines(written, used, why).iter().for_each(|line| tell(line));
+        lines(written, used, why).iter().for_each(|line| print(line));
     }
 }
 
-/// A line for each.
+/// One line per note.
 pub fn notes(written: &[(String, String)], used: &[(String, String)]) -> Vec<String> {
     lines(written, used, &|_| None)
 }
@@ -36,7 +36,7 @@ fn lines(
     let mut lines = Vec::new();
     for (setting, value) in written.iter().filter(|(s, _)| SETTINGS.contains(&s.as_str())) {
         let by_name = |(name, used): &(String, String)| {
-            // The others are the planner's to choose or to count on.
+            // The planner may choose another value of these two.
             let is_kept = !matches!(name.as_str(), "lines" | "precision") || used == value;
             name == setting && is_kept
         };
@@ -48,17 +48,17 @@ fn lines(
     lines
 }
 
-/// One line.
+/// Prints one note.
 pub fn note(setting: &str, value: &str, reason: &str) {
-    tell(&line(setting, value, reason));
+    print(&line(setting, value, reason));
 }
 
 fn line(setting: &str, value: &str, reason: &str) -> String {
     format!("note: --{} {value} changes nothing {reason}", setting.replace('_', "-"))
 }
 
-fn tell(line: &str) {
-    // A closed stderr is no panic.
+fn print(line: &str) {
+    // A closed standard error is no reason to panic.
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
@@ -67,9 +67,9 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
     match (setting, of("method"), of("lines")) {
         ("azimuths", ..) => "without a sky or an environment".into(),
         ("sun_azimuths", ..) => {
-            "without a sun wider than 0.01°, a key light or a ball of light".into()
+            "without a sun wider than 0.01°, a key light or a sphere light".into()
         }
-        ("light_cutoff" | "light_basis", ..) => "without a ball of light".into(),
+        ("light_cutoff" | "light_basis", ..) => "without a sphere light".into(),
         (
             "lines" | "fuse" | "precision" | "hull" | "level_step" | "level_offset" | "levels",
             None,
@@ -80,7 +80,7 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
         ("bounce_level_step" | "bounce_level_offset", ..) => {
             "without --bounces and --bounce-engine pyramid".into()
         }
-        ("bounce_gloss", ..) => "without --bounces and --phong".into(),
+        ("bounce_gloss", ..) => "without --bounces and --specular".into(),
         ("level_step" | "level_offset" | "levels", ..) => "without --method pyramid".into(),
         (
             "table_elevations" | "basis" | "sh_order" | "wedges" | "receiver" | "window"
@@ -96,14 +96,14 @@ fn reason(setting: &str, used: &[(String, String)]) -> String {
             (_, None) => "without an environment".into(),
             ("wedge_side", Some("sh")) => "without --wedges table".into(),
             ("subsample", _) => {
-                "without --basis sh or --bounces: tables light each sample through its own horizons"
+                "without --basis sh or --bounces: tables light each texel through its own horizons"
                     .into()
             }
             ("table_elevations", _) => "with --basis sh".into(),
             _ => "without --basis sh".into(),
         },
         (_, Some("pyramid"), _) => "with --method pyramid".into(),
-        (_, Some("brute"), _) => "with --method brute".into(),
+        (_, Some("brute-force"), _) => "with --method brute-force".into(),
         (_, Some("first crossings"), _) => "where nothing rises above anything else".into(),
         (_, _, Some("exact")) => "with --lines exact".into(),
         ("precision", ..) => format!("with --fuse {}", of("fuse").unwrap_or_default()),

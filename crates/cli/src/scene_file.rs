@@ -1,5 +1,5 @@
-//! Scene files: a JSON of field, surface, lights, camera and quality. Each of its keys is a flag of the command line, which
-//! it becomes where the user wrote none of that name; a mistake is told by line and key.
+//! Scene files: field, surface, lights, camera and quality as JSON. Each key stands for a flag of the command line, and
+//! takes effect where the user did not write that flag. Errors give line and key.
 
 mod json;
 mod keys;
@@ -15,37 +15,42 @@ use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use ridgelight::{Error, Result};
 
+use crate::args::Renamed;
 use json::Found;
 use keys::{GROUPS, Kind};
 pub use write::Request;
 
-/// A flag that a scene file gave.
+/// A flag from a scene file.
 struct Given {
-    /// As the parser calls it.
+    /// The id of its argument.
     id: &'static str,
     value: OsString,
-    /// A flag that takes nothing.
+    /// Whether it takes no value.
     is_switch: bool,
     line: usize,
     key: String,
 }
 
-/// What a scene file gave to a command line; nothing where there is none.
+/// The flags of a scene file; empty without one.
 #[derive(Default)]
 pub struct SceneFile {
     path: PathBuf,
     given: Vec<Given>,
 }
 
-/// The largest scene file that is read, bytes.
+/// Largest scene file, bytes.
 const LARGEST: u64 = 1 << 24;
 
 impl SceneFile {
-    /// Reads the file that `--scene` names, if it does, and adds to the words what it gives.
+    /// Reads the file of `--scene`, if any, and adds its flags to the words.
     ///
     /// # Errors
-    /// The file, the line and the key that cannot be read.
-    pub fn add_to(parser: &clap::Command, words: &mut Vec<OsString>) -> Result<Self> {
+    /// File, line and key of a mistake.
+    pub fn add_to(
+        parser: &clap::Command,
+        words: &mut Vec<OsString>,
+        renamed: &mut Renamed,
+    ) -> Result<Self> {
         let partial = parser.clone().ignore_errors(true);
         let Ok(matches) = partial.try_get_matches_from(words.iter()) else {
             return Ok(Self::default());
@@ -55,7 +60,7 @@ impl SceneFile {
         let (Some(path), Some(command)) = (path, parser.find_subcommand(name)) else {
             return Ok(Self::default());
         };
-        let mut scene = Self { path: path.clone(), given: all(parser, path)? };
+        let mut scene = Self { path: path.clone(), given: all(parser, path, renamed)? };
         let input = command.get_positionals().next().map(|arg| arg.get_id().as_str());
         scene.given.retain(|given| {
             if given.is_switch && given.value == "false" {
@@ -82,12 +87,12 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Whether it gave an argument, by its name in the parser.
+    /// Whether the file gave the argument of this id.
     pub fn gave(&self, id: &str) -> bool {
         self.given.iter().any(|given| given.id == id)
     }
 
-    /// What the parser says of a flag that came from the file, by line and key.
+    /// The parser's error on a flag of the file, by line and key.
     pub fn explain(&self, error: &clap::Error) -> Option<Error> {
         let text = |kind| match error.get(kind)? {
             ContextValue::String(text) => Some(text.clone()),
@@ -110,7 +115,7 @@ impl SceneFile {
         Some(self.wrong(given, "", value.unwrap_or_default(), expected?))
     }
 
-    /// The same for what a command says of it.
+    /// A command's error on a flag of the file, by line and key.
     pub fn place(&self, error: Error) -> Error {
         let Error::Setting { name, found, expected } = error else { return error };
         let Some((given, rest)) = self.named(&name) else {
@@ -119,7 +124,7 @@ impl SceneFile {
         self.wrong(given, rest, found, expected)
     }
 
-    /// What `--flag`, `--flag 2` or `--flag 2 elevation` is, and what follows it.
+    /// The argument that `--flag`, `--flag 2` or `--flag 2 elevation` names, and the rest.
     fn named<'n>(&self, name: &'n str) -> Option<(&Given, &'n str)> {
         let (flag, rest) = name.strip_prefix("--")?.split_once(' ').unwrap_or((&name[2..], ""));
         let (number, after) = rest.split_once([' ', ':']).unwrap_or((rest, ""));
@@ -137,8 +142,8 @@ impl SceneFile {
     }
 }
 
-/// All that a file gives, whatever the command takes of it.
-fn all(parser: &clap::Command, path: &Path) -> Result<Vec<Given>> {
+/// All flags of a file, also those that the command does not have.
+fn all(parser: &clap::Command, path: &Path, renamed: &mut Renamed) -> Result<Vec<Given>> {
     let text = read(path)?;
     let root = Found::root(path, &text)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -158,7 +163,10 @@ fn all(parser: &clap::Command, path: &Path) -> Result<Vec<Given>> {
             },
         };
         for found in group.members()? {
-            let name = found.name();
+            let name = match renamed.new_name(&found.key) {
+                Some(new) => new.rsplit('.').next().expect("group.key"),
+                None => found.name(),
+            };
             let Some(key) = keys.iter().find(|key| key.name == name) else {
                 let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
                 return Err(found.unknown(&known.join(", ")));

@@ -5,8 +5,8 @@ mod settings_used;
 use ridgelight::gpu::{self, Headless, HeadlessOptions};
 use ridgelight::plan::{Limits, Picture, Plan};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Lobe,
-    Method, Precision, Quality, Receiver, Scene, Surface, Wedges, Window,
+    Albedo, Basis, Border, Fuse, HeightField, Hull, Levels, LightBasis, Lights, Lines, Method,
+    Precision, Quality, Receiver, Scene, Specular, Surface, Wedges, Window,
 };
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
@@ -15,25 +15,25 @@ use std::path::{Path, PathBuf};
 
 use crate::args::{
     BasisName, BorderName, FieldArgs, FuseName, GlobalArgs, HullName, Layer, LevelsName, LightArgs,
-    LightBasisName, LinesName, MethodName, PhongArg, PrecisionName, QualityArgs, ReceiverName,
-    SubsampleName, SurfaceArgs, WedgesName, WindowName, albedo_colour,
+    LightBasisName, LinesName, MethodName, PrecisionName, QualityArgs, ReceiverName, SETTINGS,
+    SpecularArg, SubsampleName, SurfaceArgs, WedgesName, WindowName, albedo_colour,
 };
 pub use settings_used::{as_json, asked, metadata, typed};
 
-/// How a command ended that did not fail.
+/// How a command ended without an error.
 pub enum Outcome {
     Done,
-    /// A comparison beyond its bound.
+    /// Beyond a bound.
     Beyond,
-    /// FileNotes to end early; what it had is written.
+    /// Ended early by a signal; the results so far are written.
     Interrupted,
 }
 
 /// Every Vulkan device has images of this side.
 const LEAST_SIDE: usize = 4096;
 
-/// Refuses a field that the device cannot hold by its header, before its samples are read. What is no
-/// field and where there is no device is told later.
+/// Refuses a field that the device cannot hold by its header, before its heights are read. Files that are no field and a
+/// missing device are reported later.
 fn check_size(path: &Path, global: &GlobalArgs) -> Result<()> {
     let Some([rows, cols]) = files::height_size(path) else { return Ok(()) };
     let budget = global.memory_budget.unwrap_or(1 << 50).min(1 << 50);
@@ -68,24 +68,26 @@ pub fn scene(field: HeightField, surface: &SurfaceArgs, lights: &LightArgs) -> R
         Some(colour) => Albedo::Constant(colour),
         None => files::read_albedo(Path::new(&surface.albedo), field.rows(), field.cols())?,
     };
-    let phong = match &surface.phong {
+    let specular = match &surface.specular {
         None => None,
-        Some(PhongArg::Constant(phong)) => Some(Lobe::Constant(*phong)),
-        Some(PhongArg::File(path)) => Some(files::read_lobes(path, field.rows(), field.cols())?),
+        Some(SpecularArg::Constant(one)) => Some(Specular::Constant(*one)),
+        Some(SpecularArg::File(path)) => {
+            Some(files::read_specular(path, field.rows(), field.cols())?)
+        }
     };
     let environment = match &lights.env {
-        // Clockwise in compass terms; counter-clockwise inside.
+        // The compass turns clockwise, the library counter-clockwise.
         Some(path) => Some(files::read_environment(path, -lights.env_rotate.to_radians())?),
         None => None,
     };
     Ok(Scene {
-        surface: Surface { albedo, border: border(&surface.field), phong },
+        surface: Surface { albedo, border: border(&surface.field), specular },
         lights: Lights {
             sky: if lights.is_empty() { Some([1.0; 3]) } else { lights.sky },
             environment,
             suns: lights.sun.clone(),
             keys: lights.key.clone(),
-            spheres: lights.light.clone(),
+            sphere_lights: lights.sphere_light.clone(),
         },
         field,
     })
@@ -104,7 +106,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         method: match args.method {
             MethodName::Auto => Method::Auto,
             MethodName::Sweep => Method::Sweep,
-            MethodName::Brute => Method::Brute,
+            MethodName::BruteForce => Method::BruteForce,
             MethodName::Pyramid => Method::Pyramid,
         },
         azimuths: args.azimuths,
@@ -139,7 +141,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
             HullName::Auto => Hull::Auto,
             HullName::Private => Hull::Private,
             HullName::Shared => Hull::Shared,
-            HullName::List => Hull::List,
+            HullName::List => Hull::OccluderList,
         },
         level_step: args.level_step,
         level_offset: args.level_offset,
@@ -161,7 +163,7 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
         },
         receiver: match args.receiver {
             ReceiverName::Plane => Receiver::Plane,
-            ReceiverName::Lobe => Receiver::Lobe,
+            ReceiverName::Lobe => Receiver::CosineLobe,
         },
         window: match args.window {
             WindowName::None => Window::None,
@@ -181,20 +183,19 @@ pub fn quality(args: &QualityArgs) -> Result<Quality> {
     Ok(quality)
 }
 
-/// Refuses a lobe where light is judged by a truth without one.
+/// Refuses specular where the ground truth is diffuse.
 pub fn check_diffuse(scene: &Scene, what: &str) -> Result<()> {
-    match scene.surface.phong {
+    match scene.surface.specular {
         None => Ok(()),
         Some(_) => Err(Error::setting(
-            format!("--phong with {what}"),
-            "a lobe",
-            "none: what it judges light by is diffuse; `reference` and `compare` judge lobes",
+            format!("--specular with {what}"),
+            "Phong specular",
+            "none: the ground truth is diffuse; `reference` and `compare` take specular",
         )),
     }
 }
 
-/// What is wrong with a request whatever the device: planned for one without limits, so that it is
-/// said before a device is opened.
+/// Reports what no device can plan, before a device is opened.
 pub fn check_plan(global: &GlobalArgs, plan: impl Fn(&Limits) -> Result<Plan>) -> Result<()> {
     let budget = global.memory_budget.unwrap_or(1 << 50).min(1 << 50);
     plan(&Limits::boundless(true, budget))
@@ -212,7 +213,7 @@ pub fn device(global: &GlobalArgs) -> Result<(Headless, Limits)> {
     Ok((gpu, limits))
 }
 
-/// What a picture of one frame holds.
+/// Images of one frame.
 pub fn wanted(layers: &[Layer]) -> Picture {
     Picture {
         light_layers: layers.contains(&Layer::Lights),
@@ -222,21 +223,21 @@ pub fn wanted(layers: &[Layer]) -> Picture {
     }
 }
 
-/// The files that a command reads.
+/// Input files of a command.
 pub fn inputs<'a>(
     field: &'a Path,
     lights: &'a LightArgs,
     surface: &'a SurfaceArgs,
 ) -> Vec<&'a Path> {
     let albedo = albedo_colour(&surface.albedo).is_none().then_some(Path::new(&surface.albedo));
-    let phong = match &surface.phong {
-        Some(PhongArg::File(path)) => Some(path.as_path()),
+    let specular = match &surface.specular {
+        Some(SpecularArg::File(path)) => Some(path.as_path()),
         _ => None,
     };
-    [Some(field), lights.env.as_deref(), albedo, phong].into_iter().flatten().collect()
+    [Some(field), lights.env.as_deref(), albedo, specular].into_iter().flatten().collect()
 }
 
-/// Replaces values of void samples, in every plane.
+/// Sets void texels to NaN in every plane.
 pub fn mask_voids(field: &HeightField, planes: &mut [f32], channels: usize) {
     if let Some(voids) = field.voids() {
         for (i, texel) in planes.chunks_mut(channels).enumerate() {
@@ -251,7 +252,7 @@ pub fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// A file that cannot be written is found out before the work, not after it.
+/// Refuses an output file that cannot be written, before the work.
 pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
     let found = extension(path);
     if !kinds.contains(&found.as_str()) {
@@ -275,7 +276,7 @@ pub fn check_output(flag: &str, path: &Path, kinds: &[&str]) -> Result<()> {
     files::check_writable(path)
 }
 
-/// No output may be another's, or an input: it would be lost.
+/// Refuses an output that is also another output or an input.
 pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Result<()> {
     let place = |path: &Path| -> Option<PathBuf> {
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -297,39 +298,102 @@ pub fn check_distinct(outputs: &[(&str, Option<&Path>)], inputs: &[&Path]) -> Re
     Ok(())
 }
 
-/// Settings that the library names its own way, by the flags that their user wrote.
+/// Phrases and settings of library messages whose flag has another name.
+const FLAGS: [(&str, &str); 26] = [
+    ("sky radiance", "--sky"),
+    ("suns", "--sun"),
+    ("sun ", "--sun "),
+    ("keys", "--key"),
+    ("key ", "--key "),
+    ("sphere light ", "--sphere-light "),
+    ("light ", "--sphere-light "),
+    ("specular", "--specular"),
+    ("albedo", "--albedo"),
+    ("cell_m", "--cell"),
+    ("cell size", "--cell"),
+    ("environment rotation", "--env-rotate"),
+    ("distances to the horizon", "--distances"),
+    ("lights", "--sky, --env, --sun, --key, --sphere-light"),
+    ("pixels per degree", "--pixels-per-degree"),
+    ("camera: look-at point", "--look-at"),
+    ("camera: field of view", "--fov"),
+    ("camera", "--camera"),
+    ("samples a pixel", "--samples"),
+    ("samples per pixel", "--samples"),
+    ("picture size", "--size"),
+    ("mesh step", "--mesh-step"),
+    ("background", "--background"),
+    ("directions", "--directions"),
+    ("curvatures of ellipses", "--curvature"),
+    ("z_scale", "--z-scale"),
+];
+
+/// Settings whose flag is their name with `-` for `_`, beside those of quality.
+const SAME: [&str; 7] =
+    ["method", "memory_budget", "max_error", "time_budget", "border", "nodata", "paths"];
+
+/// The flag of a library name, as "azimuths" or "sun 2: elevation".
+fn flag_of(name: &str) -> Option<String> {
+    if SETTINGS.contains(&name) || SAME.contains(&name) {
+        return Some(format!("--{}", name.replace('_', "-")));
+    }
+    FLAGS.iter().find_map(|(ours, flag)| Some(format!("{flag}{}", name.strip_prefix(ours)?)))
+}
+
+/// Replaces settings in backticks by flags: "`lines exact`" by "--lines exact". Leaves other words in backticks.
+pub fn flags_in(text: &str) -> String {
+    let mut parts = text.split('`');
+    let mut all = parts.next().unwrap_or_default().to_owned();
+    while let Some(quoted) = parts.next() {
+        let (name, value) = quoted.split_at(quoted.find(' ').unwrap_or(quoted.len()));
+        match (flag_of(name), parts.next()) {
+            (Some(flag), Some(after)) => all += &format!("{flag}{value}{after}"),
+            (None, Some(after)) => all += &format!("`{quoted}`{after}"),
+            (_, None) => all += &format!("`{quoted}"),
+        }
+    }
+    all
+}
+
+/// A library error with the flags of its settings.
 pub fn in_flags(error: Error) -> Error {
-    const FLAGS: [(&str, &str); 22] = [
-        ("sky radiance", "--sky"),
-        ("sun ", "--sun "),
-        ("key ", "--key "),
-        ("light ", "--light "),
-        ("phong", "--phong"),
-        ("albedo", "--albedo"),
-        ("cell_m", "--cell"),
-        ("z_scale", "--z-scale"),
-        ("environment rotation", "--env-rotate"),
-        ("distances to the horizon", "--distances"),
-        ("lights", "--sky, --env, --sun, --key, --light"),
-        ("cell size", "--cell"),
-        ("pixels per degree", "--pixels-per-degree"),
-        ("camera: look-at point", "--look-at"),
-        ("camera: field of view", "--fov"),
-        ("camera", "--camera"),
-        ("samples a pixel", "--samples"),
-        ("picture size", "--size"),
-        ("mesh step", "--mesh-step"),
-        ("background", "--background"),
-        ("directions", "--directions"),
-        ("curvatures of ellipses", "--curvature"),
-    ];
     match error {
-        Error::Setting { name, found, expected } => {
-            let named = FLAGS.iter().find_map(|(ours, flag)| {
-                name.strip_prefix(ours).map(|rest| format!("{flag}{rest}"))
-            });
-            Error::Setting { name: named.unwrap_or(name), found, expected }
+        Error::Setting { name, found, expected } => Error::Setting {
+            name: flag_of(&name).unwrap_or_else(|| flags_in(&name)),
+            found: flags_in(&found),
+            expected: flags_in(&expected),
+        },
+        Error::Limit { what, needs, limit } => {
+            Error::Limit { what: flags_in(&what), needs: flags_in(&needs), limit: flags_in(&limit) }
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_in_backticks_become_flags() {
+        for (text, flags) in [
+            ("`lines exact` with `suns`", "--lines exact with --sun"),
+            ("64 MiB of `memory_budget`", "64 MiB of --memory-budget"),
+            ("`bounce_engine sweep`", "--bounce-engine sweep"),
+            ("`reference` and `compare`", "`reference` and `compare`"),
+            ("an open ` stays", "an open ` stays"),
+            ("`basis sh` `sh_order 4`", "--basis sh --sh-order 4"),
+        ] {
+            assert_eq!(flags_in(text), flags);
+        }
+        let named = |name: &str| match in_flags(Error::setting(name, "", "")) {
+            Error::Setting { name, .. } => name,
+            _ => unreachable!(),
+        };
+        assert_eq!(named("azimuths"), "--azimuths");
+        assert_eq!(named("sun 2: elevation"), "--sun 2: elevation");
+        assert_eq!(named("light 1: radius"), "--sphere-light 1: radius");
+        assert_eq!(named("specular scale"), "--specular scale");
+        assert_eq!(named("heights"), "heights");
     }
 }

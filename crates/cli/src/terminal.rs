@@ -1,4 +1,4 @@
-//! What people read: that something is at work, and numbers.
+//! Progress and numbers on a terminal.
 
 /// A spinner, on a terminal.
 pub fn progress(quiet: bool, what: &str) -> indicatif::ProgressBar {
@@ -17,7 +17,7 @@ pub fn percent(share: f64) -> String {
     format!("{} %", digits(100.0 * share))
 }
 
-/// Three significant digits, as few zeros as that takes.
+/// Three significant digits.
 pub fn digits(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();

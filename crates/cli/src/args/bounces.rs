@@ -1,45 +1,54 @@
 use clap::{Args, ValueEnum};
 use ridgelight::Result;
-use ridgelight::scene::{BounceEngine, BounceGloss, Bounces};
+use ridgelight::scene::{BounceEngine, BounceSpecular, Bounces};
 
 use super::values::whole;
 
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]
 pub struct BounceArgs {
-    /// Times that light may be reflected on its way to a sample, 0..64: colour bleeds, hollows brighten; 0 is
-    /// direct light alone. Time in proportion
+    /// Bounces of indirect light, 0 to 64; 0 is direct light
+    ///
+    /// Fewer leave hollows darker; more take time in proportion.
     #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
     pub bounces: u32,
-    /// How what a sample sees of the surface is found; with --bounces
-    #[arg(long, default_value = "auto")]
+    /// Find the visible surface of a bounce by this method; with --bounces
+    #[arg(long, default_value = "auto", help_heading = "Expert")]
     pub bounce_engine: BounceEngineName,
-    /// Azimuths of bounces, 4..1024; with --bounces
-    #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true)]
+    /// Azimuths of bounces, 4 to 1024; with --bounces
+    ///
+    /// Fewer show banding; more take time in proportion.
+    #[arg(long, value_name = "M", default_value_t = 32, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
     pub bounce_azimuths: u32,
-    /// Share of the direct light's energy that the last bounces may carry to be left out, 0..1, default 1/65536; with
-    /// --bounces
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true)]
+    /// Skip the last bounces below this share of the direct light's energy, 0 to 1, default 1/65536; with --bounces
+    ///
+    /// Higher is faster and loses more indirect light.
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true, help_heading = "Expert")]
     pub bounce_cutoff: f64,
-    /// Levels a doubling of distance of the pyramid of light, 1..16; with --bounce-engine pyramid
-    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    /// Light pyramid levels per doubling of distance, 1 to 16; with --bounce-engine pyramid
+    ///
+    /// Fewer miss more of the surface; more take time in proportion.
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
     pub bounce_level_step: u32,
-    /// Doublings of resolution by which its levels are finer than distance asks for, 0..4; with --bounce-engine pyramid
-    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
+    /// Doublings of resolution that the light pyramid adds to what distance needs, 0 to 4; with --bounce-engine pyramid
+    ///
+    /// More are sharper, but miss more between grid points.
+    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
     pub bounce_level_offset: u32,
-    /// What is kept of the light that lobes throw on; with --bounces and --phong
-    #[arg(long, default_value = "vector")]
+    /// Storage of specular light between bounces; with --bounces and --specular
+    #[arg(long, default_value = "vector", help_heading = "Expert")]
     pub bounce_gloss: BounceGlossName,
 }
 
 impl BounceArgs {
-    /// Checked.
+    /// # Errors
+    /// A setting out of its range.
     pub fn bounces(&self) -> Result<Bounces> {
         let bounces = Bounces {
             count: self.bounces,
             engine: match self.bounce_engine {
                 BounceEngineName::Auto => BounceEngine::Auto,
-                BounceEngineName::Brute => BounceEngine::Brute,
+                BounceEngineName::BruteForce => BounceEngine::BruteForce,
                 BounceEngineName::Sweep => BounceEngine::Sweep,
                 BounceEngineName::Pyramid => BounceEngine::Pyramid,
             },
@@ -47,10 +56,10 @@ impl BounceArgs {
             cutoff: self.bounce_cutoff,
             level_step: self.bounce_level_step,
             level_offset: self.bounce_level_offset,
-            gloss: match self.bounce_gloss {
-                BounceGlossName::Vector => BounceGloss::Vector,
-                BounceGlossName::VectorF16 => BounceGloss::VectorF16,
-                BounceGlossName::Scalar => BounceGloss::Scalar,
+            specular: match self.bounce_gloss {
+                BounceGlossName::Vector => BounceSpecular::Vector,
+                BounceGlossName::VectorF16 => BounceSpecular::VectorF16,
+                BounceGlossName::Scalar => BounceSpecular::Scalar,
             },
         };
         bounces.check().map(|()| bounces)
@@ -59,23 +68,23 @@ impl BounceArgs {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum BounceGlossName {
-    /// Radiance by direction, spherical harmonics of --sh-order at every texel
+    /// Radiance by direction, as spherical harmonics of --sh-order at every texel
     Vector,
-    /// The same in half the memory, as f16
+    /// The same as f16, in half the memory
     #[value(name = "vector-f16")]
     VectorF16,
-    /// Radiance as seen from above, one colour a texel: as if it were diffuse
+    /// Radiance towards the zenith, one colour per texel, as if it were diffuse
     Scalar,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum BounceEngineName {
-    /// The planner's choice: sweep where horizons come from a sweep along lines, else brute
+    /// The planner's choice: sweep where horizons come from a sweep along lines, else brute-force
     Auto,
-    /// Every stretch that it sees along each azimuth: exact but for the azimuths, and slow
-    Brute,
-    /// Those that it sees at every march step, through what a sweep along lines has met
+    /// Every visible interval along each azimuth: exact in each azimuth, and slow
+    BruteForce,
+    /// The visible intervals at every march step, from the visibility cache of a sweep along lines
     Sweep,
-    /// One sample a level of pyramids of heights and of light: soft, in error whatever the settings
+    /// One texel per level of pyramids of heights and light: approximate
     Pyramid,
 }

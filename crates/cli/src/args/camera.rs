@@ -1,4 +1,4 @@
-//! From where a picture is seen.
+//! The camera.
 
 use clap::Args;
 
@@ -7,58 +7,68 @@ use super::values::{colour, numbers, whole};
 #[derive(Args)]
 #[command(next_help_heading = "Camera")]
 pub struct CameraArgs {
-    /// Instead of the map, a picture from a camera: compass azimuth and elevation (degrees) of where it stands as
-    /// seen from what it looks at, and how far from there (metres; default: all of the field is just seen). With
-    /// --ortho the third number is what the picture spans from below to above, metres
+    /// Perspective view instead of the map
+    ///
+    /// AZ and EL are the compass azimuth and the elevation of the camera from the look-at point, degrees. DISTANCE is in
+    /// metres; by default the whole field fits. With --ortho, DISTANCE is the height of the picture in metres.
     #[arg(long, value_name = "AZ,EL[,DISTANCE]", value_parser = camera, allow_hyphen_values = true)]
     pub camera: Option<CameraAt>,
-    /// What it looks at: metres east of the westernmost column, north of the southernmost row, and above 0 (default:
-    /// the nearest sample's height). Default the middle of the field
-    #[arg(long, value_name = "X,Y[,Z]", value_parser = place, allow_hyphen_values = true, requires = "camera")]
+    /// Look-at point, metres. Default the middle of the field
+    ///
+    /// X is east of the westernmost column, Y north of the southernmost row, Z above height 0. Z defaults to the height of
+    /// the nearest texel.
+    #[arg(long, value_name = "X,Y[,Z]", value_parser = place, allow_hyphen_values = true, hide_short_help = true, requires = "camera")]
     pub look_at: Option<LookAt>,
-    /// Angle between the lower and the upper edge of the picture, degrees
+    /// Vertical field of view, degrees
     #[arg(
         long,
         value_name = "DEG",
         default_value_t = 40.0,
         allow_negative_numbers = true,
+        hide_short_help = true,
         requires = "camera"
     )]
     pub fov: f64,
-    /// Parallel rays: what is farther away is not smaller
-    #[arg(long, requires = "camera", conflicts_with = "fov")]
+    /// Orthographic projection
+    #[arg(long, hide_short_help = true, requires = "camera", conflicts_with = "fov")]
     pub ortho: bool,
-    /// Columns and rows of the picture
+    /// Width and height of the picture, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "camera")]
     pub size: Size,
-    /// Samples a pixel: 1, 2, 4 or 8, where the device has them. Edges are means of so many
+    /// MSAA samples per pixel: 1, 2, 4 or 8
+    ///
+    /// Fewer are faster and leave jagged edges. The device must support the number.
     #[arg(
         long,
         value_name = "N",
         default_value_t = 4,
         value_parser = whole,
         allow_negative_numbers = true,
+        hide_short_help = true,
         requires = "camera"
     )]
     pub samples: u32,
-    /// Draws the ground through every Nth sample of every Nth row: faster, and off in height by what is then said.
-    /// The light is not reduced
+    /// Draw the surface through every Nth grid point of every Nth row
+    ///
+    /// Higher is faster and changes heights; the command reports by how much. Lighting keeps its resolution.
     #[arg(
         long,
         value_name = "N",
         default_value_t = 1,
         value_parser = whole,
         allow_negative_numbers = true,
-        requires = "camera"
+        requires = "camera",
+        help_heading = "Expert"
     )]
     pub mesh_step: u32,
-    /// Radiance where neither ground nor sky is seen: one number or R,G,B
+    /// Background radiance behind surface and sky: one number or R,G,B
     #[arg(
         long,
         value_name = "RADIANCE",
         default_value = "0",
         value_parser = colour,
         allow_negative_numbers = true,
+        hide_short_help = true,
         requires = "camera"
     )]
     pub background: [f32; 3],
@@ -72,7 +82,7 @@ pub struct CameraAt {
     pub distance_m: Option<f64>,
 }
 
-/// East, north, perhaps height.
+/// Metres east, north and, where given, up.
 #[derive(Clone, Copy)]
 pub struct LookAt {
     pub east_m: f64,

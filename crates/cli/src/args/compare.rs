@@ -3,17 +3,15 @@ use std::path::PathBuf;
 use clap::Args;
 
 const AFTER_HELP: &str = "\
-Every channel that both files have is compared by name, in linear light (a .png is decoded from sRGB); \
-channels that only one has are named, and one that A lacks is beyond any bound, given or not (but for an \
-alpha that is 1 everywhere and a reference's own standard_error). Voids are NaN, or alpha 0: a void in both is masked and counted; \
-a void in one only is counted and is beyond any bound, given or not.
+Channels that both files have are compared by name, in linear light; a .png is decoded from sRGB. Channels of one file \
+only are listed. A channel that A lacks fails the command, except an alpha of 1 everywhere and a reference's \
+standard_error. Voids are NaN, or alpha 0. A void in both files is masked and counted; a void in one file only fails \
+the command.
 
-FLIP (Andersson et al. 2020) is how different two pictures look when one takes the other's place: 0 \
-nothing is seen, 1 the most there is. Its quartiles are weighted by the error itself: a quarter of all \
-error lies in pixels below the first.
+FLIP (Andersson et al. 2020) measures the visible difference of two pictures when one replaces the other: 0 is none, 1 \
+the most. Its quartiles are weighted by the error: a quarter of all error lies in pixels below the first.
 
-Exit status: 0 within all bounds, 1 beyond one (each is named with what was found) or failed, 2 wrong \
-usage.
+Exit status: 0 within all bounds, 1 beyond one or failed (each bound is named with what was found), 2 wrong usage.
 
   ridgelight compare new.exr old.exr --max-rmse 0.001 --max-worst 0.05 --diff off.exr
   ridgelight compare new.png old.png --max-flip 0.02
@@ -22,38 +20,49 @@ usage.
 #[derive(Args)]
 #[command(after_help = AFTER_HELP)]
 pub struct CompareArgs {
-    /// The result: .exr, .png, .hdr or .npy
-    #[arg(value_name = "A")]
+    /// Result: .exr, .png, .hdr or .npy
+    #[arg(value_name = "A", help_heading = "Input")]
     pub result: PathBuf,
-    /// What it should be, of the same size
-    #[arg(value_name = "B")]
+    /// Expected result, of the same size
+    #[arg(value_name = "B", help_heading = "Input")]
     pub reference: PathBuf,
-    /// Take values as elevations in radians, as `horizon` writes them, and report degrees
-    #[arg(long)]
+    /// Values are elevations in radians, as `horizon` writes them; reports degrees
+    #[arg(long, help_heading = "Input")]
     pub horizons: bool,
-    /// Factor on radiance before it is shown, clipped at 1, for FLIP; for .exr and .hdr, a .png is
-    /// shown as it is
+    /// Multiply radiance for FLIP, clipped at 1
+    ///
+    /// For .exr and .hdr; a .png is used as it is.
     #[arg(
         long,
+        help_heading = "Output",
         default_value_t = 1.0,
         value_name = "FACTOR",
         allow_negative_numbers = true,
         conflicts_with = "horizons"
     )]
     pub exposure: f32,
-    /// How large FLIP's pixels are to the eye, 1..1000: distance · columns / width · π/180. Default
-    /// 67.02, a display of 3840 columns and 0.7 m, seen from 0.7 m
-    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with = "horizons")]
+    /// Pixels per degree of view for FLIP, 1 to 1000. Default 67.02
+    ///
+    /// distance * columns / width * pi/180. The default is a display of 3840 columns and 0.7 m width at 0.7 m.
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        conflicts_with = "horizons",
+        help_heading = "Output"
+    )]
     pub pixels_per_degree: Option<f64>,
-    /// Images of the differences. .exr: difference.CHANNEL (A - B) for every channel, and flip (0..1)
-    /// for every picture, as flip.LAYER where it has a name; .npy: f32 [channels, rows, cols], A - B
-    #[arg(long, value_name = "FILE")]
+    /// Write images of the differences, .exr or .npy
+    ///
+    /// .exr: difference.CHANNEL (A - B) of every channel, and flip (0 to 1) of every picture, named flip.LAYER where the
+    /// layer has a name. .npy: f32 [channels, rows, cols], A - B.
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub diff: Option<PathBuf>,
-    /// Figures for machines; null is infinite
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures as JSON; null is infinite
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub json: Option<PathBuf>,
-    /// Prints nothing but errors
-    #[arg(long)]
+    /// Print only errors
+    #[arg(long, help_heading = "Output")]
     pub quiet: bool,
     #[command(flatten)]
     pub bounds: Bounds,
@@ -65,7 +74,7 @@ pub struct Bounds {
     /// Largest RMSE relative to the mean of B (0.01 is 1 %)
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_rmse: Option<f64>,
-    /// Largest |mean of A - B| relative to the mean of B: brighter or darker as a whole
+    /// Largest |mean of A - B| relative to the mean of B
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_mean_shift: Option<f64>,
     /// Largest 99th percentile of |A - B| relative to the mean of B
@@ -74,7 +83,7 @@ pub struct Bounds {
     /// Largest |A - B| of any texel relative to the mean of B
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_worst: Option<f64>,
-    /// Largest mean FLIP of a picture (R, G and B, or Y), 0 (looks the same) to 1
+    /// Largest mean FLIP of a picture (R, G and B, or Y), 0 (same look) to 1
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "horizons")]
     pub max_flip: Option<f64>,
     /// With --horizons: largest median of |A - B|, degrees
@@ -89,7 +98,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// By the names that users write.
+    /// By flag.
     pub fn all(&self) -> [(&'static str, Option<f64>); 8] {
         [
             ("--max-rmse", self.max_rmse),

@@ -5,7 +5,7 @@ use super::bounces::BounceArgs;
 use super::values::whole;
 use crate::scene_file::SceneFile;
 
-/// Flags of quality, as plans name what they really used.
+/// Quality settings by the names that plans use.
 pub const SETTINGS: [&str; 26] = [
     "azimuths",
     "sun_azimuths",
@@ -38,83 +38,117 @@ pub const SETTINGS: [&str; 26] = [
 #[derive(Args)]
 #[command(next_help_heading = "Quality")]
 pub struct QualityArgs {
-    /// How horizons are found
-    #[arg(long, default_value = "auto")]
+    /// Find horizons by this method
+    ///
+    /// A sweep costs O(1) a texel and azimuth. Brute force is exact and slower; the pyramid is approximate.
+    #[arg(long, default_value = "auto", hide_short_help = true)]
     pub method: MethodName,
-    /// Azimuths of sky and environment, 4..1024: more, less banding; time and memory in proportion
+    /// Azimuths of sky and environment, 4 to 1024
+    ///
+    /// Fewer show banding; more take time and memory in proportion.
     #[arg(long, value_name = "M", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
     pub azimuths: u32,
-    /// Slices across a sun's disc, a key light or a ball of light, 1..256: more, smoother soft shadows; a
-    /// wide light needs more
-    #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true)]
+    /// Slices across a sun, key light or sphere light, 1 to 256
+    ///
+    /// Fewer show steps in soft shadows; more take time in proportion. A wide light needs more.
+    #[arg(long, value_name = "M", default_value_t = 8, value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]
     pub sun_azimuths: u32,
-    /// What a sample may lose of the brightest light of a ball, 0..1, default 1/65536, so that each ball is looked for
-    /// at fewer samples: more, faster
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true)]
-    pub light_cutoff: f64,
-    /// What balls of light are lit by; sh takes --sh-order, --wedges, --receiver and --window as an environment
-    /// does, and horizons from --method pyramid
-    #[arg(long, default_value = "exact")]
-    pub light_basis: LightBasisName,
-    /// Cells between the lines of a sweep; exact: every sample on a line, every crossing counted
-    #[arg(long, default_value = "1")]
-    pub lines: LinesName,
-    /// How lines' results come back to samples
-    #[arg(long, default_value = "aimed-nearest")]
-    pub fuse: FuseName,
-    /// What a sweep keeps: packed is f16 height + u16 distance on the hull
-    #[arg(long, default_value = "f32")]
-    pub precision: PrecisionName,
-    /// Where a sweep's hull lives; never changes the result
-    #[arg(long, default_value = "auto")]
-    pub hull: HullName,
-    /// Levels of a height pyramid a doubling of distance, 1..16
-    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
-    pub level_step: u32,
-    /// Doublings of resolution by which a pyramid's levels are finer than distance asks for, 0..4:
-    /// more, sharper distant horizons, and more of them missed between samples
-    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true)]
-    pub level_offset: u32,
-    /// What is stored of a pyramid's levels
-    #[arg(long, default_value = "stack")]
-    pub levels: LevelsName,
-    /// Elevations of an environment's table, 8..4096
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true)]
-    pub table_elevations: u32,
-    /// What an environment's light is looked up in
-    #[arg(long, default_value = "auto")]
+    /// Basis of an environment's light
+    ///
+    /// Tables store the light of each azimuth; spherical harmonics are smoother and approximate.
+    #[arg(long, default_value = "auto", hide_short_help = true)]
     pub basis: BasisName,
-    /// Order of spherical harmonics, 2..6: its square are the numbers a sample; with --basis sh or --light-basis sh
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true)]
+    /// SH order, 2 to 6; stores order^2 coefficients per texel
+    ///
+    /// Lower blurs the light; higher takes more time and memory. With --basis sh or --light-basis sh.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]
     pub sh_order: u32,
-    /// How what is seen along an azimuth becomes harmonics; with --basis sh or --light-basis sh
-    #[arg(long, default_value = "slices")]
-    pub wedges: WedgesName,
-    /// How a surface turns what it sees into light; with --basis sh or --light-basis sh
-    #[arg(long, default_value = "plane")]
-    pub receiver: ReceiverName,
-    /// What tames the ringing of a light's series; with --basis sh or --light-basis sh
-    #[arg(long, default_value = "none")]
-    pub window: WindowName,
-    /// What is seen is found at every so many samples, light at all of them; with --basis sh, and with --bounces,
-    /// of which later ones are found at every second of those
-    #[arg(long, default_value = "1")]
-    pub subsample: SubsampleName,
-    /// Horizons of either side of a table of wedges, 4..256; with --wedges table
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole, allow_negative_numbers = true)]
-    pub wedge_side: u32,
     #[command(flatten)]
     pub bounces: BounceArgs,
-    /// Every flag of the command that was written out, as its setting is called, and its first value.
+    /// Cells between the lines of a sweep
+    ///
+    /// Wider spacing is faster and less exact. "exact" puts every texel on a line and counts every crossing.
+    #[arg(long, default_value = "1", help_heading = "Expert")]
+    pub lines: LinesName,
+    /// Interpolate the results of lines to texels in this way
+    ///
+    /// Listed from the fastest to the most exact.
+    #[arg(long, default_value = "aimed-nearest", help_heading = "Expert")]
+    pub fuse: FuseName,
+    /// Precision of what a sweep stores
+    ///
+    /// f16 and packed take half the memory and lose accuracy. packed holds an f16 height and a u16 distance on the hull.
+    #[arg(long, default_value = "f32", help_heading = "Expert")]
+    pub precision: PrecisionName,
+    /// Memory that stores the hull of a sweep
+    ///
+    /// Changes time and memory, never the result.
+    #[arg(long, default_value = "auto", help_heading = "Expert")]
+    pub hull: HullName,
+    /// Ignore a sphere light below this fraction of the brightest one, 0 to 1, default 1/65536
+    ///
+    /// Higher is faster and less exact.
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0 / 65536.0, hide_default_value = true, allow_negative_numbers = true, help_heading = "Expert")]
+    pub light_cutoff: f64,
+    /// Basis of sphere lights
+    ///
+    /// "sh" is approximate. It uses --sh-order, --wedges, --receiver and --window, and horizons of --method pyramid.
+    #[arg(long, default_value = "exact", help_heading = "Expert")]
+    pub light_basis: LightBasisName,
+    /// Height pyramid levels per doubling of distance, 1 to 16
+    ///
+    /// Fewer miss more occluders; more take time in proportion. With --method pyramid.
+    #[arg(long, value_name = "K", default_value_t = 4, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
+    pub level_step: u32,
+    /// Doublings of resolution that a pyramid adds to what distance needs, 0 to 4
+    ///
+    /// More sharpens distant horizons, but misses more of them between grid points. With --method pyramid.
+    #[arg(long, value_name = "O", default_value_t = 2, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
+    pub level_offset: u32,
+    /// Storage of a pyramid's levels
+    #[arg(long, default_value = "stack", help_heading = "Expert")]
+    pub levels: LevelsName,
+    /// Elevations in an environment's table, 8 to 4096
+    ///
+    /// Fewer blur the light; more take memory in proportion. With --basis table.
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
+    pub table_elevations: u32,
+    /// Turn the visible part of an azimuth into harmonics in this way
+    ///
+    /// With --basis sh or --light-basis sh.
+    #[arg(long, default_value = "slices", help_heading = "Expert")]
+    pub wedges: WedgesName,
+    /// Horizons on either side of a table of wedges, 4 to 256
+    ///
+    /// Fewer are less exact; memory grows with the square. With --wedges table.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
+    pub wedge_side: u32,
+    /// Reflection of a surface in harmonics
+    ///
+    /// With --basis sh or --light-basis sh.
+    #[arg(long, default_value = "plane", help_heading = "Expert")]
+    pub receiver: ReceiverName,
+    /// SH window of a light, against ringing
+    ///
+    /// A stronger window blurs the light; a weaker one may ring. With --basis sh or --light-basis sh.
+    #[arg(long, default_value = "none", help_heading = "Expert")]
+    pub window: WindowName,
+    /// Find visibility at every Nth texel of every Nth row, and light at all texels
+    ///
+    /// Higher is faster and blurs shadows. With --basis sh and with --bounces; bounces after the first use every second
+    /// of those texels.
+    #[arg(long, default_value = "1", help_heading = "Expert")]
+    pub subsample: SubsampleName,
+    /// Settings that the user wrote on the command line, and the first value of each.
     #[arg(skip)]
     pub written: Vec<(String, String)>,
-    /// Whether --bounces were asked for, here or in a scene file.
+    /// Whether the command line or the scene file sets `--bounces`.
     #[arg(skip)]
     pub has_bounces: bool,
 }
 
 impl QualityArgs {
-    /// Remembers what was written out, not in a scene file, which values alone do not tell from defaults.
+    /// Records which settings the user wrote: values alone do not differ from defaults or from a scene file's.
     pub fn remember(&mut self, matches: &ArgMatches, scene: &SceneFile) {
         let written = matches.ids().map(Id::as_str).filter_map(|id| {
             let is_word = matches.value_source(id) == Some(ValueSource::CommandLine);
@@ -133,10 +167,10 @@ pub enum MethodName {
     Auto,
     /// Hull sweeps along lines
     Sweep,
-    /// One sample a level of a height pyramid: soft, in error whatever the settings
+    /// One texel per level of a height pyramid: approximate
     Pyramid,
-    /// Every crossing of every sample's own line: exact and slow
-    Brute,
+    /// Every crossing of every texel's own line: exact and slow
+    BruteForce,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -157,17 +191,17 @@ pub enum LinesName {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum FuseName {
-    /// The nearer line's slope
+    /// Slope of the nearer line
     Nearest,
-    /// Both lines' slopes, interpolated
+    /// Slopes of both lines, interpolated
     Slopes,
-    /// Both lines' occluders from the sample's own height, interpolated
+    /// Occluders of both lines from the texel's own height, interpolated
     Own,
-    /// The surface on the sample's own line where the nearer line's occluder stands
+    /// Surface on the texel's own line at the distance of the nearer line's occluder
     AimedNearest,
-    /// The same with both lines' occluders, the higher
+    /// The same for both lines' occluders; takes the higher
     Aimed,
-    /// The same, and every crossing of the sample's own line within two steps of either: low suns
+    /// The same, and every crossing of the texel's own line within two steps of either, for low suns
     AimedAround,
 }
 
@@ -180,9 +214,9 @@ pub enum PrecisionName {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum LevelsName {
-    /// Each at every sample: faster
+    /// Every level at every texel: faster
     Stack,
-    /// Each at the texels it needs: a few times the field's memory in all
+    /// Every level at its own resolution: a few times the field's memory in all
     Pyramid,
 }
 
@@ -198,7 +232,7 @@ pub enum HullName {
 pub enum BasisName {
     /// The planner's choice
     Auto,
-    /// Tables of each azimuth's light above each elevation
+    /// Tables of the light above each elevation, for each azimuth
     Table,
     /// Spherical harmonics
     Sh,
@@ -206,9 +240,9 @@ pub enum BasisName {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum LightBasisName {
-    /// Slices of the ball, each exact
+    /// Slices of the sphere light, each exact
     Exact,
-    /// Spherical harmonics of what is seen up to the ball: soft, in error whatever the settings
+    /// Spherical harmonics of the visibility of the sphere light: approximate
     Sh,
 }
 
@@ -224,9 +258,9 @@ pub enum WedgesName {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum ReceiverName {
-    /// Its own plane hides what lies below; the cosine is exact
+    /// The texel's plane occludes light below it; the cosine is exact
     Plane,
-    /// A clamped cosine of three bands, whatever lies below its plane
+    /// A clamped cosine in three SH bands, without the texel's plane
     Lobe,
 }
 
@@ -246,6 +280,6 @@ pub enum WindowName {
     None,
     Lanczos,
     Hann,
-    /// The sharpest after which no light is negative
+    /// The sharpest window without negative light
     Nonnegative,
 }

@@ -9,23 +9,29 @@ use super::{GlobalArgs, Input, LightArgs, SurfaceArgs};
 pub struct ReferenceArgs {
     #[command(flatten)]
     pub input: Input,
-    /// Where to write: .exr with radiance (R, G, B) and its standard error (standard_error.R, …), which
-    /// `trade --reference` takes
-    #[arg(short, long, value_name = "OUT.exr")]
+    /// Output .exr: radiance and its standard error
+    ///
+    /// Channels R, G, B and standard_error.R, standard_error.G, standard_error.B. `trade --reference` reads the file.
+    #[arg(short, long, value_name = "OUT.exr", help_heading = "Output")]
     pub output: PathBuf,
-    /// Paths a sample, in batches of 64, at least 128: the error falls with their square root or faster
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = whole, allow_negative_numbers = true)]
+    /// Paths per texel, in batches of 64, at least 128
+    ///
+    /// Fewer are noisier. The standard error falls with the square root of their number or faster.
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = whole, allow_negative_numbers = true, help_heading = "Quality")]
     pub spp: u32,
-    /// Times that light may be reflected on its way to the sample, 0..64; 0 is direct light alone
-    #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    /// Bounces of indirect light, 0 to 64; 0 is direct light
+    ///
+    /// Fewer leave hollows darker; more take time in proportion.
+    #[arg(long, value_name = "B", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, help_heading = "Quality")]
     pub bounces: u32,
-    /// Ends before --spp once the standard error, that of light not yet met too, is below this share of the mean, after
-    /// 512 paths at the earliest (0.01 is 1 %). Where --spp comes first the file is written, that is said,
-    /// and the exit status is 1
-    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    /// Stop at this standard error relative to the mean (0.01 is 1 %)
+    ///
+    /// The bound covers unsampled light. Stops after 512 paths at the earliest. If --spp ends first, the command writes the
+    /// file, warns, and exits with status 1.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, help_heading = "Quality")]
     pub until_error: Option<f64>,
-    /// Another number, other paths: 0..4294967295
-    #[arg(long, value_name = "S", default_value_t = 0, value_parser = whole, allow_negative_numbers = true)]
+    /// Seed of the paths, 0 to 4294967295
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = whole, allow_negative_numbers = true, help_heading = "Expert")]
     pub seed: u32,
     #[command(flatten)]
     pub lights: LightArgs,

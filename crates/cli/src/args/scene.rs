@@ -4,33 +4,44 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{PhongArg, ball, cell, colour, key, phong, sun};
+use super::values::{SpecularArg, cell, colour, key, specular, sphere_light, sun};
 
 #[derive(Args)]
 #[command(next_help_heading = "Lights")]
 pub struct LightArgs {
-    /// Radiance of a uniform sky: one number or R,G,B. Default 1 where no other light is given
+    /// Uniform sky: radiance, or R,G,B
+    ///
+    /// Default 1 where no other light is given.
     #[arg(long, value_name = "RADIANCE", value_parser = colour, allow_negative_numbers = true)]
     pub sky: Option<[f32; 3]>,
-    /// Environment at infinity: .hdr or .exr, equirectangular, angular map, cube cross or faces
+    /// Environment map: .hdr or .exr
+    ///
+    /// Equirectangular, angular map, cube cross or cube faces, at infinity.
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Turns the environment clockwise, compass degrees; unturned, its middle is east
+    /// Rotate the environment clockwise, degrees
+    ///
+    /// At 0 the middle of the map is in the east.
     #[arg(
         long,
         value_name = "DEG",
         default_value_t = 0.0,
         allow_negative_numbers = true,
+        hide_short_help = true,
         requires = "env"
     )]
     pub env_rotate: f64,
-    /// A sun: compass azimuth, elevation, angular diameter (degrees; default 0.53), irradiance facing
-    /// it (one number or R,G,B; default 1). Diameter 0 casts hard shadows. May be repeated
+    /// Sun: compass azimuth, elevation (degrees)
+    ///
+    /// ANGLE is the angular diameter in degrees, default 0.53; 0 casts hard shadows. IRRADIANCE is that of a surface facing
+    /// the sun, one number or R,G,B, default 1. Repeat the flag for more suns.
     #[arg(long, value_name = "AZ,EL[,ANGLE[,IRRADIANCE]]", value_parser = sun, allow_hyphen_values = true)]
     pub sun: Vec<ridgelight::scene::Sun>,
-    /// A key light, a bright patch of the sky: compass azimuth and elevation of its middle, its width
-    /// and height (all degrees), its radiance (one number or R,G,B). 90,45,360,90,1 is the whole sky;
-    /// 180,30,60,20,4 a window to the south. Lower and narrower, sharper shadows. May be repeated
+    /// Key light: bright sky patch (degrees)
+    ///
+    /// AZ and EL are the compass azimuth and the elevation of its centre; WIDTH and HEIGHT are angles, all in degrees.
+    /// RADIANCE is one number or R,G,B. 90,45,360,90,1 is the whole sky; 180,30,60,20,4 is a window to the south. Repeat the
+    /// flag for more.
     #[arg(
         long,
         value_name = "AZ,EL,WIDTH,HEIGHT,RADIANCE",
@@ -38,17 +49,19 @@ pub struct LightArgs {
         allow_hyphen_values = true
     )]
     pub key: Vec<ridgelight::scene::KeyLight>,
-    /// A ball of light: its middle east of the westernmost column, north of the southernmost row and
-    /// above 0, its radius (all metres), its radiance (one number or R,G,B). May be repeated
-    #[arg(long, value_name = "X,Y,Z,RADIUS,RADIANCE", value_parser = ball, allow_hyphen_values = true)]
-    pub light: Vec<ridgelight::scene::SphereLight>,
+    /// Sphere light: centre and radius (metres)
+    ///
+    /// X is east of the westernmost column, Y north of the southernmost row, Z above height 0. RADIANCE is one number or
+    /// R,G,B. Repeat the flag for more.
+    #[arg(long, value_name = "X,Y,Z,RADIUS,RADIANCE", value_parser = sphere_light, allow_hyphen_values = true)]
+    pub sphere_light: Vec<ridgelight::scene::SphereLight>,
 }
 
 impl LightArgs {
-    /// Whether no light is asked for.
+    /// Whether the command line gives no light.
     pub fn is_empty(&self) -> bool {
-        let Self { sky, env, env_rotate: _, sun, key, light } = self;
-        let are_none_aimed = sun.is_empty() && key.is_empty() && light.is_empty();
+        let Self { sky, env, env_rotate: _, sun, key, sphere_light } = self;
+        let are_none_aimed = sun.is_empty() && key.is_empty() && sphere_light.is_empty();
         sky.is_none() && env.is_none() && are_none_aimed
     }
 }
@@ -57,7 +70,9 @@ impl LightArgs {
 pub struct SurfaceArgs {
     #[command(flatten)]
     pub field: FieldArgs,
-    /// Diffuse reflectance, 0..1: one number, R,G,B, or a picture of the field's size (.png, .exr)
+    /// Diffuse reflectance, 0 to 1: number, R,G,B or .png/.exr
+    ///
+    /// An image has the size of the field.
     #[arg(
         long,
         value_name = "VALUE|FILE",
@@ -66,40 +81,62 @@ pub struct SurfaceArgs {
         help_heading = "Surface"
     )]
     pub albedo: String,
-    /// A lobe about the mirror direction of the view from above: exponent 0..10000, and its share 0..1, no
-    /// more than 1 with --albedo; or a file of the field's size with both (.exr R and G, .npy [2, rows, cols]).
-    /// `render` mirrors sky, environment (--basis sh) and suns; `reference` all
+    /// Phong specular: exponent 0 to 10000, scale 0 to 1
+    ///
+    /// The Phong lobe lies about the mirror direction of a view from straight above. SCALE and --albedo add up to 1 at
+    /// most. A file has the size of the field and holds both: .exr R and G, or .npy [2, rows, cols]. `render` lights it by
+    /// sky, suns and, with --basis sh, environment; `reference` by all lights.
     #[arg(
         long,
         value_name = "EXPONENT,SCALE|FILE",
-        value_parser = phong,
+        value_parser = specular,
         allow_hyphen_values = true,
+        hide_short_help = true,
         help_heading = "Surface"
     )]
-    pub phong: Option<PhongArg>,
+    pub specular: Option<SpecularArg>,
 }
 
 #[derive(Args)]
 #[command(next_help_heading = "Surface")]
 pub struct FieldArgs {
-    /// Spacing of columns and of rows in the heights' unit (metres), where the file has none or a
-    /// wrong one. Default the file's, else 1
-    #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true)]
+    /// Grid spacing in metres. Default the file's, else 1
+    ///
+    /// Spacing of columns, and of rows where it differs, in the unit of the heights. Overrides the file's.
+    #[arg(long, value_name = "X[,Y]", value_parser = cell, allow_negative_numbers = true, help_heading = "Input")]
     pub cell: Option<[f64; 2]>,
-    /// Multiplies heights; not 0
-    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    /// Multiply heights by this factor; not 0
+    ///
+    /// PNG values are metres. For a 16-bit PNG that spans a height range R, use R/65535.
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        hide_short_help = true,
+        help_heading = "Input"
+    )]
     pub z_scale: f64,
-    /// Beyond the edge: the ground goes on level (plane), nothing (open), the field repeats (periodic)
-    #[arg(long, default_value = "plane")]
-    pub border: BorderName,
-    /// The height that stands for no data, as the file has it (nan is one). Default the file's
-    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    /// Height that marks no data, or nan. Default the file's
+    #[arg(
+        long,
+        value_name = "VALUE",
+        allow_negative_numbers = true,
+        hide_short_help = true,
+        help_heading = "Input"
+    )]
     pub nodata: Option<f64>,
+    /// Surface beyond the edge of the field
+    #[arg(long, default_value = "plane", hide_short_help = true)]
+    pub border: BorderName,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum BorderName {
+    /// Level ground: no horizon is below 0
     Plane,
+    /// Nothing: light may come from below horizontal
     Open,
+    /// The field repeats
     Periodic,
 }

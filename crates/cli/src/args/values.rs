@@ -1,11 +1,10 @@
-//! Words of the command line as values.
+//! Parses values of the command line. The library checks ranges unless a function here does.
 
-/// The range is [`ridgelight::scene::Quality`]'s to check.
 pub fn whole(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-/// Two counts, as 8x16; the range is its taker's to check.
+/// Two counts, as 8x16.
 pub fn grid(text: &str) -> Result<[usize; 2], String> {
     let parts: Option<Vec<usize>> = text.split('x').map(|part| part.parse().ok()).collect();
     match parts.unwrap_or_default().as_slice() {
@@ -32,7 +31,7 @@ pub fn albedo_colour(text: &str) -> Option<[f32; 3]> {
     colour(text).ok()
 }
 
-/// One number for both ways; the range is its taker's to check.
+/// Curvatures outwards and inwards; one number is both.
 pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
     match numbers(text)?.as_slice() {
         [both] => Ok([*both; 2]),
@@ -41,22 +40,22 @@ pub fn curvatures(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// A lobe as it is asked for.
+/// Phong specular: one for the whole field, or a file.
 #[derive(Clone)]
-pub enum PhongArg {
-    Constant(ridgelight::scene::Phong),
+pub enum SpecularArg {
+    Constant(ridgelight::scene::PhongSpecular),
     File(std::path::PathBuf),
 }
 
-/// What is no list of numbers is a file.
-pub fn phong(text: &str) -> Result<PhongArg, String> {
+/// Anything but a list of numbers is a file.
+pub fn specular(text: &str) -> Result<SpecularArg, String> {
     match numbers(text).as_deref() {
-        Ok([exponent, scale]) => Ok(PhongArg::Constant(ridgelight::scene::Phong {
+        Ok([exponent, scale]) => Ok(SpecularArg::Constant(ridgelight::scene::PhongSpecular {
             exponent: *exponent as f32,
             scale: *scale as f32,
         })),
         Ok(other) => Err(format!("{} numbers, expected EXPONENT,SCALE or a file", other.len())),
-        Err(_) => Ok(PhongArg::File(text.into())),
+        Err(_) => Ok(SpecularArg::File(text.into())),
     }
 }
 
@@ -90,7 +89,7 @@ pub fn sun(text: &str) -> Result<ridgelight::scene::Sun, String> {
         parts.get(..2).and_then(|p| p.try_into().ok()).ok_or("expected at least AZ,EL")?;
     let azimuth: f64 = azimuth;
     Ok(ridgelight::scene::Sun {
-        // Compass: clockwise from north; inside: counter-clockwise from east.
+        // The compass turns clockwise from north; the library counter-clockwise from east.
         azimuth_rad: (90.0 - azimuth).to_radians(),
         elevation_rad: f64::to_radians(elevation),
         diameter_rad: parts.get(2).copied().unwrap_or(0.53).to_radians(),
@@ -109,13 +108,13 @@ pub fn key(text: &str) -> Result<ridgelight::scene::KeyLight, String> {
     Ok(ridgelight::scene::KeyLight {
         azimuth_rad: (90.0 - azimuth).to_radians(),
         width_rad: width.to_radians(),
-        // Added in degrees: a patch that ends at 90° ends at the zenith.
+        // Added in degrees, so that 90° is exactly the zenith.
         elevations_rad: [elevation - height / 2.0, elevation + height / 2.0].map(f64::to_radians),
         radiance,
     })
 }
 
-pub fn ball(text: &str) -> Result<ridgelight::scene::SphereLight, String> {
+pub fn sphere_light(text: &str) -> Result<ridgelight::scene::SphereLight, String> {
     let parts = numbers(text)?;
     let radiance = match parts.get(4..).unwrap_or_default() {
         [grey] => [*grey as f32; 3],

@@ -1,4 +1,4 @@
-//! The window's.
+//! The window.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use super::values::pixels;
 use super::{GlobalArgs, Input, LightArgs, QualityArgs, SurfaceArgs};
 use crate::scene_file::Request;
 
-/// Columns and rows; a name of its own, as the parser takes arrays for lists.
+/// Columns and rows. An alias, because the parser takes arrays for lists.
 pub type Pixels = [u32; 2];
 
 #[derive(Args)]
@@ -21,21 +21,28 @@ pub struct ViewArgs {
     pub surface: SurfaceArgs,
     #[command(flatten)]
     pub quality: QualityArgs,
-    /// Factor before the picture curve, which clips at 1 and is sRGB
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR", allow_negative_numbers = true)]
+    /// Multiply radiance before sRGB, which clips at 1
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Output",
+        default_value_t = 1.0,
+        value_name = "FACTOR",
+        allow_negative_numbers = true
+    )]
     pub exposure: f32,
-    /// The window's columns and rows, pixels
-    #[arg(long, default_value = "1024x768", value_name = "WxH", value_parser = pixels)]
+    /// Width and height of the window, pixels
+    #[arg(long, help_heading = "Output", default_value = "1024x768", value_name = "WxH", value_parser = pixels)]
     pub size: Pixels,
     /// Keys, drags and frames from a file, for tests
     #[arg(long, value_name = "FILE", hide = true)]
     pub script: Option<PathBuf>,
-    /// Fails where the validation layer has something to say
+    /// Fail on messages of the validation layer
     #[arg(long, hide = true)]
     pub validate: bool,
     #[command(flatten)]
     pub global: GlobalArgs,
-    /// What was given, for scenes to be saved with.
+    /// What the user gave, to save scenes with.
     #[arg(skip)]
     pub asked: Request,
 }

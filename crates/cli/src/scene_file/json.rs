@@ -1,4 +1,4 @@
-//! Values of a JSON text, with where they stand in it.
+//! JSON values with their line and key.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -41,10 +41,10 @@ impl<'de> Visitor<'de> for Members {
 }
 
 impl<'t> Found<'t> {
-    /// The whole of a text.
+    /// The root of a text.
     ///
     /// # Errors
-    /// Line and column of what is no JSON.
+    /// Line and column where the text is not JSON.
     pub fn root(path: &'t Path, text: &'t str) -> Result<Self> {
         let raw = serde_json::from_str(text).map_err(|error| Error::File {
             path: path.to_owned(),
@@ -55,7 +55,7 @@ impl<'t> Found<'t> {
         Ok(Self { path, text, raw, key: String::new() })
     }
 
-    /// Counted from 1.
+    /// Line number, from 1.
     pub fn line(&self) -> usize {
         let before = self.raw.get().as_ptr() as usize - self.text.as_ptr() as usize;
         1 + self.text[..before].matches('\n').count()
@@ -81,15 +81,15 @@ impl<'t> Found<'t> {
         self.error(&found, expected)
     }
 
-    /// That nothing has its key.
+    /// An error: the key is unknown.
     pub fn unknown(&self, known: &str) -> Error {
-        self.error("a key that nothing has", known)
+        self.error("an unknown key", known)
     }
 
-    /// An object's members in order.
+    /// Members of an object, in order.
     ///
     /// # Errors
-    /// What is no object, or has a key twice.
+    /// Not an object, or a key twice.
     pub fn members(&self) -> Result<Vec<Self>> {
         let mut text = serde_json::Deserializer::from_str(self.raw.get());
         let all = text.deserialize_map(Members).map_err(|_| self.wrong("an object"))?;
@@ -104,10 +104,10 @@ impl<'t> Found<'t> {
         }
     }
 
-    /// A list's values.
+    /// Values of a list.
     ///
     /// # Errors
-    /// What is no list.
+    /// Not a list.
     pub fn items(&self) -> Result<Vec<Self>> {
         let all: Vec<&'t RawValue> =
             serde_json::from_str(self.raw.get()).map_err(|_| self.wrong("a list"))?;
@@ -124,7 +124,7 @@ impl<'t> Found<'t> {
         serde_json::from_str(self.raw.get()).ok()
     }
 
-    /// Numbers with commas between them.
+    /// Numbers, comma-separated.
     fn numbers(&self, numbers: Numbers) -> Result<String> {
         let (counts, expected): (&[usize], _) = match numbers {
             Numbers::One => (&[], "a number"),
@@ -142,10 +142,10 @@ impl<'t> Found<'t> {
         all.map(|all| all.join(",")).ok_or_else(|| self.wrong(expected))
     }
 
-    /// What a flag holds between commas.
+    /// The comma-separated values of a flag.
     ///
     /// # Errors
-    /// A member that is missing, unknown or no number.
+    /// A member that is missing, unknown or not a number.
     pub fn parts(&self, parts: &[Part]) -> Result<String> {
         let members = self.members()?;
         let is_part = |found: &&Self| !parts.iter().any(|part| part.name == found.name());
@@ -165,10 +165,10 @@ impl<'t> Found<'t> {
         Ok(all.join(","))
     }
 
-    /// As a flag's text; files from `folder`.
+    /// As the text of a flag; paths relative to `folder`.
     ///
     /// # Errors
-    /// What is not of its kind.
+    /// A value of another kind.
     pub fn value(&self, kind: &Kind, folder: &Path) -> Result<OsString> {
         let file = || self.string().map(|name| folder.join(name).into_os_string());
         match kind {

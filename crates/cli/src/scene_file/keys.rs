@@ -1,31 +1,31 @@
-//! What a scene file may hold, and the flag that each of its keys is.
+//! Keys of a scene file, and the flag that each stands for.
 
 use crate::args::SETTINGS;
 
-/// In the place of a flag: the argument without one.
+/// Stands for the positional argument.
 pub const INPUT: &str = "path";
 
-/// What a key's value is.
+/// Type of a key's value.
 #[derive(Clone, Copy)]
 pub enum Kind {
-    /// One of the flag's words, or a number.
+    /// One of the flag's values, or a number.
     Word,
-    /// A path from the scene file's folder.
+    /// A path relative to the scene file's folder.
     File,
     Numbers(Numbers),
-    /// True for a flag that takes nothing, false for none.
+    /// True sets the flag; false leaves it out.
     Switch,
     /// A colour, or a path.
     ColourOrFile,
-    /// An object: what a flag holds between commas.
+    /// An object with the flag's comma-separated values.
     Parts(&'static [Part]),
-    /// The same, or a path.
+    /// Such an object, or a path.
     PartsOrFile(&'static [Part]),
-    /// A list of such objects, each a flag.
+    /// A list of such objects, one flag each.
     List(&'static [Part]),
 }
 
-/// How many numbers.
+/// Count of numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
     One,
@@ -41,14 +41,14 @@ pub enum Numbers {
 pub struct Part {
     pub name: &'static str,
     pub numbers: Numbers,
-    /// What stands for a member that is not there, nothing for the last; none where it must be.
+    /// Value of a missing member, empty to leave it out. None: the member is required.
     pub default: Option<&'static str>,
 }
 
 #[derive(Clone, Copy)]
 pub struct Key {
     pub name: &'static str,
-    /// As the parser calls it: `_` for `-`.
+    /// The id of the argument: the flag with `_` for `-`.
     pub id: &'static str,
     pub kind: Kind,
 }
@@ -66,7 +66,7 @@ const fn or(part: Part, default: &'static str) -> Part {
 }
 
 const NUMBER: Kind = Kind::Numbers(Numbers::One);
-const LOBE: [Part; 2] = [part("exponent", Numbers::One), part("scale", Numbers::One)];
+const SPECULAR: [Part; 2] = [part("exponent", Numbers::One), part("scale", Numbers::One)];
 const SUN: [Part; 4] = [
     part("azimuth_deg", Numbers::One),
     part("elevation_deg", Numbers::One),
@@ -80,7 +80,7 @@ const PATCH: [Part; 5] = [
     part("height_deg", Numbers::One),
     part("radiance", Numbers::Colour),
 ];
-const BALL: [Part; 3] = [
+const SPHERE: [Part; 3] = [
     part("position_m", Numbers::Three),
     part("radius_m", Numbers::One),
     part("radiance", Numbers::Colour),
@@ -93,15 +93,17 @@ const FIELD: [Key; 5] = [
     key("border", "border", Kind::Word),
     key("nodata", "nodata", Kind::Word),
 ];
-const SURFACE: [Key; 2] =
-    [key("albedo", "albedo", Kind::ColourOrFile), key("phong", "phong", Kind::PartsOrFile(&LOBE))];
+const SURFACE: [Key; 2] = [
+    key("albedo", "albedo", Kind::ColourOrFile),
+    key("specular", "specular", Kind::PartsOrFile(&SPECULAR)),
+];
 const LIGHTS: [Key; 6] = [
     key("sky", "sky", Kind::Numbers(Numbers::Colour)),
     key("environment", "env", Kind::File),
     key("environment_rotate_deg", "env_rotate", NUMBER),
     key("suns", "sun", Kind::List(&SUN)),
     key("keys", "key", Kind::List(&PATCH)),
-    key("balls", "light", Kind::List(&BALL)),
+    key("sphere_lights", "sphere_light", Kind::List(&SPHERE)),
 ];
 
 const EYE: [Part; 3] = [
@@ -120,11 +122,11 @@ const CAMERA: [Key; 8] = [
     key("background", "background", Kind::Numbers(Numbers::Colour)),
 ];
 
-/// All groups but quality, whose keys are the settings themselves.
+/// All groups but quality, whose keys are the settings.
 pub const GROUPS: [(&str, &[Key]); 4] =
     [("field", &FIELD), ("surface", &SURFACE), ("lights", &LIGHTS), ("camera", &CAMERA)];
 
-/// The settings, as `render` has them.
+/// Keys of the quality group: the settings of `render`.
 pub fn quality(parser: &clap::Command) -> Vec<Key> {
     let render = parser.find_subcommand("render").expect("a command of ours");
     let is_number = |name: &str| {

@@ -1,4 +1,4 @@
-//! The schema of scene files, from the same keys that read them.
+//! The JSON schema of scene files, from the keys that read them.
 
 use clap::CommandFactory as _;
 use serde_json::{Value, json};
@@ -65,7 +65,8 @@ fn value(key: &Key, render: &clap::Command) -> Value {
         Kind::Switch => json!({ "type": "boolean" }),
         Kind::List(parts) => json!({ "type": "array", "items": object(parts) }),
     };
-    value["description"] = arg.get_help().map(ToString::to_string).unwrap_or_default().into();
+    let help = arg.get_long_help().or(arg.get_help());
+    value["description"] = help.map(ToString::to_string).unwrap_or_default().into();
     value
 }
 
@@ -84,7 +85,7 @@ fn schema() -> Value {
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A scene for ridgelight --scene",
-        "description": "Each key is a flag of `ridgelight render`; files are sought from this file's folder.",
+        "description": "Each key stands for a flag of `ridgelight render`. Paths are relative to this file's folder.",
         "type": "object",
         "properties": groups,
         "additionalProperties": false,

@@ -1,4 +1,4 @@
-//! Flags as a scene file: what reading it turns back into them.
+//! Writes flags as a scene file.
 
 use clap::ArgMatches;
 use clap::parser::ValueSource;
@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::keys::{GROUPS, INPUT, Key, Kind, Numbers, Part, quality};
 
-/// Flags that were given, on the command line or by a scene file, as the parser calls them, and the words of each.
+/// Flags of the command line and the scene file, by id, and the values of each.
 #[derive(Clone, Debug, Default)]
 pub struct Request(Vec<(String, Vec<String>)>);
 
@@ -20,24 +20,24 @@ impl Request {
         Self(given.collect())
     }
 
-    /// Other words for a flag.
+    /// Sets the values of a flag.
     pub fn set(&mut self, id: &str, words: Vec<String>) {
         self.clear(id);
         self.0.push((id.to_owned(), words));
     }
 
-    /// A flag's first words, where it was given.
+    /// First value of a flag, where it was given.
     pub fn first(&self, id: &str) -> Option<&str> {
         let (_, words) = self.0.iter().find(|(known, _)| known == id)?;
         words.first().map(String::as_str)
     }
 
-    /// Nothing for a flag.
+    /// Removes a flag.
     pub fn clear(&mut self, id: &str) {
         self.0.retain(|(known, _)| known != id);
     }
 
-    /// The words of a scene file, whose files stand where they do for the command.
+    /// The scene file. Paths stay as they are.
     pub fn to_json(&self, parser: &clap::Command) -> Value {
         let mut groups = Map::new();
         let quality = quality(parser);
@@ -73,7 +73,7 @@ impl Request {
 }
 
 fn parsed(text: &str) -> Option<Vec<Value>> {
-    // As it was written, where JSON writes it so.
+    // Keeps the user's spelling where it is valid JSON.
     let kept = |t: &str| Some(Value::Number(serde_json::from_str(t).ok()?));
     let number = |t: &str| kept(t.trim()).or_else(|| Some(t.trim().parse::<f64>().ok()?.into()));
     text.split(',').map(number).collect()
@@ -88,7 +88,7 @@ fn numbers(text: &str, count: Numbers) -> Option<Value> {
     }
 }
 
-/// Colours stand last and take what is left.
+/// Colours come last and take the rest.
 fn object(text: &str, parts: &[Part]) -> Option<Value> {
     let all = parsed(text)?;
     let mut left = all.as_slice();

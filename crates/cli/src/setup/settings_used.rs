@@ -1,4 +1,4 @@
-//! What a command was asked for, what it used and how long that took, for files' metadata and --json.
+//! Requested and used settings and times, for metadata and --json.
 
 use std::path::Path;
 
@@ -6,9 +6,9 @@ use ridgelight::gpu::{Headless, Timing};
 use ridgelight::plan::Plan;
 use ridgelight::scene::{HeightField, Scene};
 
-use crate::args::{FieldArgs, LightArgs, PhongArg, SurfaceArgs};
+use crate::args::{FieldArgs, LightArgs, SpecularArg, SurfaceArgs};
 
-/// What was used and how long it took, for files' metadata and --json.
+/// Used settings and times.
 pub fn metadata(
     gpu: &Headless,
     field: &HeightField,
@@ -37,7 +37,7 @@ pub fn metadata(
     all
 }
 
-/// What was asked for that no plan knows.
+/// Requested settings that no plan holds.
 pub fn asked(
     input: &Path,
     surface: &FieldArgs,
@@ -53,11 +53,11 @@ pub fn asked(
     }
     let Some((args, surface, scene)) = lit else { return all };
     all.push(("albedo".to_owned(), surface.albedo.clone()));
-    let phong = surface.phong.as_ref().map(|phong| match phong {
-        PhongArg::Constant(phong) => format!("{},{}", phong.exponent, phong.scale),
-        PhongArg::File(path) => path.display().to_string(),
+    let specular = surface.specular.as_ref().map(|specular| match specular {
+        SpecularArg::Constant(one) => format!("{},{}", one.exponent, one.scale),
+        SpecularArg::File(path) => path.display().to_string(),
     });
-    all.extend(phong.map(|phong| ("phong".to_owned(), phong)));
+    all.extend(specular.map(|text| ("phong".to_owned(), text)));
     if let Some(sky) = &scene.lights.sky {
         all.push(("sky".to_owned(), numbers(sky)));
     }
@@ -65,7 +65,7 @@ pub fn asked(
         all.push(("env".to_owned(), path.display().to_string()));
         all.push(("env_rotate_deg".to_owned(), args.env_rotate.to_string()));
     }
-    // As the flags take them, less the rounding of turning degrees to radians and back.
+    // As the flags take them, without the rounding from degrees to radians and back.
     let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
     let compass = |azimuth_rad: f64| degrees(std::f64::consts::FRAC_PI_2 - azimuth_rad);
     for (i, sun) in scene.lights.suns.iter().enumerate() {
@@ -81,17 +81,16 @@ pub fn asked(
         let text = format!("{azimuth},{elevation},{width},{height},{}", numbers(&key.radiance));
         all.push((format!("key{}", i + 1), text));
     }
-    for (i, ball) in scene.lights.spheres.iter().enumerate() {
-        let [x, y, z] = ball.position_m;
-        let text = format!("{x},{y},{z},{},{}", ball.radius_m, numbers(&ball.radiance));
+    for (i, sphere) in scene.lights.sphere_lights.iter().enumerate() {
+        let [x, y, z] = sphere.position_m;
+        let text = format!("{x},{y},{z},{},{}", sphere.radius_m, numbers(&sphere.radiance));
         all.push((format!("light{}", i + 1), text));
     }
     all
 }
 
-/// Settings as JSON: a number as a number, numbers with commas between them as a list of numbers, all
-/// else as text. A file, a device and the spelling of `--lines` (1, 1/2, exact) are text, whatever they
-/// look like.
+/// Settings as JSON: numbers, lists of comma-separated numbers, and text. Files, devices and `--lines` (1, 1/2, exact) are
+/// always text.
 pub fn typed(settings: &[(String, String)]) -> serde_json::Map<String, serde_json::Value> {
     const WORDS: [&str; 6] = ["ridgelight", "device", "driver", "input", "env", "lines"];
     let typed = |name: &str, text: &str| {

@@ -1,4 +1,4 @@
-//! Settings that are chosen for an error or a time.
+//! Settings chosen for an error or a time.
 
 use ridgelight::scene::{Albedo, Border, Lights, Scene, Surface};
 use ridgelight_cpu::indirect;
@@ -39,7 +39,7 @@ fn wrong_goals_are_refused() {
                 &["--time-budget", "cannot be used with", "--fuse"],
             ),
             (
-                "render a.asc -o out.exr --max-error 1 --method brute",
+                "render a.asc -o out.exr --max-error 1 --method brute-force",
                 2,
                 &["--max-error", "cannot be used with", "--method"],
             ),
@@ -49,9 +49,9 @@ fn wrong_goals_are_refused() {
                 &["--max-error", "cannot be used with", "--bounce-azimuths"],
             ),
             (
-                "render a.asc -o out.exr --max-error 1 --bounces 2 --phong 5,0.1 --albedo 0.5",
+                "render a.asc -o out.exr --max-error 1 --bounces 2 --specular 5,0.1 --albedo 0.5",
                 2,
-                &["--phong with --max-error", "diffuse"],
+                &["--specular with --max-error", "diffuse"],
             ),
             ("render a.asc -o out.exr --max-error 1 --bounces 65", 2, &["--bounces", "0 to 64"]),
             ("render a.asc -o out.exr --max-error 1 --seed -1", 2, &["--seed", "whole number"]),
@@ -79,8 +79,8 @@ fn number(settings: &serde_json::Value, name: &str) -> f64 {
     settings[name].as_f64().unwrap_or_else(|| panic!("{name} in {settings}"))
 }
 
-/// Every third sample against the oracle: what is stated is so. The field is small enough to be probed
-/// whole; choices by a few samples are the library's tests'.
+/// The stated error holds at every third texel against the oracle. Probes cover the whole small field; the library's tests
+/// cover choices by few probes.
 #[test]
 fn gpu_a_max_error_holds() {
     let folder = Folder::new();
@@ -89,9 +89,14 @@ fn gpu_a_max_error_holds() {
     let args = "render field.npy -o out.exr --json out.json --max-error 0.01";
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
-    for said in
-        ["guessed", "one standard deviation", "measured", "95 % confidence", "probes", "--azimuths"]
-    {
+    for said in [
+        "expected error",
+        "one standard deviation",
+        "measured",
+        "95 % confidence",
+        "probes",
+        "--azimuths",
+    ] {
         assert!(run.out.contains(said), "{said}: {}", run.out);
     }
     let settings = settings(&folder);
@@ -99,7 +104,7 @@ fn gpu_a_max_error_holds() {
     assert!(0.0 < stated && stated <= at_most && at_most <= most, "{stated} {at_most}");
     assert!(number(&settings, "error_expected") > 0.0);
     assert!((64.0..=1000.0).contains(&number(&settings, "error_probes")));
-    // What the picture's own header says is the same, and what missed on the way is told.
+    // The picture's header states the same, and lists the trials that missed.
     let header = attributes(&folder.path("out.exr"));
     for (name, value) in settings.as_object().unwrap() {
         match value.as_f64() {
@@ -112,7 +117,7 @@ fn gpu_a_max_error_holds() {
         }
     }
     let tried = settings["tried"].as_str().unwrap();
-    assert_eq!(tried.contains("does not hold"), run.out.contains("went dearer"), "{}", run.out);
+    assert_eq!(tried.contains("missed"), run.out.contains("chose slower settings"), "{}", run.out);
     let exr = read(&folder.path("out.exr"));
     let field = ridgelight_io::read_heights(
         &folder.path("field.npy"),
@@ -131,9 +136,8 @@ fn gpu_a_max_error_holds() {
     assert!(off <= most && off > 0.3 * stated, "{off} of {stated}");
 }
 
-/// The same with two bounces of albedo 0.7, against the f64 quadrature, which shares nothing with the light paths that
-/// judge: what the drawn picture is off it is within the goal, as far as the quadrature tells. Without
-/// what is thrown it would not be.
+/// The same with two bounces of albedo 0.7, against the f64 quadrature, which shares nothing with the path tracing that judges.
+/// The picture's error is within the goal, up to the quadrature's own error. Without indirect light it is not.
 #[test]
 fn gpu_a_max_error_holds_with_bounces() {
     let folder = Folder::new();
@@ -142,16 +146,16 @@ fn gpu_a_max_error_holds_with_bounces() {
         "render field.npy -o out.exr --json out.json --albedo 0.7 --bounces 2 --max-error 0.02";
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
-    for said in ["--bounces 2", "--bounce-azimuths", "light paths each", "at most"] {
+    for said in ["--bounces 2", "--bounce-azimuths", "paths each", "at most"] {
         assert!(run.out.contains(said), "{said}: {}", run.out);
     }
     let settings = settings(&folder);
     let [stated, at_most] = ["error_measured", "error_at_most"].map(|name| number(&settings, name));
     assert!(stated <= at_most && at_most <= 0.02, "{stated} {at_most}");
-    // Batches of 64, eight or more and 256 at most; as many as are told.
+    // Batches of 64, from 8 to 256, as many as stated.
     let paths = number(&settings, "error_paths");
     assert!((512.0..=16384.0).contains(&paths) && paths % 64.0 == 0.0, "{paths}");
-    assert!(run.out.contains(&format!("{paths} light paths each")), "{paths}: {}", run.out);
+    assert!(run.out.contains(&format!("{paths} paths each")), "{paths}: {}", run.out);
     let exr = read(&folder.path("out.exr"));
     let field = ridgelight_io::read_heights(
         &folder.path("field.npy"),
@@ -171,7 +175,7 @@ fn gpu_a_max_error_holds_with_bounces() {
     let own = root(&|i| truth.error[2][i][0]) / mean;
     assert!(own < 0.25 * 0.02, "the quadrature may be {own} off");
     assert!(off(2) <= at_most + own, "{} of {at_most}, {own}", off(2));
-    // Without bounces it would not hold.
+    // Without bounces the goal is missed.
     assert!(off(0) > 0.02, "{}", off(0));
 }
 
@@ -195,12 +199,12 @@ fn gpu_goals_out_of_reach_are_refused_and_a_budget_is_kept() {
     assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (Some(0), "", ""));
     let settings = settings(&folder);
     assert_eq!(number(&settings, "time_budget_ms"), 60000.0);
-    // A minute is enough for the finest that are chosen among.
+    // A minute is enough for the finest settings.
     assert!(number(&settings, "azimuths") >= 256.0, "{settings}");
     assert!(number(&settings, "error_at_most") < 0.01, "{settings}");
 }
 
-/// One sample, and one with a void beside it: all samples are probes.
+/// One texel, and one beside a void: all texels are probes.
 #[test]
 fn gpu_tiny_fields_have_goals_too() {
     let folder = Folder::new();

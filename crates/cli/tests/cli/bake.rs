@@ -1,4 +1,4 @@
-//! `bake`: what is refused, what is written, and what its sheet says of it.
+//! `bake`: refusals, files and their manifest.
 
 use serde_json::Value;
 use std::f64::consts::SQRT_2;
@@ -7,7 +7,7 @@ use crate::needs_vulkan::{done, json, write_field};
 use crate::{Folder, read, refused};
 
 #[test]
-fn wrong_requests_are_told() {
+fn wrong_requests_are_refused() {
     let folder = Folder::new();
     folder.write("taken", b"");
     #[cfg(unix)]
@@ -47,7 +47,11 @@ fn wrong_requests_are_told() {
         (with("--what sh-transfer --sh-order 6"), 2, &["--sh-order", "found 6", "2 to 5"]),
         (with("--what sh-visibility --sh-order 7"), 2, &["--sh-order: found 7"]),
         (horizon("--azimuths 3"), 2, &["--azimuths: found 3"]),
-        (horizon("--method sweep --lines exact"), 2, &["--lines: found exact", "--method brute"]),
+        (
+            horizon("--method sweep --lines exact"),
+            2,
+            &["--lines: found exact", "--method brute-force"],
+        ),
         (horizon("--memory-budget 0"), 1, &["needs ", "0 bytes of --memory-budget"]),
         (horizon("--directions 8"), 2, &["--directions: found 8", "ellipse, visible-points"]),
         (with("--what ellipse --directions 3"), 2, &["--directions: found 3", "4 to 4096"]),
@@ -91,7 +95,7 @@ fn wrong_requests_are_told() {
         ),
         (with("--what scatter --paths 0"), 2, &["--paths: found 0"]),
         (
-            with("--what scatter --albedo 0.5 --phong 5,0.1 --light 1,1,9,1,5"),
+            with("--what scatter --albedo 0.5 --specular 5,0.1 --sphere-light 1,1,9,1,5"),
             2,
             &["a lobe and 1 key lights and balls"],
         ),
@@ -107,16 +111,16 @@ fn wrong_requests_are_told() {
         all.map(|(words, status, says)| (words.trim_end().to_owned(), status, says)).into();
     let cases: Vec<_> = all.iter().map(|(words, s, says)| (words.as_str(), *s, *says)).collect();
     refused(&folder, &cases);
-    // An output that is the input would take it away.
+    // An output at the input's path would overwrite it.
     std::fs::create_dir(folder.path("in")).unwrap();
     std::fs::rename(folder.path("a.npy"), folder.path("in/horizon.npy")).unwrap();
     let own = "bake in/horizon.npy -o in --what horizon --format npy";
     refused(&folder, &[(own, 2, &["-o", "which is the input"])]);
 }
 
-/// Each file with the most that it may take, and memory on both sides; nothing is run or written.
+/// `--plan` lists each file with its largest size, and memory of host and device. It runs and writes nothing.
 #[test]
-fn a_plan_says_what_it_will_take() {
+fn a_plan_lists_sizes_and_memory() {
     let folder = Folder::new();
     let before = folder.contents();
     let words =
@@ -134,23 +138,23 @@ fn a_plan_says_what_it_will_take() {
     {
         assert!((texels..texels + 2048).contains(&said(file)), "{file}");
     }
-    for file in ["horizon.glsl", "sky_view.png", "sh_visibility.exr", "bake.json"] {
+    for file in ["horizon.glsl", "sky_view.png", "sh_visibility.exr", "manifest.json"] {
         assert!(said(file) > 0);
     }
-    // Nine sums of 8 bytes are the most of what is held; the heights the least on the device.
-    assert!(said("memory of this program") >= 12 * 9 * 8);
-    assert!(run.out.contains("memory of lavapipe"), "{}", run.out);
+    // Nine sums of 8 bytes are the largest host memory; the device holds the heights at least.
+    assert!(said("memory of this process") >= 12 * 9 * 8);
+    assert!(run.out.contains("memory on lavapipe"), "{}", run.out);
     assert_eq!(folder.contents(), before);
 }
 
-fn map<'a>(sheet: &'a Value, kind: &str) -> &'a Value {
-    let all = sheet["maps"].as_array().unwrap();
+fn map<'a>(manifest: &'a Value, kind: &str) -> &'a Value {
+    let all = manifest["maps"].as_array().unwrap();
     all.iter().find(|map| map["kind"] == kind).unwrap_or_else(|| panic!("{kind} in {all:?}"))
 }
 
 /// A field of a wall, its maps in every format.
 #[test]
-fn gpu_every_file_is_there_and_told_of() {
+fn gpu_every_file_is_there_and_listed() {
     let folder = Folder::new();
     write_field(&folder, 9, |_, c| if c == 6 { 3.0 } else { 0.0 });
     let kinds = "horizon,sky-view,visible-sky,bent-normal";
@@ -166,31 +170,32 @@ fn gpu_every_file_is_there_and_told_of() {
         &folder,
         "bake field.npy -o out3 --what ellipse,visible-points --directions 9 --format exr,npy,ktx2",
     );
-    let sheets = ["out", "out2", "out3"].map(|out| json(&folder.path(&format!("{out}/bake.json"))));
-    for (sheet, out) in sheets.iter().zip(["out", "out2", "out3"]) {
-        let mut told = vec!["bake.json".to_owned()];
-        for map in sheet["maps"].as_array().unwrap() {
-            told.push(map["decoder"].as_str().unwrap().to_owned());
+    let manifests =
+        ["out", "out2", "out3"].map(|out| json(&folder.path(&format!("{out}/manifest.json"))));
+    for (manifest, out) in manifests.iter().zip(["out", "out2", "out3"]) {
+        let mut listed = vec!["manifest.json".to_owned()];
+        for map in manifest["maps"].as_array().unwrap() {
+            listed.push(map["decoder"].as_str().unwrap().to_owned());
             for file in map["files"].as_array().unwrap() {
                 let name = file["file"].as_str().unwrap();
                 let length = std::fs::metadata(folder.path(out).join(name)).unwrap().len();
                 assert_eq!(file["bytes"], length, "{name}");
                 assert!(!file["error"].as_array().unwrap().is_empty(), "{name}");
                 assert!(!file["decoding"].as_str().unwrap().is_empty(), "{name}");
-                // Of Vulkan's formats for textures these are no device's duty.
+                // Vulkan requires these texture formats of no device.
                 let holds = file["texels"].as_str().unwrap();
                 let is_asked = holds.ends_with("16_UNORM") || holds.ends_with("16_SNORM");
                 assert_eq!(file["sampled"].is_string(), is_asked, "{name}: {holds}");
-                told.push(name.to_owned());
+                listed.push(name.to_owned());
             }
             assert!(map["beyond_range"].is_null(), "{map}");
         }
         let entries = std::fs::read_dir(folder.path(out)).unwrap();
         let mut there: Vec<String> =
             entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        told.sort();
+        listed.sort();
         there.sort();
-        assert_eq!(told, there);
+        assert_eq!(listed, there);
         for decoder in there.iter().filter(|name| name.ends_with(".glsl")) {
             let text = std::fs::read_to_string(folder.path(out).join(decoder)).unwrap();
             assert!(text.lines().count() <= 20, "{decoder} has {} lines", text.lines().count());
@@ -198,42 +203,42 @@ fn gpu_every_file_is_there_and_told_of() {
     }
     // Eight pictures of a horizon's azimuths, one of each other kind.
     let pictures = |kind: &str| {
-        let files = map(&sheets[0], kind)["files"].as_array().unwrap().iter();
+        let files = map(&manifests[0], kind)["files"].as_array().unwrap().iter();
         files.filter(|f| f["format"] == "png").count()
     };
     assert_eq!(["horizon", "sky-view", "bent-normal"].map(pictures), [8, 1, 1]);
-    assert_eq!(sheets[0]["settings"]["azimuths"], 8);
-    assert_eq!(sheets[2]["directions"].as_array().unwrap().len(), 9);
+    assert_eq!(manifests[0]["settings"]["azimuths"], 8);
+    assert_eq!(manifests[2]["directions"].as_array().unwrap().len(), 9);
     // A closed net of n points all over the sphere has 2 n - 4 triangles (Euler).
-    let net = map(&sheets[2], "visible-points")["triangles"].as_array().unwrap();
+    let net = map(&manifests[2], "visible-points")["triangles"].as_array().unwrap();
     assert_eq!(net.len(), 14, "{net:?}");
     assert!(net.iter().flat_map(|t| t.as_array().unwrap()).all(|i| i.as_u64().unwrap() < 9));
-    assert!(sheets[0]["directions"].is_null() && sheets[2]["horizons"].is_null());
-    assert_eq!(sheets[0]["settings"]["method"], "brute");
-    // The hash is of the field, whatever is baked of it, and stands in what is written.
-    let hash = sheets[0]["field"]["hash"].as_str().unwrap().to_owned();
-    assert_eq!(sheets[1]["field"]["hash"], hash.as_str());
+    assert!(manifests[0]["directions"].is_null() && manifests[2]["horizons"].is_null());
+    assert_eq!(manifests[0]["settings"]["method"], "brute-force");
+    // The hash is the field's, whatever is baked, and stands in the files.
+    let hash = manifests[0]["field"]["hash"].as_str().unwrap().to_owned();
+    assert_eq!(manifests[1]["field"]["hash"], hash.as_str());
     let exr = crate::needs_vulkan::attributes(&folder.path("out/sky_view.exr"));
     assert_eq!(exr["field_hash"], hash);
     assert!(exr.keys().all(|name| name != "ridgelight.field_hash"), "{exr:?}");
-    // The same is baked again, bit for bit, over what is there.
+    // The same bake again, over the first, is the same bit for bit.
     let kept = |folder: &Folder| std::fs::read(folder.path("out2/sh_transfer.ktx2")).unwrap();
     let first = kept(&folder);
     let again = "bake field.npy -o out2 --what sh-transfer,sh-visibility --sh-order 2 --azimuths 8";
     done(&folder, &format!("{again} --quiet --format ktx2"));
     assert!(kept(&folder) == first);
-    // What the earlier one had besides is gone with its sheet; what is not its own stays.
+    // Files of the earlier bake are gone with its manifest; other files stay.
     assert!(!folder.path("out2/sh_transfer.exr").exists());
     folder.write("out/horizon_0009.png", b"somebody's");
     done(&folder, &format!("bake field.npy -o out --what {kinds} --azimuths 4 --format png"));
     let pictures = |k: usize| folder.path(&format!("out/horizon_{k:04}.png")).exists();
     assert_eq!([0, 3, 4, 7, 9].map(pictures), [true, true, false, false, true]);
-    // Other kinds would take its sheet from it.
+    // Other kinds would replace its manifest.
     let other = "bake field.npy -o out --what horizon";
-    refused(&folder, &[(other, 2, &["-o", "out with sky-view in its bake.json"])]);
+    refused(&folder, &[(other, 2, &["-o", "out with sky-view in its manifest.json"])]);
 }
 
-/// No file is larger than was said: a sheet of many pictures is long.
+/// No file is larger than planned: a manifest of many pictures is long.
 #[test]
 fn gpu_files_are_no_larger_than_planned() {
     let folder = Folder::new();
@@ -253,7 +258,7 @@ fn gpu_files_are_no_larger_than_planned() {
         assert!(length <= most, "{name}: {length} of {most}");
         count += 1;
     }
-    // Pictures, texture, decoder, sheet.
+    // Pictures, texture, decoder, manifest.
     assert_eq!(count, 160 + 3);
 }
 
@@ -262,7 +267,7 @@ fn gpu_files_are_no_larger_than_planned() {
 fn gpu_horizons_are_those_of_the_command_horizon() {
     let folder = Folder::new();
     write_field(&folder, 8, |r, c| ((r * 31 + c * 17) % 7) as f32);
-    folder.write("scene.json", br#"{ "field": { "file": "field.npy", "cell_m": [2, 3] }, "quality": { "azimuths": 8, "method": "brute" } }"#);
+    folder.write("scene.json", br#"{ "field": { "file": "field.npy", "cell_m": [2, 3] }, "quality": { "azimuths": 8, "method": "brute-force" } }"#);
     done(&folder, "horizon --scene scene.json -o h.npy");
     done(&folder, "bake --scene scene.json -o out --what horizon --format npy,exr,ktx2");
     let (kept, baked) = (read(&folder.path("h.npy")), read(&folder.path("out/horizon.npy")));
@@ -298,7 +303,7 @@ fn gpu_voids_are_nan_transparent_and_filled() {
             assert_eq!(*v, if i == VOID { 0.0 } else { 1.0 }, "{name}, sample {i}");
         }
     }
-    // In a texture the filled ground's, which filters take from, and 0 in the component beside.
+    // In a texture: the value of the filled surface, which filters read, and 0 in the mask component.
     let texels = |name: &str| {
         let bytes = std::fs::read(path(name)).unwrap();
         let reader = ktx2::Reader::new(&bytes).unwrap();
@@ -311,14 +316,14 @@ fn gpu_voids_are_nan_transparent_and_filled() {
     for (i, texel) in bent.as_chunks::<4>().0.iter().enumerate() {
         assert_eq!(texel[3], if i == VOID { 0 } else { 65535 }, "sample {i}");
     }
-    let sheet = json(&path("bake.json"));
-    assert_eq!(sheet["field"]["voids"], 1);
-    for file in map(&sheet, "bent-normal")["files"].as_array().unwrap() {
+    let manifest = json(&path("manifest.json"));
+    assert_eq!(manifest["field"]["voids"], 1);
+    for file in map(&manifest, "bent-normal")["files"].as_array().unwrap() {
         assert!(file["voids"].is_string(), "{file}");
     }
 }
 
-/// One sample, one row, one column; the steepest that is taken; all of every kind, finite and in range.
+/// One texel, one row, one column, the steepest field allowed: every kind is finite and in range.
 #[test]
 fn gpu_extremes() {
     let folder = Folder::new();
@@ -340,8 +345,8 @@ fn gpu_extremes() {
                      --format npy,ktx2 --quiet"
                 ),
             );
-            let sheet = json(&folder.path(&out).join("bake.json"));
-            for map in sheet["maps"].as_array().unwrap() {
+            let manifest = json(&folder.path(&out).join("manifest.json"));
+            for map in manifest["maps"].as_array().unwrap() {
                 let values = map["values"].as_array().unwrap();
                 let name = map["kind"].as_str().unwrap().replace('-', "_");
                 let planes = read(&folder.path(&out).join(format!("{name}.npy"))).planes;
@@ -352,13 +357,13 @@ fn gpu_extremes() {
                     for value in plane.iter().map(|v| f64::from(*v)) {
                         assert!(value.is_finite(), "{out}, {name}: {value}");
                         let off = (value - high).max(low - value);
-                        // What f32 and the device's functions round.
+                        // Rounding of f32 and of the device's functions.
                         if off > 8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs()) {
                             beyond = (beyond.0 + 1, beyond.1.max(off));
                         }
                     }
                 }
-                // Four azimuths are no whole sum, which is told of. Free of all but its own plane, upright ground along φ has
+                // Four azimuths are a coarse sum, which the manifest reports. A wall along φ, occluded by its own plane alone, has
                 // 1/π π/2 π/2 Σ max(cos(φ + kπ/2), 0) of a share, π/4 (cos φ + sin φ) at most: π √2/4 = 1.111. Σ π/2 Y² is at
                 // most twice its integral, as of cos² 2φ at four azimuths: coefficients are within √2 of their ranges,
                 // 3.545 at most. Others are within theirs.
@@ -368,17 +373,17 @@ fn gpu_extremes() {
                     _ => 0.0,
                 };
                 assert!(beyond.1 <= most, "{out}, {name}: {} beyond its range", beyond.1);
-                let told = &map["beyond_range"];
-                assert_eq!(told["values"].as_u64().unwrap_or(0), beyond.0, "{out}, {name}");
+                let beyond_range = &map["beyond_range"];
+                assert_eq!(beyond_range["values"].as_u64().unwrap_or(0), beyond.0, "{out}, {name}");
                 // Ranges and this went through decimals.
-                let off = told["at_most"].as_f64().unwrap_or(0.0) - beyond.1;
+                let off = beyond_range["at_most"].as_f64().unwrap_or(0.0) - beyond.1;
                 assert!(off.abs() < 1e-12, "{out}, {name}: {off} from {}", beyond.1);
                 ever += beyond.0;
             }
         }
     }
     assert!(ever > 0, "upright ground passes 1 by four azimuths");
-    // A level sample sees all of the sky, in f32's nearest.
+    // The whole sky is visible from a level texel, to the nearest f32.
     let one = |name: &str| read(&folder.path("one_plane").join(name)).planes[0][0];
     assert_eq!([one("sky_view.npy"), one("visible_sky.npy")], [1.0, 1.0]);
     assert_eq!(one("horizon.npy"), 0.0);

@@ -1,4 +1,4 @@
-//! What `bake` makes of light: loaded back by readers of its own, against what is known and against each other.
+//! Baked light, loaded by independent readers: against closed forms and against each other.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::groove::{groove_bound, groove_brdf};
 use crate::needs_vulkan::{done, json};
 use crate::{Folder, refused};
 
-/// An array of f32 by NumPy's own description of the file: shape and values, the last axis the fastest.
+/// Reads an f32 array by NumPy's header: shape, and values with the last axis fastest.
 pub fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
     let bytes = std::fs::read(path).unwrap();
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
@@ -24,7 +24,7 @@ pub fn load(path: &Path) -> (Vec<usize>, Vec<f32>) {
     (shape, values.collect())
 }
 
-/// A table and the angles that its sheet says of it: f(channel, light, view), each of those (θ, φ) by their numbers.
+/// A table and its angles from the manifest: f(channel, light, view), light and view by their (θ, φ) indices.
 pub struct Table {
     thetas: Vec<f64>,
     phis: Vec<f64>,
@@ -33,8 +33,9 @@ pub struct Table {
 
 impl Table {
     pub fn load(folder: &Path) -> Self {
-        let sheet = json(&folder.join("bake.json"));
-        let map = sheet["maps"].as_array().unwrap().iter().find(|m| m["kind"] == "brdf").unwrap();
+        let manifest = json(&folder.join("manifest.json"));
+        let map =
+            manifest["maps"].as_array().unwrap().iter().find(|m| m["kind"] == "brdf").unwrap();
         let radians = |name: &str| -> Vec<f64> {
             let all = map["angles"][name].as_array().unwrap().iter();
             all.map(|v| v.as_f64().unwrap().to_radians()).collect()
@@ -72,8 +73,8 @@ pub fn write(
     folder.write(name, &npy("<f4", false, &format!("({rows}, {cols})"), &data));
 }
 
-/// Level ground is ρ/π, and grooves their closed form within what triangles err by: columns of a wall are cut eightfold. Light
-/// and view exchanged are the same number, but for f32.
+/// Level ground is ρ/π. Grooves match their closed form within the error of the triangles: columns of a wall are cut
+/// eightfold. The BRDF is reciprocal up to f32.
 #[test]
 fn gpu_tables_are_loaded_back() {
     const WALL: usize = 8;
@@ -84,7 +85,7 @@ fn gpu_tables_are_loaded_back() {
         "--border periodic --what brdf --bounces 0 --angles 6x8 --albedo 0.8,0.5,0.1 --format npy";
     let albedo = [0.8, 0.5, 0.1];
     for name in ["level", "grooves"] {
-        // Nothing is scattered on level ground, however often it may be.
+        // Level ground scatters nothing, whatever the bounces.
         let words = if name == "level" {
             words.replace("--bounces 0", "--bounces 2")
         } else {
@@ -108,7 +109,7 @@ fn gpu_tables_are_loaded_back() {
                 };
                 for (c, albedo) in albedo.iter().enumerate() {
                     let (got, known) = (table.at(c, l, v), albedo * known);
-                    // f32 of the table, and of finer heights, whose slopes err by 2⁻²⁴ of 8 over an eighth.
+                    // Rounding of the table to f32, and of the finer heights: their slopes err by 2⁻²⁴ of 8 over an eighth.
                     let allowed = known * (bound + 1e-4) + 1e-9;
                     worst = worst.max((got - known).abs() / allowed);
                     assert!((got - table.at(c, v, l)).abs() <= 1e-6 * got, "{name}: {l} {v}");
@@ -119,23 +120,22 @@ fn gpu_tables_are_loaded_back() {
         }
         println!("{name}: {worst:.3} of what is allowed");
         assert!(worst <= 1.0, "{name}: {worst}");
-        // Axes exchanged or turned would be seen.
+        // Swapped or reversed axes would fail.
         assert!(name == "level" || turned > 0.1, "{turned}");
     }
 }
 
-/// Pictures of all pairs are the table's once they are averaged: shares of the view are cos θ in the mean, and radiance over
-/// them, over the light's cos θ, the table; scattered light and all. A light field has the same shares, and its light does not
-/// turn with the view.
+/// Pictures of all pairs average to the table: view shares average to cos θ, and radiance over the shares and over the light's
+/// cos θ is the table, scattered light included. A light field has the same shares; its light does not depend on the view.
 #[test]
 fn gpu_pictures_are_the_table_in_the_mean() {
     pictures_are_the_table("--albedo 0.9,0.6,0.2", false);
 }
 
-/// The same of lobes, whose light turns with the view.
+/// The same with specular, whose light depends on the view.
 #[test]
-fn gpu_pictures_of_lobes_are_the_table_in_the_mean() {
-    pictures_are_the_table("--albedo 0.5,0.4,0.2 --phong 4,0.4", true);
+fn gpu_pictures_with_specular_are_the_table_in_the_mean() {
+    pictures_are_the_table("--albedo 0.5,0.4,0.2 --specular 4,0.4", true);
 }
 
 fn pictures_are_the_table(surface: &str, turns: bool) {
@@ -161,7 +161,7 @@ fn pictures_are_the_table(surface: &str, turns: bool) {
         let shares = plane(&btf, 4 * (l * count + v) + 3);
         let whole: f64 = shares.iter().sum();
         let z = directions[v].z;
-        // Sums of f32.
+        // Rounding of f32 sums.
         assert!((whole / texels as f64 - z).abs() < 1e-6, "{l} {v}: {whole}");
         for c in 0..3 {
             let light = plane(&btf, 4 * (l * count + v) + c);
@@ -186,16 +186,16 @@ fn pictures_are_the_table(surface: &str, turns: bool) {
     assert!((turned > 0) == turns, "{turned}");
 }
 
-pub fn chance(folder: &Folder, out: &str) -> Value {
-    let sheet = json(&folder.path(out).join("bake.json"));
-    sheet["maps"][0]["chance"].clone()
+pub fn noise(folder: &Folder, out: &str) -> Value {
+    let manifest = json(&folder.path(out).join("manifest.json"));
+    manifest["maps"][0]["monte_carlo_noise"].clone()
 }
 
-/// Scattered light by other seeds differs by what the sheet says of chance: two are apart by √2 σ, and all samples share their
-/// directions, so that the mean of squares of six pairs of four seeds has few chances alone: within a factor of three. Sixteen
-/// times as many paths leave a quarter of it, or less where each part takes every direction once; surely less than three quarters.
+/// Seeds differ by the Monte Carlo noise of the manifest: two differ by √2 σ. All texels share their directions, so the mean
+/// square of six pairs of four seeds has few degrees of freedom: within a factor of three. Sixteen times as many paths leave a
+/// quarter of the noise, or less where each part takes every direction once; surely less than three quarters.
 #[test]
-fn gpu_scattered_light_tells_of_its_chance() {
+fn gpu_scattered_light_reports_its_noise() {
     let folder = Folder::new();
     write(&folder, "field.npy", [8, 8], |r, c| ((r * 5 + c * 3) % 7) as f32);
     let of = |out: &str, more: &str| {
@@ -215,14 +215,14 @@ fn gpu_scattered_light_tells_of_its_chance() {
         pairs += 1.0;
     }
     let found = f64::sqrt(apart / pairs / 2.0);
-    let said = chance(&folder, "s0")["rms_standard_error"].as_f64().unwrap();
+    let said = noise(&folder, "s0")["rms_standard_error"].as_f64().unwrap();
     println!("{found:.5} found, {said:.5} said");
     assert!(found > said / 3.0 && found < 3.0 * said, "{found} {said}");
     let (shape, _) = of("more", "--paths 1024");
     assert_eq!(shape, [6, 8, 8]);
-    let less = chance(&folder, "more")["rms_standard_error"].as_f64().unwrap();
+    let less = noise(&folder, "more")["rms_standard_error"].as_f64().unwrap();
     assert!(less < 0.75 * said, "{less} {said}");
-    assert_eq!(chance(&folder, "more")["paths"], 1024);
+    assert_eq!(noise(&folder, "more")["paths"], 1024);
     write(&folder, "level.npy", [3, 4], |_, _| 2.0);
     done(&folder, "bake level.npy -o level --what scatter --sun 0,90,0,2 --format npy");
     let (_, level) = load(&folder.path("level/scatter.npy"));
@@ -231,14 +231,14 @@ fn gpu_scattered_light_tells_of_its_chance() {
         "{level:?}"
     );
     assert!(level[36..].iter().all(|v| *v == 0.0), "{level:?}");
-    // The same seed is the same light.
+    // The same seed gives the same light.
     assert!(of("again", "--paths 64 --seed 2").1 == seeds[2]);
 }
 
-/// A ramp that rises towards the east by 10 a cell and ends: of θ 22.5° and 67.5° and four φ, those from the east see backs
-/// alone. They hold 0, not what zeros divided by each other are, which a note says.
+/// A ramp rises towards the east by 10 a cell and ends. Of θ 22.5° and 67.5° and four φ, only back faces are visible from the
+/// east. These hold 0, not 0/0, and a note reports them.
 #[test]
-fn gpu_views_of_backs_hold_nothing() {
+fn gpu_views_of_back_faces_hold_0() {
     let folder = Folder::new();
     write(&folder, "ramp.npy", [16, 16], |_, c| 10.0 * c as f32);
     let words =
@@ -248,22 +248,22 @@ fn gpu_views_of_backs_hold_nothing() {
     let said =
         "note: light-field, btf: 2 of 8 directions of --angles see nothing of the field's front";
     assert!(run.err.contains(said), "{}", run.err);
-    let sheet = json(&folder.path("out/bake.json"));
+    let manifest = json(&folder.path("out/manifest.json"));
     for (at, name) in ["light_field", "btf"].into_iter().enumerate() {
         let (_, values) = load(&folder.path("out").join(format!("{name}.npy")));
         assert!(values.iter().all(|v| v.is_finite()), "{name}");
         // φ 0 of both zenith angles.
-        assert_eq!(sheet["maps"][at]["blind"], serde_json::json!([0, 4]), "{name}");
+        assert_eq!(manifest["maps"][at]["blind"], serde_json::json!([0, 4]), "{name}");
         let last = &values[values.len() - 4 * 4 * 256..];
         assert!(last[..4 * 256].iter().all(|v| *v == 0.0), "{name}");
         assert!(last[4 * 256..].iter().any(|v| *v > 0.0), "{name}");
     }
 }
 
-/// Settings are what was asked for, and parts' paths together; flags that change nothing are told with their own reasons; light
-/// beyond f16 is told of as that, and of f32 not at all.
+/// The manifest holds the requested settings and the paths of all parts. Flags without effect are reported with reasons. Light
+/// beyond f16 is reported; in f32 there is none.
 #[test]
-fn gpu_what_was_asked_of_scattered_light_is_told() {
+fn gpu_requested_settings_of_scattered_light_are_listed() {
     let folder = Folder::new();
     write(&folder, "field.npy", [6, 6], |r, c| ((r * 5 + c * 3) % 7) as f32 * 0.5);
     let words = "bake field.npy --what scatter --paths 20 --seed 3 --directions 64 --sky 1e8 --format ktx2 -o";
@@ -274,40 +274,40 @@ fn gpu_what_was_asked_of_scattered_light_is_told() {
     };
     let said = of("half --lines exact --bounces 2 --bounce-engine pyramid");
     for what in [
-        "--lines exact changes nothing with --method brute",
+        "--lines exact changes nothing with --method brute-force",
         "--bounce-engine pyramid changes nothing for what is baked",
-        "f16 of .ktx2 holds no more, --encoding scatter=f32 does",
+        ".ktx2 stores f16; use --encoding scatter=f32",
     ] {
         assert!(said.contains(what), "{said}");
     }
-    let settings = &json(&folder.path("half/bake.json"))["settings"];
+    let settings = &json(&folder.path("half/manifest.json"))["settings"];
     // Eight parts of three.
     for (name, known) in [("paths", 20), ("paths_used", 24), ("seed", 3), ("bounces", 2)] {
         assert_eq!(settings[name], known, "{name}");
     }
-    assert_eq!(chance(&folder, "half")["paths"], 24);
+    assert_eq!(noise(&folder, "half")["paths"], 24);
     assert_eq!(of("single --encoding scatter=f32"), "");
-    // What holds no f16 is bounded by none.
+    // Maps without f16 have no such bound.
     for format in ["npy", "png", "exr", "png,npy"] {
         let out = format.replace(',', "_");
         let words = words.replace("--format ktx2", &format!("--format {format}"));
         let run = folder.run(&format!("{words} {out}").split(' ').collect::<Vec<_>>());
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{format}");
-        let map = &json(&folder.path(&format!("{out}/bake.json")))["maps"][0];
+        let map = &json(&folder.path(&format!("{out}/manifest.json")))["maps"][0];
         assert!(map["beyond_range"].is_null(), "{map}");
         let largest = map["values"][0]["range"][1].as_f64().unwrap();
         assert!(largest > 1e38, "{largest}");
     }
-    assert!(json(&folder.path("half/bake.json"))["maps"][0]["beyond_range"].is_object());
-    // Teeth of 30 over four cells: what faces the west is hidden in the middle of each triangle where the view is nearly level.
+    assert!(json(&folder.path("half/manifest.json"))["maps"][0]["beyond_range"].is_object());
+    // Teeth of 30 over four cells: the centres of west faces are occluded from a nearly level view.
     write(&folder, "teeth.npy", [4, 8], |_, c| 10.0 * (c % 4) as f32);
     let words = "bake teeth.npy -o teeth --border periodic --what brdf --bounces 0 --angles 45x4";
     let run = folder.run(&words.split(' ').collect::<Vec<_>>());
     assert!(run.err.starts_with("ridgelight: --angles: found 45x4 with direction"), "{}", run.err);
 }
 
-/// Level ground reflects ρ/π everywhere, which the first harmonic alone is; the ridge takes at most half a thousandth times the order
-/// for lights and as much for views.
+/// Level ground is ρ/π everywhere: the first harmonic alone. The ridge regression takes at most half a thousandth times the
+/// order for lights, and as much for views.
 #[test]
 fn gpu_level_ground_is_one_harmonic() {
     let folder = Folder::new();
@@ -330,28 +330,28 @@ fn gpu_level_ground_is_one_harmonic() {
         }
         assert!((sum - albedo / PI).abs() <= ridge * albedo / PI, "{c}: {sum}");
     }
-    let sheet = json(&folder.path("out/bake.json"));
-    let map = &sheet["maps"][0];
+    let manifest = json(&folder.path("out/manifest.json"));
+    let map = &manifest["maps"][0];
     assert!(map["residual_of_table"].as_f64().unwrap() <= ridge, "{map}");
     assert!(map["between"]["residual"].as_f64().unwrap() <= ridge, "{map}");
-    assert_eq!(sheet["settings"]["sh_order"], 3);
+    assert_eq!(manifest["settings"]["sh_order"], 3);
 }
 
 #[test]
-fn what_light_cannot_be_baked_of_is_told() {
+fn light_that_cannot_be_baked_is_refused() {
     let folder = Folder::new();
     write(&folder, "line.npy", [1, 9], |_, c| (c % 3) as f32);
     folder.write("none.json", br#"{"quality": {"bounces": 0}}"#);
     std::fs::create_dir(folder.path("damaged")).unwrap();
-    folder.write("damaged/bake.json", br#"{"maps": ["#);
+    folder.write("damaged/manifest.json", br#"{"maps": ["#);
     std::fs::create_dir(folder.path("other")).unwrap();
-    folder.write("other/bake.json", br#"{"maps": [{"kind": "btf"}]}"#);
+    folder.write("other/manifest.json", br#"{"maps": [{"kind": "btf"}]}"#);
     refused(
         &folder,
         &[
-            ("bake a.asc -o damaged --what sky-view", 1, &["damaged/bake.json", "maps"]),
-            ("bake a.asc -o other --what sky-view", 1, &["other/bake.json", "maps"]),
-            // The least that any driver of Vulkan 1.3 has here.
+            ("bake a.asc -o damaged --what sky-view", 1, &["damaged/manifest.json", "maps"]),
+            ("bake a.asc -o other --what sky-view", 1, &["other/manifest.json", "maps"]),
+            // The smallest limit that Vulkan 1.3 allows.
             (
                 "bake a.asc -o out --what btf --angles 4x16 --plan",
                 1,

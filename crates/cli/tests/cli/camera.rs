@@ -1,4 +1,4 @@
-//! `render --camera`: what it refuses and what it writes.
+//! `render --camera`: refusals and output.
 
 use crate::needs_vulkan::{attributes, done, json, plane, write_field};
 use crate::{Folder, read, refused};
@@ -61,8 +61,8 @@ fn cameras_out_of_range_are_refused() {
     );
 }
 
-/// A level field of 16 by 16 under the default sky, 1 white: from straight above, a pixel a sample, all within the
-/// edge is white, at one distance; and the file tells what was used.
+/// A level field of 16 by 16 under the default sky, 1 and white. From straight above at one pixel per texel, everything inside the
+/// edge is white and at one distance, and the file holds the settings used.
 #[test]
 fn gpu_cameras_write_pictures_and_depth() {
     let folder = Folder::new();
@@ -78,8 +78,8 @@ fn gpu_cameras_write_pictures_and_depth() {
         // f32: the eye stands twice the half diagonal of 15 by 15 above.
         assert!((far[i] - 15.0 * 2_f32.sqrt()).abs() < 1e-4, "pixel {i}: {}", far[i]);
     }
-    let told = attributes(&folder.path("v.exr"));
-    let is = |name: &str, value: &str| assert_eq!(told[name], value, "{name}");
+    let found = attributes(&folder.path("v.exr"));
+    let is = |name: &str, value: &str| assert_eq!(found[name], value, "{name}");
     is("lens", "orthographic 16");
     is("picture_size", "16x16");
     is("samples", "4");
@@ -88,7 +88,7 @@ fn gpu_cameras_write_pictures_and_depth() {
     let names: Vec<_> = passes.as_array().unwrap().iter().map(|p| p["pass"].clone()).collect();
     assert!(names.ends_with(&["terrain_draw".into(), "sky_draw".into()]), "{names:?}");
 
-    // From the side, some of both; a .png of the size asked for, and what a reduced mesh is off by.
+    // From the side: surface and background, a .png of the requested size, and the height error of a reduced mesh.
     let aside = "--camera 200,20 --size 40x30 --background 0.2 --mesh-step 4 --quiet";
     done(&folder, &format!("render field.npy -o v.png --json v.json --sky 0.5 {aside}"));
     let png = read(&folder.path("v.png"));
@@ -96,7 +96,7 @@ fn gpu_cameras_write_pictures_and_depth() {
     assert_eq!(json(&folder.path("v.json"))["settings"]["mesh_error_m"], 0);
 }
 
-/// Samples that a device does not have are refused before anything is drawn, with those that it has.
+/// Sample counts that the device lacks are refused before rendering; the message lists those it has.
 #[test]
 fn gpu_samples_are_the_devices() {
     let folder = Folder::new();
@@ -106,7 +106,7 @@ fn gpu_samples_are_the_devices() {
         let run = folder.run(&args);
         let is_refused = run.status == Some(2)
             && run.err.starts_with(&format!("ridgelight: --samples: found {samples}, expected 1"));
-        // Vulkan asks every device for these.
+        // Vulkan requires these of every device.
         let must = ["1", "4"].contains(&samples);
         assert!(run.status == Some(0) || (is_refused && !must), "{samples}: {}", run.err);
     }

@@ -1,4 +1,4 @@
-//! Comparisons of pairs whose every figure is derived in a comment, each bound on both its sides.
+//! Comparisons whose figures are derived in comments; each bound is tested from both sides.
 
 use crate::common::{self, colour, hdr, npy, png};
 use crate::{Folder, Run};
@@ -27,7 +27,7 @@ pub fn write(folder: &Folder, name: &str, channels: &[(&str, [f32; 12])]) {
     folder.write(name, &common::exr(4, 3, &all));
 }
 
-/// Runs with --json and takes the figures.
+/// Figures of a run with --json.
 fn figures(folder: &Folder, args: &str) -> Value {
     let run = run(folder, &format!("compare {args} --json figures.json"));
     let json: Value =
@@ -37,8 +37,8 @@ fn figures(folder: &Folder, args: &str) -> Value {
     json
 }
 
-/// Every bound is kept at `found` plus a millionth, is not at `found` less a millionth, and says what
-/// was found; both with --quiet and without.
+/// Every bound passes at `found` plus a millionth and fails at `found` less a millionth, with the value found in the message;
+/// with and without --quiet.
 fn bounded(folder: &Folder, files: &str, flag: &str, found: f64, said: &str) {
     let [above, below] = [found * (1.0 + 1e-6), found * (1.0 - 1e-6)];
     let args = format!("compare {files} {flag}");
@@ -106,7 +106,7 @@ fn channels_have_their_known_errors() {
             assert!(out.contains(said), "{out}");
         }
         assert!(out.ends_with("11 compared, 1 masked, 0 masked in one only\n"), "{out}");
-        // Nothing differs from itself, in any bound.
+        // A file equals itself within any bound.
         let zero = "--max-rmse 0 --max-mean-shift 0 --max-p99 0 --max-worst 0";
         assert_eq!(run(&folder, &format!("compare {x} {x} {zero}")).status, Some(0));
     }
@@ -146,7 +146,7 @@ fn pictures_have_their_known_flip() {
     let flip = &figures(&folder, "y1.exr y0.exr")["flip"][0];
     assert!((flip["mean"].as_f64().unwrap() - 0.9674).abs() < 1e-4, "{flip}");
     assert_eq!(run(&folder, "compare grey.exr grey.exr --max-flip 0").status, Some(0));
-    // Shown twice as bright, grey is white, and brighter than white is white.
+    // At twice the exposure grey is white, and brighter values clip to white.
     for (args, status) in [
         ("grey.exr white.exr --max-flip 0", 1),
         ("white.exr grey.exr --max-flip 0 --exposure 2", 0),
@@ -163,7 +163,7 @@ fn pictures_have_their_known_flip() {
         assert_eq!((&json["flip"][0]["mean"], &json["exposure"]), (&0.0.into(), &2.0.into()));
         assert_eq!(figures(&folder, &format!("{files} --max-flip 0"))["beyond"], true);
     }
-    // A texel is hardly seen where 1000 make a degree.
+    // A texel is hardly visible at 1000 pixels per degree.
     let mut dot = half;
     dot[5] = 1.0;
     write(&folder, "dot.exr", &[("Y", dot)]);
@@ -180,8 +180,8 @@ fn pictures_have_their_known_flip() {
     assert!((at(" --pixels-per-degree 67.02064") - default).abs() < 1e-6);
 }
 
-/// A layer that only one has is named and not compared; what the result lacks is beyond any bound, what it has
-/// besides is not; the bound finds the worst of the others.
+/// A layer of one file only is listed and not compared. One that the result lacks fails every bound; an extra one does not. The
+/// bound applies to the worst of the others.
 #[test]
 fn layers_are_compared_by_name() {
     let folder = Folder::new();
@@ -224,7 +224,7 @@ fn layers_are_compared_by_name() {
     );
     let lost = "beyond any bound: E.B is not in A\nbeyond any bound: E.G is not in A\n";
     assert!(out.contains(lost), "{out}");
-    // Without a bound, and where all that both have is alike; the other way round nothing is lost.
+    // A missing layer fails without a bound too, where all shared layers agree; an extra one does not.
     write(&folder, "less.exr", &rgb(&MAIN, one).collect::<Vec<_>>());
     write(&folder, "more.exr", &[rgb(&MAIN, one).collect(), vec![("sky_view", one)]].concat());
     let less = run(&folder, "compare less.exr more.exr --max-rmse 1 --quiet");
@@ -232,7 +232,7 @@ fn layers_are_compared_by_name() {
     assert_eq!(run(&folder, "compare more.exr less.exr --max-rmse 0").status, Some(0));
 }
 
-/// Alpha of 1 everywhere says no more than none does; any other is lost where the result has none.
+/// Alpha of 1 everywhere equals no alpha; any other alpha that the result lacks fails.
 #[test]
 fn an_opaque_alpha_is_none() {
     let folder = Folder::new();
@@ -247,7 +247,7 @@ fn an_opaque_alpha_is_none() {
     assert!(lost.out.ends_with("beyond any bound: A is not in A\n"), "{}", lost.out);
 }
 
-/// Masked in both is left out; in one only is counted and beyond, without a bound and with any.
+/// A void in both files is masked. A void in one file only is counted and fails, with or without a bound.
 #[test]
 fn voids_are_masked_and_counted() {
     let folder = Folder::new();
@@ -319,7 +319,7 @@ fn horizons_are_compared_in_degrees() {
             assert!(run.out.contains(place), "{}", run.out);
         }
     }
-    // Three quarters of all are off by 2°: so is the median, and the mean is 1.5°.
+    // Three quarters have an error of 2°: so has the median, and the mean is 1.5°.
     let off = level.map(|v| v + 2_f32.to_radians());
     write(&folder, "c1.npy", &[("", off), ("", level), ("", off), ("", off)]);
     for (limit, status) in [("2.00001", 0), ("1.99999", 1)] {
@@ -360,7 +360,7 @@ fn difference_images_hold_differences_and_flip() {
             "{i}: {v}"
         );
     }
-    // Clipped to white on both sides, nothing is seen of it.
+    // Clipped to white in both files, the difference is invisible.
     for name in ["flip", "flip.sky"] {
         assert!(
             plane(name)

@@ -45,7 +45,7 @@ fn quality() {
             ("--subsample 3", 2, &["'3'", "--subsample", "1, 2, 4"]),
             ("--bounces 65", 2, &["--bounces: found 65", "0 to 64"]),
             ("--bounces -1", 2, &["--bounces", "'-1'"]),
-            ("--bounce-engine magic", 2, &["--bounce-engine", "magic", "brute"]),
+            ("--bounce-engine magic", 2, &["--bounce-engine", "magic", "brute-force"]),
             ("--bounce-azimuths 3", 2, &["--bounce-azimuths: found 3", "4 to 1024"]),
             ("--bounce-level-step 17", 2, &["--bounce-level-step: found 17", "1 to 16"]),
             ("--bounce-level-offset 5", 2, &["--bounce-level-offset: found 5", "0 to 4"]),
@@ -60,7 +60,7 @@ fn quality() {
         ],
     );
     let distances = "horizon a.asc -o h.npy --distances d.npy --method pyramid";
-    let words = ["--distances", "--method pyramid", "sweep or brute"];
+    let words = ["--distances", "--method pyramid", "sweep or brute-force"];
     refused(&folder, &[(distances, 2, &words)]);
 }
 
@@ -136,7 +136,11 @@ fn lights() {
             ("--sun 0,45,1,-1", 2, &["--sun 1: irradiance"]),
             ("--sun 0,45,1,1,nan,1", 2, &["--sun 1: irradiance"]),
             ("--sun 0,45 --sun 0,91", 2, &["--sun 2: elevation: found 91°"]),
-            ("--sun 0,45,0 --lines exact", 2, &["--lines exact with --sun", "--method brute"]),
+            (
+                "--sun 0,45,0 --lines exact",
+                2,
+                &["--lines exact with --sun", "--method brute-force"],
+            ),
             ("--key 90,45,10,10", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT and RADIANCE"]),
             ("--key 1,2,3,4,5,6", 2, &["--key", "expected AZ,EL,WIDTH,HEIGHT and RADIANCE"]),
             ("--key 1,2,3,x,5", 2, &["--key", "no number"]),
@@ -148,13 +152,29 @@ fn lights() {
             ("--key 90,45,360,90,1,-1,1", 2, &["--key 1: radiance: found [1.0, -1.0, 1.0]"]),
             ("--key 90,45,9,9,1 --key 90,45,-9,9,1", 2, &["--key 2: width: found -9°"]),
             ("--key 90,45,9,9,0", 2, &["found all of radiance 0"]),
-            ("--key 90,45,9,9,1 --lines exact", 2, &["--lines exact with --key", "--method brute"]),
-            ("--light 1,2,3,0,5", 2, &["--light 1: radius: found 0"]),
-            ("--light 1,2,3,1,5 --light 1,2,3,1,-1", 2, &["--light 2: radiance"]),
-            ("--light -1,2,3,4,5 --light 0", 2, &["--light", "X,Y,Z,RADIUS and RADIANCE"]),
-            ("--light 1,2,x,4,5", 2, &["--light", "no number"]),
-            ("--light 1,2,3,4,5 --light-cutoff 2", 2, &["--light-cutoff: found 2", "0 to 1"]),
-            ("--light 1,2,3,4,5 --light-cutoff nan", 2, &["--light-cutoff: found NaN"]),
+            (
+                "--key 90,45,9,9,1 --lines exact",
+                2,
+                &["--lines exact with --key", "--method brute-force"],
+            ),
+            ("--sphere-light 1,2,3,0,5", 2, &["--sphere-light 1: radius: found 0"]),
+            (
+                "--sphere-light 1,2,3,1,5 --sphere-light 1,2,3,1,-1",
+                2,
+                &["--sphere-light 2: radiance"],
+            ),
+            (
+                "--sphere-light -1,2,3,4,5 --sphere-light 0",
+                2,
+                &["--sphere-light", "X,Y,Z,RADIUS and RADIANCE"],
+            ),
+            ("--sphere-light 1,2,x,4,5", 2, &["--sphere-light", "no number"]),
+            (
+                "--sphere-light 1,2,3,4,5 --light-cutoff 2",
+                2,
+                &["--light-cutoff: found 2", "0 to 1"],
+            ),
+            ("--sphere-light 1,2,3,4,5 --light-cutoff nan", 2, &["--light-cutoff: found NaN"]),
             ("--env env.hdr --env-rotate nan", 2, &["--env-rotate: found NaN"]),
             ("--env env.hdr --env-rotate x", 2, &["--env-rotate"]),
             ("--env-rotate 90", 2, &["--env"]),
@@ -184,44 +204,56 @@ fn everywhere() {
 }
 
 #[test]
-fn lobes() {
+fn specular() {
     let folder = Folder::new();
     each(
         &[PLAN, RENDER],
         &folder,
         &[
-            ("--phong 10", 2, &["--phong", "EXPONENT,SCALE"]),
-            ("--phong -1,0.5 --albedo 0.5", 2, &["--phong exponent: found -1"]),
-            ("--phong 10,0.5", 2, &["--phong scale", "albedo of 1"]),
-            ("--phong 10,0.5 --albedo 0.5 --basis table", 2, &["--phong: found", "--basis sh"]),
-            ("--phong 10,0.5 --albedo 0.5 --key 0,30,9,9,1", 2, &["--phong: found", "key light"]),
+            ("--specular 10", 2, &["--specular", "EXPONENT,SCALE"]),
+            ("--specular -1,0.5 --albedo 0.5", 2, &["--specular exponent: found -1"]),
+            ("--specular 10,0.5", 2, &["--specular scale", "albedo of 1"]),
             (
-                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
+                "--specular 10,0.5 --albedo 0.5 --basis table",
+                2,
+                &["--specular: found", "--basis sh"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --key 0,30,9,9,1",
+                2,
+                &["--specular: found", "key light"],
+            ),
+            (
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine sweep",
                 2,
                 &["--bounce-engine", "found sweep, expected pyramid"],
             ),
             (
-                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --receiver lobe",
                 2,
                 &["--receiver", "a lobe: found lobe, expected plane"],
             ),
             (
-                "--phong 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
+                "--specular 10,0.5 --albedo 0.5 --bounces 1 --bounce-engine pyramid --subsample 2",
                 2,
                 &["--subsample", "found 2"],
             ),
             ("--bounces 1 --bounce-gloss half", 2, &["--bounce-gloss", "vector-f16"]),
         ],
     );
-    let both = "--phong 10,0.5 --albedo 0.5";
+    let both = "--specular 10,0.5 --albedo 0.5";
     refused(
         &folder,
         &[
-            (&format!("trade a.asc -o out {both}"), 2, &["--phong with trade", "a lobe"]),
-            (&format!("{RENDER} {both} --max-error 1"), 2, &["--phong with --max-error"]),
-            (&format!("bench a.asc {both} --bounces 1"), 2, &["--phong with bench --bounces"]),
-            (&format!("bench --sizes 64 {both}"), 2, &["--phong with bench --sizes"]),
-            ("horizon a.asc -o out.npy --phong 10,0.5", 2, &["--phong"]),
+            (
+                &format!("trade a.asc -o out {both}"),
+                2,
+                &["--specular with trade", "Phong specular"],
+            ),
+            (&format!("{RENDER} {both} --max-error 1"), 2, &["--specular with --max-error"]),
+            (&format!("bench a.asc {both} --bounces 1"), 2, &["--specular with bench --bounces"]),
+            (&format!("bench --sizes 64 {both}"), 2, &["--specular with bench --sizes"]),
+            ("horizon a.asc -o out.npy --specular 10,0.5", 2, &["--specular"]),
         ],
     );
 }
@@ -298,7 +330,7 @@ fn outputs() {
             ("horizon a.asc -o old.npy --distances far.npy --fuse slopes", 2, &["--distances"]),
             ("horizon a.asc -o out.npy --lines exact", 2, &["--lines exact", "--json"]),
             // Brute force has even azimuths: nothing to say beside them.
-            ("horizon a.asc -o out.npy --lines exact --method brute", 1, &["driver"]),
+            ("horizon a.asc -o out.npy --lines exact --method brute-force", 1, &["driver"]),
             ("render a.png -o a.png", 2, &["-o: found a.png", "the input"]),
             ("render a.png -o ./a.png", 2, &["-o", "the input"]),
             ("render a.asc -o map.png --albedo map.png", 2, &["-o: found map.png", "the input"]),
@@ -329,7 +361,6 @@ fn outputs() {
     );
 }
 
-/// Every flag with a range, a unit or a default says so.
 #[test]
 fn sizes_that_no_machine_holds_are_refused() {
     let folder = Folder::new();
@@ -340,8 +371,9 @@ fn sizes_that_no_machine_holds_are_refused() {
     }
 }
 
+/// Every flag with a range, a unit or a default gives it.
 #[test]
-fn help_says_units_and_defaults() {
+fn help_gives_units_and_defaults() {
     let folder = Folder::new();
     let shared: &[(&str, &[&str])] = &[
         ("--cell", &["metres", "Default the file's"]),
@@ -349,54 +381,54 @@ fn help_says_units_and_defaults() {
         ("--border", &["[default: plane]"]),
         ("--nodata", &["Default the file's"]),
         ("--method", &["[default: auto]", "pyramid"]),
-        ("--level-step", &["1..16", "[default: 4]"]),
-        ("--level-offset", &["0..4", "[default: 2]"]),
+        ("--level-step", &["1 to 16", "[default: 4]"]),
+        ("--level-offset", &["0 to 4", "[default: 2]"]),
         ("--levels", &["[default: stack]"]),
-        ("--azimuths", &["4..1024", "[default: 64]"]),
-        ("--sun-azimuths", &["1..256", "[default: 8]"]),
-        ("--light-cutoff", &["0..1", "faster", "default 1/65536"]),
+        ("--azimuths", &["4 to 1024", "[default: 64]"]),
+        ("--sun-azimuths", &["1 to 256", "[default: 8]"]),
+        ("--light-cutoff", &["0 to 1", "faster", "default 1/65536"]),
         ("--light-basis", &["[default: exact]", "--sh-order"]),
         ("--lines", &["Cells", "[default: 1]"]),
         ("--fuse", &["[default: aimed-nearest]"]),
         ("--precision", &["[default: f32]"]),
         ("--hull", &["[default: auto]"]),
-        ("--table-elevations", &["8..4096", "[default: 256]"]),
+        ("--table-elevations", &["8 to 4096", "[default: 256]"]),
         ("--basis", &["[default: auto]"]),
-        ("--sh-order", &["2..6", "[default: 4]"]),
+        ("--sh-order", &["2 to 6", "[default: 4]"]),
         ("--wedges", &["[default: slices]"]),
         ("--receiver", &["[default: plane]"]),
         ("--window", &["[default: none]"]),
-        ("--subsample", &["samples", "[default: 1]"]),
-        ("--wedge-side", &["4..256", "[default: 64]"]),
-        ("--bounces", &["0..64", "[default: 0]"]),
+        ("--subsample", &["texel", "[default: 1]"]),
+        ("--wedge-side", &["4 to 256", "[default: 64]"]),
+        ("--bounces", &["0 to 64", "[default: 0]"]),
         ("--bounce-engine", &["[default: auto]"]),
-        ("--bounce-azimuths", &["4..1024", "[default: 32]"]),
-        ("--bounce-cutoff", &["0..1", "default 1/65536"]),
-        ("--bounce-level-step", &["1..16", "[default: 4]"]),
-        ("--bounce-level-offset", &["0..4", "[default: 2]"]),
+        ("--bounce-azimuths", &["4 to 1024", "[default: 32]"]),
+        ("--bounce-cutoff", &["0 to 1", "default 1/65536"]),
+        ("--bounce-level-step", &["1 to 16", "[default: 4]"]),
+        ("--bounce-level-offset", &["0 to 4", "[default: 2]"]),
         ("--bounce-gloss", &["vector-f16", "[default: vector]"]),
         ("--device", &["Default the first GPU"]),
         ("--memory-budget", &["512MiB", "default half"]),
     ];
     let lit: &[(&str, &[&str])] = &[
-        ("--light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
+        ("--sphere-light", &["X,Y,Z,RADIUS,RADIANCE", "metres"]),
         ("--sky", &["Default 1"]),
         ("--env-rotate", &["clockwise", "degrees", "[default: 0]"]),
         ("--sun", &["degrees", "default 0.53", "default 1"]),
-        ("--albedo", &["0..1", "[default: 1]"]),
-        ("--phong", &["0..10000", "0..1", ".npy", "--basis sh"]),
+        ("--albedo", &["0 to 1", "[default: 1]"]),
+        ("--specular", &["0 to 10000", "0 to 1", ".npy", "--basis sh"]),
     ];
     let render: &[(&str, &[&str])] = &[
         ("--exposure", &["[default: 1]"]),
         ("--layers", &["lights", "sky-view", "horizon"]),
         ("--max-error", &["0.01 is 1 %", "95 % confidence", "refused"]),
         ("--time-budget", &["<MS>", "GPU time"]),
-        ("--seed", &["0 where none is given"]),
+        ("--seed", &["0 by default"]),
     ];
     let horizon: &[(&str, &[&str])] = &[("--distances", &["metres"])];
     let bake: &[(&str, &[&str])] = &[
-        ("--angles", &["2..64", "4..256", "[default: 8x16, with btf 3x8]"]),
-        ("--paths", &["1..4096", "[default: 256]"]),
+        ("--angles", &["2..64 x 4..256", "[default: 8x16, with btf 3x8]"]),
+        ("--paths", &["1 to 4096", "[default: 256]"]),
         ("--seed", &["[default: 0]"]),
         ("--what", &["the list below"]),
         ("--format", &["values in f32", "exr, png, npy, ktx2"]),
@@ -409,19 +441,19 @@ fn help_says_units_and_defaults() {
         ("--max-mean-shift", &["relative to the mean of B"]),
         ("--max-p99", &["relative to the mean of B"]),
         ("--max-worst", &["relative to the mean of B"]),
-        ("--max-flip", &["0 (looks the same) to 1"]),
+        ("--max-flip", &["0 (same look) to 1"]),
         ("--max-median-deg", &["degrees"]),
         ("--max-p999-deg", &["degrees"]),
         ("--max-worst-deg", &["degrees"]),
         ("--horizons", &["radians", "degrees"]),
         ("--exposure", &["[default: 1]"]),
-        ("--pixels-per-degree", &["1..1000", "Default 67.02"]),
+        ("--pixels-per-degree", &["1 to 1000", "Default 67.02"]),
         ("--diff", &["difference.CHANNEL", "flip", "A - B"]),
     ];
     let trade: &[(&str, &[&str])] = &[
         ("--budget", &["Seconds", "[default: 120]"]),
         ("--evaluations", &["the same work on every machine"]),
-        ("--bounces", &["0..64", "only with --reference", "[default: 0]"]),
+        ("--bounces", &["0 to 64", "only with --reference", "[default: 0]"]),
         ("--max-error", &["0.01 is 1 %"]),
         ("--time-budget", &["<MS>"]),
         ("--reference", &["Default: brute force"]),
@@ -429,7 +461,7 @@ fn help_says_units_and_defaults() {
     ];
     let reference: &[(&str, &[&str])] = &[
         ("--spp", &["batches of 64", "at least 128", "[default: 1024]"]),
-        ("--bounces", &["0..64", "[default: 0]"]),
+        ("--bounces", &["0 to 64", "[default: 0]"]),
         ("--until-error", &["0.01 is 1 %", "512 paths"]),
         ("--seed", &["[default: 0]"]),
         ("--device", &["Default the first GPU"]),
@@ -455,7 +487,7 @@ fn help_says_units_and_defaults() {
                 .find(|f| f.split([' ', '\n']).next() == flag.strip_prefix("--"))
                 .unwrap_or_else(|| panic!("{command} --help has no {flag}"));
             for said in *says {
-                // What is baked of light is scattered unless that is not asked for.
+                // Maps of light are scattered by default.
                 let said = match (command, *flag, *said) {
                     ("bake", "--bounces", "[default: 0]") => "[default: 3]",
                     _ => *said,
@@ -474,9 +506,62 @@ fn help_says_units_and_defaults() {
         let run = folder.run_without_driver(args);
         assert!(run.status == Some(0) && run.err.is_empty() && !run.out.is_empty(), "{args:?}");
     }
-    // Every kind is told of with the ways to pack it.
+    // Every kind is listed with the ways to pack it.
     let help = folder.run_without_driver(&["bake", "--help"]).out;
-    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is brute here"] {
+    for said in ["visible-sky:", "unorm16-sin", "snorm16-xyz", "--method auto is brute-force here"]
+    {
         assert!(help.contains(said), "{said} in\n{help}");
     }
+}
+
+/// Lines of `-h` at 100 columns: one screen.
+#[test]
+fn short_help_fits_one_screen() {
+    let folder = Folder::new();
+    for command in [
+        "render",
+        "horizon",
+        "plan",
+        "bench",
+        "compare",
+        "devices",
+        "trade",
+        "reference",
+        "bake",
+        "view",
+        "",
+    ] {
+        let words: Vec<&str> =
+            [command, "-h"].into_iter().filter(|word| !word.is_empty()).collect();
+        let mut command_line = folder.command(&words);
+        command_line.env("COLUMNS", "100");
+        let help = crate::ran(command_line);
+        assert_eq!((help.status, help.err.as_str()), (Some(0), ""), "{command}");
+        let most = if command == "render" { 42 } else { 45 };
+        let (count, text) = (help.out.lines().count(), &help.out);
+        assert!(count <= most, "{command} -h has {count} lines, at most {most}:\n{text}");
+        let widest = text.lines().map(|line| line.chars().count()).max();
+        assert!(widest <= Some(100), "{command} -h: {widest:?} columns:\n{text}");
+        if command == "render" {
+            assert!(text.lines().last().is_some_and(|line| line.contains("--help")), "{text}");
+            // One line each.
+            assert!(!text.contains("\n          "), "{text}");
+        }
+    }
+}
+
+/// Headings of `--help` in their order; expert settings come last.
+#[test]
+fn help_is_grouped() {
+    let folder = Folder::new();
+    let help = folder.run_without_driver(&["render", "--help"]).out;
+    let headings: Vec<&str> = help
+        .lines()
+        .filter(|line| line.ends_with(':') && !line.starts_with([' ', '#']))
+        .map(|line| line.trim_end_matches(':'))
+        .collect();
+    let groups = [
+        "Input", "Lights", "Surface", "Quality", "Camera", "Output", "Device", "Expert", "Examples",
+    ];
+    assert_eq!(headings, groups);
 }

@@ -1,10 +1,10 @@
-//! Flags that were written out and change nothing are said, and are no error.
+//! Flags that change nothing are noted and are no error.
 
 use crate::common::{hdr, npy};
 use crate::needs_vulkan::write_field;
 use crate::{Folder, Run};
 
-/// Runs a plan, which needs no driver, of `field` with `flags`.
+/// Plans `field` with `flags`, without a driver.
 fn plan(folder: &Folder, field: &str, flags: &str) -> Run {
     let args = format!("plan {field} {flags}");
     let run = folder.run_without_driver(&args.split_whitespace().collect::<Vec<_>>());
@@ -13,7 +13,7 @@ fn plan(folder: &Folder, field: &str, flags: &str) -> Run {
     run
 }
 
-/// A level field with a spike, so that something is swept.
+/// A level field with a spike, so that there is an occluder.
 fn folder() -> Folder {
     let folder = Folder::new();
     write_field(&folder, 9, |r, c| if (r, c) == (4, 4) { 3.0 } else { 0.0 });
@@ -22,16 +22,22 @@ fn folder() -> Folder {
 }
 
 #[test]
-fn flags_that_change_nothing_are_said() {
+fn flags_that_change_nothing_are_noted() {
     let folder = folder();
     for (flags, says) in [
-        ("--method brute --hull list", &["--hull list changes nothing with --method brute"][..]),
-        ("--method brute --lines exact", &["--lines exact changes nothing with --method brute"]),
         (
-            "--fuse own --method brute --precision packed",
+            "--method brute-force --hull list",
+            &["--hull list changes nothing with --method brute-force"][..],
+        ),
+        (
+            "--method brute-force --lines exact",
+            &["--lines exact changes nothing with --method brute-force"],
+        ),
+        (
+            "--fuse own --method brute-force --precision packed",
             &[
-                "--fuse own changes nothing with --method brute",
-                "--precision packed changes nothing with --method brute",
+                "--fuse own changes nothing with --method brute-force",
+                "--precision packed changes nothing with --method brute-force",
             ],
         ),
         ("--lines exact --fuse aimed", &["--fuse aimed changes nothing with --lines exact"]),
@@ -42,7 +48,7 @@ fn flags_that_change_nothing_are_said() {
         (
             "--env env.hdr --subsample 2",
             &[
-                "--subsample 2 changes nothing without --basis sh or --bounces: tables light each sample",
+                "--subsample 2 changes nothing without --basis sh or --bounces: tables light each texel",
             ],
         ),
         (
@@ -74,7 +80,7 @@ fn flags_that_change_nothing_are_said() {
         let run = folder.run_without_driver(&quiet.split(' ').collect::<Vec<_>>());
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{quiet}");
     }
-    // Nothing rises above anything else on a level field.
+    // A level field has no occluder.
     let level: Vec<u8> = [0_f32; 9].iter().flat_map(|v| v.to_le_bytes()).collect();
     folder.write("level.npy", &npy("<f4", false, "(3, 3)", &level));
     let run = plan(&folder, "level.npy", "--hull shared");
@@ -85,13 +91,13 @@ fn flags_that_change_nothing_are_said() {
 }
 
 #[test]
-fn flags_that_act_or_were_not_written_are_not() {
+fn other_flags_are_not_noted() {
     let folder = folder();
     for flags in [
         "",
-        "--method brute",
+        "--method brute-force",
         "--lines exact",
-        "--method brute --azimuths 8",
+        "--method brute-force --azimuths 8",
         "--lines 2 --fuse slopes --precision f16 --hull shared --azimuths 8",
         "--precision packed --hull list",
         "--precision f32 --lines 1 --fuse aimed-nearest --hull auto --method sweep",
@@ -101,7 +107,7 @@ fn flags_that_act_or_were_not_written_are_not() {
         "--sun 90,30 --env env.hdr --table-elevations 64 --azimuths 8 --sun-azimuths 4",
         "--border periodic --lines 1/2",
         "--env env.hdr --basis sh --sh-order 3 --wedges nlp --receiver lobe --window hann",
-        "--env env.hdr --basis sh --subsample 4 --method brute",
+        "--env env.hdr --basis sh --subsample 4 --method brute-force",
         "--env env.hdr --basis sh --wedges table --wedge-side 8",
         "--env env.hdr --basis table --table-elevations 64",
     ] {
@@ -126,7 +132,7 @@ fn gpu_results_are_those_without_the_flag() {
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     let said = "note: --seed 3 changes nothing without --max-error or --time-budget\n";
     assert_eq!((run.status, run.err.as_str()), (Some(0), said));
-    // The layer of horizons needs the circle that a sun alone does not.
+    // The horizon layer needs azimuths all around; a sun alone does not.
     for (flags, notes) in [("", 1), (" --layers horizon", 0), (" --layers sky-view", 0)] {
         let args = format!("render field.npy -o s.exr --sun 90,30 --azimuths 8{flags}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
@@ -135,7 +141,7 @@ fn gpu_results_are_those_without_the_flag() {
     for (flags, reason) in
         [("a.asc --size 8", "with an INPUT"), ("--size 8 --sizes 4", "with --sizes")]
     {
-        let args = format!("bench {flags} --samples 1");
+        let args = format!("bench {flags} --runs 1");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
         let said = format!("note: --size 8 changes nothing {reason}\n");
         assert_eq!((run.status, run.err), (Some(0), said), "{args}");

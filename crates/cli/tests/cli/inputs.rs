@@ -1,9 +1,9 @@
-//! Files that are not what they should be.
+//! Wrong input files.
 
 use crate::common::{colour, hdr, npy, png};
 use crate::{Folder, refused};
 
-/// Each as the input of every command that takes a field.
+/// Refused as the input of every command that takes a field.
 fn refused_by_all(folder: &Folder, files: &[(String, i32, Vec<&str>)]) {
     let commands = ["plan {}", "render {} -o out.exr", "horizon {} -o out.npy --distances far.npy"];
     let owned: Vec<(String, i32, &[&str])> = files
@@ -27,7 +27,7 @@ fn every_format_empty_cut_short_and_of_another_kind() {
     for (name, bytes) in crate::common::height_files() {
         let extension = name.rsplit('.').next().unwrap();
         let mut bad = |kind: &str, bytes: &[u8]| {
-            // An .hgt needs its place in its name.
+            // An .hgt has its coordinates in its name.
             let stem = if extension == "hgt" { "N44W072" } else { "bad" };
             std::fs::create_dir_all(folder.path(kind)).unwrap();
             let name = format!("{kind}/{stem}.{extension}");
@@ -40,7 +40,7 @@ fn every_format_empty_cut_short_and_of_another_kind() {
         bad("magic", b"GIF89a\x01\x00\x01\x00\x80\x00\x00\xff\xff\xff");
         bad("other", if extension == "png" { b"II*\0\x08\0\0\0" } else { b"\x89PNG\r\n\x1a\n" });
     }
-    // A last byte of white space, and of a ZIP's or PNG's trailer, is not missed.
+    // The last byte of white space, or of a ZIP's or PNG's trailer, may be missing.
     files.retain(|f| f != "short/bad.asc");
     let files: Vec<_> =
         files.iter().map(|f| (f.clone(), 1, vec![f.as_str(), ": found ", ", expected "])).collect();
@@ -110,7 +110,7 @@ fn what_is_no_file_or_has_no_format() {
             ("no/folder.png".into(), 1, vec!["no/folder.png"]),
             ("a.xyz".into(), 1, vec!["a.xyz", ".xyz", ".npy"]),
             ("plain".into(), 1, vec!["plain", "no extension"]),
-            // A name of two lines is still told in one.
+            // A file name of two lines still gives one line of error.
             missing("two\nlines.png"),
             missing("two\nlines"),
         ],
@@ -132,8 +132,8 @@ fn environments_and_albedos() {
     shiny[7] = 1.5;
     folder.write("shiny.exr", &crate::common::exr(4, 3, &[("Y", channel(&shiny))]));
     folder.write("grey.exr", &crate::common::exr(4, 3, &[("Y", channel(&shiny))]));
-    let lobes = [("R", channel(&[9.0; 12])), ("G", channel(&shiny))];
-    folder.write("lobes.exr", &crate::common::exr(4, 3, &lobes));
+    let channels = [("R", channel(&[9.0; 12])), ("G", channel(&shiny))];
+    folder.write("specular.exr", &crate::common::exr(4, 3, &channels));
     let npy = folder.path("size.npy");
     ridgelight_io::write_npy_f32(&npy, &[2, 1, 2], [&[1.0_f32; 4][..]]).unwrap();
     std::fs::create_dir(folder.path("folder.exr")).unwrap();
@@ -150,11 +150,11 @@ fn environments_and_albedos() {
             ("--albedo shiny.exr", &["shiny.exr", "row 1, column 3", "1.5"]),
             ("--albedo env.hdr", &["env.hdr", "the extension .hdr"]),
             ("--albedo a.tif", &["a.tif"]),
-            ("--phong missing.exr", &["missing.exr"]),
-            ("--phong lobes.png", &["lobes.png", ".png", "exponents above 1"]),
-            ("--phong grey.exr", &["grey.exr", "channels: found Y", "R (exponent)"]),
-            ("--phong lobes.exr", &["lobes.exr", "row 1, column 3", "scale 1.5"]),
-            ("--phong size.npy", &["size.npy", "2 × 1", "4 × 3"]),
+            ("--specular missing.exr", &["missing.exr"]),
+            ("--specular specular.png", &["specular.png", ".png", "exponents above 1"]),
+            ("--specular grey.exr", &["grey.exr", "channels: found Y", "R (exponent)"]),
+            ("--specular specular.exr", &["specular.exr", "row 1, column 3", "scale 1.5"]),
+            ("--specular size.npy", &["size.npy", "2 × 1", "4 × 3"]),
         ]
         .map(|(args, says)| (format!("{command} {args}"), says))
         .into();

@@ -1,10 +1,10 @@
-//! Lights whose sum is no picture.
+//! Lights whose sum overflows.
 
 use crate::Folder;
 use crate::needs_vulkan::{done, write_field};
 
-/// What is beyond f32, 3.4e38, is neither asked for nor written: 1e36 is a picture, and a thousand suns of it overhead
-/// are 3.2e38; a tenth more are none.
+/// Light beyond f32, 3.4e38, is refused: one sun of 1e36 renders, a thousand of them overhead reach 3.2e38, and a tenth more
+/// are refused.
 #[test]
 fn gpu_light_that_is_no_number_is_refused() {
     let folder = Folder::new();
@@ -20,7 +20,7 @@ fn gpu_light_that_is_no_number_is_refused() {
         let args = format!("{args}{suns}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
         assert_eq!((run.status, run.err.lines().count()), (Some(2), 1), "{args}: {}", run.err);
-        let said = "--sky, --env, --sun, --key, --light: found light of inf at row 0, column 0 of radiance";
+        let said = "--sky, --env, --sun, --key, --sphere-light: found light of inf at row 0, column 0 of radiance";
         assert!(run.err.contains(said), "{args}: {}", run.err);
         assert!(folder.contents() == before, "{args}");
     }

@@ -1,11 +1,11 @@
-//! The binary as scripts meet it: exit status 0 done, 1 failed, 2 wrong usage; one sentence on
-//! stderr where something is wrong, and then no file changed and none left behind.
+//! The binary as scripts use it: exit status 0 done, 1 failed, 2 wrong usage. On an error, one line on standard error and no
+//! file changed or left behind.
 
 mod auto;
 mod bake;
 mod bake_light;
-mod bake_lobes;
-mod bake_sheet;
+mod bake_manifest;
+mod bake_specular;
 mod camera;
 #[path = "../../../../tests/common/mod.rs"]
 mod common;
@@ -15,10 +15,12 @@ mod flags;
 mod groove;
 mod idle;
 mod inputs;
+mod library_messages;
 mod light;
 mod needs_vulkan;
 mod plan;
 mod reference;
+mod renamed;
 mod scene_file;
 mod signals;
 mod trade;
@@ -35,7 +37,7 @@ struct Run {
     err: String,
 }
 
-/// A folder with the files that the cases name; gone with the value.
+/// A folder with the files of the cases, removed on drop.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -67,7 +69,7 @@ impl Folder {
         ran(self.command(args))
     }
 
-    /// Runs where no Vulkan driver answers: what is found out here needs no device.
+    /// Runs without a Vulkan driver, for checks that need no device.
     fn run_without_driver(&self, args: &[&str]) -> Run {
         let mut command = self.command(args);
         for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
@@ -77,7 +79,7 @@ impl Folder {
         ran(command)
     }
 
-    /// Every file by its path from here, hidden ones too; directories without contents.
+    /// Every file by its path, hidden ones too; directories without contents.
     fn contents(&self) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
         let mut all = BTreeMap::new();
         let mut folders = vec![self.0.path().to_owned()];
@@ -100,10 +102,10 @@ fn ran(mut command: Command) -> Run {
     Run { status: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
 }
 
-/// A wrong request: arguments parted by blanks, the exit status, what the sentence must say.
+/// A wrong request: arguments, the exit status, and texts that the message must contain.
 type Case<'a> = (&'a str, i32, &'a [&'a str]);
 
-/// Runs every case without a driver; what does not hold is told of all cases together.
+/// Runs every case without a driver, and fails with the list of all mismatches.
 fn refused(folder: &Folder, cases: &[Case]) {
     let before = folder.contents();
     let mut wrong = Vec::new();
@@ -113,7 +115,7 @@ fn refused(folder: &Folder, cases: &[Case]) {
         if run.status != Some(*status) {
             complain(&format!("exit status {:?}, expected {status}", run.status));
         }
-        // What cannot be parsed at all is answered with clap's usage.
+        // Arguments that cannot be parsed give clap's usage.
         let is_usage = *status == 2 && run.err.starts_with("error: ");
         if !is_usage && (run.err.lines().count() != 1 || !run.err.starts_with("ridgelight: ")) {
             complain("not one line");
@@ -134,7 +136,7 @@ fn refused(folder: &Folder, cases: &[Case]) {
     assert!(wrong.is_empty(), "{} complaints:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The matrix's own check: a right request and a wrong expectation are both seen.
+/// `refused` fails on a right request and on a wrong expectation.
 #[test]
 fn the_matrix_can_fail() {
     let folder = Folder::new();
@@ -149,9 +151,9 @@ fn the_matrix_can_fail() {
     }
 }
 
-/// A valid request where no driver answers is one sentence that says what to do.
+/// A valid request without a driver gives one line with advice.
 #[test]
-fn no_driver_is_said() {
+fn a_missing_driver_is_reported() {
     let folder = Folder::new();
     refused(
         &folder,

@@ -1,4 +1,4 @@
-//! Results, on whatever driver is first.
+//! Results on the first driver.
 
 use std::path::Path;
 
@@ -7,8 +7,8 @@ use ridgelight_io::Planes;
 use crate::common::{colour, hdr, npy, png};
 use crate::{Folder, read};
 
-/// Runs what must succeed, with nothing on stderr (progress is for terminals) and one line on
-/// stdout.
+/// Runs a command that must succeed with an empty standard error (progress is for terminals) and one line on standard
+/// output.
 pub fn done(folder: &Folder, args: &str) {
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{args}");
@@ -64,8 +64,8 @@ fn gpu_voids_are_nan_and_transparent() {
     );
     done(&folder, "horizon v.asc -o v.npy --azimuths 8 --distances far.npy");
     done(&folder, "horizon v.asc -o h.exr --azimuths 8");
-    // Bounces see it filled, and say nothing of it.
-    for engine in ["brute", "sweep", "pyramid"] {
+    // Bounces use the filled void and add no note.
+    for engine in ["brute-force", "sweep", "pyramid"] {
         let bounces =
             format!("--bounces 2 --bounce-engine {engine} --bounce-cutoff 0 --layers lights");
         done(&folder, &format!("render v.asc -o {engine}.exr {bounces}"));
@@ -73,7 +73,9 @@ fn gpu_voids_are_nan_and_transparent() {
             read(&folder.path(&format!("{engine}.exr"))).names.contains(&"indirect.2.R".into())
         );
     }
-    for file in ["v.exr", "v.npy", "far.npy", "h.exr", "brute.exr", "sweep.exr", "pyramid.exr"] {
+    for file in
+        ["v.exr", "v.npy", "far.npy", "h.exr", "brute-force.exr", "sweep.exr", "pyramid.exr"]
+    {
         let planes = read(&folder.path(file));
         for (name, plane) in planes.names.iter().zip(&planes.planes) {
             for (i, v) in plane.iter().enumerate() {
@@ -89,7 +91,7 @@ fn gpu_voids_are_nan_and_transparent() {
     // Without a void there is no alpha.
     done(&folder, "render a.asc -o a.png");
     assert!(!read(&folder.path("a.png")).names.contains(&"A".to_owned()));
-    // --nodata says it where the file does not: heights 0 to 120 of which 101 is one.
+    // --nodata marks a void that the file does not: height 101 of 0 to 120.
     done(&folder, "render a.npy -o n.exr --nodata 101");
     let marked = read(&folder.path("n.exr"));
     assert_eq!(marked.planes[0].iter().position(|v| v.is_nan()), Some(9));
@@ -100,7 +102,7 @@ fn gpu_default_sky_is_one() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
     done(&folder, "render field.npy -o flat.exr");
-    // Flat, white, radiance 1 from all above: exit radiance 1.
+    // Flat and white under radiance 1 from the whole sky: exit radiance 1.
     for v in read(&folder.path("flat.exr")).planes.concat() {
         assert!((v - 1.0).abs() < 1e-5, "{v}");
     }
@@ -109,7 +111,7 @@ fn gpu_default_sky_is_one() {
     for (name, value) in [("R", 1.0), ("G", 0.5), ("B", 0.25)] {
         assert!(plane(&red, name).iter().all(|v| (v - value).abs() < 1e-5), "{name}");
     }
-    // Another light takes the default's place: a sun of irradiance π at the zenith gives 1 alone.
+    // Another light replaces the default sky: a sun of irradiance π at the zenith gives 1.
     done(&folder, "render field.npy -o sun.exr --sun 0,90,0,3.14159265");
     for v in read(&folder.path("sun.exr")).planes.concat() {
         assert!((v - 1.0).abs() < 1e-5, "{v}");
@@ -130,9 +132,9 @@ fn gpu_sun_in_the_east_lights_the_east_side() {
         // white exit radiance of irradiance 1 is N·s/π.
         let east = (cos + sin) / 2_f32.sqrt() / std::f32::consts::PI;
         assert!((at(10) - east).abs() < 1e-5, "row {row}: {} for {east}", at(10));
-        // Level ground sees sin 20°.
+        // Level ground: sin 20°.
         assert!((at(15) - sin / std::f32::consts::PI).abs() < 1e-5, "row {row}: {}", at(15));
-        // The west side turns away; the ground behind it, up to 8 cells from the crest, lies in a
+        // The west side faces away; the ground behind it, up to 8 cells from the crest, lies in a
         // shadow of 4/tan 20° = 11 cells.
         for col in 0..8 {
             assert_eq!(at(col), 0.0, "row {row}, column {col}");
@@ -140,7 +142,7 @@ fn gpu_sun_in_the_east_lights_the_east_side() {
     }
 }
 
-/// The ridge's shadow under a key light in the east, and the layer and settings that are written.
+/// The ridge's shadow under a key light in the east, with its layer and settings.
 #[test]
 fn gpu_key_in_the_east_lights_the_east_side() {
     let folder = Folder::new();
@@ -154,7 +156,7 @@ fn gpu_key_in_the_east_lights_the_east_side() {
     for row in 4..13 {
         let at = |col: usize| plane(&key, "R")[row * 17 + col];
         assert!((at(15) - level).abs() < 1e-5 * level, "row {row}: {} for {level}", at(15));
-        // The east side faces it, the west side turns away from all of it.
+        // The east side faces the light; the west side faces away from all of it.
         assert!(at(10) > 2.0 * level, "row {row}: {}", at(10));
         assert_eq!((at(6), at(4)), (0.0, 0.0), "row {row}");
     }
@@ -185,8 +187,8 @@ fn gpu_suns_azimuth_is_the_compass() {
     for (azimuth, lit) in [(0, 0), (90, 1), (180, 2), (270, 3), (-90, 3), (360, 0)] {
         let sides = sides(&folder, &format!("--sun {azimuth},30"));
         for (i, side) in sides.iter().enumerate() {
-            // Sides of 45°: the one that faces the sun sees (cos 30° + sin 30°)/√2 = 0.97 of it;
-            // the neighbours sin 30°/√2 = 0.35; the one behind nothing.
+            // Sides of 45°: the one that faces the sun receives (cos 30° + sin 30°)/√2 = 0.97;
+            // the neighbours sin 30°/√2 = 0.35; the one behind 0.
             let cosine = match (4 + i - lit) % 4 {
                 0 => 0.965_93,
                 1 | 3 => 0.353_55,
@@ -231,7 +233,7 @@ fn gpu_horizons_begin_in_the_east() {
     let (angles, far) = (read(&folder.path("h.npy")), read(&folder.path("far.npy")));
     let at = |k: usize, r: usize, c: usize| angles.planes[k][r * 17 + c];
     for row in 0..17 {
-        // East of (row, 4) it stands 8 away, west there is nothing; and the other way round.
+        // East of (row, 4) the wall is 8 away, west there is none; and the other way round.
         assert!((at(0, row, 4) - (10_f32 / 8.0).atan()).abs() < 1e-5, "{}", at(0, row, 4));
         assert!((at(4, row, 15) - (10_f32 / 3.0).atan()).abs() < 1e-5, "{}", at(4, row, 15));
         assert!((far.planes[0][row * 17 + 4] - 8.0).abs() < 1e-3);
@@ -258,7 +260,7 @@ fn gpu_horizons_begin_in_the_east() {
     assert_eq!(exr.planes, angles.planes);
     done(&folder, "compare h.npy h.npy --horizons");
 
-    // Exact azimuths are not even; the file beside says what they are.
+    // Exact azimuths are uneven; the JSON file lists them.
     done(&folder, "horizon field.npy -o x.npy --azimuths 8 --lines exact --json x.json");
     assert_eq!(json(&folder.path("x.json"))["azimuths_rad"].as_array().unwrap().len(), 8);
     assert_eq!(read(&folder.path("x.npy")).planes.len(), 8);
@@ -292,7 +294,7 @@ fn gpu_settings_really_used_are_written() {
     for name in ["device", "driver", "device_bytes", "gpu_ms", "gpu_ms_of_passes", "lines"] {
         assert!(exr.get(name).is_some_and(|v| !v.is_empty()), "{name} in {exr:?}");
     }
-    // The same in the file beside, where numbers are numbers, and each pass's time.
+    // The JSON file holds the same as numbers, and each pass's time.
     let plain = |value: &serde_json::Value| match value {
         serde_json::Value::String(text) => text.clone(),
         other => other.to_string().trim_matches(['[', ']']).to_owned(),
@@ -312,7 +314,7 @@ fn gpu_settings_really_used_are_written() {
     assert!(passes.iter().all(|p| p["ns"].as_f64().is_some_and(|ns| ns >= 0.0)), "{passes:?}");
     assert!(passes.iter().any(|p| p["pass"] == "sun_shade sun1"), "{passes:?}");
 
-    // A .png says the same, but for times.
+    // A .png holds the same without times.
     done(
         &folder,
         "render a.asc -o out.png --sun 135,30 --sky 0.25 --albedo 0.5 --z-scale 2 --cell 10,20 --azimuths 16",
@@ -346,7 +348,7 @@ fn gpu_outputs_replace_what_was_there() {
     assert_eq!(read(&folder.path("out.png")).names, ["R", "G", "B"]);
     assert_eq!(read(&folder.path("out.exr")).cols, 4);
     assert_eq!(read(&folder.path("out.npy")).planes.len(), 4);
-    // A budget that is enough is no refusal, and the image is the same.
+    // A sufficient budget gives the same image.
     done(&folder, "render a.asc -o small.exr --memory-budget 8KiB");
     assert_eq!(read(&folder.path("small.exr")), read(&folder.path("out.exr")));
 }
@@ -376,13 +378,14 @@ fn gpu_devices_are_listed_and_chosen() {
     assert!(folder.contents() == before);
 }
 
-/// Azimuths are taken together as far as a budget lets them, down to one: more memory is never refused
-/// where less did, and the horizons are the same.
+/// The budget sets how many azimuths run together, down to one. A larger budget is never refused where a smaller one
+/// works, and the horizons are the same.
 #[test]
 fn gpu_tight_budgets_are_met_with_fewer_azimuths_at_a_time() {
     let folder = Folder::new();
     write_field(&folder, 64, |r, c| ((7 * r + 3 * c) % 11) as f32);
-    let args = "horizon field.npy -o h.npy --distances d.npy --azimuths 5 --method brute --quiet";
+    let args =
+        "horizon field.npy -o h.npy --distances d.npy --azimuths 5 --method brute-force --quiet";
     done(&folder, args);
     let whole = [read(&folder.path("h.npy")), read(&folder.path("d.npy"))];
     let mut refused = 0;
@@ -404,7 +407,7 @@ fn gpu_tight_budgets_are_met_with_fewer_azimuths_at_a_time() {
     assert!(refused > 0 && met > 0, "{refused} refused, {met} met");
 }
 
-/// A field too long for any image is refused by its header: these have no samples, or wrong ones.
+/// A field too long for any image is refused by its header: these files have no heights, or wrong ones.
 #[test]
 fn gpu_fields_beyond_the_device_are_refused_unread() {
     let folder = Folder::new();
@@ -437,7 +440,7 @@ fn gpu_fields_beyond_the_device_are_refused_unread() {
             );
         }
     }
-    // A budget too small for the heights needs no device to be seen.
+    // A budget too small for the heights is refused without a device.
     let run = folder.run_without_driver(&["plan", "long.npy", "--memory-budget", "300KiB"]);
     let said =
         "long.npy: a field of 40000 × 3: needs 468.8 KiB for its heights, the limit is 300.0 KiB";

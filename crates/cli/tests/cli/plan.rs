@@ -56,8 +56,8 @@ fn json_is_whole_and_refers_to_what_is_there() {
 
 const SEEN: [&str; 6] = ["--camera", "200,30", "--size", "20x10", "--samples", "4"];
 
-/// Of 20 × 10 pixels of 4 samples: 16 bytes a colour and 4 a depth of each sample, and of each pixel. The field of
-/// 4 × 3 is one tile of 17 × 17 vertices.
+/// 20 × 10 pixels of 4 MSAA samples: 16 bytes of colour and 4 of depth per sample, and per pixel. The field of 4 × 3 is one
+/// tile of 17 × 17 vertices.
 #[test]
 fn a_camera_adds_its_passes_and_their_memory() {
     let folder = Folder::new();
@@ -85,7 +85,7 @@ fn a_camera_adds_its_passes_and_their_memory() {
             assert!(names.contains(name.as_str().unwrap()), "{name} in {names:?}");
         }
     }
-    // Colour and depth of 800 samples, 289 heights of 4 bytes, radiance of 12 samples, one channel.
+    // Colour and depth of 800 MSAA samples, 289 heights of 4 bytes, radiance of 12 texels, one channel.
     assert_eq!(drawn[0]["bytes"], 800 * 20 + 289 * 4 + 12 * 4);
     let bytes = |v: &serde_json::Value| v["bytes"].as_u64().unwrap();
     assert_eq!(bytes(&plan), all("resources").iter().map(bytes).sum::<u64>());
@@ -125,7 +125,7 @@ fn is_graph(dot: &str) {
         }
     }
     assert!(edges > nodes.len() / 2, "{edges} edges among {} nodes", nodes.len());
-    // The last word is graphviz's, where it is installed.
+    // Graphviz checks it too, where installed.
     let mut graphviz = Command::new("dot");
     graphviz.arg("-Tplain").stdin(Stdio::piped()).stdout(Stdio::null());
     if let Ok(mut child) = graphviz.spawn() {
@@ -134,7 +134,7 @@ fn is_graph(dot: &str) {
     }
 }
 
-/// `| head -1`, told to go before anything is written.
+/// `| head -1`, closed before the first write.
 #[test]
 fn a_reader_that_goes_away_is_no_panic() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! Light paths from the command line.
+//! `reference`: path tracing from the command line.
 
 use serde_json::json;
 
@@ -19,12 +19,28 @@ fn wrong_requests_are_refused() {
             ("reference a.asc -o out.exr --until-error 0", 2, &["--until-error", "above 0"]),
             ("reference a.asc -o out.exr --until-error nan", 2, &["--until-error", "above 0"]),
             ("reference a.asc -o out.exr --seed -1", 2, &["--seed", "whole number"]),
-            ("reference a.asc -o out.exr --light 1,2,3,4", 2, &["--light", "RADIANCE"]),
-            ("reference a.asc -o out.exr --light 1,2,3,0,1", 2, &["--light 1: radius"]),
-            ("reference a.asc -o out.exr --light 1,2,3,1,-1", 2, &["--light 1: radiance"]),
-            ("reference a.asc -o out.exr --phong 5", 2, &["--phong", "EXPONENT,SCALE"]),
-            ("reference a.asc -o out.exr --phong 5,0.1", 2, &["--phong scale", "albedo of 1"]),
-            ("reference a.asc -o out.exr --phong -1,0", 2, &["--phong exponent"]),
+            (
+                "reference a.asc -o out.exr --sphere-light 1,2,3,4",
+                2,
+                &["--sphere-light", "RADIANCE"],
+            ),
+            (
+                "reference a.asc -o out.exr --sphere-light 1,2,3,0,1",
+                2,
+                &["--sphere-light 1: radius"],
+            ),
+            (
+                "reference a.asc -o out.exr --sphere-light 1,2,3,1,-1",
+                2,
+                &["--sphere-light 1: radiance"],
+            ),
+            ("reference a.asc -o out.exr --specular 5", 2, &["--specular", "EXPONENT,SCALE"]),
+            (
+                "reference a.asc -o out.exr --specular 5,0.1",
+                2,
+                &["--specular scale", "albedo of 1"],
+            ),
+            ("reference a.asc -o out.exr --specular -1,0", 2, &["--specular exponent"]),
             ("reference a.asc -o out.exr --sun 0,91", 2, &["--sun 1: elevation"]),
             ("reference none.asc -o out.exr", 1, &["none.asc"]),
             ("reference a.asc -o out.exr", 1, &["driver"]),
@@ -41,21 +57,22 @@ fn write_ridge(folder: &Folder) {
 fn gpu_reference_writes_light_and_its_error() {
     let folder = Folder::new();
     write_ridge(&folder);
-    let args = "--spp 40 --bounces 1 --seed 7 --albedo 0.5 --phong 9,0.25 --light 4,4,9,1,2,3,4";
+    let args =
+        "--spp 40 --bounces 1 --seed 7 --albedo 0.5 --specular 9,0.25 --sphere-light 4,4,9,1,2,3,4";
     done(&folder, &format!("reference field.npy -o out.exr --json out.json {args}"));
     let exr = read(&folder.path("out.exr"));
     let names = ["B", "G", "R", "standard_error.B", "standard_error.G", "standard_error.R"];
     assert_eq!(exr.names, names);
     assert!(exr.planes.concat().iter().all(|v| v.is_finite() && *v >= 0.0));
     assert!(plane(&exr, "standard_error.R").iter().any(|v| *v > 0.0));
-    // The ball takes the default sky's place: of its light alone, blue is twice red.
+    // The sphere light replaces the default sky: in its light blue is twice red.
     for (b, r) in plane(&exr, "B").iter().zip(plane(&exr, "R")) {
         assert!((b - 2.0 * r).abs() <= 1e-5 * b, "{b} {r}");
     }
     let (settings, report) = (attributes(&folder.path("out.exr")), json(&folder.path("out.json")));
     for (name, text, value) in [
         ("method", "path tracing", json!("path tracing")),
-        // Whole batches of 64, two at least.
+        // Whole batches of 64, at least two.
         ("spp", "128", json!(128)),
         ("bounces", "1", json!(1)),
         ("seed", "7", json!(7)),
@@ -66,13 +83,13 @@ fn gpu_reference_writes_light_and_its_error() {
         assert_eq!(report["settings"][name], value, "{name}");
     }
     for name in
-        ["device", "gpu_ms", "relative_standard_error", "unmet_standard_error", "device_bytes"]
+        ["device", "gpu_ms", "relative_standard_error", "unsampled_standard_error", "device_bytes"]
     {
         assert!(settings.get(name).is_some_and(|v| !v.is_empty()), "{name} in {settings:?}");
     }
     let passes = report["passes"].as_array().unwrap();
     assert!(passes.iter().any(|p| p["pass"] == "path_trace"), "{passes:?}");
-    // Without a ball the sky is the default.
+    // Without a sphere light the sky is the default.
     done(&folder, "reference a.asc -o sky.exr --spp 1");
     assert_eq!(attributes(&folder.path("sky.exr"))["sky"], "1,1,1");
 }
@@ -88,10 +105,10 @@ fn gpu_reference_stops_at_an_error() {
     assert!((512.0..1e5).contains(&spp) && error < 0.01, "{spp} {error}");
 }
 
-/// Level ground under a sky of 1 scatters 1 by every path: no spread at all, and after 128 paths light not yet
-/// met of up to √3/128, 1.353 %: more than the 0.5 % asked for, which 512 paths are within.
+/// Under a sky of 1, every path on level ground gives 1: no noise. After 128 paths the bound on unsampled light is √3/128,
+/// 1.353 %, above the requested 0.5 %; after 512 paths it is below.
 #[test]
-fn gpu_unmet_light_counts_as_error() {
+fn gpu_unsampled_light_counts_as_error() {
     let folder = Folder::new();
     write_field(&folder, 5, |_, _| 7.0);
     let args = "reference field.npy -o out.exr --until-error 0.005 --spp";
@@ -101,19 +118,20 @@ fn gpu_unmet_light_counts_as_error() {
     };
     let run = of("128");
     assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
-    assert!(run.out.contains("128 paths a sample, 1.353 % off"), "{}", run.out);
-    let said = "stopped by --spp 128 at 128 paths, wanted --until-error 0.005\n";
+    assert!(run.out.contains("128 paths per texel, error 1.353 %"), "{}", run.out);
+    let said =
+        "--spp 128 ended the tracing after 128 paths, before --until-error 0.005 was reached\n";
     assert!(run.out.ends_with(said), "{}", run.out);
     assert!((error() - 3_f64.sqrt() / 128.0).abs() < 1e-5, "{}", error());
     let run = of("4096");
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(run.out.contains("512 paths a sample, 0.338 % off"), "{}", run.out);
+    assert!(run.out.contains("512 paths per texel, error 0.338 %"), "{}", run.out);
     assert_eq!(run.out.lines().count(), 1, "{}", run.out);
     let run = of("64");
-    let said = "stopped by --spp 64 at 128 paths, whole batches of 64 and at least 128, wanted --until-error 0.005\n";
+    let said = "--spp 64 ended the tracing after 128 paths (whole batches of 64, at least 128), before --until-error 0.005 was reached\n";
     assert!(run.status == Some(1) && run.out.ends_with(said), "{}", run.out);
     let of_spp = of("129").out;
-    assert!(of_spp.contains("stopped by --spp 129 at 192 paths, whole"), "{of_spp}");
+    assert!(of_spp.contains("--spp 129 ended the tracing after 192 paths (whole"), "{of_spp}");
     let quiet = of("128 --quiet");
     assert_eq!((quiet.status, quiet.out.as_str()), (Some(1), ""));
 }
@@ -130,7 +148,7 @@ fn gpu_voids_have_no_light() {
     }
 }
 
-/// What `trade` reads: the truth's own standard error is named in its report.
+/// `trade` reads the file and reports its standard error.
 #[test]
 fn gpu_trade_takes_the_reference() {
     let folder = Folder::new();
@@ -150,8 +168,10 @@ fn gpu_trade_takes_the_reference() {
     let count = light.len() as f64;
     let stated = (noise.iter().map(|v| v * v).sum::<f64>() / count).sqrt()
         / (light.iter().sum::<f64>() / count);
-    let how = report["truth"]["how"].as_str().unwrap();
-    let said =
-        format!("its noise, {:.3} % of the mean by its layer standard_error", 100.0 * stated);
+    let how = report["ground_truth"]["how"].as_str().unwrap();
+    let said = format!(
+        "its Monte Carlo noise, {:.3} % of the mean by its layer standard_error",
+        100.0 * stated
+    );
     assert!(how.contains(&said), "{how} does not say {said}");
 }

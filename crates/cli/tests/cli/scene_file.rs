@@ -1,4 +1,4 @@
-//! `--scene FILE.json`: the same as the flags that it stands for, and told by line and key where it is wrong.
+//! `--scene FILE.json` equals its flags; mistakes are reported by line and key.
 
 use crate::common::{colour, png};
 use crate::{Folder, refused};
@@ -14,13 +14,13 @@ const WHOLE: &str = r#"{
       { "azimuth_deg": -20, "elevation_deg": 5.5, "diameter_deg": 2, "irradiance": [1, 2, 3] }
     ],
     "keys": [{ "azimuth_deg": 180, "elevation_deg": 30, "width_deg": 60, "height_deg": 20, "radiance": 4 }],
-    "balls": [{ "position_m": [10, -5, 1e2], "radius_m": 3, "radiance": 40 }]
+    "sphere_lights": [{ "position_m": [10, -5, 1e2], "radius_m": 3, "radiance": 40 }]
   },
   "quality": { "azimuths": 16, "lines": "1/2", "fuse": "aimed", "sun_azimuths": 4 }
 }"#;
 
 const FLAGS: &str = "a.asc --cell 30,20 --z-scale 2 --border open --nodata -9999 --albedo 0.5,0.25,0.125 --sky 0.5 \
-    --sun 135,30 --sun -20,5.5,2,1,2,3 --key 180,30,60,20,4 --light 10,-5,1e2,3,40 --azimuths 16 --lines 1/2 \
+    --sun 135,30 --sun -20,5.5,2,1,2,3 --key 180,30,60,20,4 --sphere-light 10,-5,1e2,3,40 --azimuths 16 --lines 1/2 \
     --fuse aimed --sun-azimuths 4";
 
 fn planned(folder: &Folder, args: &str) -> String {
@@ -35,7 +35,7 @@ fn a_scene_file_is_its_flags() {
     let folder = Folder::new();
     folder.write("scene.json", WHOLE.as_bytes());
     assert_eq!(planned(&folder, "--scene scene.json"), planned(&folder, FLAGS));
-    // What is written out goes before: a flag, all suns, the input.
+    // Flags override the file: one value, all suns, the input.
     assert_eq!(
         planned(&folder, "--scene=scene.json --azimuths 32 --sun 90,45"),
         planned(
@@ -51,7 +51,7 @@ fn a_scene_file_is_its_flags() {
     assert_ne!(planned(&folder, "--scene scene.json"), planned(&folder, "a.asc"));
 }
 
-/// Files stand in the scene file's folder, wherever it is read from.
+/// Paths are relative to the scene file's folder, whatever the working directory.
 #[test]
 fn files_are_sought_beside_the_scene_file() {
     let folder = Folder::new();
@@ -67,7 +67,7 @@ fn files_are_sought_beside_the_scene_file() {
     );
 }
 
-/// A camera is `render`'s; `plan` has none.
+/// A camera in a scene file equals its flags.
 #[test]
 fn gpu_cameras_stand_in_scene_files() {
     let folder = Folder::new();
@@ -99,12 +99,12 @@ fn gpu_cameras_stand_in_scene_files() {
     );
 }
 
-/// A command takes what it has flags for; settings that it makes no use of are not complained of.
+/// A command ignores keys that it has no flag for, and gives no notes on keys without effect.
 #[test]
 fn a_command_takes_what_it_knows() {
     let folder = Folder::new();
     folder.write("scene.json", WHOLE.as_bytes());
-    // Bad where `horizon` has no such flag: not its matter.
+    // `horizon` has no such flag: a bad value is ignored.
     folder.write("lights.json", WHOLE.replace("\"sky\": 0.5", "\"sky\": -1").as_bytes());
     for name in ["scene.json", "lights.json"] {
         let run = folder.run_without_driver(&["horizon", "--scene", name, "-o", "out.npy"]);
@@ -114,7 +114,7 @@ fn a_command_takes_what_it_knows() {
 }
 
 #[test]
-fn what_is_wrong_is_told_by_line_and_key() {
+fn mistakes_are_reported_by_line_and_key() {
     let folder = Folder::new();
     let mut cases: Vec<(String, Vec<String>)> = Vec::new();
     let mut case = |text: String, says: &[&str]| {
@@ -147,7 +147,10 @@ fn what_is_wrong_is_told_by_line_and_key() {
         with("\"elevation_deg\": 5.5", "\"elevation_deg\": 95"),
         &["line 9, lights.suns[1]", "95"],
     );
-    case(with("[10, -5, 1e2]", "10"), &["line 12, lights.balls[0].position_m", "3 numbers"]);
+    case(
+        with("[10, -5, 1e2]", "10"),
+        &["line 12, lights.sphere_lights[0].position_m", "3 numbers"],
+    );
     case(
         with("\"azimuths\": 16", "\"azimuths\": 3"),
         &["line 14, quality.azimuths", "found 3", "4 to 1024"],

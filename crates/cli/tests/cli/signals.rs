@@ -1,6 +1,6 @@
-//! Commands that are told to end before they are done.
+//! Commands that a signal ends early.
 
-// `env` sets signals back that a script in the background has ignored: coreutils' does.
+// coreutils' `env` restores signals that a background script ignores.
 #![cfg(target_os = "linux")]
 
 use std::process::{Child, Command, Output, Stdio};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use crate::needs_vulkan::write_field;
 use crate::{Folder, read};
 
-/// Longer than anything here takes, on a busy machine too.
+/// Longer than any step here, on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Waits until `is_so`; false where it never is.
@@ -55,9 +55,9 @@ fn gpu_an_interrupted_command_leaves_no_file() {
     let before = folder.contents();
     for signal in ["INT", "TERM"] {
         let args =
-            "horizon field.npy -o out.npy --distances far.npy --azimuths 1024 --method brute";
+            "horizon field.npy -o out.npy --distances far.npy --azimuths 1024 --method brute-force";
         let child = started(&folder, args);
-        // Both files are begun: the comparison below has something to see.
+        // Both files are begun, so that the comparison below can fail.
         let began = wait_until(|| folder.contents().len() == before.len() + 2);
         assert!(began, "no file was begun");
         let output = ended_by(signal, child);
@@ -67,8 +67,8 @@ fn gpu_an_interrupted_command_leaves_no_file() {
     }
 }
 
-/// Pictures of azimuths are written as they come, and wait: what has come goes, and the folder that was made for it; one that was
-/// there stays as it was, sheet and all.
+/// Pictures of azimuths are written as they come. An interrupt removes them and a new folder; an existing folder stays as it was,
+/// with its manifest.
 #[test]
 fn gpu_an_interrupted_bake_leaves_nothing() {
     let folder = Folder::new();
@@ -94,20 +94,20 @@ fn gpu_an_interrupted_bake_leaves_nothing() {
     }
 }
 
-/// A billion paths of 64 bounces a sample are more than any device has traced when its user has enough.
+/// A billion paths of 64 bounces a texel: more than any device traces before the signal.
 #[test]
 fn gpu_an_interrupted_reference_writes_what_it_has() {
     let folder = Folder::new();
     write_field(&folder, 16, |r, c| ((7 * r + 3 * c) % 11) as f32);
     let args = "reference field.npy -o out.exr --spp 1000000000 --bounces 64 --json out.json";
     let child = started(&folder, args);
-    // It listens from before it opens a device.
+    // The handler is installed before the device opens.
     let maps = format!("/proc/{}/maps", child.id());
     let opens = || std::fs::read_to_string(&maps).is_ok_and(|m| m.contains("libvulkan"));
     assert!(wait_until(opens), "no device is opened");
     let output = ended_by("INT", child);
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.starts_with("out.exr: 16 × 16, ") && said.lines().count() == 1, "{said}");
+    assert!(said.starts_with("Wrote out.exr (16x16, ") && said.lines().count() == 1, "{said}");
     let exr = read(&folder.path("out.exr"));
     assert_eq!(exr.names.len(), 6);
     assert!(exr.planes.concat().iter().all(|v| v.is_finite()));

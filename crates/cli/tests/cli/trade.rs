@@ -1,4 +1,4 @@
-//! Speed against accuracy: what is refused, and what a small field's report holds.
+//! `trade`: refusals, and the report of a small field.
 
 use std::path::Path;
 
@@ -65,7 +65,7 @@ fn falls(points: &[(f64, f64)]) -> bool {
     points.windows(2).all(|two| two[0].0 < two[1].0 && two[0].1 > two[1].1)
 }
 
-/// Time and error of the frontier, in its order; each rises, falls.
+/// Time and error of the frontier, in order: time rises, error falls.
 fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
     let points = report["points"].as_array().unwrap();
     let of = |i: &serde_json::Value| {
@@ -83,7 +83,7 @@ fn monotone(report: &serde_json::Value) -> Vec<(f64, f64)> {
     front
 }
 
-/// The frontier of the table, from cheap to dear.
+/// The frontier of the table, from fast to slow.
 fn table_frontier(csv: &str) -> Vec<(f64, f64)> {
     let mut lines = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
     let names = lines.next().unwrap();
@@ -109,9 +109,9 @@ fn plotted_frontier(page: &str) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A point that another covers is seen, wherever it is written.
+/// A dominated point fails the check, in any of the files.
 #[test]
-fn a_frontier_that_is_none_is_seen() {
+fn a_dominated_point_fails() {
     let csv = "settings,time_ms,relative_rmse,frontier\na,2.0,1e-2,true\nb,1.0,2e-2,true\nc,3.0,9e-2,false\n";
     assert_eq!(table_frontier(csv), [(1.0, 0.02), (2.0, 0.01)]);
     assert!(falls(&table_frontier(csv)));
@@ -122,7 +122,7 @@ fn a_frontier_that_is_none_is_seen() {
     assert!(!falls(&plotted_frontier(&page.replace("20.5", "9.5"))));
 }
 
-/// The published tables' frontiers fall, and the rest of their rows is no part of them.
+/// The frontiers of the published tables fall; their other rows are dominated.
 #[test]
 fn kept_tables_have_frontiers() {
     for scene in ["mountain_sky", "mountain_sun", "moss_windows"] {
@@ -130,7 +130,7 @@ fn kept_tables_have_frontiers() {
         let csv = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(&name));
         let front = table_frontier(&csv);
         assert!(front.len() > 2 && falls(&front), "{name}: {front:?}");
-        // With every row taken for one of the frontier's, a point covers another.
+        // All rows taken as a frontier hold a dominated point.
         assert!(!falls(&table_frontier(&csv.replace(",false", ",true"))), "{name}");
     }
 }
@@ -158,18 +158,18 @@ fn gpu_trade_of_a_small_field() {
     let points = report["points"].as_array().unwrap();
     assert_eq!(points.len(), 4);
     let front = monotone(&report);
-    let own = report["truth"]["own_relative_rmse"].as_f64().unwrap();
+    let own = report["ground_truth"]["own_relative_rmse"].as_f64().unwrap();
     assert!(own > 0.0 && own < 0.02, "{own}");
-    assert!(report["truth"]["what"].as_str().unwrap().contains("sky by method brute"));
-    let how = report["truth"]["how"].as_str().unwrap();
-    let is_sure = ["95 % confidence", "all that there are"].iter().any(|said| how.contains(said));
-    assert!(is_sure && how.contains("off the oracle"), "{how}");
+    assert!(report["ground_truth"]["what"].as_str().unwrap().contains("sky by method brute-force"));
+    let how = report["ground_truth"]["how"].as_str().unwrap();
+    let is_sure = ["95 % confidence", "at every grid point"].iter().any(|said| how.contains(said));
+    assert!(is_sure && how.contains("against the f64 oracle"), "{how}");
     for point in points {
         let error = point["relative_rmse"].as_f64().unwrap();
         assert!(error >= own && (error == own) == point["at_most"].as_bool().unwrap(), "{point}");
         assert!(!point["passes"].as_array().unwrap().is_empty());
     }
-    // Every setting is accounted for, once; of what was not measured some are spelt out.
+    // The report counts every setting once; it lists some that were not measured.
     let left = |name: &str| report["left_out"][name].as_u64().unwrap() as usize;
     let all = (5 * (2 * 3 + 4 * 2) + 2 + 5 * 5) * 6;
     assert_eq!((left("settings"), left("measured")), (all, points.len()));
@@ -206,11 +206,11 @@ fn gpu_trade_of_a_small_field() {
     }
     assert_eq!(page.matches("<circle class=\"point").count(), points.len());
     assert_eq!(page.matches("<figure").count(), front.len() + 1);
-    // A tenth of a pixel is as near as the plot goes: what is as near may share a corner's place.
+    // The plot resolves a tenth of a pixel: closer points may share a corner.
     let plotted = plotted_frontier(&page);
     let falls_or_stays = plotted.windows(2).all(|two| two[0].0 <= two[1].0 && two[0].1 >= two[1].1);
     assert!(plotted.len() == front.len() && falls_or_stays, "{plotted:?}");
-    // What the eye sees of each, and why the one is recommended.
+    // The perceived difference of each, and the reason for the recommendation.
     for point in points {
         let on = front.iter().any(|f| Some(f.0) == point["time_ns"].as_f64());
         let flip = point["flip"]["mean"].as_f64();
@@ -218,18 +218,20 @@ fn gpu_trade_of_a_small_field() {
     }
     let why = report["recommendation"]["why"].as_array().unwrap();
     let why: Vec<&str> = why.iter().map(|w| w.as_str().unwrap()).collect();
-    for word in ["least product", "It risks", "ꟻLIP", "The truth itself", "were measured"] {
+    for word in ["least product", "Risk: ", "ꟻLIP", "The ground truth's own", "were measured"] {
         assert!(why.iter().any(|w| w.contains(word)), "{word} in {why:?}");
     }
-    // On so small a field brute force may be the one, which has no hull; nor has an exact sweep or a pyramid.
+    // On so small a field brute force may win; it has no hull, nor has an exact sweep or a pyramid.
     let hulls = report["hulls"].as_array().unwrap();
     let has_hull = point["settings"]["hull"].is_string();
     assert_eq!(hulls.len(), if has_hull { 3 } else { 0 }, "{hulls:?}");
     assert_eq!(hulls.iter().any(|h| h["time_ratio"].is_number()), has_hull, "{hulls:?}");
-    assert_eq!(why.iter().any(|w| w.contains("Where the hull lives")), has_hull, "{why:?}");
-    for knob in report["knobs"].as_array().unwrap() {
-        let steps = knob["cheap_to_dear"].as_array().unwrap();
-        assert!(steps.contains(&knob["default"]) && !knob["dearer"].as_str().unwrap().is_empty());
+    assert_eq!(why.iter().any(|w| w.contains("Hull storage changes")), has_hull, "{why:?}");
+    for ladder in report["settings"].as_array().unwrap() {
+        let steps = ladder["fast_to_slow"].as_array().unwrap();
+        assert!(
+            steps.contains(&ladder["default"]) && !ladder["slower"].as_str().unwrap().is_empty()
+        );
     }
     assert!(page.contains("data:image/png;base64,iVBORw0KGgo"));
     let flags = point["flags"].as_str().unwrap();
@@ -237,13 +239,13 @@ fn gpu_trade_of_a_small_field() {
     assert!(flags.split(" --").all(|flag| page.contains(flag)), "{flags}");
 }
 
-/// A truth from a file; a bound that nothing keeps is said and ends with status 1, the report written
-/// over the earlier one all the same.
+/// Ground truth from a file. A bound that no settings reach is reported and gives exit status 1; the report still replaces
+/// the earlier one.
 #[test]
 fn gpu_trade_against_a_reference() {
     let folder = Folder::new();
     write_peaks(&folder);
-    let truth = "render field.npy -o truth.exr --method brute --azimuths 256 --quiet";
+    let truth = "render field.npy -o truth.exr --method brute-force --azimuths 256 --quiet";
     assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
     let trade = |more: &str| {
         let args = format!("trade field.npy -o out --evaluations 2 --reference truth.exr {more}");
@@ -254,11 +256,11 @@ fn gpu_trade_against_a_reference() {
     let (run, report) = trade("--max-error 0.5");
     assert_eq!(run.status, Some(0));
     monotone(&report);
-    assert!(report["truth"]["what"].as_str().unwrap().contains("truth.exr"));
-    // A picture says nothing of its own error.
-    assert!(report["truth"]["own_relative_rmse"].is_null(), "{}", report["truth"]);
+    assert!(report["ground_truth"]["what"].as_str().unwrap().contains("truth.exr"));
+    // A picture has no standard error.
+    assert!(report["ground_truth"]["own_relative_rmse"].is_null(), "{}", report["ground_truth"]);
     assert!(run.out.contains("Its own error (relative RMSE): unknown: it has no"), "{}", run.out);
-    // The cheapest of all is within a half.
+    // The fastest settings have an error below one half.
     assert_eq!(report["recommendation"]["point"], report["frontier"][0]);
     let (run, report) = trade("--max-error 1e-9 --quiet");
     assert_eq!((run.status, run.out.as_str()), (Some(1), ""));
@@ -268,10 +270,10 @@ fn gpu_trade_against_a_reference() {
     let (run, report) = trade("--time-budget 1e-6");
     assert_eq!((run.status, &report["recommendation"]["holds"]), (Some(1), &false.into()));
     let why = report["recommendation"]["why"][0].as_str().unwrap();
-    let told = why.split(" ms of --time-budget").next().and_then(|w| w.rsplit(' ').next());
-    let told: f64 = told.unwrap().parse().expect(why);
-    assert!((told / 1e-6 - 1.0).abs() < 0.01, "{why}");
-    // Another scene's truth is refused, and nothing is written.
+    let stated = why.split(" ms: these").next().and_then(|w| w.rsplit(' ').next());
+    let stated: f64 = stated.unwrap().parse().expect(why);
+    assert!((stated / 1e-6 - 1.0).abs() < 0.01, "{why}");
+    // The ground truth of another scene is refused, and nothing is written.
     let trace =
         "reference field.npy -o traced.exr --spp 1 --sky 0.5 --sun 90,20 --bounces 2 --quiet";
     assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
@@ -279,7 +281,7 @@ fn gpu_trade_against_a_reference() {
     for (args, said) in [
         (
             "truth.exr --sun 90,20",
-            "truth.exr: header: sky: found 1,1,1, expected none, as in this scene",
+            "truth.exr: header: sky: found 1,1,1, expected none (in this scene)",
         ),
         ("truth.exr --sky 0.5", "truth.exr: header: sky: found 1,1,1, expected 0.5,0.5,0.5"),
         ("truth.exr --cell 2", "truth.exr: header: cell_m: found 1,1, expected 2,2"),
@@ -288,7 +290,7 @@ fn gpu_trade_against_a_reference() {
         ("truth.exr --albedo 0.5", "truth.exr: header: albedo: found 1, expected 0.5"),
         (
             "traced.exr --sky 0.5 --sun 90,20",
-            "traced.exr: header: bounces: found 2, expected 0, as --bounces here",
+            "traced.exr: header: bounces: found 2, expected 0 (--bounces here)",
         ),
         ("traced.exr --sky 0.5 --sun 180,20", "traced.exr: header: "),
         (
@@ -312,24 +314,24 @@ fn gpu_trade_against_a_reference() {
     assert!(folder.contents() == before);
 }
 
-/// Lobes of each sample, thrown twice, against light paths: harmonics and what is kept of lobes' light are walked, and nothing
-/// that lobes refuse is left as if it could be drawn. Without such a truth they are refused.
+/// Per-texel specular with two bounces, against path tracing: the walk covers SH orders and storage of specular light, and
+/// leaves out settings that specular refuses. Without such a ground truth, specular is refused.
 #[test]
-fn gpu_trade_takes_lobes() {
+fn gpu_trade_takes_specular() {
     let folder = Folder::new();
     write_peaks(&folder);
-    let lobes: Vec<u8> = (0..512_u16)
+    let specular: Vec<u8> = (0..512_u16)
         .flat_map(|i| if i < 256 { f32::from(i % 9) } else { f32::from(i % 3) * 0.2 }.to_le_bytes())
         .collect();
-    folder.write("lobes.npy", &npy("<f4", false, "(2, 16, 16)", &lobes));
-    let scene = "--sky 1 --sun 100,40 --albedo 0.5 --phong lobes.npy --bounces 2";
+    folder.write("specular.npy", &npy("<f4", false, "(2, 16, 16)", &specular));
+    let scene = "--sky 1 --sun 100,40 --albedo 0.5 --specular specular.npy --bounces 2";
     let trace = format!("reference field.npy -o truth.exr --spp 512 --quiet {scene}");
     assert_eq!(folder.run(&trace.split(' ').collect::<Vec<_>>()).status, Some(0));
     let bare = format!("trade field.npy -o out --evaluations 2 {scene}");
     let run = folder.run(&bare.split(' ').collect::<Vec<_>>());
     assert_eq!(run.status, Some(2), "{}", run.err);
     assert!(
-        run.err.contains("--phong with trade: found a lobe, expected --reference"),
+        run.err.contains("--specular with trade: found Phong specular, expected --reference"),
         "{}",
         run.err
     );
@@ -343,31 +345,31 @@ fn gpu_trade_takes_lobes() {
     let tried: Vec<String> = flags("points");
     assert!(tried.iter().all(|f| f.contains("--basis sh --sh-order")), "{tried:?}");
     assert!(tried.iter().all(|f| f.contains("--bounce-gloss")), "{tried:?}");
-    // Exact lines have no azimuth of the sun's.
+    // Exact lines have no azimuth for the sun.
     let open = flags("not_tried");
     assert!(!open.iter().chain(&tried).any(|f| f.contains("--lines exact")), "{open:?}");
     let out = report["ruled_out"].as_array().unwrap();
     let exact =
         out.iter().find(|g| g["why"].as_str().unwrap().contains("--lines exact with --sun"));
     let count = exact.expect("a reason")["count"].as_u64().unwrap();
-    // Every number of azimuths, slices of the sun and bounces, every order and gloss: all or none of each.
+    // Azimuths, sun slices, bounces, SH order and specular storage: each step is tried with all or none.
     assert!(count > 0 && count % (6 * 6 * 5 * 3 * 4) == 0, "{count}");
 }
 
-/// Peaks and their truth with two bounces; the flags of that scene.
+/// Peaks and their ground truth with two bounces; returns the flags of that scene.
 fn write_bounced(folder: &Folder) -> &'static str {
     const SCENE: &str = "--sun 100,40 --albedo 0.8 --bounces 2";
     write_peaks(folder);
     let truth = format!(
-        "render field.npy -o truth.exr --method brute --bounce-engine brute --quiet {SCENE}"
+        "render field.npy -o truth.exr --method brute-force --bounce-engine brute-force --quiet {SCENE}"
     );
     assert_eq!(folder.run(&truth.split(' ').collect::<Vec<_>>()).status, Some(0));
     SCENE
 }
 
-/// With bounces, those over visible points are told beside them, from few directions and paths on; without bounces none are.
+/// With bounces, the report lists bakes over visible points, from few directions and paths on; without bounces it lists none.
 #[test]
-fn gpu_trade_tells_what_may_be_baked() {
+fn gpu_trade_lists_bakes() {
     let folder = Folder::new();
     let scene = write_bounced(&folder);
     let args = format!(
@@ -375,7 +377,7 @@ fn gpu_trade_tells_what_may_be_baked() {
     );
     let run = folder.run(&args.split(' ').collect::<Vec<_>>());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(run.out.contains("over visible points that are found once"), "{}", run.out);
+    assert!(run.out.contains("visible points can be found once"), "{}", run.out);
     let rows: Vec<&str> = run.out.lines().filter(|line| line.contains(" paths: ")).collect();
     assert_eq!(rows.len(), 9, "{}", run.out);
     assert!(rows[0].starts_with("64 directions, 40 paths: "), "{rows:?}");
@@ -388,22 +390,22 @@ fn gpu_trade_tells_what_may_be_baked() {
             rest.split_once(unit).expect(row).0.parse().expect(row)
         };
         let directions: f64 = row.split(' ').next().and_then(|n| n.parse().ok()).expect(row);
-        assert!(number("paths: ", " ms") > 0.0 && number("once in ", " ms") > 0.0, "{row}");
-        // Of all light a third at most is scattered on so flat a field, and most of that is found.
-        assert!((0.0..20.0).contains(&number("a frame, ", " %")), "{row}");
-        // Two bytes a sample and direction, in three digits.
+        assert!(number("paths: ", " ms") > 0.0 && number("take ", " ms") > 0.0, "{row}");
+        // On so flat a field at most a third of all light is scattered, and the bake holds most of it.
+        assert!((0.0..20.0).contains(&number("error ", " %")), "{row}");
+        // Two bytes per texel and direction, to three digits.
         let megabytes = 2e-6 * 256.0 * directions;
-        assert!((number("ms, ", " MB") / megabytes - 1.0).abs() < 0.01, "{row}");
+        assert!((number("once, ", " MB") / megabytes - 1.0).abs() < 0.01, "{row}");
     }
     let none = folder.run(&["trade", "field.npy", "-o", "none", "--evaluations", "1"]);
     let report = text(&folder.path("none/trade.json"));
     assert!(!report.contains("found_once_ns") && !none.out.contains("visible points"));
 }
 
-/// What may be baked and needs more than half of the memory budget (the other half is the baseline's) is told as refused, in
-/// the text and in the file; the trade goes on.
+/// A bake above half of the memory budget (the baseline has the other half) is listed as refused, in the text and in the file;
+/// the trade continues.
 #[test]
-fn gpu_trade_tells_what_the_memory_budget_refuses() {
+fn gpu_trade_lists_refused_bakes() {
     let folder = Folder::new();
     let scene = write_bounced(&folder);
     let args = format!(
@@ -422,9 +424,9 @@ fn gpu_trade_tells_what_the_memory_budget_refuses() {
     assert!(run.out.contains("<- recommended"), "{}", run.out);
 }
 
-/// A pass that there is not is told before the light is verified.
+/// An unknown pass is reported before the verification.
 #[test]
-fn gpu_a_pass_that_is_not_is_told_at_once() {
+fn gpu_an_unknown_pass_is_reported_first() {
     let folder = Folder::new();
     let run = folder.run(&["bench", "--size", "32", "--passes", "sky_shade,none"]);
     assert_eq!((run.status, run.out.as_str()), (Some(2), ""), "{}", run.err);

@@ -1,4 +1,4 @@
-//! What sheets of light say of it: paths, passes, scales; and what is said of lights that shine on nothing.
+//! Manifests of baked light: paths, passes and scales, and notes on unused lights.
 
 use serde_json::Value;
 
@@ -6,8 +6,8 @@ use crate::Folder;
 use crate::bake_light::{load, write};
 use crate::needs_vulkan::{done, json};
 
-/// Of one bounce all directions once are all that there is: eight parts of 25 paths look along eight directions each, and one
-/// part, of a light field, along eight. Nothing is scattered where nothing is seen. Of fields that end nothing is scaled.
+/// One bounce uses each direction at most once: eight parts of 25 paths trace eight directions each, and the one part of a light
+/// field traces eight. Nothing scatters where no surface is visible. Fields that end are not normalised.
 #[test]
 fn gpu_paths_are_those_that_were_traced() {
     let folder = Folder::new();
@@ -23,31 +23,31 @@ fn gpu_paths_are_those_that_were_traced() {
                 "bake {field}.npy -o out --bounces {bounces} {words} --format npy,exr --quiet"
             ),
         );
-        let sheet = json(&folder.path("out/bake.json"));
-        assert_eq!(sheet["settings"]["paths"], 200);
-        assert_eq!(sheet["settings"]["paths_used"], traced[0]);
-        assert_eq!(sheet["maps"][0]["chance"]["paths"], traced[0]);
-        assert_eq!(sheet["maps"][1]["scattered"]["paths"], traced[1]);
-        let triangles = &sheet["maps"][1]["triangles"];
+        let manifest = json(&folder.path("out/manifest.json"));
+        assert_eq!(manifest["settings"]["paths"], 200);
+        assert_eq!(manifest["settings"]["paths_used"], traced[0]);
+        assert_eq!(manifest["maps"][0]["monte_carlo_noise"]["paths"], traced[0]);
+        assert_eq!(manifest["maps"][1]["scattered"]["paths"], traced[1]);
+        let triangles = &manifest["maps"][1]["triangles"];
         assert!(triangles["worst_closure"].is_null(), "{triangles}");
-        assert!(triangles["are"].as_str().unwrap().contains("nothing is scaled"), "{triangles}");
+        assert!(triangles["are"].as_str().unwrap().contains("not normalised"), "{triangles}");
     }
     done(&folder, "bake field.npy -o far --border periodic --what brdf --angles 2x4 --bounces 0");
-    let sheet = json(&folder.path("far/bake.json"));
-    assert!(sheet["maps"][0]["triangles"]["worst_closure"].is_number(), "{sheet}");
+    let manifest = json(&folder.path("far/manifest.json"));
+    assert!(manifest["maps"][0]["triangles"]["worst_closure"].is_number(), "{manifest}");
 }
 
-/// Runs of a pass, by the sheet; 0 of one that is not there.
-fn runs(sheet: &Value, pass: &str) -> u32 {
-    let rows = sheet["passes"].as_array().unwrap().iter();
+/// Runs of a pass in the manifest; 0 for a missing pass.
+fn runs(manifest: &Value, pass: &str) -> u32 {
+    let rows = manifest["passes"].as_array().unwrap().iter();
     let rows = rows.inspect(|row| assert!(row["ns"].is_number(), "{row}"));
     let labels = rows.map(|row| row["pass"].as_str().unwrap());
     let own = labels.filter_map(|label| label.strip_prefix(pass)?.strip_suffix(" runs"));
     own.map(|count| count.trim().parse::<u32>().unwrap()).sum()
 }
 
-/// What takes long is done once for both kinds of tables, and the sheet has what passes took: of fifteen directions and fewer,
-/// and of 64 pairs' ends, words of fifteen; of lights a frame each, and of pairs.
+/// Both kinds of tables share the slow passes, and the manifest holds their times: masks of up to fifteen directions, and of the
+/// ends of 64 pairs; one frame per light, and per pair.
 #[test]
 fn gpu_tables_are_made_once_and_timed() {
     let folder = Folder::new();
@@ -57,11 +57,11 @@ fn gpu_tables_are_made_once_and_timed() {
         let words = "--border periodic --angles 2x4 --bounces 1 --paths 4 --directions 8";
         let out = kinds.replace(',', "_");
         done(&folder, &format!("bake field.npy -o {out} --what {kinds} {words} --format npy"));
-        let sheet = json(&folder.path(&out).join("bake.json"));
-        all.push(["facet_mask", "visible_points", "scatter_gather"].map(|p| runs(&sheet, p)));
-        assert!(sheet["settings"]["gpu_ms"].as_f64().unwrap() > 0.0);
+        let manifest = json(&folder.path(&out).join("manifest.json"));
+        all.push(["facet_mask", "visible_points", "scatter_gather"].map(|p| runs(&manifest, p)));
+        assert!(manifest["settings"]["gpu_ms"].as_f64().unwrap() > 0.0);
     }
-    // Eight lights of the table, 64 between.
+    // Eight lights of the table, 64 in between.
     assert_eq!(all[0], [1 + 1, 1 + 1, 8 + 64]);
     assert_eq!(all[1], all[0]);
     assert_eq!(all[2], all[0]);
@@ -72,7 +72,7 @@ fn gpu_tables_are_made_once_and_timed() {
     assert!(factors[0] == factors[1]);
 }
 
-/// A picture of 16 bits times its scale is the light, within what its sheet says; voids are transparent and no part of the scale.
+/// A 16-bit picture times its scale is the light within the manifest's error. Voids are transparent and do not affect the scale.
 #[test]
 fn gpu_pictures_of_scattered_light_are_decoded() {
     let folder = Folder::new();
@@ -80,8 +80,8 @@ fn gpu_pictures_of_scattered_light_are_decoded() {
     const VOID: usize = 4 + 2;
     let words = "--what scatter --sky 3 --sun 200,40,0.5,1e4 --paths 16 --directions 16";
     done(&folder, &format!("bake v.asc -o out {words} --format png,npy"));
-    let sheet = json(&folder.path("out/bake.json"));
-    let files = sheet["maps"][0]["files"].as_array().unwrap();
+    let manifest = json(&folder.path("out/manifest.json"));
+    let files = manifest["maps"][0]["files"].as_array().unwrap();
     let (_, truth) = load(&folder.path("out/scatter.npy"));
     for (layer, name) in ["scatter_0000.png", "scatter_0001.png"].into_iter().enumerate() {
         let file = files.iter().find(|f| f["file"] == name).unwrap();
@@ -116,13 +116,13 @@ fn gpu_pictures_of_scattered_light_are_decoded() {
     }
 }
 
-/// Lights shine on what is lit by them alone, and albedo is of what reflects.
+/// Notes name lights and albedo that the requested kinds do not use.
 #[test]
-fn gpu_lights_that_shine_on_nothing_are_told() {
+fn gpu_unused_lights_are_reported() {
     let folder = Folder::new();
     write(&folder, "field.npy", [4, 4], |r, c| (r * c % 3) as f32);
-    let light = "--sky 0.5 --sun 200,40 --key 90,45,60,20,1 --light 1,1,9,1,1";
-    let names = ["--sky 0.5", "--sun 200,40", "--key 90,45,60,20,1", "--light 1,1,9,1,1"];
+    let light = "--sky 0.5 --sun 200,40 --key 90,45,60,20,1 --sphere-light 1,1,9,1,1";
+    let names = ["--sky 0.5", "--sun 200,40", "--key 90,45,60,20,1", "--sphere-light 1,1,9,1,1"];
     let of = |words: &str| {
         let args = format!("bake field.npy -o out --format npy {words}");
         let run = folder.run(&args.split(' ').collect::<Vec<_>>());
