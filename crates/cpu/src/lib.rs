@@ -1,12 +1,12 @@
-//! The twins of the GPU passes, and the brute-force truth they are all judged by.
+//! CPU references of the GPU passes, the ground truth that both are tested against, and the tolerances between them.
 //!
-//! A twin has its shader's name and reads like it. Geometry (sweeps, fusing) does the shader's own
-//! operations in f32 and in the shader's order, so that a driver that contracts nothing gives equal
-//! bits; light is summed in f64 and compared within a tolerance. [`path_trace`]'s follows the same paths, and carries along
-//! what f32 may be off by; [`indirect`] finds the same light without chance.
+//! The CPU reference of a pass has its shader's name and structure: `shaders_glsl/ROOM/NAME.comp` and `cpu::NAME`.
+//! Geometry (sweeps, fusing) repeats the shader's f32 operations in its order, so a driver that fuses no operations
+//! gives equal bits. Light is summed in f64 and compared within a [`tolerance`].
 //!
-//! To be judged by: [`oracle`], brute force over every triangle, and [`indirect`]. To read a shader with its twin
-//! beside it: `shaders_glsl/NAME.comp` and `cpu::NAME`, the same names in both.
+//! [`path_trace`] follows the same random paths as its shader and carries the f32 error bound of every value along.
+//! The ground truth is independent of the shaders: [`oracle`] tests every triangle by brute force, [`indirect`]
+//! computes direct and indirect light by quadrature, without Monte Carlo noise.
 
 #![deny(clippy::missing_errors_doc)]
 

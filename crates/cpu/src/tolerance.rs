@@ -1,10 +1,11 @@
-//! How far a pass in f32 may be from the truth in f64: formulas, each derived beside it.
+//! Tolerances of f32 passes against the ground truth and their CPU references in f64: formulas, each with its
+//! derivation.
 //!
-//! ε = 2^-24 is the largest relative error of one rounding, H the largest |height|, R the relief
-//! (highest minus lowest, R ≤ 2 H), s the world length of a march step. What a sample's own line
-//! meets first stands half a step away or more: grid lines across the march at whole steps, a
-//! diagonal at 1/(1 + shear) of the first. Slopes err the most there, by the error of the rise over
-//! s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 + x²).
+//! ε = 2^-24 is the largest relative error of one rounding, H the largest |height|, R the relief (highest minus
+//! lowest, R ≤ 2 H), s the world length of a march step. The first surface on a grid point's own line is half a step
+//! away or more: grid lines across the march at whole steps, a diagonal at 1/(1 + shear) of the first. Slopes err the
+//! most there, by the error of the rise over s/2. An elevation errs by no more than the slope: d atan(x) = dx / (1 +
+//! x²).
 
 mod bend;
 mod bounce;
@@ -40,7 +41,7 @@ pub fn march_slope(relief_m: f64, step_m: f64) -> f64 {
     38.0 * EPSILON * relief_m / step_m
 }
 
-/// Slope that a line of `horizon_sweep` finds, against all samples of the line.
+/// Slope of a line of `horizon_sweep`, against all steps of the line.
 ///
 /// A height of the line errs by 5 ε H (difference 2, product 2, sum 1), the rise between two by
 /// 2 · 5 + 2, seen one step away or more: 12 ε H / s; its quotient by 3 roundings of 2 H / s. Which of two
@@ -69,10 +70,10 @@ pub fn aimed_slope(largest_m: f64, step_m: f64) -> f64 {
     2.0 * march_slope(largest_m, step_m)
 }
 
-// What follows holds a pass on a device against its twin, both given the same inputs. A device may err
-// by more than the twin, which rounds as the processor does: Vulkan rounds sums and products
-// correctly, but lets a quotient be off by 2.5 ulp (5 ε) and `inversesqrt` by 2 ulp (4 ε), and fuses
-// products with sums where it is not told otherwise. Most twins are f64 and err by nothing that counts.
+// The functions below are tolerances of a pass on a device against its CPU reference, both with the same inputs. A
+// device may err more than the CPU reference, which rounds as the CPU does: Vulkan rounds sums and products
+// correctly, but allows a quotient an error of 2.5 ulp (5 ε) and `inversesqrt` one of 2 ulp (4 ε), and fuses products
+// with sums unless `precise` forbids it. Most CPU references are f64 with negligible error.
 
 /// `arc_tangent` of the shaders, radians.
 ///
@@ -81,22 +82,21 @@ pub fn aimed_slope(largest_m: f64, step_m: f64) -> f64 {
 /// 0.75 ε and the difference from it π/2 ε.
 pub const ARC_TANGENT: f64 = 2e-8 + 7.0 * EPSILON;
 
-/// Slope that `horizon_sweep` stores, against its twin.
+/// Slope that `horizon_sweep` stores, against its CPU reference.
 ///
-/// Which occluder is met is decided by sums and products that are not fused (`precise`): there is no
-/// tolerance for it. The slope is their difference over a distance with equal roundings: a quotient,
-/// 5 ε, and the twin's own ε.
+/// The choice of occluder depends on sums and products that are not fused (`precise`): it has no tolerance. The slope
+/// is their difference over a distance with equal roundings: a quotient, 5 ε, and the CPU reference's own ε.
 pub fn twin_slope(slope: f64) -> f64 {
     6.0 * EPSILON * slope.abs()
 }
 
-/// The same stored as f16: rounded either way by a device and to nearest by the twin, one step of f16
+/// The same stored as f16: a device may round it either way, the CPU reference rounds to nearest: one step of f16
 /// apart, 2^-10 of the slope, or of the smallest numbers, 2^-24.
 pub fn twin_slope_f16(slope: f64) -> f64 {
     twin_slope(slope) + slope.abs() / 1024.0 + 1.0 / (1 << 24) as f64
 }
 
-/// Slope that a line of `horizon_sweep` finds with packed entries, against its twin.
+/// Slope of a line of `horizon_sweep` with packed entries, against its CPU reference.
 ///
 /// A kept height is rounded either way, to 2^-11 of H, and divided by its scale, 6 ε: each of the two is
 /// that far from the truth at what is chosen and at what is missed, a step or more away, and errs as
@@ -208,7 +208,7 @@ pub fn twin_pyramid_angle(largest_m: f64, relief_m: f64, step_m: f64) -> f64 {
     rise + turned + 2.0 * pyramid_angle(steepest)
 }
 
-/// Elevation of a slope that errs by `slope_error`, radians.
+/// Elevation of a slope with an error of `slope_error`, radians.
 pub fn twin_angle(slope: f64, slope_error: f64) -> f64 {
     let flattest = (slope.abs() - slope_error).max(0.0);
     ARC_TANGENT + slope_error / (1.0 + flattest * flattest)
@@ -289,7 +289,7 @@ pub fn twin_resolved(radiance: f64, lights: usize) -> f64 {
     (2.0 + lights as f64) * EPSILON * radiance.abs()
 }
 
-/// Two devices: each as far from the twin as it may be, on either side.
+/// Two devices: each within the tolerance of the CPU reference, on either side.
 pub fn two_devices(twin: f64) -> f64 {
     2.0 * twin
 }

@@ -1,16 +1,18 @@
-//! Where samples see what they see once the flat field lies on a curved base (Heidrich et al. 2000, §5), in f64.
+//! Directions of the visible points once the flat field is bent over a curved base surface (Heidrich et al. 2000,
+//! §5), in f64.
 //!
-//! Points that see each other on the flat base are taken to see each other on the curved one; what changes is where. The
-//! base rolls along the straight way o between the two samples, so that its frame turns evenly by w = (k_x o_x, k_y o_y) about
-//! the horizontal axis across w: after a share s of the way a vector v of the plan stands where the rotation R(s w) takes
-//! it. The base is then at ∫ R(s w) o ds: of o the part along w gives |o_w| sin|w| / |w| along w and -|o_w| (1 - cos|w|) / |w|
-//! upwards, the part across stays. A height h stands on the end's normal, R(w) (0, 0, h). Along the axis of a cylinder's
-//! curvature and everywhere on a sphere that is exact, as ways are geodesics and turn evenly; of others to second order.
+//! Points visible to each other on the flat base are assumed to stay so on the curved one; only the directions
+//! change. The base rolls along the straight path o between the two grid points: its frame turns evenly by w = (k_x
+//! o_x, k_y o_y) about the horizontal axis across w. After a fraction s of the path a vector v of the plan is rotated
+//! to R(s w) v. The base is then at ∫ R(s w) o ds: the part of o along w gives |o_w| sin|w| / |w| along w and -|o_w|
+//! (1 - cos|w|) / |w| upwards, the part across is unchanged. A height h stands on the normal at the end, R(w) (0, 0,
+//! h). This is exact along the axis of a cylinder's curvature and everywhere on a sphere, where paths are geodesics
+//! and turn evenly; elsewhere it is exact to second order.
 //!
-//! How far a place is follows from the sample and the direction ([`ways`]).
+//! The distance of a visible point follows from the grid point and the direction ([`ways`]).
 //!
-//! A convex base (above 0) lets all sink by k d²/2 at a distance d, which lowers its direction by k d / 2; heights above the
-//! base are drawn apart by 1 + k h.
+//! A convex base (k above 0) lowers everything at a distance d by k d²/2, and its direction by k d / 2. Heights h
+//! above the base diverge by 1 + k h.
 
 pub mod ways;
 
@@ -20,25 +22,25 @@ use ridgelight::basis::triangles::Triangles;
 use ridgelight::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
 use ways::Ways;
 
-pub use ridgelight::scene::{Fans, MOST_TURN, bent_as_far, bent_direction};
+pub use ridgelight::scene::{Fans, MAX_TURN_RAD, bent_direction_within, bent_direction};
 
-/// What bends with what: the flat field and what its samples see.
+/// Inputs of the bending: the flat field and its visible points.
 pub struct Draped<'a> {
     /// The flat field.
     pub field: &'a HeightField,
-    /// What lies beyond it.
+    /// Border beyond the field.
     pub border: Border,
-    /// What its samples see.
+    /// Visible points of its grid points.
     pub points: &'a VisiblePoints,
-    /// Their directions beside each other.
+    /// The triangulation of their directions.
     pub fans: &'a Fans,
-    /// Of the base.
+    /// Curvature of the base.
     pub curvature: Curvature,
 }
 
 impl Draped<'_> {
-    /// The directions that direction `i` may move with at a sample, itself where the surface is seen, else of its neighbours
-    /// that do those within `slack` of the nearest's cosine; none where it stays.
+    /// The directions that direction `i` may move with at a grid point: itself where the surface is visible, else the
+    /// neighbours with visible surface that are within `slack` of the nearest's cosine; empty where it stays.
     pub fn movers(&self, i: usize, sample: usize, slack: f64) -> Vec<(usize, usize)> {
         let vectors = self.points.directions().vectors();
         let met = |j: usize| match self.points.seen(j, sample) {
@@ -62,7 +64,7 @@ impl Draped<'_> {
         all
     }
 
-    /// Where a sample sees what it sees, direction after direction.
+    /// The bent directions of a grid point, direction after direction.
     pub fn bent(&self, sample: usize) -> Vec<DVec3> {
         let vectors = self.points.directions().vectors();
         let own = f64::from(self.field.heights_m()[sample]);
@@ -77,9 +79,9 @@ impl Draped<'_> {
         (0..vectors.len()).map(of).collect()
     }
 
-    /// How much of a light arrives at a sample whose directions are [`bent`](Self::bent), 0 to 1: the share of the corners
-    /// of the triangle that holds it in which the sky is seen, corners at or below horizontal left out; of several triangles,
-    /// where the net has folded over, the least. `None` where none holds it.
+    /// Visibility of a light, 0 to 1, at a grid point whose directions are [`bent`](Self::bent): the share of the
+    /// corners with visible sky of the triangle around the light, ignoring corners at or below horizontal. Where the
+    /// triangulation has folded and several triangles contain it, the smallest share. `None` where no triangle does.
     pub fn lit_share(
         &self,
         triangles: &Triangles,

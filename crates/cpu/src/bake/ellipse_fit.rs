@@ -1,13 +1,13 @@
-//! The ellipse that holds the directions in which a sample sees the sky (Heidrich et al. 2000, §4), in f64.
+//! The ellipse that best covers the directions with visible sky (Heidrich et al. 2000, §4), in f64.
 //!
-//! Directions above horizontal are dropped onto the plane z = 0 of the field: that of the flat base, not of each sample's
-//! own normal. A light then has one place in it for all samples, which the test needs no frame for; and the sky is cut by
-//! the base's horizon, not by the normal's, below which N·e is negative anyway.
+//! Directions above horizontal are projected onto the plane z = 0 of the field: that of the flat base, not of each
+//! grid point's normal. A light then has the same position in it for all grid points, and the test needs no frame.
+//! The sky is cut by the base's horizon, not by the tangent plane, below which N·e is negative anyway.
 //!
-//! Where it starts: the mean and covariance of the lit directions over the plan's area, of which a direction of a share ω of
-//! the sphere covers z ω. A filled ellipse, wherever it lies, has the variance r²/4 along an axis of radius r, so that one
-//! is its own fit. What is searched for: as many lit and as few shadowed directions within as there can be, each counted as
-//! one, as all stand for the same share of the sphere.
+//! The search starts from the mean and covariance of the lit directions over the plan's area, where a direction of
+//! solid angle ω covers z ω. A filled ellipse of radius r along an axis has the variance r²/4 there, so an ellipse
+//! fits itself. The score counts lit minus shadowed directions inside. All count alike, as all have the same solid
+//! angle.
 
 use glam::{DVec2, DVec3};
 pub use ridgelight::scene::least_radius;
@@ -26,13 +26,13 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// All is lit.
+    /// Everything is lit.
     pub const WHOLE: Self = Self { centre: DVec2::ZERO, axis: DVec2::X, inverse_radii: [0.0; 2] };
-    /// Nothing is: beyond the disc.
+    /// Nothing is lit: an ellipse beyond the disc.
     pub const EMPTY: Self =
         Self { centre: DVec2::new(4.0, 0.0), axis: DVec2::X, inverse_radii: [1.0; 2] };
 
-    /// Of texels: centre and axis; 1 / radii.
+    /// From texels: centre and axis; 1 / radii.
     pub fn of_texels(axes: [f32; 4], radii: [f32; 2]) -> Self {
         let [x, y, along_x, along_y] = axes.map(f64::from);
         Self {
@@ -42,12 +42,12 @@ impl Ellipse {
         }
     }
 
-    /// Whether light from a direction, a unit vector whose z is above 0, arrives: equations 2 to 4.
+    /// Visibility of a direction, a unit vector whose z is above 0: equations 2 to 4.
     pub fn holds(&self, direction: DVec3) -> bool {
         self.reach(direction) <= 1.0
     }
 
-    /// The left-hand side less 1 of equation 4, negated: at most 1 within.
+    /// The left-hand side less 1 of equation 4, negated: at most 1 inside.
     pub fn reach(&self, direction: DVec3) -> f64 {
         let from = direction.truncate() - self.centre;
         let [along, across] = self.inverse_radii;
@@ -63,17 +63,17 @@ impl Ellipse {
     }
 }
 
-/// A direction above horizontal, and whether the sky is seen in it.
+/// A direction above horizontal, and whether its sky is visible.
 pub type Seen = (DVec3, bool);
 
-/// The search's first step, its last, and how many it may take; of radii and centre, where the disc's radius is 1.
+/// The search's first step, its last, and the largest step count; of radii and centre, in units of the disc's radius.
 pub const FIRST_STEP: f64 = 0.25;
 /// See [`FIRST_STEP`].
 pub const LAST_STEP: f64 = 1.0 / 64.0;
 /// See [`FIRST_STEP`].
 pub const MOST_STEPS: usize = 48;
 
-/// Of centre and radius along an axis, by steps: either end, both to one side, both apart.
+/// Moves of centre and radius along an axis, in steps: either end, both ends to one side, both ends apart.
 pub const MOVES: [(f64, f64); 8] = [
     (-1.0, -1.0),
     (0.0, -1.0),
@@ -85,19 +85,19 @@ pub const MOVES: [(f64, f64); 8] = [
     (1.0, 1.0),
 ];
 
-/// What a sample sees of the sky above horizontal.
+/// Sky visibility of a grid point above horizontal.
 pub fn seen(points: &VisiblePoints, sample: usize) -> Vec<Seen> {
     let all = points.directions().vectors().iter().enumerate().filter(|(_, e)| e.z > 0.0);
     all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
 }
 
-/// The same on a curved base, where a sample's directions are `bent`.
+/// The same on a curved base surface, where a grid point's directions are `bent`.
 pub fn seen_bent(points: &VisiblePoints, bent: &[DVec3], sample: usize) -> Vec<Seen> {
     let all = bent.iter().enumerate().filter(|(_, e)| e.z > 0.0);
     all.map(|(i, e)| (*e, points.seen(i, sample) == VisiblePoint::Sky)).collect()
 }
 
-/// Lit directions within less shadowed ones.
+/// Lit minus shadowed directions inside.
 pub fn score(ellipse: &Ellipse, seen: &[Seen]) -> i64 {
     let within = seen.iter().filter(|(e, _)| ellipse.holds(*e));
     within.map(|(_, is_lit)| if *is_lit { 1 } else { -1 }).sum()
@@ -134,8 +134,8 @@ pub fn start(seen: &[Seen]) -> Ellipse {
     Ellipse { centre, axis, inverse_radii: [inverse(half_sum + root), inverse(half_sum - root)] }
 }
 
-/// The ellipse, and its [`score`]: a start, moved by the best of its neighbours while one is better, then by half as much.
-/// The whole disc where that is as good, nothing where nothing is better than that.
+/// The ellipse and its [`score`]: from a start, moved to its best neighbour while that is better, then by half the
+/// step. The whole disc where that is as good, nothing where no ellipse is better than that.
 pub fn fit(seen: &[Seen]) -> (Ellipse, i64) {
     let lit = seen.iter().filter(|s| s.1).count() as i64;
     let whole = 2 * lit - seen.len() as i64;
@@ -169,7 +169,7 @@ pub fn fit(seen: &[Seen]) -> (Ellipse, i64) {
     }
 }
 
-/// One step away, in the order in which the first of the best is taken.
+/// One step away, in the order in which ties are resolved.
 pub fn neighbours(of: &Ellipse, step: f64, least: f64) -> impl Iterator<Item = Ellipse> {
     let of = *of;
     let moves = (0..2).flat_map(|across| MOVES.map(|by| (across, by)));

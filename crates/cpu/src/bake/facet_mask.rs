@@ -1,5 +1,5 @@
-//! Which of a field's flat triangles are seen from a direction, in f64: what stands at their middles, three samples of the
-//! same surface with three samples for each (`HeightField::finer`), sees of it.
+//! Visibility of a field's flat triangles along a direction, in f64: that of their centroids, which are grid points
+//! of the same surface refined threefold (`HeightField::finer`).
 
 use crate::oracle::Oracle;
 use crate::visible_points::possible_points;
@@ -8,8 +8,8 @@ use ridgelight::Result;
 use ridgelight::plan::DIRECTIONS_A_WORD;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
 
-/// The sample of the threefold finer field in the middle of a triangle: its row and column. `facet` counts two a cell, row
-/// after row, first the one north-east of the diagonal.
+/// Row and column, in the threefold finer field, of a triangle's centroid. `facet` counts two per cell, row after
+/// row, the one north-east of the diagonal first.
 pub fn middle(facet: usize, cells_x: usize) -> [usize; 2] {
     let (cell, is_south) = (facet / 2, facet % 2);
     [3 * (cell / cells_x) + 1 + is_south, 3 * (cell % cells_x) + 2 - is_south]
@@ -21,8 +21,8 @@ pub fn cells(field: &HeightField, border: Border) -> [usize; 2] {
     [field.cols() - fewer, field.rows() - fewer]
 }
 
-/// Whether a triangle sees the sky along `e`; and whether it might as well where the elevation is off by so much. `finer` is
-/// the oracle of the threefold finer field.
+/// Whether a triangle has a free view along `e`; and the same with an elevation error of so much. `finer` is the
+/// oracle of the threefold finer field.
 pub fn sees_sky(
     finer: &Oracle,
     (facet, cells_x): (usize, usize),
@@ -35,10 +35,10 @@ pub fn sees_sky(
     [own, all.iter().any(|point| is_sky(point) != own)]
 }
 
-/// The device's words: all triangles, fifteen directions a word.
+/// The device's words: all triangles, fifteen directions per word.
 ///
 /// # Errors
-/// Cells too small to be a third.
+/// The cells are too small to divide by three.
 pub fn facet_mask(
     field: &HeightField,
     border: Border,

@@ -1,15 +1,15 @@
-//! What directions on a curved base stand for among the others (Heidrich et al. 2000, §5, figure 8), in f64.
+//! Weights of directions on a curved base surface (Heidrich et al. 2000, §5, figure 8), in f64.
 //!
-//! Directions that were even on the flat field are no longer so: a path along one of them counts as much as the triangles
-//! around it have grown. Triangles that have folded over count below 0, as they cover what others cover, too; the sum over
-//! all directions stays that of the sphere.
+//! Directions that are uniform on the flat field are not uniform on the curved one: a path along a direction is
+//! weighted by the growth of the triangles around it. Folded triangles count negative, as they overlap others; the
+//! sum over all directions stays that of the sphere.
 
 use glam::DVec3;
 
 use crate::bent_directions::Fans;
 use ridgelight::basis::triangles::area_sr;
 
-/// Solid angle of a direction's triangles over that on the flat field, 0 or more; 1 of a direction without any.
+/// Solid angle of a direction's triangles over that on the flat field, 0 or more; 1 for a direction without any.
 pub fn weight(fans: &Fans, bent: &[DVec3], i: usize) -> f64 {
     let triangles = fans.pairs[i].iter();
     let sum: f64 = triangles

@@ -1,3 +1,6 @@
+//! CPU references of the passes that bake views on flat and curved base surfaces:
+//! visible points, bent directions, ellipses, facet masks and scattered light.
+
 pub mod bent_directions;
 pub mod ellipse_fit;
 pub mod facet_mask;

@@ -1,24 +1,24 @@
-//! Light scattered by what samples see of each other, in f64: one step of a path, and what all paths give in the mean.
+//! Light scattered between mutually visible grid points, in f64: one step of a path, and the mean over all paths.
 
 use crate::light::normal;
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Curvature, Phong, Scene, VisiblePoint, VisiblePoints};
+use ridgelight::scene::{Albedo, Curvature, PhongSpecular, Scene, VisiblePoint, VisiblePoints};
 use std::f64::consts::{PI, TAU};
 
-/// What a sample scatters of what arrives from one direction that stands for some solid angle.
+/// Scattered light of one grid point, from one incident direction with a solid angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gathered {
     /// Radiance, R, G, B.
     pub light: [f64; 3],
-    /// That of what is diffuse for a cosine of 1.
+    /// The diffuse radiance for a cosine of 1.
     pub facing: [f64; 3],
-    /// That of the lobe in its middle.
+    /// The Phong specular radiance at its peak.
     pub mirrored: [f64; 3],
-    /// Cosine to the lobe's middle.
+    /// Cosine to the Phong lobe's axis.
     pub along: f64,
 }
 
-/// Reflectances and normals of a field's samples.
+/// Reflectances and normals of a field's grid points.
 pub struct Samples<'a> {
     scene: &'a Scene,
     normals: Vec<DVec3>,
@@ -32,8 +32,8 @@ impl<'a> Samples<'a> {
         Self { scene, normals: (0..field.rows() * field.cols()).map(of).collect() }
     }
 
-    /// On a curved base, in each sample's own frame: at a height h over it the field is drawn apart by 1 + curvature h, its
-    /// slopes are as many times less.
+    /// On a curved base surface, in each grid point's own frame: a field at a height h over it is widened by 1 +
+    /// curvature h, and its slopes are reduced by the same factor.
     #[must_use]
     pub fn on(mut self, curvature: Curvature) -> Self {
         let heights = self.scene.field.heights_m();
@@ -44,12 +44,12 @@ impl<'a> Samples<'a> {
         self
     }
 
-    /// A sample's.
+    /// Of a grid point.
     pub fn normal(&self, at: usize) -> DVec3 {
         self.normals[at]
     }
 
-    /// A sample's.
+    /// Of a grid point.
     pub fn albedo(&self, at: usize) -> [f64; 3] {
         match &self.scene.surface.albedo {
             Albedo::Constant(colour) => colour.map(f64::from),
@@ -57,13 +57,13 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// A sample's, where there are lobes.
-    pub fn lobe(&self, at: usize) -> Option<Phong> {
-        self.scene.surface.phong.as_ref().map(|lobe| lobe.at(at))
+    /// Of a grid point, where there is Phong specular.
+    pub fn lobe(&self, at: usize) -> Option<PhongSpecular> {
+        self.scene.surface.specular.as_ref().map(|lobe| lobe.at(at))
     }
 
-    /// What sample `at` scatters of `diffuse` radiance, and of `mirrored` by its lobe, that arrive along `e` from
-    /// `solid_sr`, towards `back`.
+    /// Light scattered by grid point `at` towards `back`, from `diffuse` radiance and specular radiance `mirrored`
+    /// that arrive along `e` from `solid_sr`.
     pub fn scattered(
         &self,
         at: usize,
@@ -76,7 +76,7 @@ impl<'a> Samples<'a> {
         let facing = [0, 1, 2].map(|c| solid_sr * albedo[c] / PI * diffuse[c]);
         let light = facing.map(|f| f * cosine);
         let mut of = Gathered { light, facing, ..Gathered::default() };
-        if let Some(Phong { exponent, scale }) = self.lobe(at) {
+        if let Some(PhongSpecular { exponent, scale }) = self.lobe(at) {
             let (exponent, scale) = (f64::from(exponent), f64::from(scale));
             let mirror = 2.0 * n.dot(back) * n - back;
             let middle = scale * (exponent + 1.0) / TAU;
@@ -91,8 +91,8 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// The mean of all paths' scattered light: what the estimate tends to with their number, for a field without lobes. All
-/// directions in turn at every bounce; `direct` is each sample's own light.
+/// The mean of all paths' scattered light, for a field without Phong specular: the limit of the estimate. Every
+/// bounce sums over all directions; `direct` is each grid point's own light.
 pub fn expected(
     scene: &Scene,
     points: &VisiblePoints,

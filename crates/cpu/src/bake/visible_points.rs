@@ -1,5 +1,5 @@
-//! What a sample sees in a direction, in f64, by looking at every piece of surface along its azimuth: the truth beside
-//! the device's rays, with which it shares no code.
+//! The visible point of a grid point in a direction, in f64, by testing every surface piece along its azimuth: ground
+//! truth, which shares no code with the device's rays.
 
 use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
@@ -7,7 +7,7 @@ use glam::DVec3;
 use ridgelight::scene::{Border, Directions, HeightField, VisiblePoint};
 use std::f64::consts::FRAC_PI_2;
 
-/// What each sample sees in each direction, direction after direction.
+/// The visible point of each grid point in each direction, direction after direction.
 pub fn visible_points(
     field: &HeightField,
     border: Border,
@@ -19,18 +19,18 @@ pub fn visible_points(
     each.map(|(e, at)| visible_point(&oracle, [at / field.cols(), at % field.cols()], e)).collect()
 }
 
-/// What the sample (row, column) sees in one direction.
+/// The visible point of the grid point (row, column) in one direction.
 ///
 /// # Panics
-/// When the sample lies outside the field.
+/// The grid point lies outside the field.
 pub fn visible_point(oracle: &Oracle, here: [usize; 2], e: DVec3) -> VisiblePoint {
     possible_points(oracle, here, e, 0.0, 0.0)[0]
 }
 
-/// All that it may see where the direction's elevation is off by `elevation_rad`: see [`possible_within`].
+/// All possible visible points for an elevation error of `elevation_rad`: see [`possible_within`].
 ///
 /// # Panics
-/// When the sample lies outside the field.
+/// The grid point lies outside the field.
 pub fn possible_points(
     oracle: &Oracle,
     here: [usize; 2],
@@ -41,14 +41,15 @@ pub fn possible_points(
     possible_within(oracle, here, e, |_| elevation_rad, of_way)
 }
 
-/// All that it may see where the elevation of each stretch's upper end is off by `elevation_rad` and what is met by
-/// `of_way` of the distance to it along either axis: the answer of no error, and of every other within.
+/// All possible visible points where the elevation of each visible interval's upper end has an error of
+/// `elevation_rad`, and the hit one of `of_way` times its distance along either axis: first the answer without error,
+/// then every other within the error.
 ///
-/// What is seen along an azimuth are stretches of the surface one above the other, so that the elevations within the
-/// error see a part of each that they cross, and the sky beyond the last.
+/// Along an azimuth the visible intervals of the surface are stacked in elevation. The elevations within the error
+/// cover part of each interval that they cross, and the sky beyond the last.
 ///
 /// # Panics
-/// When the sample lies outside the field.
+/// The grid point lies outside the field.
 pub fn possible_within(
     oracle: &Oracle,
     [row, col]: [usize; 2],
@@ -56,7 +57,7 @@ pub fn possible_within(
     elevation_rad: impl Fn(&VisibleInterval) -> f64,
     of_way: f64,
 ) -> Vec<VisiblePoint> {
-    // Straight up or down there is no azimuth: nothing, or the sample itself.
+    // Straight up or down there is no azimuth: sky, or the grid point itself.
     if e.x == 0.0 && e.y == 0.0 {
         let own = VisiblePoint::Sample(row * oracle.field().cols() + col);
         return vec![if e.z > 0.0 { VisiblePoint::Sky } else { own }];
@@ -75,12 +76,12 @@ pub fn possible_within(
             all.push(point);
         }
     };
-    // The answer itself first.
+    // The exact answer first.
     match seen.iter().find(|stretch| elevation < stretch.high_rad) {
         Some(stretch) => add(met(oracle, stretch, stretch.distance_m(elevation), [0.0; 2])),
         None => add(beyond(elevation)),
     }
-    // Of the one below, whose upper end is where this one begins.
+    // Upper end of the interval below, where this one begins.
     let mut below = 0.0_f64;
     for stretch in &seen {
         let above = elevation_rad(stretch);
@@ -93,7 +94,7 @@ pub fn possible_within(
         let [near, far] = [elevation - off, elevation + off]
             .map(|e| stretch.distance_m(e.clamp(stretch.low_rad, stretch.high_rad)));
         let [cell_x, cell_y] = oracle.field().cell_m();
-        // Steps of a quarter of a cell pass no sample by.
+        // Steps of a quarter of a cell skip no grid point.
         let steps = (4.0 * (far - near).abs() / cell_x.min(cell_y)).ceil().clamp(1.0, 1e5) as usize;
         for step in 0..=steps {
             let distance = near + (far - near) * step as f64 / steps as f64;
@@ -110,7 +111,7 @@ pub fn possible_within(
     all
 }
 
-/// The sample nearest to a place on a stretch, `off` rows and columns beside it.
+/// The grid point nearest to a position on a visible interval, offset by `off` rows and columns.
 fn met(oracle: &Oracle, stretch: &VisibleInterval, distance_m: f64, off: [f64; 2]) -> VisiblePoint {
     let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
     let [_, second, third] = stretch.corner_weights(distance_m);

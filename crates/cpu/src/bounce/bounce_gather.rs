@@ -1,6 +1,6 @@
-//! What the surface throws at every sample by pyramids of heights and of exit radiance: along each azimuth one
-//! sample a level; each knot and midpoint of the B-spline over their elevations that is above all before it casts
-//! its radiance over the elevations that it opens (Nowrouzezahrai & Snyder 2009, eq. 6-17).
+//! Indirect light at every grid point from pyramids of heights and of exit radiance: along each azimuth one lookup
+//! per level. Each knot and midpoint of the B-spline over their elevations that rises above all before contributes
+//! its radiance over the newly visible elevations (Nowrouzezahrai & Snyder 2009, eq. 6-17).
 
 use crate::light::{Receiver as Place, Slice, normal};
 use crate::oracle::grid_direction;
@@ -16,22 +16,22 @@ use ridgelight::plan::sweep::warm_up;
 use ridgelight::scene::{HeightField, Receiver};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Samples and levels, and how they are looked at.
+/// Heights, levels and settings.
 #[derive(Clone, Copy, Debug)]
 pub struct BounceGather<'a> {
     /// The field, for its normals.
     pub field: &'a HeightField,
     /// Its heights.
     pub heights: Heights<'a>,
-    /// Levels of heights; those of radiance are stored alike.
+    /// Levels of heights; those of radiance have the same layout.
     pub pyramid: &'a Pyramid,
-    /// As they are stored.
+    /// Their storage.
     pub stored: Stored<'a>,
     /// Levels of exit radiance.
     pub shade: &'a Pyramid,
     /// Their texels.
     pub shade_texels: &'a [[f64; 3]],
-    /// Exit radiance of the samples.
+    /// Exit radiance of the grid points.
     pub exit: &'a [[f64; 3]],
     /// Whether the cosine is exact, or three bands of it with four Legendre coefficients a slice.
     pub receiver: Receiver,
@@ -39,7 +39,7 @@ pub struct BounceGather<'a> {
     pub azimuths: u32,
 }
 
-/// A march from a sample: whole steps along columns or rows, straight across the other axis.
+/// A march from a grid point: whole steps along columns or rows, interpolated along the other axis.
 pub(crate) struct March {
     here: [f64; 2],
     by_x: bool,
@@ -50,7 +50,7 @@ pub(crate) struct March {
 }
 
 impl March {
-    /// Column and row after so many steps.
+    /// Column and row after that many steps.
     fn place(&self, steps: i32) -> [f64; 2] {
         let (along, across) = (self.forward * f64::from(steps), f64::from(steps) * self.shear);
         let [x, y] = if self.by_x { [along, across] } else { [across, along] };
@@ -58,17 +58,17 @@ impl March {
     }
 }
 
-/// What has been seen of a slice.
+/// Progress along a slice.
 struct Seen {
     slice: Slice,
-    /// What Legendre coefficients give to the bands of a [`Receiver::Lobe`].
+    /// Contribution of Legendre coefficients to the bands of a [`Receiver::Lobe`].
     bands: Option<[f64; 4]>,
     top: f64,
     casts: Vec<Cast>,
 }
 
 impl Seen {
-    /// Weight of the elevations up to one, but for what is the same for all.
+    /// Weight of the elevations up to one, without the common factor.
     fn weight_of(bands: &[f64; 4], angle: f64) -> f64 {
         occlusion(4, angle.sin(), angle.cos()).iter().zip(bands).map(|(o, b)| o * b).sum()
     }
@@ -97,7 +97,7 @@ impl Seen {
 }
 
 impl BounceGather<'_> {
-    /// Light of one more bounce at a sample, for albedo 1.
+    /// Light of one more bounce at a grid point, for albedo 1.
     ///
     /// # Panics
     /// Outside the field; when levels lack texels.
@@ -105,8 +105,7 @@ impl BounceGather<'_> {
         radiance(&self.casts_along([row, col]))
     }
 
-    /// What it is made of, azimuth by azimuth; distances are the steps to the nearest sample that an elevation is
-    /// made of.
+    /// Its parts, azimuth by azimuth; distances are the steps to the nearest lookup that contributes to an elevation.
     ///
     /// # Panics
     /// As [`Self::light`].
@@ -114,7 +113,7 @@ impl BounceGather<'_> {
         self.casts_of(place, |march, _, of| self.radiance(march, of))
     }
 
-    /// The same of another radiance: that of a place and a level, looked at along a march in a direction.
+    /// The same from another radiance: a function of place, level, march and direction.
     pub(crate) fn casts_of(
         &self,
         [row, col]: [usize; 2],
@@ -127,7 +126,7 @@ impl BounceGather<'_> {
             let slice = place.slice(azimuth_rad);
             let (bands, whole) = match self.receiver {
                 Receiver::Plane => (None, slice.light(-FRAC_PI_2, FRAC_PI_2)),
-                Receiver::Lobe => (Some(three_bands(&slice)), 0.5),
+                Receiver::CosineLobe => (Some(three_bands(&slice)), 0.5),
             };
             let mut seen = Seen { slice, bands, top: slice.low, casts: Vec::new() };
             let march = self.march([col, row], azimuth_rad);
@@ -180,9 +179,9 @@ impl BounceGather<'_> {
         }
         let (fine, levels) = (self.pyramid.fine_samples(), self.pyramid.levels());
         let (mut back, mut angle) = (1.0_f32, 0.0);
-        // Elevations, and how far away each is found.
+        // Elevations, and the distance of each.
         let mut angles: Option<[(f64, i32); 4]> = None;
-        // What a knot looks at: the place and the level of radiance of its sample.
+        // Radiance lookup of a knot: place and level.
         let mut before = ([0.0; 2], 0);
         let (mut looked, mut at) = (0, 0);
         let mut take_in = |newest: (f64, i32), of: ([f64; 2], u32), seen: &mut Seen| {
@@ -190,7 +189,7 @@ impl BounceGather<'_> {
             let [x, y, z, w] = four.map(|(angle, _)| angle);
             let knot_of = if angles.is_none() { of } else { before };
             let (middle, knot) = ((x + w + 23.0 * (y + z)) / 48.0, (y + 4.0 * z + w) / 6.0);
-            // Both radiate alike: the higher opens what both do.
+            // Both have the same radiance: the higher opens the elevations of both.
             let nearest = f64::from(four[0].1);
             let angle = middle.max(knot);
             seen.cast(angle, nearest, || radiance(angle, knot_of));
@@ -212,7 +211,7 @@ impl BounceGather<'_> {
             let of = (march.place(at), shade.min(self.shade.levels()));
             take_in((angle, at), of, seen);
             back *= self.pyramid.growth();
-            // Those that round to one distance are taken in together.
+            // Lookups that round to one distance are combined.
             if whole >= march.reach && (back + 0.5) as i32 > whole {
                 take_in((angle, at), of, seen);
                 take_in((angle, at), of, seen);
@@ -221,7 +220,7 @@ impl BounceGather<'_> {
         }
     }
 
-    /// The two samples on a march step's grid line that a place lies between, and how far between.
+    /// The two grid points on a march step's grid line around a place, and the fraction between.
     pub(crate) fn beside(&self, march: &March, [x, y]: [f64; 2]) -> ([usize; 2], f64) {
         let [cols, rows] = self.pyramid.size.map(|n| n as i32);
         let inside = |i: i32, n: i32| {
@@ -269,7 +268,7 @@ impl BounceGather<'_> {
     }
 }
 
-/// What each of four Legendre coefficients of a slice gives to three bands of the clamped cosine, 1/4 + c/2 +
+/// Contribution of each of four Legendre coefficients of a slice to three bands of the clamped cosine, 1/4 + c/2 +
 /// 5/32 (3c² - 1) with c = N·e, by Simpson's rule in elevation: its fourth order leaves 1e-8.
 fn three_bands(slice: &Slice) -> [f64; 4] {
     const STEPS: u32 = 200;

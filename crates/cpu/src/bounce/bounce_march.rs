@@ -1,4 +1,4 @@
-//! What the surface throws at every sample, exactly but for the azimuths.
+//! Indirect light at every grid point, exact except for the azimuth count.
 
 use crate::indirect::mean_distance_m;
 use crate::light::{Receiver, normal};
@@ -7,11 +7,11 @@ use crate::shared::bounced::{Along, Cast, NEARLY_RAD, radiance};
 use ridgelight::scene::Border;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Light of one more bounce at a sample, for albedo 1, from the exit radiance of all samples, in `azimuths` at the
-/// middles of equal parts of the circle. Weights of a whole hemisphere sum to 1.
+/// Light of one more bounce at a grid point, for albedo 1, from the exit radiance of all grid points, in `azimuths`
+/// at the middles of equal parts of the circle. Weights of a whole hemisphere sum to 1.
 ///
 /// # Panics
-/// Outside the field, or where `exit` is not one colour a sample.
+/// Outside the field, or where `exit` is not one colour per grid point.
 pub fn bounce_march(
     oracle: &Oracle,
     exit: &[[f64; 3]],
@@ -22,7 +22,7 @@ pub fn bounce_march(
     radiance(&stretches_along(oracle, exit, azimuths, [row, col]))
 }
 
-/// The stretches that it is made of, azimuth by azimuth.
+/// Its visible intervals, azimuth by azimuth.
 ///
 /// # Panics
 /// As [`bounce_march`].
@@ -68,8 +68,8 @@ pub fn stretches_along(
     (0..azimuths).map(along).collect()
 }
 
-/// The largest rise from a sample to the corners of a triangle's cell and of those around it, and the steepest slope
-/// between neighbours there.
+/// The largest rise from a grid point to the corners of a triangle's cell and of those around it, and the steepest
+/// slope between neighbours there.
 fn land_around(oracle: &Oracle, triangle: usize, [row, col]: [usize; 2]) -> [f64; 2] {
     let field = oracle.field();
     let [[r, c], ..] = oracle.corners(triangle);

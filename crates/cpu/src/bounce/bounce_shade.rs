@@ -1,17 +1,18 @@
-//! What a bounce gives to every sample: the share of its own hemisphere that is ground, times the mean radiance of the
-//! ground that the nodes around it see.
+//! Indirect light at every grid point: the ground's share of its own hemisphere, times the mean radiance of the
+//! ground visible from the nodes around it.
 
 use crate::sh_shade::nodes_around;
 use crate::shared::sweep::Heights;
 use ridgelight::plan::Nodes;
 
-/// Less is nearly none, of which two rules over azimuths know no ratio.
+/// Below this share the ratio of two azimuth rules is numerical noise.
 pub const LEAST_SHARE: f64 = 1.0 / 256.0;
 
-/// Light of one sample, for albedo 1, from that of all nodes and from what a sky of radiance 1 gives to all samples.
+/// Light of one grid point, for albedo 1, from that of all nodes and from all grid points' light under a sky of
+/// radiance 1.
 ///
 /// # Panics
-/// Outside the field; where a node or a sample has no value.
+/// Outside the field; where a node or a grid point has no value.
 pub fn bounce_shade(
     heights: &Heights,
     nodes: Nodes,

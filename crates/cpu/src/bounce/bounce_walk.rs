@@ -1,9 +1,9 @@
-//! What the ground around a sample throws onto it: the visible stretches of its own lines, nearest first,
-//! found through the occluders that a sweep left and weighed in closed form.
+//! Indirect light at a grid point: the visible intervals of its own lines, nearest first, found through the occluders
+//! of a sweep and weighted in closed form.
 //!
-//! What swept samples meet is a hull tree of their line (Timonen 2012): all between a sample and what it
-//! meets lies below the straight line between the two. Seen from farther along, where both ends are hidden
-//! behind something nearer all between is; where the far end rises over it, what lies between is looked at.
+//! The occluders of a swept line form its hull tree (Timonen 2012): everything between a grid point and its occluder
+//! lies below the straight line between the two. For a receiver farther along, if something nearer hides both ends,
+//! it hides everything between; where the far end rises above it, the points between are visited.
 
 use crate::lattice::Lattice;
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
@@ -14,31 +14,30 @@ use crate::shared::sweep::{CELL_SHIFT, March, NO_SLOPE, PER_CELL, wrapped};
 use glam::{DVec2, DVec3};
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 
-/// What is thrown at a sample, and what it took to find.
+/// Indirect light at a grid point, and the work to find it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Walked {
     /// Radiance times weight.
     pub light: DVec3,
-    /// Weight of all directions above the sample's own plane.
+    /// Weight of all directions above the grid point's own plane.
     pub whole: f64,
-    /// Places of the hull tree that were gone to.
+    /// Points of the hull tree visited.
     pub turns: u32,
-    /// Stretches that were seen.
+    /// Visible intervals.
     pub stretches: u32,
 }
 
 impl Walked {
-    /// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: light of equal radiance all
-    /// around arrives as it is.
+    /// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: uniform incident radiance is preserved.
     pub fn radiance(&self) -> [f64; 3] {
         (self.light / self.whole).to_array()
     }
 }
 
-/// One sample, from the exit radiance of all.
+/// One grid point, from the exit radiance of all.
 ///
 /// # Panics
-/// Outside the field, or where `exit` is not one colour a sample.
+/// Outside the field, or where `exit` is not one colour per grid point.
 pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
     let (all, turns) = walked_along(swept, exit, col, row);
     let (light, whole) = thrown(&all);
@@ -47,7 +46,7 @@ pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walk
     Walked { light: DVec3::from_array(light), whole, turns, stretches }
 }
 
-/// The stretches that it is made of, azimuth by azimuth, distances in march steps; and places that were gone to.
+/// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of points visited.
 ///
 /// # Panics
 /// As [`bounce_walk`].
@@ -62,7 +61,7 @@ pub fn walked_along(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> (Ve
     (all, turns)
 }
 
-/// A sample's own line in one azimuth.
+/// A grid point's own line in one azimuth.
 struct Walk<'a> {
     march: March<'a>,
     lattice: &'a Lattice,
@@ -72,11 +71,11 @@ struct Walk<'a> {
     step: i32,
     own: f32,
     normal: DVec3,
-    /// How the sample's own plane rises along the azimuth.
+    /// Rise of the grid point's own plane along the azimuth.
     plane: f32,
 }
 
-/// How far a walk has come: what is reached is seen up to `reached`, the slope of its last place that rose.
+/// Progress of a walk: the surface is visible up to `reached`, the slope of its last point that rose.
 struct Seen {
     along: Along,
     turns: u32,
@@ -86,7 +85,7 @@ struct Seen {
     reached: f32,
 }
 
-/// A place of the line: distance in steps, slope, radiance.
+/// A point of the line: distance in steps, slope, radiance.
 #[derive(Clone, Copy)]
 struct Place {
     steps: f32,
@@ -95,8 +94,8 @@ struct Place {
 }
 
 impl Seen {
-    /// The piece between two places, of which the far one may be seen: from where it comes up over what is before
-    /// it radiance is linear in the distance.
+    /// The piece between two points, of which the far one may be visible: from where it rises above what is before
+    /// it. Radiance is linear in the distance.
     fn see(&mut self, near: Place, far: Place) {
         let under = (self.reached - near.slope).max(0.0) * near.steps;
         let over = (far.slope - self.reached) * far.steps;
@@ -105,7 +104,7 @@ impl Seen {
         self.add(far.slope, far.steps, [mean, far.light - near.light]);
     }
 
-    /// Surface up to a slope, so many steps away; nothing where it is hidden.
+    /// Adds surface up to a slope, at a distance in steps; nothing where it is hidden.
     fn add(&mut self, slope: f32, steps: f32, [light, spread]: [DVec3; 2]) {
         let low_rad = f64::from(self.reached).atan();
         let high_rad = f64::from(slope).atan().max(low_rad);
@@ -151,7 +150,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Lane position and step, so many steps ahead.
+    /// Lane position and step, that many steps ahead.
     fn place(&self, back: i32) -> (i32, i32) {
         (self.lane * CELL - back * self.march.azimuth.shear, self.step - back)
     }
@@ -181,7 +180,7 @@ impl<'a> Walk<'a> {
         self.leaving(cell, step).lerp(self.leaving(cell + 1, step), t)
     }
 
-    /// Steps from there to what the nearest swept line meets; 0 where that meets nothing.
+    /// Steps from there to the occluder of the nearest swept line; 0 for none.
     fn occluder_at(&self, back: i32) -> i32 {
         let (mut y, mut step) = self.place(back);
         if self.march.periodic() {
@@ -210,12 +209,12 @@ impl<'a> Walk<'a> {
         if !self.march.periodic() && azimuth.shear > 0 {
             reach = reach.min(self.lane * CELL / azimuth.shear);
         }
-        // Behind what the nearest line meets nothing rises.
+        // Nothing rises behind the point where the nearest line has no occluder.
         let limit = self.occluder_at(0).max(1).min(reach);
         if limit < 1 {
             return seen;
         }
-        // The triangle that holds the sample: what leads into it meets it at once.
+        // The triangle of the grid point: the first surface is met at once.
         let next = Place { steps: 1.0, slope: self.slope_at(1), light: self.light_at(1) };
         let own = self.leaving(self.lane, self.step);
         match split_crossing(&self.march, (self.lane, self.step), self.own) {

@@ -1,29 +1,29 @@
-//! What a node sees of one more bounce, by the casting set that the first one has left.
+//! One more bounce at a node, from the visibility cache that the first bounce has filled.
 
 use crate::shared::sweep::{CELL_SHIFT, March, wrapped};
 use ridgelight::plan::azimuths::CELL;
 use std::f64::consts::FRAC_PI_2;
 
-/// What a node sees of a ring around it, along an azimuth.
+/// The visible surface of a node in one ring, along an azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cast {
-    /// The sample where it is in the mean, row-major.
+    /// The grid point at the mean distance, row-major.
     pub sample: usize,
     /// March steps to there.
     pub steps: i32,
-    /// What it counts for.
+    /// Its weight.
     pub weight: f64,
 }
 
 /// Steps to the ends of rings; the last one has none.
 pub const RING_ENDS: [i32; 3] = [3, 9, 27];
 
-/// What a weight is kept in: of a wedge of so many radians, the 65535th part of the most that there is.
+/// Unit of stored weights: for a wedge of so many radians, the 65535th part of the largest weight.
 pub fn cast_part(wedge_rad: f64) -> f64 {
     wedge_rad * FRAC_PI_2 / 65535.0
 }
 
-/// A word that a walk has kept, of the node at a column and a row.
+/// A word of the visibility cache, of the node at a column and a row.
 pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
     let (lane, step) = march.of_sample(col, row);
     let steps = (word & 0xffff) as i32;
@@ -37,10 +37,10 @@ pub fn cast_of(march: &March, word: u32, [col, row]: [i32; 2]) -> Cast {
     Cast { sample: row as usize * march.heights.cols + col as usize, steps, weight }
 }
 
-/// Radiance times weight; not yet divided by what whole hemispheres would give.
+/// Radiance times weight; not yet divided by the sum for whole hemispheres.
 ///
 /// # Panics
-/// A cast of a sample that is none.
+/// A cast refers to a grid point outside the field.
 pub fn cache_gather<'a>(casts: impl IntoIterator<Item = &'a Cast>, exit: &[[f64; 3]]) -> [f64; 3] {
     casts
         .into_iter()

@@ -1,3 +1,6 @@
+//! CPU references of the passes that compute indirect light of diffuse ground: pyramids of
+//! exit radiance, the visibility cache, and the three gathering methods (pyramid, exact march, hull walk).
+
 pub mod bounce_gather;
 pub mod bounce_march;
 pub mod bounce_shade;

@@ -1,9 +1,9 @@
-//! Every level of the pyramid of exit radiance at the field's own samples, by its B-spline.
+//! Every level of the pyramid of exit radiance at the field's own grid points, by its B-spline.
 
 use crate::shared::levels::spline_taps;
 use ridgelight::plan::pyramid::Pyramid;
 
-/// R, G, B of level `number` at a place in samples (column, row), from the texels of all levels.
+/// R, G, B of level `number` at a position in grid points (column, row), from the texels of all levels.
 ///
 /// # Panics
 /// When there are fewer texels than the level needs.
@@ -24,7 +24,7 @@ pub fn shade_at(pyramid: &Pyramid, texels: &[[f64; 3]], number: u32, place: [f64
     sum
 }
 
-/// The same at every sample, row-major.
+/// The same at every grid point, row-major.
 ///
 /// # Panics
 /// When there are fewer texels than the level needs.

@@ -1,10 +1,10 @@
-//! One level of the pyramid of exit radiance from the level an octave finer, as `height_reduce`, but never
-//! beyond what it is made of.
+//! One level of the pyramid of exit radiance from the level an octave finer, as `height_reduce`, but clamped to the
+//! range of its source.
 
 use crate::shared::sweep::wrapped;
 use ridgelight::plan::pyramid::Pyramid;
 
-/// Two neighbouring texels of an axis, and how far between them; beyond the ends the last as it is.
+/// Two neighbouring texels of an axis, and the fraction between them; beyond the ends the last is held.
 fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f64) {
     let count = count as i32;
     let cell = place.floor() as i32;
@@ -17,7 +17,7 @@ fn between(place: f32, count: u32, periodic: bool) -> ([usize; 2], f64) {
     ([held as usize, (held + 1).min(count - 1) as usize], t)
 }
 
-/// R, G, B of level `number` from the samples' exit radiance and the texels of the levels before it.
+/// R, G, B of level `number` from the grid points' exit radiance and the texels of the levels before it.
 ///
 /// # Panics
 /// When there are fewer texels than the source needs.
@@ -55,7 +55,7 @@ pub fn shade_reduce(
     (0..cols * rows).map(texel).collect()
 }
 
-/// The texels of all levels beside the samples themselves.
+/// The texels of all levels besides the grid points themselves.
 pub fn shade_levels(exit: &[[f64; 3]], pyramid: &Pyramid) -> Vec<[f64; 3]> {
     let mut all = Vec::new();
     for number in 1..=pyramid.levels() {

@@ -1,14 +1,14 @@
-//! One level of the pyramid of exit radiance's series, coefficient by coefficient as
-//! [`shade_reduce`](crate::shade_reduce) makes one of radiance.
+//! One level of the pyramid of exit radiance as SH series: [`shade_reduce`](crate::shade_reduce) applied to each
+//! coefficient.
 
 use crate::shade_reduce::shade_reduce;
 use crate::specular_gather::Series;
 use ridgelight::plan::pyramid::Pyramid;
 
-/// Series of level `number` from those of the samples and of the texels of the levels before it.
+/// Series of level `number` from those of the grid points and of the texels of the levels before it.
 ///
 /// # Panics
-/// When there are fewer texels than the source needs; when there are no samples.
+/// When there are fewer texels than the source needs; when there are no grid points.
 pub fn vector_reduce(
     exit: &[Series],
     pyramid: &Pyramid,

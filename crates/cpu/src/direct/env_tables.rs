@@ -1,5 +1,5 @@
-//! What an azimuth's wedge of the environment gives above each elevation (TW10 eq. 7, split into the
-//! three components of the normal, in which it is linear: no normal angle is tabulated).
+//! Irradiance from an azimuth's wedge of the environment above each elevation (TW10 eq. 7), split into the three
+//! components of the normal. It is linear in them, so no normal angle is tabulated.
 
 use glam::DVec3;
 use ridgelight::scene::Border;
@@ -40,8 +40,8 @@ impl EnvTables {
 }
 
 impl EnvTables {
-    /// Three moments above the direction of slope `lowest`; and of each the most by which it changes between two nodes, where
-    /// that elevation is off by `off_rad`.
+    /// Three moments above the direction of slope `lowest`; and for each its largest change between two nodes, for an
+    /// elevation error of `off_rad`.
     ///
     /// # Panics
     /// Outside the tables.
@@ -99,7 +99,7 @@ pub fn env_tables(
             for node in (0..nodes).rev() {
                 let elevation =
                     bottom_rad + (FRAC_PI_2 - bottom_rad) * node as f64 / (nodes - 1) as f64;
-                // Whole rows above the node, then a part of the row that it lies in.
+                // Whole rows above the node, then the part of the row that contains it.
                 while upper > elevation {
                     let row_bottom = FRAC_PI_2 - PI * (row + 1) as f64 / height as f64;
                     let lower = row_bottom.max(elevation);

@@ -1,6 +1,6 @@
-//! One light's share of the picture: its sum, no less than 0, times its colour and the surface's albedo.
+//! Exit radiance of one light: its sum, clamped at 0, times its colour and the surface's albedo.
 
-/// A light's sum over azimuths, one value a sample.
+/// A light's sum over azimuths, one value per grid point.
 #[derive(Clone, Copy, Debug)]
 pub enum LightSum<'a> {
     /// `scalar_sum`.
@@ -9,8 +9,7 @@ pub enum LightSum<'a> {
     Colour(&'a [[f64; 3]]),
 }
 
-/// The layer of one light, row-major. `colour`: of the light, where the sum has none, times the
-/// albedo, where that is constant.
+/// The layer of one light, row-major. `colour`: of the light, where the sum has none; includes a constant albedo.
 pub fn light_resolve(
     sum: LightSum,
     colour: [f32; 3],

@@ -1,3 +1,6 @@
+//! CPU references of the passes that compute direct light: sky, environment, suns, key lights
+//! and sphere lights, and their resolve into radiance.
+
 pub mod env_tables;
 pub mod light_resolve;
 pub mod sky_shade;

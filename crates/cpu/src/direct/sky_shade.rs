@@ -1,4 +1,4 @@
-//! What a uniform sky and an environment give to every sample through its horizons.
+//! Exit radiance under a uniform sky and an environment, from a grid point's horizons.
 
 use crate::env_tables::EnvTables;
 use crate::shared::gather::{Swept, elevation_moments};
@@ -6,7 +6,7 @@ use glam::DVec3;
 use ridgelight::plan::Azimuth;
 use std::f64::consts::PI;
 
-/// Exit radiance of one sample of albedo 1 under a sky of radiance 1.
+/// Exit radiance of one grid point of albedo 1 under a sky of radiance 1.
 ///
 /// # Panics
 /// Outside the field.
@@ -18,9 +18,9 @@ pub fn sky_at(swept: &Swept, col: i32, row: i32) -> f64 {
     sky
 }
 
-/// What a wedge of it gives from a slope up.
+/// Irradiance from a wedge of it above a slope.
 pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
-    // TW10 eq. 5 with the normal integrated over the wedge instead of taken at its centre.
+    // TW10 eq. 5, with the normal integrated over the wedge instead of evaluated at its centre.
     let moments = elevation_moments(lowest);
     let flat_part =
         normal.x * f64::from(azimuth.wedge_cos) + normal.y * f64::from(azimuth.wedge_sin);
@@ -28,7 +28,7 @@ pub fn wedge_of_sky(azimuth: &Azimuth, lowest: f64, normal: DVec3) -> f64 {
     (flat_part * moments[0] + normal.z * wedge * moments[1]) / PI
 }
 
-/// Exit radiance of one sample of albedo 1 under an environment, RGB.
+/// Exit radiance of one grid point of albedo 1 under an environment, RGB.
 ///
 /// # Panics
 /// Outside the field.
@@ -40,12 +40,12 @@ pub fn environment_at(swept: &Swept, tables: &EnvTables, col: i32, row: i32) -> 
     environment.to_array()
 }
 
-/// `sky_sum` of all azimuths: [`sky_at`] for every sample, row-major.
+/// `sky_sum` of all azimuths: [`sky_at`] for every grid point, row-major.
 pub fn sky_shade(swept: &Swept) -> Vec<f64> {
     swept.per_sample(|col, row| sky_at(swept, col, row))
 }
 
-/// `env_sum` of all azimuths: [`environment_at`] for every sample, row-major.
+/// `env_sum` of all azimuths: [`environment_at`] for every grid point, row-major.
 pub fn env_shade(swept: &Swept, tables: &EnvTables) -> Vec<[f64; 3]> {
     swept.per_sample(|col, row| environment_at(swept, tables, col, row))
 }

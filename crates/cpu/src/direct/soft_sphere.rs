@@ -1,5 +1,5 @@
-//! How far a device may be from the twin of a ball of light by spherical harmonics: all that f32 does, whatever
-//! the order, the ball and the field. What harmonics themselves miss is not in it.
+//! Tolerance of a sphere light by spherical harmonics against its CPU reference: the f32 error at any order, sphere
+//! and field. The truncation error of the harmonics is not part of it.
 
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -11,11 +11,11 @@ use ridgelight::basis::bands;
 use ridgelight::basis::light::receiver;
 use ridgelight::scene::{Quality, Receiver, Wedges};
 
-/// The shares that coefficients of what is seen and of a ball have in the light, of a quality.
+/// Contributions of visibility and sphere coefficients to the light, for a quality.
 #[derive(Clone, Debug)]
 pub struct SoftBall {
     quality: Quality,
-    /// `[coefficient of the ball][row of the receiver][coefficient of what is seen]`, magnitudes.
+    /// `[coefficient of the sphere][row of the receiver][coefficient of visibility]`, magnitudes.
     shares: Vec<Vec<Vec<f64>>>,
 }
 
@@ -32,12 +32,12 @@ impl SoftBall {
         Self { quality: *quality, shares: (0..count).map(of_one).collect() }
     }
 
-    /// Of a series `seen` through horizons whose slopes err by `slope_error`, on a surface of this normal, of a
-    /// ball of radiance 1.
+    /// For a series `seen` through horizons with a slope error of `slope_error`, on a surface of this normal, under a
+    /// sphere light of radiance 1.
     ///
-    /// A coefficient of what is seen errs as [`ShadeError::series`] says, of azimuths across the ball and beyond;
-    /// the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
-    /// at both. One of the ball as `coefficient` says. Products sum as many terms as there are, each of four
+    /// A coefficient of visibility errs as [`ShadeError::series`] gives it, for azimuths across the sphere and
+    /// beyond; the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
+    /// at both. One of the sphere as `coefficient` gives it. Products sum as many terms as there are, each of four
     /// factors, whose polynomials of the normal are 2 at most and change by 6 a radian.
     pub fn twin(&self, ball: &BallSeen, slope_error: f64, normal: DVec3, seen: &[f64]) -> f64 {
         let order = self.quality.sh_order as usize;
@@ -71,7 +71,7 @@ impl SoftBall {
     }
 }
 
-/// The largest that a coefficient of band l of a ball may be, and how far it may err.
+/// The largest magnitude of a coefficient of band l of a sphere, and its error.
 ///
 /// A cap of half-angle a has 2π √((2l+1)/4π) sin²a P_l'(cos a)/(l(l+1)) about its axis, P_l' ≤ l(l+1)/2. Its sine
 /// errs by δ = 6 ε + 4 ε (1 + H/d) of itself (as [`BallSeen::twin`] has the place), its cosine by

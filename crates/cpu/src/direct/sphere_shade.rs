@@ -1,5 +1,5 @@
-//! What a ball of light gives to every sample: the shader's own slices, each by the oracle's profile in f64
-//! where the shader marches over blocks of cells.
+//! Direct light of a sphere light: the shader's own slices, each from the oracle's profile in f64, where the shader
+//! marches over blocks of cells.
 
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
@@ -7,7 +7,7 @@ use crate::sphere::{away_m, sphere_on};
 use ridgelight::scene::SphereLight;
 use std::f64::consts::PI;
 
-/// Exit radiance of a sample for a ball of radiance 1 and albedo 1; `slices` is the setting.
+/// Exit radiance of a grid point for a sphere light of radiance 1 and albedo 1; `slices` is the setting.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -30,7 +30,7 @@ pub fn sphere_at(
     sphere_on(oracle, row, col, &receivers, sphere, count as usize)[0]
 }
 
-/// [`sphere_at`] of every sample, row-major.
+/// [`sphere_at`] of every grid point, row-major.
 pub fn sphere_shade(oracle: &Oracle, sphere: &SphereLight, slices: u32) -> Vec<f64> {
     let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
     let of = |i: usize| sphere_at(oracle, sphere, slices, i / cols, i % cols);

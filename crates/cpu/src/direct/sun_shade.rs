@@ -1,10 +1,10 @@
-//! What a sun or a key light gives to every sample through its horizons in the azimuths that it covers.
+//! Direct light of a sun or a key light, from a grid point's horizons in the azimuths that it covers.
 
 use crate::shared::gather::{Swept, elevation_moments};
 use ridgelight::plan::azimuths::Shape;
 use std::f64::consts::PI;
 
-/// Exit radiance of one sample of albedo 1, for irradiance 1 of a sun or radiance 1 of a key light.
+/// Exit radiance of one grid point of albedo 1, for irradiance 1 of a sun or radiance 1 of a key light.
 ///
 /// # Panics
 /// Outside the field.
@@ -36,7 +36,7 @@ pub fn sun_at(swept: &Swept, shape: Shape, col: i32, row: i32) -> f64 {
     sun
 }
 
-/// `sun_sum` of all azimuths: [`sun_at`] for every sample, row-major.
+/// `sun_sum` of all azimuths: [`sun_at`] for every grid point, row-major.
 pub fn sun_shade(swept: &Swept, shape: Shape) -> Vec<f64> {
     swept.per_sample(|col, row| sun_at(swept, shape, col, row))
 }

@@ -1,8 +1,8 @@
-//! What `horizon_sweep` would now find on the lines that an edited rectangle can reach: from where a
-//! line meets the rectangle to where its hull has left it behind for good.
+//! Occluders that `horizon_sweep` would now find on the lines that an edited rectangle can reach: from where a line
+//! meets the rectangle until no hull vertex depends on it.
 //!
-//! The shader's lines march in groups, from the first that meets the rectangle to the last that has
-//! left it behind, and find on the others what was there.
+//! The shader's lines march in groups, from the first line that meets the rectangle to the last that is past it. On
+//! the other lines they recompute the same values.
 
 use crate::dirty_mark;
 use crate::horizon_sweep::{SweepOptions, line_height, stored};
@@ -11,8 +11,8 @@ use crate::shared::sweep::{CELL_SHIFT, Heights, March, on_field};
 use ridgelight::plan::Rectangle;
 use ridgelight::plan::azimuths::{Azimuth, CELL};
 
-/// The rectangle as an azimuth marches over it, and as far beside it as a sample looks that a line
-/// proposes to: the line's distance, and to the next lane.
+/// The rectangle in an azimuth's march coordinates, widened by the distance at which a grid point uses a line: the
+/// line's spacing, and the next lane.
 struct Reach {
     steps: [i32; 2],
     positions: [i32; 2],
@@ -38,9 +38,8 @@ impl Reach {
     }
 }
 
-/// Brings the occluders of one azimuth, which hold what a sweep left before the edit, to what it would
-/// leave now, and marks in `dirty` the samples whose horizon may have changed by that. Returns the
-/// samples swept.
+/// Updates the occluders of one azimuth from a sweep before the edit to one after it. Marks in `dirty` the grid
+/// points whose horizon may have changed. Returns the number of line steps swept.
 ///
 /// # Panics
 /// For a border that repeats; when the lattice is too small for the field and the options.
@@ -75,7 +74,7 @@ pub fn horizon_resweep(
         let vertex = |step: i32| {
             (stored(line_height(&march, y0 + step * shear, step), options.packed), step as f32)
         };
-        // The hull where the line enters, from its newest vertex down.
+        // The hull where the line enters, newest vertex first.
         let mut hull: Vec<(f32, f32)> = Vec::new();
         let mut step = entered - 1;
         while step >= 0 && stands(step) {
@@ -111,7 +110,7 @@ pub fn horizon_resweep(
             } else if met <= touched {
                 standing = met;
             }
-            // Nothing that has changed stands on the hull, nor will.
+            // No changed vertex is on the hull, and none will be.
             let passed = step >= reach.steps[1] || y + shear > reach.positions[1];
             if passed && standing < entered {
                 break;
@@ -121,7 +120,7 @@ pub fn horizon_resweep(
     swept
 }
 
-/// Marks the samples that look at a line's occluder at a step.
+/// Marks the grid points that use a line's occluder at a step.
 fn mark(march: &March, y: i32, step: i32, spacing: i32, dirty: &mut [u32]) {
     let first = ((y - spacing + CELL - 1) >> CELL_SHIFT).max(0);
     let last = ((y + spacing) >> CELL_SHIFT).min(march.lanes - 1);

@@ -1,8 +1,8 @@
-//! Levels of a height pyramid at the field's own samples, by their B-splines.
+//! Levels of a height pyramid at the field's own grid points, by their B-splines.
 
 use crate::shared::levels::LevelTexels;
 
-/// Level `number` at every sample, row after row.
+/// Level `number` at every grid point, row after row.
 ///
 /// # Panics
 /// When there are fewer texels than the level needs.

@@ -1,11 +1,11 @@
-//! One level of a height pyramid from the level an octave finer, each texel the mean of four bilinear
-//! samples around its place (Nowrouzezahrai & Snyder 2009, §9).
+//! One level of a height pyramid from the level an octave finer: each texel is the mean of four bilinear samples
+//! around its position (Nowrouzezahrai & Snyder 2009, §9).
 
 use crate::shared::sweep::{Heights, wrapped};
 use ridgelight::plan::pyramid::Pyramid;
 
-/// Two neighbouring texels of an axis, and how far between them; beyond the ends the last two go on
-/// straight.
+/// Two neighbouring texels of an axis, and the fraction between them; beyond the ends the last two are extrapolated
+/// linearly.
 fn between(place: f32, count: u32, periodic: bool) -> (u32, u32, f32) {
     let count = count as i32;
     let cell = place.floor() as i32;
@@ -17,7 +17,7 @@ fn between(place: f32, count: u32, periodic: bool) -> (u32, u32, f32) {
     (held as u32, (held + 1).min(count - 1) as u32, place - held as f32)
 }
 
-/// The texels of level `number` from those of all levels, of which only its source's are read.
+/// The texels of level `number` from those of all levels; only its source's are read.
 ///
 /// # Panics
 /// When there are fewer texels than the source needs.
@@ -59,7 +59,7 @@ pub fn height_reduce(
     (0..cols * rows).map(texel).collect()
 }
 
-/// The texels of all levels beside the field itself.
+/// The texels of all levels besides the field itself.
 pub fn height_levels(heights: &Heights, pyramid: &Pyramid) -> Vec<f32> {
     let mut all = Vec::new();
     for number in 1..=pyramid.levels() {

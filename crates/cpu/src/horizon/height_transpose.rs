@@ -1,4 +1,4 @@
-//! The heights laid out for sweeps, one copy a march axis, lanes contiguous.
+//! The heights in the layout of sweeps, one copy per march axis, lanes contiguous.
 
 /// `heights_by_col`: for marches along columns, `[col][row]`.
 ///

@@ -1,5 +1,5 @@
-//! Horizons by testing everything a sample's own line meets: the baseline of every speed claim and,
-//! with all crossings, the truth on the device.
+//! Horizons by testing every crossing of a grid point's own line: the baseline of every speed-up and, with all
+//! crossings, the ground truth on the device.
 
 use crate::lattice::Lattice;
 use crate::shared::fuse::{Found, NOTHING};
@@ -16,7 +16,7 @@ pub struct MarchOptions {
     pub warm_up: i32,
 }
 
-/// What the sample (lane, step) meets highest.
+/// Horizon of the grid point (lane, step).
 pub fn marched(march: &March, lane: i32, step: i32, options: MarchOptions) -> Found {
     let mut best = NOTHING;
     for back in 1..=step + options.warm_up {
@@ -27,7 +27,7 @@ pub fn marched(march: &March, lane: i32, step: i32, options: MarchOptions) -> Fo
     best
 }
 
-/// Marches every sample in one azimuth: `slopes` and `distances` of its layer, one slot a lane.
+/// Marches from every grid point in one azimuth: `slopes` and `distances` of its layer, one slot a lane.
 ///
 /// # Panics
 /// When the lattice is not one slot a lane.

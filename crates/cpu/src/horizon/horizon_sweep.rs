@@ -1,7 +1,7 @@
-//! For every sample of every line of an azimuth, the earlier sample of the line that rises highest
-//! (Timonen & Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
+//! For every step of every line of an azimuth, the earlier step of that line with the steepest slope (Timonen &
+//! Westerholm 2010, algorithm 1): an upper hull kept as a stack, O(1) amortised.
 //!
-//! The shader's forms differ only in where the hull lives; here it is a vector.
+//! The shader's variants differ only in their hull storage; here it is a vector.
 
 use crate::lattice::Lattice;
 use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, on_field, wrapped};
@@ -28,7 +28,7 @@ impl Default for SweepOptions {
     }
 }
 
-/// What brings the largest |height| to 1, for packed entries.
+/// Scale that brings the largest |height| to 1, for packed entries.
 pub fn height_scale(heights: &[f32]) -> f32 {
     let largest = heights.iter().fold(0.0_f32, |m, h| m.max(h.abs()));
     if largest > 0.0 { 1.0 / largest } else { 1.0 }
@@ -48,7 +48,7 @@ pub fn line_height(march: &March, y: i32, step: i32) -> f32 {
     h + t * (march.height_at(next, step) - h)
 }
 
-/// What a height becomes by being packed.
+/// A height after packing.
 pub(crate) fn stored(h: f32, packed: Option<f32>) -> f32 {
     packed.map_or(h, |scale| f16::from_f32(h * scale).to_f32() / scale)
 }
@@ -80,7 +80,7 @@ pub fn horizon_sweep(
             if periodic || on_field(y, lanes) {
                 let h = line_height(&march, y, step);
                 let x = step as f32;
-                // Pop while the deeper vertex looks at least as high as the newer one.
+                // Pop while the deeper vertex subtends at least the slope of the newer one.
                 while let [.., under, top] = hull[..] {
                     let deeper = (under.0 - h) * (x - top.1);
                     let newer = (top.0 - h) * (x - under.1);

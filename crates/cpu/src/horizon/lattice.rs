@@ -1,4 +1,4 @@
-//! What a sweep leaves behind: one value a line and march step.
+//! Result of a sweep: one value per line and march step.
 
 use crate::shared::sweep::{CELL_SHIFT, NO_SLOPE, wrapped};
 use ridgelight::plan::azimuths::{Azimuth, CELL};
@@ -7,9 +7,8 @@ use ridgelight::scene::Border;
 /// The lattice of one march axis: `[layer][march position][slot]`, where slot is the line's lane
 /// position in line spacings, flipped as its azimuth flips lanes.
 ///
-/// The shaders store the same values by line and step, where a line's writes lie together
-/// (`lattice.glsl`): [`line_number`] says which. Passes that find one value a sample store it by lane
-/// and step.
+/// The shaders store the same values by line and step, where a line's writes are contiguous (`lattice.glsl`):
+/// [`line_number`] gives the line. Passes that find one value per grid point store it by lane and step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
     /// Azimuths.
@@ -18,12 +17,12 @@ pub struct Lattice {
     pub width: usize,
     /// March positions.
     pub height: usize,
-    /// March steps back to what is met, 0 where nothing is.
+    /// March steps back to the occluder, 0 for none.
     pub occluders: Vec<u16>,
-    /// Slope of what is met, [`NO_SLOPE`] where nothing is.
+    /// Slope of the occluder, [`NO_SLOPE`] for none.
     pub slopes: Vec<f32>,
-    /// March steps to what is met, of passes that find it between steps; the shaders keep them in
-    /// every second layer of `slopes`.
+    /// March steps to the occluder, of passes that find it between steps; the shaders store them in every second
+    /// layer of `slopes`.
     pub distances: Vec<f32>,
 }
 
@@ -38,7 +37,7 @@ pub fn slots(lanes: usize, line_shift: u32, border: Border) -> usize {
 }
 
 impl Lattice {
-    /// An empty lattice for a march over `lanes` × `steps` samples.
+    /// An empty lattice for a march over `lanes` × `steps` grid points.
     pub fn new(layers: usize, width: usize, steps: usize) -> Self {
         let words = layers * width * steps;
         Self {
@@ -120,8 +119,8 @@ pub fn line_position(slot: i32, step: i32, shear: i32, line_shift: u32) -> i32 {
     slot * spacing + ((step * shear) & (spacing - 1))
 }
 
-/// The line that is in `slot` at a step counted from the first of the march, of `total` steps: what
-/// the shaders number lines by. `slots` as [`slots`] gives it.
+/// The shaders' number of the line that is in `slot` at a step counted from the first of the march, of `total` steps.
+/// `slots` as [`slots`] gives it.
 pub fn line_number(
     (slot, slots): (i32, i32),
     (step, total): (i32, i32),

@@ -1,3 +1,6 @@
+//! CPU references of the passes that compute horizons: sweeps and their lattice, marches, height
+//! pyramids. [`scalar_sweep`] is a plain CPU implementation to compare speed with.
+
 pub mod height_expand;
 pub mod height_reduce;
 pub mod height_transpose;

@@ -1,6 +1,6 @@
-//! Horizons from a height pyramid: one sample a level along each azimuth, at distances that grow by
-//! 2^(1/k) and are rounded to whole march steps; the largest value of the cubic B-spline over their
-//! angles (Nowrouzezahrai & Snyder 2009, eq. 14-17).
+//! Horizons from a height pyramid: one lookup per level along each azimuth, at distances that grow by 2^(1/k) and are
+//! rounded to whole march steps; the largest value of the cubic B-spline over their angles (Nowrouzezahrai & Snyder
+//! 2009, eq. 14-17).
 
 use crate::lattice::Lattice;
 use crate::oracle::Oracle;
@@ -9,10 +9,10 @@ use crate::shared::sweep::{CELL_SHIFT, Heights, March, NO_SLOPE, PER_CELL, wrapp
 use ridgelight::plan::azimuths::{Azimuth, CELL, FLIPS_LANES};
 use ridgelight::plan::pyramid::Pyramid;
 
-/// The levels beside the field itself, as they are stored.
+/// Storage of the levels besides the field itself.
 #[derive(Clone, Copy, Debug)]
 pub enum Stored<'a> {
-    /// At every sample of the field, level after level.
+    /// At every grid point of the field, level after level.
     Stack(&'a [f32]),
     /// At their own texels.
     Levels(&'a [f32]),
@@ -20,8 +20,8 @@ pub enum Stored<'a> {
 
 /// The last four angles, the newest last, and the largest value of the spline so far.
 ///
-/// Angles, not slopes: these have no bound, and one of them would outweigh the others. Before the
-/// first and after the last, angles go on as they are, so that the spline begins and ends with them.
+/// Angles, because slopes have no bound and a single one could outweigh the others. The first and last angles repeat,
+/// so that the spline begins and ends with them.
 #[derive(Clone, Copy, Debug)]
 struct Blocked {
     angles: [f32; 4],
@@ -53,7 +53,7 @@ pub struct PyramidMarch<'a> {
 }
 
 impl PyramidMarch<'_> {
-    /// Column and row of a lane and step, wrapped where the field repeats, else held at the edge.
+    /// Column and row of a lane and step, wrapped where the field repeats, else clamped.
     fn texel_of(&self, lane: i32, step: i32) -> (i32, i32) {
         let march = &self.march;
         let inside = |i: i32, n: i32| {
@@ -91,14 +91,14 @@ impl PyramidMarch<'_> {
         }
     }
 
-    /// Rise of a level from a sample to `whole` steps along.
+    /// Rise of a level from a grid point to `whole` steps along.
     fn rise_to(&self, number: u32, lane: i32, step: i32, whole: i32) -> f32 {
         let y = lane * CELL - whole * self.march.azimuth.shear;
         let line = (y >> CELL_SHIFT, (y & (CELL - 1)) as f32 * PER_CELL);
         self.height(number, line, step - whole) - self.height(number, (lane, 0.0), step)
     }
 
-    /// Slope of the horizon of a sample; [`NO_SLOPE`] where the march leaves the field at once.
+    /// Slope of the horizon of a grid point; [`NO_SLOPE`] where the march leaves the field at once.
     ///
     /// # Panics
     /// Outside the field; when levels lack texels.
@@ -135,7 +135,7 @@ impl PyramidMarch<'_> {
     }
 }
 
-/// Marches every sample in one azimuth: `slopes` of its layer, one slot a lane.
+/// Marches from every grid point in one azimuth: `slopes` of its layer, one slot a lane.
 ///
 /// # Panics
 /// When the lattice is not one slot a lane, or levels lack texels.
@@ -168,7 +168,7 @@ pub struct Within<'a> {
 }
 
 impl Within<'_> {
-    /// Height of a level where a line between columns (`crosses_row`) or between rows is crossed.
+    /// Height of a level where a line crosses between columns (`crosses_row`) or between rows.
     fn height(&self, number: u32, [x, y]: [f64; 2], crosses_row: bool) -> f64 {
         let [cols, rows] = self.pyramid.size.map(|n| n as i32);
         let inside = |i: i32, n: i32| {
@@ -201,10 +201,10 @@ impl Within<'_> {
         }
     }
 
-    /// Slope of the lowest direction that is free up to a distance; -∞ where the march leaves the field at once.
+    /// Slope of the lowest visible direction up to a distance; -∞ where the march leaves the field at once.
     ///
-    /// The spline over the angles is looked at up to the distance. It takes in the two samples beyond that it
-    /// depends on there (NS09 eq. 14-17; the thesis, eq. 4.24, 4.25).
+    /// The spline over the angles is evaluated up to the distance. It includes the two lookups beyond that it depends
+    /// on there (NS09 eq. 14-17; the thesis, eq. 4.24, 4.25).
     ///
     /// # Panics
     /// When levels lack texels.
@@ -220,7 +220,7 @@ impl Within<'_> {
             let to = if advance[i] > 0.0 { last[i] - here[i] } else { here[i] };
             if advance[i].abs() < 1e-8 { 1e8 } else { to / advance[i].abs() }
         };
-        // A hair more, so that rounding does not leave the field a step early.
+        // Slightly more, so that rounding does not leave the field a step early.
         let inside = room(0).min(room(1)) + 1e-4;
         let reach = if self.pyramid.periodic { 1e8 } else { inside } as i32;
         if reach <= 0 {
@@ -254,8 +254,8 @@ impl Within<'_> {
     }
 }
 
-/// The last four angles, the newest last, how many there were, and the largest value of their spline up to its
-/// end, where it is looked at too.
+/// The last four angles, the newest last, their count, and the largest value of their spline up to its end, where it
+/// is evaluated too.
 #[derive(Clone, Copy, Debug)]
 struct BlockedWithin {
     angles: [f64; 4],

@@ -1,16 +1,15 @@
-//! The rival: a hull sweep on the processor, as one writes it in plain scalar code.
+//! A hull sweep on the CPU in plain scalar code, as the competitor in timings of the device's sweeps.
 //!
-//! Timonen & Westerholm 2010 §4 line by line: unit steps along lines turned to the azimuth, heights
-//! bilinear between four samples, the hull as a stack, results in a lattice turned with the lines.
-//! All cores, f32, nothing vectorised by hand and no output rotated back. It exists to be timed
-//! beside the device's sweeps.
+//! Timonen & Westerholm 2010 §4 line by line: unit steps along lines rotated to the azimuth, heights bilinear between
+//! four grid points, the hull as a stack, results in a lattice rotated with the lines. All cores, f32, no manual
+//! vectorisation, no rotation back.
 
 use std::f64::consts::TAU;
 use std::sync::Mutex;
 
 use ridgelight::scene::HeightField;
 
-/// Lines that a thread takes at a time.
+/// Lines per work item of a thread.
 const BAND: usize = 8;
 
 /// Sweeps of one field, one azimuth at a time.
@@ -21,12 +20,12 @@ pub struct ScalarSweep<'a> {
     threads: usize,
     slopes: Vec<f32>,
     spans: Vec<[u32; 2]>,
-    /// One a thread: height and step of a hull's vertices.
+    /// One per thread: height and step of a hull's vertices.
     stacks: Vec<Vec<[f32; 2]>>,
     lattice: Lattice,
 }
 
-/// Where the turned lattice lies: position (x, y) in columns and rows of step `a` on line `j`.
+/// Placement of the rotated lattice: position (x, y) in columns and rows of step `a` on line `j`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lattice {
     middle: [f32; 2],
@@ -46,9 +45,9 @@ impl Lattice {
         ]
     }
 
-    /// Steps of a line between samples of the field: from the first up to, not with, the second.
+    /// Steps of a line within the field: from the first up to, not including, the second.
     ///
-    /// x0 + a·dx rounds to the same order as it runs, so ends that lie inside hold all between them.
+    /// x0 + a·dx rounds monotonically, so if both ends are inside, everything between is.
     fn span(&self, [x0, y0]: [f32; 2], side: usize, [last_x, last_y]: [f32; 2]) -> [u32; 2] {
         let (mut low, mut high) = (0.0_f64, side as f64);
         for (start, step, last) in [(x0, self.dx, last_x), (y0, self.dy, last_y)] {
@@ -97,7 +96,7 @@ impl<'a> ScalarSweep<'a> {
         }
     }
 
-    /// Threads that it runs on: one a core.
+    /// Threads used: one per core.
     pub fn threads(&self) -> usize {
         self.threads
     }
@@ -142,8 +141,8 @@ impl<'a> ScalarSweep<'a> {
         self.side
     }
 
-    /// The first step of a line that lies on the field, and the slopes from there on: those of the
-    /// steepest line to anything behind, -∞ where nothing is behind.
+    /// The first step of a line that lies on the field, and the slopes from there on: the steepest slope to an
+    /// earlier step, -∞ where there is none.
     pub fn line(&self, line: usize) -> (usize, &[f32]) {
         let [first, end] = self.spans[line].map(|i| i as usize);
         (first, &self.slopes[line * self.side..][first..end])
@@ -155,18 +154,18 @@ impl<'a> ScalarSweep<'a> {
         [x + step as f32 * self.lattice.dx, y + step as f32 * self.lattice.dy]
     }
 
-    /// Samples on all lines of the azimuth swept last.
+    /// Steps on the field, of all lines of the last azimuth.
     pub fn samples(&self) -> u64 {
         self.spans.iter().map(|[first, end]| u64::from(end - first)).sum()
     }
 }
 
-/// Bilinear between four samples.
+/// Bilinear between four grid points.
 #[inline(always)]
 fn height(heights: &[f32], cols: usize, x: f32, y: f32) -> f32 {
     let (ix, iy) = (x as i32, y as i32);
     let (tx, ty) = (x - ix as f32, y - iy as f32);
-    // One bound for all four.
+    // One bounds check for all four.
     let four = &heights[iy as usize * cols + ix as usize..][..cols + 2];
     let (north, south) = (&four[..2], &four[cols..]);
     (north[0] * (1.0 - tx) + north[1] * tx) * (1.0 - ty)
@@ -189,7 +188,7 @@ fn sweep_line(
         return span;
     };
     let height_at = |a: f32| height(heights, cols, x0 + a * lattice.dx, y0 + a * lattice.dy);
-    // The hull's top stays in registers; `below` of what it stands on is in the stack.
+    // The top of the hull stays in registers; the rest is on the stack.
     let mut a = span[0] as f32;
     let (mut top_h, mut top_a, mut below) = (height_at(a), a, 0);
     *first = f32::NEG_INFINITY;

@@ -1,5 +1,5 @@
-//! Exact horizons of the triangulated surface in azimuths along grid vectors (a, b): every sample
-//! lies on a line, and every crossing of a line with grid lines and diagonals is on its hull.
+//! Exact horizons of the triangulated surface in azimuths along grid vectors (a, b). Every grid point lies on a line,
+//! and the hull includes every crossing of a line with grid lines and diagonals.
 
 use crate::lattice::Lattice;
 use crate::shared::surface::{segment_crossings, surface_rise};
@@ -26,8 +26,8 @@ fn rise_over(march: &March, own: f32, y: i32, step: i32, u: f32) -> f32 {
     surface_rise(corners, own, u, f, march.split_along())
 }
 
-/// A vertex of the hull: height, and place as whole step and the rest of one, so that differences of
-/// near places keep their digits.
+/// A vertex of the hull: height, and position as whole step and fraction, so that differences of near positions stay
+/// exact.
 #[derive(Clone, Copy)]
 struct Vertex {
     h: f32,

@@ -1,4 +1,4 @@
-//! The horizon of every sample in the azimuths of a batch, from the lattice of a sweep.
+//! The horizon of every grid point in the azimuths of a batch, from the lattice of a sweep.
 
 use crate::shared::fuse::Found;
 use crate::shared::gather::Swept;
@@ -7,18 +7,18 @@ use ridgelight::plan::azimuths::Azimuth;
 use ridgelight::scene::Border;
 use std::f64::consts::FRAC_PI_2;
 
-/// What the pass writes for one sample in one azimuth.
+/// Output of the pass for one grid point in one azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FusedHorizon {
-    /// What was met, before the border had its say.
+    /// The horizon before the border is applied.
     pub found: Found,
     /// Elevation, radians: 0 or more unless the border is open.
     pub angle_rad: f64,
-    /// World length to what makes the horizon; 0 where nothing does, and in modes that read slopes.
+    /// World length to the horizon; 0 for none, and in modes that read slopes.
     pub distance_m: f32,
 }
 
-/// One sample in one azimuth.
+/// One grid point in one azimuth.
 ///
 /// # Panics
 /// Outside the field.
@@ -35,7 +35,7 @@ pub fn fused_horizon(swept: &Swept, azimuth: &Azimuth, col: i32, row: i32) -> Fu
     }
 }
 
-/// All samples in all azimuths, as `[azimuth][row][column]`.
+/// All grid points in all azimuths, as `[azimuth][row][column]`.
 pub fn sweep_fuse(swept: &Swept) -> Vec<FusedHorizon> {
     let one = |a| swept.per_sample(|col, row| fused_horizon(swept, a, col, row));
     swept.azimuths.iter().flat_map(one).collect()

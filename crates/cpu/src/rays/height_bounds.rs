@@ -1,7 +1,7 @@
-//! The highest of each block of cells that rays may skip.
+//! The maximum of each block of cells that rays may skip.
 
-/// Highest corner of the cells of each block of 4^level by 4^level, row-major: `cells` are the first
-/// `cells_x` of each of the first `cells_y` rows of `cols`.
+/// Highest corner of the cells of each block of 4^level by 4^level, row-major: `cells` are the first `cells_x` of
+/// each of the first `cells_y` rows of `cols`.
 ///
 /// # Panics
 /// When there are fewer cells.

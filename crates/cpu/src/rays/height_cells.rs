@@ -1,11 +1,10 @@
-//! What rays over the surface look at: each cell's corners, and each sample's height and slopes.
+//! The surface in the layout that rays read: each cell's corners, and each grid point's height and slopes.
 
 use crate::light::normal;
 use ridgelight::scene::{Border, HeightField};
 
-/// `cells`: heights above the base at north-west, north-east, south-west and south-east of each cell, for
-/// every sample the cell to its south-east; beyond the last samples the first where the field repeats,
-/// else the last.
+/// `cells`: heights above the base at north-west, north-east, south-west and south-east of the cell to the south-east
+/// of every grid point. Past the last grid points, the first where the field repeats, else the last.
 pub fn cells(field: &HeightField, border: Border) -> Vec<[f32; 4]> {
     let (rows, cols) = (field.rows(), field.cols());
     let next = |i: usize, n: usize| match border {
@@ -22,7 +21,7 @@ pub fn cells(field: &HeightField, border: Border) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// `ground`: height above the base, slope towards east, slope towards north, of each sample's normal.
+/// `ground`: height above the base, slope towards east, slope towards north, of each grid point's normal.
 pub fn ground(field: &HeightField, border: Border) -> Vec<[f64; 3]> {
     let cols = field.cols();
     let heights = field.heights_m().iter().enumerate();

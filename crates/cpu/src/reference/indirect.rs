@@ -1,24 +1,24 @@
-//! Direct and bounced light of small fields, in f64, by deterministic quadrature: the truth beside the
-//! GPU's path tracer, with which it shares the following definition and no code.
+//! Direct and indirect light of small fields, in f64, by deterministic quadrature: the ground truth of the GPU's path
+//! tracer, which follows the definition below and shares no code.
 //!
-//! - A result is the exit radiance of a sample, towards above where there is a lobe, with the sample's
-//!   normal ([`normal`]) and albedo. Light in directions e with N·e > 0 counts.
-//! - What rays meet is the triangulated surface. A direction that leads from the sample into the ground
-//!   at once meets, at distance 0, the triangle that lies in its azimuth.
-//! - A point that is met reflects diffusely, with the geometric normal of its triangle and the albedo
-//!   interpolated over the triangle's corners. Its lobe is left out, the path tracer's is not: where there is a
-//!   lobe, bounces here are less than what ground that sees itself throws.
-//! - Sky and environment are seen where nothing is met: above horizontal under `plane` and `periodic`,
-//!   everywhere under `open`. What leaves the field below horizontal under `plane` meets black ground.
-//! - Bounce 0 is light straight from its sources; bounce b has been reflected b times before it
-//!   reaches the sample. Results hold all bounces up to b.
+//! - A result is the exit radiance of a grid point, towards straight above where there is Phong specular, with the
+//! grid point's normal ([`normal`]) and albedo. Light in directions e with N·e > 0 counts.
+//! - Rays hit the triangulated surface. A direction that leads from the grid point straight into the ground hits, at
+//! distance 0, the triangle in its azimuth.
+//! - A hit point reflects diffusely, with the geometric normal of its triangle and the albedo interpolated over the
+//! triangle's corners. Its specular is left out, unlike in the path tracer: with Phong specular, bounces here are a
+//! lower bound wherever ground is visible from ground.
+//! - Sky and environment are visible where nothing is hit: above horizontal under `plane` and `periodic`, everywhere
+//! under `open`. Rays that leave the field below horizontal under `plane` hit black ground.
+//! - Bounce 0 is light straight from its sources; bounce b has been reflected b times before it reaches the grid
+//! point. Results hold all bounces up to b.
 //!
-//! The unknowns are the radiances at the corners of every triangle, three a triangle as a shared
-//! corner has another normal on each; radiance is linear between them. All that meet at a sample see
-//! the same profiles ([`profile`](crate::profile)), of which every visible stretch adds its cosine
-//! weight in closed form; the radiance along it is taken where its two-point Gauss mean lies. Errors:
-//! second order in the triangles' size where light is smooth, first along shadows' edges; second
-//! order in the step between azimuths. [`truth`] measures both by halving both.
+//! The unknowns are the radiances at the corners of every triangle, three per triangle as a shared corner has another
+//! normal on each; radiance is linear between them. All receivers at a grid point share the same profiles
+//! ([`profile`](crate::profile)). Every visible interval adds its cosine weight in closed form; its radiance is taken
+//! at the two-point Gauss mean of its distance. Errors: second order in the triangles' size where light is smooth,
+//! first order along shadow edges; second order in the step between azimuths. [`truth`] measures both by halving
+//! both.
 
 use crate::key::key_on;
 use crate::light::{Receiver, Slice, environment_on, normal, sun_on};
@@ -26,41 +26,41 @@ use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use crate::sphere::sphere_on;
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Lobe, Scene, SphereLight};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Specular, Scene, SphereLight};
 use ridgelight::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// How finely directions and surface are cut.
+/// Resolution of directions and surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fineness {
     /// Azimuths, at the middles of equal parts of the circle. Multiples of 8 put the directions of the
     /// grid and, in square cells, of their diagonals between two parts.
     pub azimuths: usize,
-    /// Parts that each side of a cell is cut into; the surface stays the same.
+    /// Parts per side of a cell; the surface stays the same.
     pub divisions: usize,
-    /// Azimuths across a sun, a key light, a ball, or one texel of an environment.
+    /// Azimuths across a sun, a key light, a sphere light, or one texel of an environment.
     pub strips: usize,
 }
 
 impl Fineness {
-    /// Twice as fine in everything.
+    /// Twice as fine in every setting.
     pub fn doubled(self) -> Self {
         let Self { azimuths, divisions, strips } = self;
         Self { azimuths: 2 * azimuths, divisions: 2 * divisions, strips: 2 * strips }
     }
 }
 
-/// Exit radiance of every sample, linear RGB, row-major.
+/// Exit radiance of every grid point, linear RGB, row-major.
 pub type Picture = Vec<[f64; 3]>;
 
-/// Radiance and what it may be off by.
+/// Radiance and its error estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
     /// Exit radiance with all bounces up to the index.
     pub radiance: Vec<Picture>,
-    /// The difference to half the fineness at each sample and channel. Where a doubling halves the
-    /// error this is the error, where it does better, as in smooth light, more; single samples may do
-    /// worse by chance, so judge many by its rms.
+    /// The difference to half the fineness at each grid point and channel. This is the error where doubling halves
+    /// it, and more where doubling does better, as in smooth light. Single grid points can be underestimated, so use
+    /// the rms over many.
     pub error: Vec<Picture>,
 }
 
@@ -78,10 +78,10 @@ pub fn truth(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Truth>
     Ok(Truth { radiance, error })
 }
 
-/// Exit radiance of every sample with all bounces up to 0, 1, … `bounces`.
+/// Exit radiance of every grid point with all bounces up to 0, 1, … `bounces`.
 ///
-/// Every corner keeps a weight for every corner it sees: a fractal of 64² at 64 azimuths and 1 division
-/// takes 0.4 GB. Void samples are lit as they are filled.
+/// Memory: every corner keeps a weight for every corner visible from it. A fractal of 64² at 64 azimuths and 1
+/// division takes 0.4 GB. Voids are lit with their filled heights.
 ///
 /// # Errors
 /// A scene or a fineness out of range.
@@ -98,7 +98,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
     }
     let fine = divided_field(field, surface.border, divisions)?;
     let oracle = Oracle::new(&fine, surface.border);
-    let places = places(&oracle, field, divisions, surface.phong.as_ref());
+    let places = places(&oracle, field, divisions, surface.specular.as_ref());
     let corners = corner_count(&oracle);
     let lights = divided_lights(lights, field, surface.border, divisions);
 
@@ -115,7 +115,7 @@ pub fn light(scene: &Scene, bounces: usize, fineness: Fineness) -> Result<Vec<Pi
         })
         .collect();
     let towards_above = |arrived: &[[f64; 3]], at: usize| {
-        let scale = surface.phong.as_ref().map_or(0.0, |lobe| f64::from(lobe.at(at).scale));
+        let scale = surface.specular.as_ref().map_or(0.0, |lobe| f64::from(lobe.at(at).scale));
         let diffuse = product(albedo(at), arrived[corners + at]);
         let lobe = arrived.get(corners + samples + at).copied().unwrap_or_default();
         [0, 1, 2].map(|i| diffuse[i] + scale * lobe[i])
@@ -140,7 +140,7 @@ fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i] * b[i])
 }
 
-/// What one receiver sees: weights of the corners' radiances and of a sky of radiance 1.
+/// Visibility of one receiver: weights of the corners' radiances and of a sky of radiance 1.
 #[derive(Clone, Debug, Default)]
 struct Seen {
     corners: Vec<u32>,
@@ -161,19 +161,19 @@ impl Seen {
     }
 }
 
-/// Three a triangle.
+/// Three per triangle.
 fn corner_count(oracle: &Oracle) -> usize {
     let [down, across] = oracle.cells();
     3 * 2 * down * across
 }
 
-/// For every sample of the divided field the receivers there and where their light belongs: first all
-/// triangles' corners, then the undivided field's samples, then their lobes.
+/// For every grid point of the divided field, the receivers there and the index of their light: first all triangles'
+/// corners, then the undivided field's grid points, then their specular.
 fn places(
     oracle: &Oracle,
     field: &HeightField,
     divisions: usize,
-    lobe: Option<&Lobe>,
+    lobe: Option<&Specular>,
 ) -> Vec<Vec<(usize, Receiver)>> {
     let fine = oracle.field();
     let mut places = vec![Vec::new(); fine.rows() * fine.cols()];
@@ -198,7 +198,7 @@ fn places(
     places
 }
 
-/// What every receiver sees, and its light straight from the sources, each where it belongs.
+/// Visibility of every receiver, and its light straight from the sources, each at its index.
 fn at_all(
     oracle: &Oracle,
     places: &[Vec<(usize, Receiver)>],
@@ -233,11 +233,11 @@ fn triangle_normal(oracle: &Oracle, triangle: usize) -> DVec3 {
     DVec3::new(-east / cell_x, -north / cell_y, 1.0).normalize()
 }
 
-/// What receivers at a sample see of the surface and of the sky.
+/// Surface and sky visibility of the receivers at a grid point.
 ///
-/// Weights of a diffuse receiver are scaled so that those of its whole hemisphere sum to 1, which the
-/// rule over azimuths alone misses by less the more azimuths and the gentler the slope: light of equal
-/// radiance all around arrives as it is, and none is gained.
+/// Weights of a diffuse receiver are scaled so that those of its whole hemisphere sum to 1. The rule over azimuths
+/// alone misses this by less the more azimuths and the gentler the slope. Uniform incident radiance is preserved, and
+/// energy is not gained.
 fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: usize) -> Vec<Seen> {
     let corners = corner_count(oracle);
     let mut dense = vec![vec![0.0; corners]; receivers.len()];
@@ -277,8 +277,8 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
     all
 }
 
-/// Where on a stretch its mean radiance is found, radiance being linear in the distance: the distance
-/// averaged by Gauss' rule of two points over the elevations above the slice's plane.
+/// Distance on a visible interval of its mean radiance, which is linear in the distance: the average by Gauss' rule
+/// of two points over the elevations above the slice's plane.
 pub(crate) fn mean_distance_m(slice: &Slice, stretch: &VisibleInterval) -> f64 {
     let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
     let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
@@ -287,7 +287,7 @@ pub(crate) fn mean_distance_m(slice: &Slice, stretch: &VisibleInterval) -> f64 {
     if f + g > 0.0 { (f * near + g * far) / (f + g) } else { 0.5 * (near + far) }
 }
 
-/// Light straight from its sources at each receiver of a sample, for albedo 1.
+/// Light straight from its sources at each receiver of a grid point, for albedo 1.
 fn arriving(
     oracle: &Oracle,
     here: [usize; 2],
@@ -314,14 +314,14 @@ fn arriving(
         let shares = key_on(oracle, row, col, receivers, key, strips);
         add(shares.iter().map(|share| key.radiance.map(|l| share * f64::from(l))).collect());
     }
-    for sphere in &lights.spheres {
+    for sphere in &lights.sphere_lights {
         let shares = sphere_on(oracle, row, col, receivers, sphere, strips);
         add(shares.iter().map(|share| sphere.radiance.map(|l| share * f64::from(l))).collect());
     }
     sums
 }
 
-/// Values between the samples of a field, linear on each of the surface's triangles.
+/// Values between the grid points of a field, linear on each of the surface's triangles.
 fn divide(
     field: &HeightField,
     border: Border,
@@ -352,7 +352,7 @@ fn divided_size(field: &HeightField, border: Border, divisions: usize) -> [usize
     })
 }
 
-/// The same surface with every cell cut into divisions²; heights between samples are rounded to f32.
+/// The same surface with every cell cut into divisions²; interpolated heights are rounded to f32.
 fn divided_field(field: &HeightField, border: Border, divisions: usize) -> Result<HeightField> {
     let height = |at| field.base_m() + f64::from(field.heights_m()[at]);
     let heights = divide(field, border, divisions, height);
@@ -360,8 +360,8 @@ fn divided_field(field: &HeightField, border: Border, divisions: usize) -> Resul
     HeightField::new(rows, cols, &heights, field.cell_m().map(|c| c / divisions as f64), None)
 }
 
-/// Places count from the southernmost row, which dividing the last, returning cells of a `periodic`
-/// field moves south.
+/// Positions count from the southernmost row, which division of the last, wrapping cells of a `periodic` field moves
+/// south.
 fn divided_lights(
     lights: &Lights,
     field: &HeightField,
@@ -376,5 +376,5 @@ fn divided_lights(
         let [x, y, z] = sphere.position_m;
         SphereLight { position_m: [x, y + moved, z], ..*sphere }
     };
-    Lights { spheres: lights.spheres.iter().map(move_one).collect(), ..lights.clone() }
+    Lights { sphere_lights: lights.sphere_lights.iter().map(move_one).collect(), ..lights.clone() }
 }

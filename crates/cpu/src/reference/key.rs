@@ -1,15 +1,15 @@
-//! Light of a key light at one sample, in f64: a quadrature over azimuths, exact within each.
+//! Light of a key light at one grid point, in f64: a quadrature over azimuths, exact within each.
 
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
 use ridgelight::scene::KeyLight;
 use std::f64::consts::PI;
 
-/// Exit radiance of a diffuse sample of albedo 1, linear RGB: `strips` azimuths in the middles of equal
-/// parts of the light, its elevations in each clipped at the horizon exactly.
+/// Exit radiance of a diffuse grid point of albedo 1, linear RGB: `strips` azimuths in the middles of equal parts of
+/// the light, its elevations in each clipped at the horizon exactly.
 ///
-/// Where nothing is hidden the rule over azimuths is off by (width / strips)² / 24 of what the normal's
-/// horizontal part receives, and exact for its vertical one.
+/// Without occlusion, the rule over azimuths has an error of (width / strips)² / 24 of the contribution of the
+/// normal's horizontal part, and none for its vertical one.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -19,7 +19,7 @@ pub fn key_of(oracle: &Oracle, row: usize, col: usize, key: &KeyLight, strips: u
     key.radiance.map(|l| share * f64::from(l))
 }
 
-/// [`key_of`] on other receivers than the diffuse one of the sample's normal, for radiance 1.
+/// [`key_of`] for receivers other than the grid point's diffuse one, for radiance 1.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.

@@ -1,7 +1,7 @@
-//! Direct light from infinity at one sample, in f64, by deterministic quadrature over the oracle's horizons.
+//! Direct light from infinity at one grid point, in f64, by deterministic quadrature over the oracle's horizons.
 //!
 //! Everything here is exit radiance of a diffuse surface of albedo 1:
-//! (1/π) ∫ L(e) V(e) max(N·e, 0) de, so a flat, free sample under a sky of radiance 1 answers 1.
+//! (1/π) ∫ L(e) V(e) max(N·e, 0) de, so a flat, unoccluded grid point under a sky of radiance 1 gives 1.
 //! Along an azimuth φ a direction is e(ω) = (cos ω cos φ, cos ω sin φ, sin ω), de = cos ω dω dφ and
 //! N·e = A cos ω + B sin ω with A = N_x cos φ + N_y sin φ, B = N_z. The integrand in ω is therefore
 //! A cos²ω + B sin ω cos ω: see [`slice()`]. A Phong lobe has its own: see [`Receiver`].
@@ -13,11 +13,11 @@ pub use ridgelight::scene::normal;
 use ridgelight::scene::{Border, Environment, HeightField, Sun};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Azimuths that [`environment`] looks along, at least: narrow images have several a column.
+/// Least number of azimuths of [`environment`]: narrow images have several per column.
 pub const ENVIRONMENT_STRIPS: usize = 512;
 
-/// How a place weighs the light that arrives: over the hemisphere about its normal N, by the cosine
-/// to it (diffuse, albedo 1), or by the lobe (n+1)/(2π) max(e·r, 0)ⁿ about a direction r.
+/// Weight of incident light: over the hemisphere about the normal N, by the cosine to it (diffuse, albedo 1), or by
+/// the Phong lobe (n+1)/(2π) max(e·r, 0)ⁿ about a direction r.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Receiver {
     /// Unit normal, upwards.
@@ -104,7 +104,7 @@ const GAUSS_4: [(f64, f64); 4] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// One azimuth at one sample: what arrives above its horizon.
+/// One azimuth at one grid point: the incident light above its horizon.
 pub(crate) fn lit(
     oracle: &Oracle,
     row: usize,
@@ -117,7 +117,7 @@ pub(crate) fn lit(
 
 /// Exit radiance under a uniform sky of radiance 1: (1/π)(2π/m) Σ of the slices to the zenith.
 ///
-/// Azimuths are φ_k = 2πk/m. The sky goes on below horizontal where the border is `open`.
+/// Azimuths are φ_k = 2πk/m. The sky continues below horizontal where the border is `open`.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -125,7 +125,7 @@ pub fn sky(field: &HeightField, border: Border, row: usize, col: usize, azimuths
     sky_of(&Oracle::for_one_place(field, border), row, col, azimuths)
 }
 
-/// [`sky`] by an oracle that has seen the field already.
+/// [`sky`] by an existing oracle of the field.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -143,9 +143,9 @@ pub fn sky_of(oracle: &Oracle, row: usize, col: usize, azimuths: usize) -> f64 {
 
 /// Exit radiance under an environment, linear RGB: a sum over all its texels.
 ///
-/// Each column of texels is looked along at its centre (or, in images narrower than
-/// [`ENVIRONMENT_STRIPS`], at the centres of equal parts of it: the midpoint rule in azimuth); in
-/// elevation each texel is clipped at the horizon exactly and integrated in closed form.
+/// One azimuth at the centre of each column of texels or, in images narrower than [`ENVIRONMENT_STRIPS`], at the
+/// centres of equal parts of it (midpoint rule). In elevation each texel is clipped at the horizon exactly and
+/// integrated in closed form.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -159,7 +159,7 @@ pub fn environment(
     environment_of(&Oracle::for_one_place(field, border), row, col, env)
 }
 
-/// [`environment`] by an oracle that has seen the field already.
+/// [`environment`] by an existing oracle of the field.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -168,8 +168,8 @@ pub fn environment_of(oracle: &Oracle, row: usize, col: usize, env: &Environment
     environment_on(oracle, row, col, &[diffuse_at(oracle, row, col)], env, parts)[0]
 }
 
-/// [`environment`] on other receivers at the sample than the diffuse one of its normal, each column of
-/// texels looked along at the centres of so many equal parts.
+/// [`environment`] for receivers other than the grid point's diffuse one, with that many equal parts per column of
+/// texels.
 pub(crate) fn environment_on(
     oracle: &Oracle,
     row: usize,
@@ -206,10 +206,9 @@ pub(crate) fn environment_on(
 
 /// Exit radiance under one sun, linear RGB.
 ///
-/// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so
-/// L = irradiance / (π sin²a). `strips` azimuths across the disc, each with its chord of elevations
-/// clipped at the horizon exactly. Diameter 0: a point, dark where its elevation is not above the
-/// horizon.
+/// A disc of angular radius a and radiance L gives a surface that faces it L π sin²a, so L = irradiance / (π sin²a).
+/// `strips` azimuths across the disc, each with its chord of elevations clipped at the horizon exactly. Diameter 0: a
+/// point, dark where its elevation is not above the horizon.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -224,7 +223,7 @@ pub fn sun(
     sun_of(&Oracle::for_one_place(field, border), row, col, sun, strips)
 }
 
-/// [`sun`] by an oracle that has seen the field already.
+/// [`sun`] by an existing oracle of the field.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -232,7 +231,7 @@ pub fn sun_of(oracle: &Oracle, row: usize, col: usize, sun: &Sun, strips: usize)
     sun_on(oracle, row, col, &[diffuse_at(oracle, row, col)], sun, strips)[0]
 }
 
-/// [`sun`] on other receivers at the sample than the diffuse one of its normal.
+/// [`sun`] for receivers other than the grid point's diffuse one.
 pub(crate) fn sun_on(
     oracle: &Oracle,
     row: usize,
@@ -254,12 +253,12 @@ pub(crate) fn sun_on(
     shares.iter().map(|share| sun.irradiance.map(|e| f64::from(e) * share / PI)).collect()
 }
 
-/// The diffuse receiver of a sample.
+/// The diffuse receiver of a grid point.
 fn diffuse_at(oracle: &Oracle, row: usize, col: usize) -> Receiver {
     Receiver::diffuse(normal(oracle.field(), oracle.border(), row, col))
 }
 
-/// ∫ V max(N·e, 0) de over the sun's disc (of a lobe, π times its weights' integral).
+/// ∫ V max(N·e, 0) de over the sun's disc (for a Phong lobe, π times its weights' integral).
 ///
 /// At azimuth δ from the centre's, a direction of elevation ω is within a of the centre
 /// (elevation s) when sin ω sin s + cos ω cos s cos δ = R cos(ω - ω_m) ≥ cos a, with

@@ -1,4 +1,4 @@
-//! All direct light at single samples of a scene, in f64: what pictures are held against.
+//! All direct light at single grid points of a scene, in f64: the reference for images.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -8,13 +8,13 @@ use crate::oracle::Oracle;
 use crate::sphere::sphere_of;
 use ridgelight::scene::{Albedo, Environment, KeyLight, Scene};
 
-/// Azimuths of a sky, strips across a sun or a ball of light; across a key light as many, or as a sky has.
+/// Azimuths of a sky, strips across a sun or a sphere light; the same across a key light, or the sky's density.
 const AZIMUTHS: usize = 720;
 const STRIPS: usize = 128;
-/// Azimuths that an environment's columns share out among them by their light, beside those that each has.
+/// Azimuths distributed among an environment's columns by their light, besides the fixed number of each.
 const SHARED: f64 = 1024.0;
 
-/// A scene's samples under all of its lights together.
+/// Grid points of a scene under all of its lights together.
 #[derive(Clone, Debug)]
 pub struct Lit<'a> {
     scene: &'a Scene,
@@ -25,7 +25,7 @@ pub struct Lit<'a> {
 }
 
 impl<'a> Lit<'a> {
-    /// Looks once at all heights and texels.
+    /// Reads all heights and texels once.
     pub fn of(scene: &'a Scene) -> Self {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
         let rows = |e: &Environment| e.rows_above_ground(scene.surface.border);
@@ -33,7 +33,7 @@ impl<'a> Lit<'a> {
         Self { scene, oracle, columns, azimuths: AZIMUTHS, strips: STRIPS }
     }
 
-    /// The same by half of all rays: how far it is off tells what the rays between them may still change.
+    /// The same with half of all rays: the difference estimates the error of the rays in between.
     pub fn halved(mut self) -> Self {
         (self.azimuths, self.strips) = (AZIMUTHS / 2, STRIPS / 2);
         if let Some(columns) = &mut self.columns {
@@ -42,16 +42,16 @@ impl<'a> Lit<'a> {
         self
     }
 
-    /// Rays that one sample takes.
+    /// Rays of one grid point.
     pub fn rays(&self) -> usize {
         let lights = &self.scene.lights;
         let sky = if lights.sky.is_some() { self.azimuths } else { 0 };
         let environment = self.columns.as_ref().map_or(0, |c| c.parts.iter().sum());
         let keys: usize = lights.keys.iter().map(|k| self.key_strips(k)).sum();
-        sky + environment + (lights.suns.len() + lights.spheres.len()) * self.strips + keys
+        sky + environment + (lights.suns.len() + lights.sphere_lights.len()) * self.strips + keys
     }
 
-    /// Exit radiance of a sample, its albedo counted, linear RGB.
+    /// Exit radiance of a grid point including its albedo, linear RGB.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -64,7 +64,7 @@ impl<'a> Lit<'a> {
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
         let keys = lights.keys.iter().map(|k| key::key_of(oracle, row, col, k, self.key_strips(k)));
-        let balls = lights.spheres.iter().map(|ball| {
+        let balls = lights.sphere_lights.iter().map(|ball| {
             let share = sphere_of(oracle, row, col, ball, self.strips);
             ball.radiance.map(|c| f64::from(c) * share)
         });
@@ -85,11 +85,11 @@ impl<'a> Lit<'a> {
     }
 }
 
-/// An environment by columns, each summed up from the zenith down, so that what is above a horizon
-/// takes one look-up in place of a walk over texels.
+/// An environment by columns, each summed from the zenith down, so that the light above a horizon takes one lookup
+/// instead of a loop over texels.
 ///
-/// A slice of elevations gives a ∫cos² + b ∫sin cos (see [`light::slice`]): the texels' sums of both
-/// are kept apart. A column that gives much light is looked along in many azimuths.
+/// A slice of elevations gives a ∫cos² + b ∫sin cos (see [`light::slice`]): the texels' sums of both are kept
+/// separately. Bright columns use many azimuths.
 #[derive(Clone, Debug)]
 struct Columns<'a> {
     environment: &'a Environment,
@@ -130,8 +130,8 @@ impl<'a> Columns<'a> {
         Self { environment, rows, sums, parts }
     }
 
-    /// Exit radiance of a white diffuse sample, linear RGB: in each column's azimuths at the centres of
-    /// equal parts of it, clipped at the horizon exactly.
+    /// Exit radiance of a white diffuse grid point, linear RGB: in each column's azimuths at the centres of equal
+    /// parts of it, clipped at the horizon exactly.
     fn light(&self, oracle: &Oracle, row: usize, col: usize) -> [f64; 3] {
         let (width, height) = (self.environment.width(), self.environment.height());
         let normal = light::normal(oracle.field(), oracle.border(), row, col);

@@ -1,3 +1,6 @@
+//! Ground truth in f64: the brute-force [`oracle`], quadratures of direct and indirect light,
+//! and the CPU reference of the `path_trace` pass.
+
 pub mod indirect;
 pub mod key;
 pub mod light;

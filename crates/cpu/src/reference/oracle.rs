@@ -1,4 +1,4 @@
-//! Brute-force truth: the horizon of one sample over the triangulated surface, in f64.
+//! Brute-force ground truth: the horizon of one grid point over the triangulated surface, in f64.
 //!
 //! Along any line the surface is piecewise linear between the line's crossings with grid columns,
 //! grid rows and cell diagonals. Over one such piece the slope seen from the receiver,
@@ -9,16 +9,15 @@
 use ridgelight::scene::{Border, HeightField};
 use std::f64::consts::FRAC_PI_2;
 
-/// Periods of the longer side of a periodic field after which a ray is given up, where they are a
-/// thousand cells or more ([`cap_m`]).
+/// Periods of the longer side of a periodic field after which a ray stops, where they are a thousand cells or more
+/// ([`cap_m`]).
 ///
-/// A slope s > 0 can only be met within D = (highest - own height) / s, so a ray ends by itself once
-/// two places are known that nothing beyond can beat. What never ends so are rays that have met
-/// nothing above their own height; past this cap they can only miss an elevation of at most
-/// atan((highest - own height) / (64 · longer side)).
+/// A slope s > 0 can only occur within D = (highest - own height) / s, so a ray ends as soon as nothing beyond can
+/// exceed its two best positions. The only endless rays have found nothing above their own height; past this cap they
+/// can only miss an elevation of at most atan((highest - own height) / (64 · longer side)).
 pub const PERIOD_CAP: usize = 64;
 
-/// The distance after which a ray over a periodic field is given up, in metres: farther than any march goes
+/// The distance after which a ray over a periodic field stops, in metres: farther than any march goes
 /// ([`ridgelight::plan::sweep::warm_up`]).
 pub fn cap_m(field: &HeightField) -> f64 {
     let [cell_x, cell_y] = field.cell_m();
@@ -26,35 +25,34 @@ pub fn cap_m(field: &HeightField) -> f64 {
     (PERIOD_CAP as f64 * side_m).max(1024.0 * cell_x.max(cell_y))
 }
 
-/// Two vertices of the profile closer than this are one place, in cells: a ray a hair beside a
-/// sample crosses its column, its row and its diagonal at almost one point.
+/// Two vertices of the profile closer than this are one place, in cells: a ray that passes very near a grid point
+/// crosses its column, its row and its diagonal at almost one point.
 pub const ONE_PLACE_CELLS: f64 = 1e-3;
 
 /// Margin, relative to the largest |slope| on the profile, below which the occluder is ambiguous.
-///
-/// A slope carries a few roundings of f64 (1e-15 of the scale of the heights involved); 1e-9 is far
-/// above them and far below what any f32 sweep can tell apart.
+/// Rationale: a slope carries a few roundings of f64 (1e-15 of the scale of the heights involved); 1e-9 is far above
+/// them and far below the resolution of any f32 sweep.
 pub const TIE_TOLERANCE: f64 = 1e-9;
 
-/// What a ray over the surface meets highest.
+/// The horizon of a ray over the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
     /// Tangent of the elevation: rise over world distance. May be negative whatever the border.
     pub slope: f64,
     /// Horizontal distance to the occluder, metres.
     pub distance_m: f64,
-    /// Column of the occluder, in samples; beyond the field's columns in a repetition.
+    /// Column of the occluder, in grid points; beyond the field's columns in a repetition.
     pub col: f64,
-    /// Row of the occluder, in samples; beyond the field's rows in a repetition.
+    /// Row of the occluder, in grid points; beyond the field's rows in a repetition.
     pub row: f64,
-    /// Slope by which the occluder beats every vertex at another place; infinite when it is alone.
+    /// Slope by which the occluder exceeds every vertex at another place; infinite if it is alone.
     pub margin: f64,
-    /// Whether `margin` exceeds [`TIE_TOLERANCE`] times the largest |slope| of the profile: the
-    /// occluder is where this says, and not one of several in line.
+    /// Whether `margin` exceeds [`TIE_TOLERANCE`] times the largest |slope| of the profile: the occluder is unique,
+    /// not one of several in line.
     pub unique: bool,
 }
 
-/// The truth about one field: holds the highest sample, so that rays end where nothing can win.
+/// Ground truth of one field: holds the highest point, so that rays end where nothing can exceed their best.
 #[derive(Clone, Copy, Debug)]
 pub struct Oracle<'a> {
     field: &'a HeightField,
@@ -63,13 +61,13 @@ pub struct Oracle<'a> {
 }
 
 impl<'a> Oracle<'a> {
-    /// Looks once over all samples for the highest.
+    /// Scans all heights once for the highest.
     pub fn new(field: &'a HeightField, border: Border) -> Self {
         let highest_m = field.heights_m().iter().copied().fold(f32::NEG_INFINITY, f32::max);
         Self { field, border, highest_m: f64::from(highest_m) }
     }
 
-    /// For one place: a scan of all samples only where a ray would not end without it.
+    /// For one ray: scans all heights only where the ray would not end without it.
     pub(crate) fn for_one_place(field: &'a HeightField, border: Border) -> Self {
         match border {
             Border::Periodic => Self::new(field, border),
@@ -87,7 +85,7 @@ impl<'a> Oracle<'a> {
         self.border
     }
 
-    /// What is met highest along an azimuth (radians, counter-clockwise from east).
+    /// The horizon along an azimuth (radians, counter-clockwise from east).
     ///
     /// `None` when the ray leaves the field at once.
     ///
@@ -97,7 +95,7 @@ impl<'a> Oracle<'a> {
         self.horizon_along(row, col, grid_direction(self.field, azimuth_rad))
     }
 
-    /// What is met highest along (columns, rows) of any length: small integers stay exact.
+    /// The horizon along (columns, rows) of any length: small integers stay exact.
     ///
     /// `None` when the ray leaves the field at once, or has no direction (0, infinite, NaN).
     ///
@@ -165,11 +163,11 @@ impl<'a> Oracle<'a> {
         best.horizon()
     }
 
-    /// The elevation above which this sample sees the sky along an azimuth, radians in [-π/2, π/2].
+    /// The elevation above which the sky is visible along an azimuth, radians in [-π/2, π/2].
     ///
-    /// `plane`: at least 0, the ground goes on at horizontal. `open`: -π/2 where nothing is met.
-    /// `periodic`: at least 0, because the repetitions' slopes (h - own height) / D reach 0 in the
-    /// limit D → ∞ whatever their heights.
+    /// `plane`: at least 0, the ground continues at horizontal. `open`: -π/2 where nothing is hit. `periodic`: at
+    /// least 0, because the repetitions' slopes (h - own height) / D reach 0 in the limit D → ∞ whatever their
+    /// heights.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -184,15 +182,15 @@ impl<'a> Oracle<'a> {
 
     /// Whether a point belongs to the field, the edge included.
     ///
-    /// A crossing is computed with two roundings of its coordinate; four units in the last place of
-    /// the field's size keep one that is aimed exactly at a corner or along the edge inside.
+    /// A crossing is computed with two roundings of its coordinate; four units in the last place of the field's size
+    /// keep a ray aimed exactly at a corner or along the edge inside.
     fn inside(&self, row: f64, col: f64) -> bool {
         let (last_r, last_c) = self.last();
         let hair = 4.0 * f64::EPSILON * (last_r + last_c);
         (-hair..=last_r + hair).contains(&row) && (-hair..=last_c + hair).contains(&col)
     }
 
-    /// Height at a sample given by whole numbers, repeated under `periodic`.
+    /// Height at integer coordinates, repeated under `periodic`.
     pub(crate) fn vertex(&self, row: f64, col: f64) -> f64 {
         let (rows, cols) = (self.field.rows(), self.field.cols());
         let at = |x: f64, count: usize| match self.border {
@@ -202,8 +200,8 @@ impl<'a> Oracle<'a> {
         f64::from(self.field.heights_m()[at(row, rows) * cols + at(col, cols)])
     }
 
-    /// Linear interpolation at `x` between the whole numbers around it; exact on a whole number.
-    /// Where the field ends, `x` is brought back into [first, last] from the hair of [`Self::inside`].
+    /// Linear interpolation at `x` between its neighbouring integers; exact at an integer. At the field's ends `x` is
+    /// clamped to [first, last], against the tolerance of [`Self::inside`].
     fn between(&self, x: f64, first: f64, last: f64, height: impl Fn(f64) -> f64) -> f64 {
         let x = if self.border == Border::Periodic { x } else { x.min(last).max(first) };
         let whole = x.floor();
@@ -238,8 +236,8 @@ impl Default for Best {
 }
 
 impl Best {
-    /// Order of offers does not matter: a beaten best is at least the runner-up, and stays so
-    /// unless the winner stands at the same place.
+    /// The order of offers does not matter: a former best is at least the runner-up, and stays so unless the winner
+    /// is at the same place.
     fn offer(&mut self, slope: f64, distance_m: f64, row: f64, col: f64) {
         self.largest_slope = self.largest_slope.max(slope.abs());
         let elsewhere = (row - self.row).abs() + (col - self.col).abs() > ONE_PLACE_CELLS;
@@ -320,8 +318,7 @@ pub fn elevation_rad(
     elevation_of(border, horizon(field, border, row, col, azimuth_rad))
 }
 
-/// The elevation that an answer of the oracle stands for under a border; see
-/// [`Oracle::elevation_rad`].
+/// The elevation of an oracle's result under a border; see [`Oracle::elevation_rad`].
 pub fn elevation_of(border: Border, horizon: Option<Horizon>) -> f64 {
     let met = horizon.map_or(-FRAC_PI_2, |h| h.slope.atan());
     match border {

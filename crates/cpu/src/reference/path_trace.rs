@@ -1,9 +1,10 @@
-//! Light paths one by one, as `path_trace` follows them: the same random numbers, the same maths in f64, and what f32 may be off
-//! by beside every value.
+//! Single paths of the `path_trace` pass: the same random numbers and the same maths in f64, with the f32 error bound
+//! of every value.
 //!
-//! Rounding decides some things: whether a ray passes over an edge, which of two triangles it meets, lobe or not. The twin knows
-//! where ([`Near`]): what such a decision may bring or not bring is added to what the sum may be off by. Where the path goes on
-//! differently afterwards, that is the most which any path may bring from there on.
+//! Rounding decides some branches: whether a ray passes over an edge, which of two triangles it hits, diffuse or
+//! specular. The CPU reference knows which ([`Near`]) and adds the possible contribution of such a branch to the
+//! error bound of the sum. Where the path continues differently, that is the largest contribution of any path from
+//! there on.
 
 mod environment;
 mod lights;
@@ -18,33 +19,33 @@ use crate::shared::walk::{Ground, ray_from};
 use crate::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
 use environment::Environment;
 use place::Place;
-use ridgelight::plan::{REFERENCE_BATCH, most_light, reference_inputs};
-use ridgelight::scene::{Albedo, Lobe, Scene};
+use ridgelight::plan::{REFERENCE_BATCH, max_path_light, reference_inputs};
+use ridgelight::scene::{Albedo, Specular, Scene};
 pub use traced::Traced;
 
 const BITS: u32 = REFERENCE_BATCH.ilog2();
 
-/// Below this f32 may have nothing where f64 has something: whether a ray is sent at all is in doubt.
+/// Below this f32 may flush to 0 where f64 does not: whether a ray is traced at all is in doubt.
 const FAINTEST: f64 = 1e-30;
 
-/// All that the shader is given.
+/// All inputs of the shader.
 pub struct Tracer<'a> {
     scene: &'a Scene,
     ground: Ground,
     samples: Vec<[f32; 3]>,
-    /// Two texels a light: suns, key lights, balls.
+    /// Two texels a light: suns, key lights, sphere lights.
     lights: Vec<[f32; 4]>,
     environment: Option<Environment>,
     albedo: Vec<[f32; 3]>,
     lobes: Vec<[f32; 2]>,
     bounces: u32,
     seed: u32,
-    /// Light that has not been reflected counts.
+    /// Whether direct light counts.
     counts_direct: bool,
-    /// The most that a path brings which is reflected so many times.
+    /// The largest contribution of a path after that many reflections.
     most: Vec<[f64; 3]>,
-    /// Radiance of what a ray sees that leaves the ground, sky and environment; and of all balls, which it passes on its way,
-    /// wherever that ends.
+    /// Bounds on radiance from outside the surface: sky and environment; and all sphere lights, which a ray adds on
+    /// its way wherever it ends.
     far: [f64; 3],
     balls: [f64; 3],
 }
@@ -65,7 +66,7 @@ fn one() -> Near {
     Near::of(1.0)
 }
 
-/// Where brought light is so faint that f32 may have none, no ray may be sent.
+/// Where a contribution is so faint that f32 may flush it to 0, possibly no ray is traced.
 fn is_some(of: Near3) -> Option<bool> {
     let of = largest(of);
     let is_faint = of.v > 0.0 && of.v < FAINTEST;
@@ -73,8 +74,8 @@ fn is_some(of: Near3) -> Option<bool> {
 }
 
 impl<'a> Tracer<'a> {
-    /// Of a scene, with height and slopes of every sample's ground as the device has them. `counts_direct`: of a list of samples
-    /// what has not been reflected does not count.
+    /// For a scene, with height and slopes of the ground as the device has them. `counts_direct`: false for a list of
+    /// grid points, where direct light does not count.
     pub fn of(
         scene: &'a Scene,
         samples: Vec<[f32; 3]>,
@@ -95,11 +96,11 @@ impl<'a> Tracer<'a> {
             ),
         });
         let count = samples.len();
-        let lobe = |phong: ridgelight::scene::Phong| [phong.exponent, phong.scale];
+        let lobe = |phong: ridgelight::scene::PhongSpecular| [phong.exponent, phong.scale];
         let sky = lights.sky.unwrap_or_default();
         let texels = lights.environment.iter().flat_map(|e| e.texels());
         let brightest = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
-        let balls = |c: usize| lights.spheres.iter().map(|ball| f64::from(ball.radiance[c])).sum();
+        let balls = |c: usize| lights.sphere_lights.iter().map(|ball| f64::from(ball.radiance[c])).sum();
         Self {
             far: [0, 1, 2].map(|c| f64::from(sky[c]) + f64::from(brightest[c])),
             balls: [0, 1, 2].map(balls),
@@ -110,12 +111,12 @@ impl<'a> Tracer<'a> {
                 Albedo::Constant(colour) => vec![*colour; count],
                 Albedo::Map(map) => map.clone(),
             },
-            lobes: match &surface.phong {
+            lobes: match &surface.specular {
                 None => Vec::new(),
-                Some(Lobe::Constant(phong)) => vec![lobe(*phong); count],
-                Some(Lobe::Map(map)) => map.iter().map(|p| lobe(*p)).collect(),
+                Some(Specular::Constant(phong)) => vec![lobe(*phong); count],
+                Some(Specular::Map(map)) => map.iter().map(|p| lobe(*p)).collect(),
             },
-            most: (0..=bounces).map(|b| most_light(scene, b)).collect(),
+            most: (0..=bounces).map(|b| max_path_light(scene, b)).collect(),
             scene,
             samples,
             bounces,
@@ -124,22 +125,24 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// The most that a scattered ray sees where so many more may follow: balls that it leaves, and then what is far or ground.
+    /// Bounds on the radiance along a scattered ray with that many more bounces: sphere lights that it leaves, then
+    /// the far field or ground.
     fn most_seen(&self, left: u32) -> [f64; 3] {
         let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
         [0, 1, 2].map(|c| self.balls[c] + self.far[c].max(later[c]))
     }
 
-    /// Suns, key lights, balls.
+    /// Suns, key lights, sphere lights.
     fn counts(&self) -> [usize; 3] {
         let lights = &self.scene.lights;
-        [lights.suns.len(), lights.keys.len(), lights.spheres.len()]
+        [lights.suns.len(), lights.keys.len(), lights.sphere_lights.len()]
     }
 
-    /// What some of a batch's paths bring to a sample with some of the lights, `slot` being its place among the sums.
+    /// Contribution of some of a batch's paths to a grid point with some of the lights; `slot` is its index among the
+    /// sums.
     ///
     /// # Panics
-    /// When the sample lies outside the field.
+    /// The grid point lies outside the field.
     pub fn traced(
         &self,
         sample: usize,
@@ -154,7 +157,7 @@ impl<'a> Tracer<'a> {
         all
     }
 
-    /// Adds what one path brings.
+    /// Adds the contribution of one path.
     fn path_light(
         &self,
         mut place: Place,
@@ -177,7 +180,7 @@ impl<'a> Tracer<'a> {
                 let u = net_point(order, BITS, of_u);
                 [u, net_point(shuffled(index, BITS, of_v[2]), BITS, of_v)].map(given)
             };
-            // What a path that goes on differently may bring, and its rays.
+            // Possible contribution of a path that continues differently, and its rays.
             let left = self.bounces - bounce;
             let most = |carried: Near3, left: u32| {
                 [0, 1, 2].map(|c| carried[c].most() * self.most[left as usize][c])
@@ -238,7 +241,7 @@ impl<'a> Tracer<'a> {
             match all([of.facing.above(Near::ZERO), is_some(of.scattered)]) {
                 Some(false) => return,
                 None => return parts(sum, carried, left),
-                // What is scattered is no more than arrives.
+                // Scattered light is at most the incident light.
                 Some(true) if of.scattered.iter().any(|s| s.off > 1.0) => {
                     return parts(sum, carried, left);
                 }

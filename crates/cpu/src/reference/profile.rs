@@ -1,9 +1,9 @@
-//! What a sample sees of the surface along one azimuth: every visible stretch, exactly, in f64.
+//! Surface visible from a grid point along one azimuth: every visible interval, exactly, in f64.
 //!
-//! Along an azimuth the surface is a chain of straight pieces, one a triangle. Seen from the sample a
-//! piece's slope is monotonic in the distance (see the oracle's page), so what is visible of it is what
-//! rises above the largest slope so far: one interval of elevations a piece, and the intervals of all
-//! pieces fill the elevations from straight down to the horizon without gap or overlap.
+//! Along an azimuth the surface is a chain of straight pieces, one per triangle. A piece's slope from the grid point
+//! is monotonic in the distance (see the oracle's page), so its visible part is what rises above the largest slope so
+//! far: one interval of elevations per piece. The intervals of all pieces fill the elevations from straight down to
+//! the horizon without gap or overlap.
 
 use crate::oracle::{Oracle, cap_m, grid_direction};
 use ridgelight::scene::Border;
@@ -11,11 +11,11 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The visible part of one triangle along an azimuth.
 ///
-/// The first one a ray meets holds the sample itself. Directions below it lead into the ground at
-/// once; they are its too, met at distance 0.
+/// The first interval contains the grid point itself. Directions below it lead into the ground at once; they belong
+/// to it too, hit at distance 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleInterval {
-    /// Elevations between which it is seen, radians.
+    /// Elevations of the visible interval, radians.
     pub low_rad: f64,
     /// The upper one.
     pub high_rad: f64,
@@ -35,7 +35,7 @@ impl VisibleInterval {
     /// Horizontal distance to the piece along an elevation, metres.
     pub fn distance_m(&self, elevation_rad: f64) -> f64 {
         let [near, far] = self.span_m;
-        // rise + slope D = D tan ω; a piece seen edge on is met where it begins.
+        // rise + slope D = D tan ω; a piece seen edge-on is hit where it begins.
         let distance = self.rise_m / (elevation_rad.tan() - self.slope);
         if distance.is_finite() { distance.clamp(near, far) } else { near }
     }
@@ -53,7 +53,7 @@ impl VisibleInterval {
 }
 
 impl Oracle<'_> {
-    /// Cells of the surface: rows, columns. Under `periodic` the last sample's cell leads to the first.
+    /// Cells of the surface: rows, columns. Under `periodic` the last cell connects to the first grid point.
     pub fn cells(&self) -> [usize; 2] {
         let count = |samples| match self.border() {
             Border::Periodic => samples,
@@ -62,8 +62,8 @@ impl Oracle<'_> {
         [count(self.field().rows()), count(self.field().cols())]
     }
 
-    /// The samples (row, col) at a triangle's corners. Cell i holds the triangles 2i, with the corners
-    /// (r, c), (r, c+1), (r+1, c+1), and 2i + 1, with (r, c), (r+1, c), (r+1, c+1).
+    /// The grid points (row, col) at a triangle's corners. Cell i holds the triangles 2i, with the corners (r, c),
+    /// (r, c+1), (r+1, c+1), and 2i + 1, with (r, c), (r+1, c), (r+1, c+1).
     pub fn corners(&self, triangle: usize) -> [[usize; 2]; 3] {
         let [_, across] = self.cells();
         let (row, col) = (triangle / 2 / across, triangle / 2 % across);
@@ -72,10 +72,10 @@ impl Oracle<'_> {
         [[row, col], between, [below, right]]
     }
 
-    /// Writes what is seen along an azimuth into `seen`, from below upwards.
+    /// Writes the visible intervals along an azimuth into `seen`, from below upwards.
     ///
-    /// Nothing where the ray leaves the field at once. Under `periodic` a ray that has met nothing at
-    /// its own height after [`cap_m`] goes on seeing its last stretch up to horizontal.
+    /// Nothing where the ray leaves the field at once. Under `periodic` a ray without a hit at its own height after
+    /// [`cap_m`] extends its last visible interval up to horizontal.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -89,7 +89,7 @@ impl Oracle<'_> {
         self.nearly_seen(row, col, azimuth_rad, 0.0, seen);
     }
 
-    /// The same with all that is hidden by less than `nearly_rad`, seen between two equal elevations.
+    /// The same with all surface that is hidden by less than `nearly_rad`, as intervals of equal ends.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -146,8 +146,8 @@ impl Oracle<'_> {
         }
     }
 
-    /// Slope of the lowest direction that the surface up to a distance leaves free along an azimuth; what the
-    /// sample's own piece hides it does from however near. -∞ where the ray leaves the field at once.
+    /// Slope of the lowest visible direction along an azimuth over the surface up to a distance; the grid point's own
+    /// piece occludes at any distance. -∞ where the ray leaves the field at once.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -162,8 +162,8 @@ impl Oracle<'_> {
         seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The piece of surface between two distances from a sample, all of it taken as visible; none
-    /// outside the field. Between them lies no crossing.
+    /// The piece of surface between two distances from a grid point, all of it taken as visible; none outside the
+    /// field. There is no crossing in between.
     fn piece(&self, here: [f64; 2], per_m: [f64; 2], span_m: [f64; 2]) -> Option<VisibleInterval> {
         let [near, far] = span_m;
         let middle = 0.5 * (near + far);
@@ -199,7 +199,7 @@ impl Oracle<'_> {
         let heights = self.corners(triangle).map(|[r, c]| self.vertex(r as f64, c as f64));
         let sum = |w: [f64; 3]| w[0] * heights[0] + w[1] * heights[1] + w[2] * heights[2];
         let slope = sum(change);
-        // The first piece holds the sample: no rounding may lift it off.
+        // The first piece contains the grid point: rounding must not lift the grid point off it.
         let rise_m = if near == 0.0 { 0.0 } else { sum(at_0) - self.vertex(here[0], here[1]) };
         Some(VisibleInterval {
             low_rad: -FRAC_PI_2,

@@ -1,8 +1,8 @@
-//! Light of a ball at one sample, in f64: a quadrature over azimuths, exact within each.
+//! Light of a sphere light at one grid point, in f64: a quadrature over azimuths, exact within each.
 //!
-//! The vertical plane of an azimuth cuts the ball in a disc. Of the disc's elevations those count at
-//! which the ball is entered (or, from inside, left) nearer than the surface is met. Both change sides
-//! only where the disc's circle crosses the profile, so between those elevations one test decides.
+//! The vertical plane of an azimuth cuts the sphere in a disc. An elevation of the disc counts where the ray enters
+//! the sphere (or, from inside, leaves it) before it hits the surface. Both can change only where the disc's circle
+//! crosses the profile, so one test decides between those elevations.
 
 use crate::light::{Receiver, normal};
 use crate::oracle::Oracle;
@@ -10,10 +10,10 @@ use crate::profile::VisibleInterval;
 use ridgelight::scene::SphereLight;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Exit radiance of receivers at a sample under a ball of radiance 1.
+/// Exit radiance of receivers at a grid point under a sphere light of radiance 1.
 ///
-/// `strips` azimuths over the ball: over its width, spaced so that the disc's square root is smooth, or
-/// over the circle where the sample lies below or above it. The ball is not repeated under `periodic`.
+/// `strips` azimuths: over the sphere's width, spaced so that the disc's square root is smooth, or over the circle
+/// where the grid point lies below or above it. The sphere is not repeated under `periodic`.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -39,7 +39,7 @@ pub fn sphere_on(
         let centre = (i as f64 + 0.5) / strips as f64 * 2.0 - 1.0;
         let (offset, weight) = if sphere.radius_m < away {
             let u = FRAC_PI_2 * centre;
-            // Narrow discs are cos u wide: midpoints sum cos² as it is, but for a single one, which counts it twice.
+            // Narrow discs are cos u wide: midpoints sum cos² exactly, except that a single one counts it twice.
             let alone = if strips > 1 { 1.0 } else { 0.5 };
             (widest * u.sin(), alone * widest * u.cos() * PI / strips as f64)
         } else {
@@ -63,8 +63,8 @@ pub fn sphere_on(
     sums.iter().map(|s| s / PI).collect()
 }
 
-/// Exit radiance of a diffuse sample of albedo 1 under a ball of radiance 1, by `strips` azimuths over the
-/// ball, or four times as many over the circle.
+/// Exit radiance of a diffuse grid point of albedo 1 under a sphere light of radiance 1, by `strips` azimuths over
+/// the sphere, or four times as many over the circle.
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
@@ -81,7 +81,7 @@ pub fn sphere_of(
     sphere_on(oracle, row, col, &receivers, sphere, strips)[0]
 }
 
-/// From a sample to a ball's middle in the plane.
+/// Horizontal vector from a grid point to the sphere's centre.
 pub(crate) fn away_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLight) -> f64 {
     let field = oracle.field();
     let [cell_x, cell_y] = field.cell_m();
@@ -89,7 +89,7 @@ pub(crate) fn away_m(oracle: &Oracle, row: usize, col: usize, sphere: &SphereLig
     (x - col as f64 * cell_x).hypot(y - (field.rows() - 1 - row) as f64 * cell_y)
 }
 
-/// The ball's cut with a vertical plane through the sample, the sample at the origin.
+/// The sphere's cut with a vertical plane through the grid point, which is the origin.
 struct Disc {
     along: f64,
     up: f64,
@@ -97,7 +97,7 @@ struct Disc {
 }
 
 impl Disc {
-    /// The elevations at which the disc is seen.
+    /// The visible elevations of the disc.
     fn visible(&self, seen: &[VisibleInterval]) -> Vec<[f64; 2]> {
         let distance = self.along.hypot(self.up);
         let (low, high) = if distance > self.radius {
@@ -130,7 +130,7 @@ impl Disc {
         visible
     }
 
-    /// Distance along an elevation within the disc to where it is entered, or left from inside.
+    /// Distance along an elevation within the disc to where the ray enters it, or leaves it from inside.
     fn met_m(&self, elevation_rad: f64) -> f64 {
         let (sin, cos) = elevation_rad.sin_cos();
         let ahead = self.along * cos + self.up * sin;
@@ -139,7 +139,7 @@ impl Disc {
         if self.along.hypot(self.up) > self.radius { ahead - half } else { ahead + half }
     }
 
-    /// Elevations at which the circle crosses the line of a stretch, rise + slope·D.
+    /// Elevations at which the circle crosses the line of an interval, rise + slope·D.
     fn crossings(&self, stretch: &VisibleInterval) -> impl Iterator<Item = f64> {
         let VisibleInterval { rise_m, slope, .. } = *stretch;
         // (D - along)² + (rise + slope D - up)² = radius².

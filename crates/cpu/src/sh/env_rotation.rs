@@ -1,4 +1,4 @@
-//! The environment summed around each of its rows.
+//! Fourier sums of each environment row.
 
 use glam::DVec3;
 use ridgelight::scene::Environment;

@@ -21,7 +21,7 @@ pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3]
         let high = ((x + 1) as f64 - middle).min(half_wedge);
         let texel = env.texels()[row * env.width() + x.rem_euclid(width) as usize];
         let radiance = DVec3::from_array(texel.map(f64::from));
-        // Counter-clockwise from the wedge's middle, at the middle of what lies in it.
+        // Counter-clockwise from the wedge's middle, at the middle of the covered part.
         let turn = -0.5 * (low + high) / per_rad;
         let width_rad = (high - low) / per_rad;
         // The integral of cos over an arc is its chord, 2 sin(half), times cos of its middle.
@@ -36,7 +36,7 @@ pub fn wedge_row(env: &Environment, azimuth: &Azimuth, row: usize) -> [DVec3; 3]
     [centre.x * along - centre.y * across, centre.y * along + centre.x * across, plain]
 }
 
-/// `wedge_rows` as `[azimuth][row][moment]`, of the rows that light arrives from.
+/// `wedge_rows` as `[azimuth][row][moment]`, of the rows with light that can arrive.
 pub fn env_wedges(env: &Environment, border: Border, azimuths: &[Azimuth]) -> Vec<[DVec3; 3]> {
     let rows = |a| (0..env.rows_above_ground(border)).map(move |row| wedge_row(env, a, row));
     azimuths.iter().flat_map(rows).collect()

@@ -1,6 +1,5 @@
-//! Light by spherical harmonics in f64 from given horizons, and how far a device may be from it: all that
-//! f32 does between the two, whatever the order, the environment and the field. What harmonics themselves
-//! miss is in neither.
+//! Light by spherical harmonics in f64 from given horizons, and the tolerance of a device against it: the f32 error
+//! at any order, environment and field. The truncation error of the harmonics is in neither.
 
 use std::f64::consts::TAU;
 
@@ -19,9 +18,9 @@ use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Azimuth;
 use ridgelight::plan::lowest_rad;
-use ridgelight::scene::{Border, Environment, Phong, Quality, Wedges};
+use ridgelight::scene::{Border, Environment, PhongSpecular, Quality, Wedges};
 
-/// What a sample sees: coefficients, and how far a device's may be from each.
+/// Visibility of a grid point: coefficients, and a device's error in each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// n² of them.
@@ -31,7 +30,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What a sample sees from what nodes see, each with what it counts for.
+    /// Visibility of a grid point from that of nodes, each with its weight.
     pub fn between<'a>(
         nodes: impl Iterator<Item = (&'a Seen, f64)> + Clone,
         error: &ShadeError,
@@ -54,7 +53,7 @@ impl Seen {
 pub struct Harmonics {
     series: Series,
     table: Option<WedgeTable>,
-    /// `[row of the receiver][coefficient]`, and how far a device's may be from each.
+    /// `[row of the receiver][coefficient]`, and a device's error in each.
     matrix: Vec<Vec<DVec3>>,
     errors: Vec<Vec<DVec3>>,
 }
@@ -65,7 +64,7 @@ impl Harmonics {
         Self::of(Some(environment), None, border, quality)
     }
 
-    /// The same for lobes, by all bands of what is seen of an environment and a sky.
+    /// The same for Phong specular, from all bands of visibility, for an environment and a sky.
     pub fn of_lobes(
         environment: Option<&Environment>,
         sky: [f32; 3],
@@ -121,8 +120,8 @@ impl Harmonics {
         Self { table, series, matrix, errors: summed.iter().zip(&turned).map(row).collect() }
     }
 
-    /// What is seen above slopes that err as `error` says, each that of the lowest direction that is free:
-    /// above the horizon, and for [`Receiver::Plane`](ridgelight::scene::Receiver::Plane) above the sample's own plane.
+    /// Visibility above slopes with these errors, each that of the lowest visible direction: above the horizon, and
+    /// for [`Receiver::Plane`](ridgelight::scene::Receiver::Plane) above the grid point's own plane.
     pub fn seen(&self, lowest: &[(Azimuth, f64)], error: &ShadeError) -> Seen {
         let Series { order, wedges, .. } = self.series;
         let of_band: Vec<f64> = (0..order).map(|l| error.series(l, wedges)).collect();
@@ -134,7 +133,7 @@ impl Harmonics {
         Seen { values, errors }
     }
 
-    /// Exit radiance of albedo 1, 0 where harmonics ring below it, and how far a device's may be from it.
+    /// Exit radiance of albedo 1, clamped at 0 where harmonics ring, and a device's error in it.
     pub fn light(&self, normal: DVec3, seen: &Seen, error: &ShadeError) -> [DVec3; 2] {
         let all = receiver(normal.to_array());
         let rows = if self.matrix.len() == 3 { &all[1..4] } else { &all[..self.matrix.len()] };
@@ -151,12 +150,11 @@ impl Harmonics {
         [light.max(DVec3::ZERO), tolerance]
     }
 
-    /// What a lobe mirrors straight upwards, of the matrix [`of_lobes`](Self::of_lobes), and how far a device's may be from
-    /// it.
+    /// Phong specular straight upwards, from the matrix [`of_lobes`](Self::of_lobes), and a device's error in it.
     pub fn mirrored(
         &self,
         normal: DVec3,
-        phong: Phong,
+        phong: PhongSpecular,
         seen: &Seen,
         error: &ShadeError,
     ) -> [DVec3; 2] {
@@ -178,8 +176,8 @@ impl Harmonics {
     }
 }
 
-/// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with every
-/// product that they sum taken by its magnitude. `gloss`: of what arrives at a lobe, beside a sky.
+/// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with the magnitudes of
+/// all summed products. `gloss`: for incident light of the Phong specular, including a sky.
 pub fn matrix_magnitudes(
     quality: &Quality,
     border: Border,
@@ -198,7 +196,7 @@ pub fn matrix_magnitudes(
         if let Some(sky) = gloss.filter(|_| i == 0) {
             add_sky(&mut sum, sky);
         }
-        // Light of 1 in this coefficient alone.
+        // Light with 1 in this coefficient alone.
         let mut unit = vec![DVec3::ZERO; light_order * light_order];
         unit[i] = DVec3::ONE;
         let shares = match gloss {

@@ -1,4 +1,4 @@
-//! What the environment makes of what is seen: its series, and the matrix from that.
+//! SH series of the environment, and the matrix from visibility to exit radiance.
 
 use glam::DVec3;
 use ridgelight::basis::light::{fit_above_ground, lobe, plane};
@@ -9,16 +9,15 @@ use ridgelight::basis::{bands, window};
 use ridgelight::scene::{Border, Quality, Receiver, Window};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Whether the environment's series is fitted to what is above ground: all that a plane can see there
-/// where nothing is open; a window needs a series of all directions.
+/// Whether the environment's series is fitted to directions above ground: all that a plane can see where the border
+/// is not open; a window needs a series of all directions.
 pub fn is_fitted(quality: &Quality, border: Border) -> bool {
     let is_plain = quality.receiver == Receiver::Plane && quality.window == Window::None;
     is_plain && border != Border::Open
 }
 
-/// What the first `rows` of an environment's `height` rows weigh in each coefficient, times their turn of
-/// its m: ∫ Θ_lm dz, or where `is_fitted` what the best fit above ground makes of those.
-/// `[coefficient][row]`.
+/// Weights of the first `rows` of an environment's `height` rows in each coefficient, times the Fourier term of its
+/// m: ∫ Θ_lm dz, or where `is_fitted` the best fit above ground of those. `[coefficient][row]`.
 pub fn row_weights((height, rows): (usize, usize), order: usize, is_fitted: bool) -> Vec<Vec<f64>> {
     let slices = Slices::new(order);
     let lowest_rad = if is_fitted { 0.0 } else { -FRAC_PI_2 };
@@ -65,11 +64,11 @@ pub fn add_sky(series: &mut [DVec3], sky: [f32; 3]) {
 pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, order, light| match quality.receiver {
         Receiver::Plane => plane(triples, order, light),
-        Receiver::Lobe => lobe(triples, order, light),
+        Receiver::CosineLobe => lobe(triples, order, light),
     })
 }
 
-/// What arrives, as a series, from what is seen: `[coefficient that arrives][coefficient that is seen]`.
+/// The matrix from visibility to incident light, both as series: `[incident coefficient][visibility coefficient]`.
 ///
 /// # Panics
 /// When the series is not of the quality's order.

@@ -1,3 +1,6 @@
+//! CPU references of the passes that light by spherical harmonics: visibility series, light
+//! matrices and shading, for environments and sphere lights.
+
 pub mod env_rotation;
 pub mod env_wedges;
 pub mod harmonics;

@@ -1,4 +1,4 @@
-//! The light of an environment from what is seen of it.
+//! Exit radiance under an environment from a visibility series.
 
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::sweep::Heights;
@@ -8,14 +8,14 @@ use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::light::receiver;
 use ridgelight::basis::zonal::phong_bands;
 use ridgelight::plan::Nodes;
-use ridgelight::scene::Phong;
+use ridgelight::scene::PhongSpecular;
 
-/// How far off each other's planes, over their distance, a sample and a node are where it counts half:
-/// the shader's, fitted there.
+/// Distance off each other's planes, over their distance, at which a node has half weight for a grid point: the
+/// shader's value, fitted there.
 pub const OFF_PLANE: f64 = 0.25;
 
-/// The nodes that a sample lies between, as (column, row) among them, and what each counts: bilinear
-/// weights, less where node and sample lie off each other's planes. They sum to 1.
+/// The nodes around a grid point, as (column, row) among them, with their weights: bilinear, reduced where node and
+/// grid point lie off each other's planes. They sum to 1.
 ///
 /// # Panics
 /// Outside the field.
@@ -42,8 +42,7 @@ pub fn nodes_around(heights: &Heights, nodes: Nodes, [col, row]: [i32; 2]) -> [(
     all
 }
 
-/// Exit radiance of one sample of albedo 1, before what is below 0 is set to 0; `matrix` is
-/// [`crate::light_matrix`]'s.
+/// Exit radiance of one grid point of albedo 1, before clamping at 0; `matrix` is [`crate::light_matrix`]'s.
 ///
 /// # Panics
 /// Outside the field, or a matrix of neither receiver.
@@ -71,7 +70,7 @@ pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
 ///
 /// # Panics
 /// A matrix of no order.
-pub fn gloss_on(normal: DVec3, phong: Phong, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
+pub fn gloss_on(normal: DVec3, phong: PhongSpecular, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
     let order = matrix.len().isqrt();
     let kept = phong_bands(order, phong.exponent.into());

@@ -1,4 +1,4 @@
-//! What every sample sees through its horizons, as a series of spherical harmonics.
+//! Visibility of every grid point above its horizons, as a series of spherical harmonics.
 
 use crate::shared::gather::Swept;
 use ridgelight::basis::azimuth::{around, assemble, assemble_nlp};
@@ -8,18 +8,18 @@ use ridgelight::plan::Azimuth;
 use ridgelight::scene::{Receiver, Wedges};
 use std::f64::consts::SQRT_2;
 
-/// How a series is made.
+/// Settings of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Series {
     /// n² coefficients.
     pub order: usize,
     /// From slices along azimuths.
     pub wedges: Wedges,
-    /// Whether the sample's own plane hides what lies below it: for [`Receiver::Plane`].
+    /// Whether the grid point's own plane hides directions below it: for [`Receiver::Plane`].
     pub receiver: Receiver,
 }
 
-/// The series of one sample.
+/// The series of one grid point.
 ///
 /// # Panics
 /// Outside the field.
@@ -31,7 +31,7 @@ pub fn seen_at(swept: &Swept, series: Series, col: i32, row: i32) -> Vec<f64> {
     seen_above(series, &lowest)
 }
 
-/// The series of what is free above these slopes along azimuths, each by itself.
+/// The series of visibility above these slopes along azimuths, each independently.
 ///
 /// # Panics
 /// By a table: [`sh_wedges`](crate::sh_wedges::sh_wedges).
@@ -43,7 +43,7 @@ pub fn seen_above(series: Series, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
     seen_along(series, &lowest.iter().map(ray).collect::<Vec<_>>())
 }
 
-/// The same of azimuths, the widths that they stand for, radians, and slopes.
+/// The same for azimuths, their widths in radians, and slopes.
 ///
 /// # Panics
 /// By a table.

@@ -1,10 +1,10 @@
-//! What a sample sees through its horizons, two azimuths at once, from a table of wedges.
+//! Visibility of a grid point above its horizons, from a table of wedges between two azimuths.
 
 use ridgelight::basis::harmonics::rotate_z;
 use ridgelight::basis::wedge::WedgeTable;
 use ridgelight::plan::Azimuth;
 
-/// The series of what is free above these slopes along even azimuths, in any order, from a table of wedges.
+/// The series of visibility above these slopes along even azimuths, in any order, from a table of wedges.
 pub fn sh_wedges(table: &WedgeTable, lowest: &[(Azimuth, f64)]) -> Vec<f64> {
     let ray = |(a, s): &(Azimuth, f64)| [f64::from(a.sin_phi).atan2(a.cos_phi.into()), s.atan()];
     wedges_around(table, lowest.iter().map(ray).collect())

@@ -1,5 +1,5 @@
-//! What a ball of light gives to samples by spherical harmonics: what is seen up to the ball's distance, times the
-//! ball, times the receiver. In f64 and as the basis has it: no turned frame, no list of products.
+//! Direct light of a sphere light by spherical harmonics: visibility up to the sphere's distance, times the sphere,
+//! times the receiver. In f64 and directly from the basis: no rotated frame, no list of products.
 
 use crate::light::normal;
 use crate::light_matrix::light_matrix;
@@ -11,12 +11,12 @@ use crate::sh_wedges::wedges_around;
 use glam::{DVec2, DVec3};
 use ridgelight::basis::harmonics::turned;
 use ridgelight::basis::wedge::WedgeTable;
-use ridgelight::basis::zonal::ball;
+use ridgelight::basis::zonal::sphere;
 use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::scene::{Quality, Receiver, SphereLight, Wedges};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Wedges from the one end of the azimuths across a ball around to the other: the shader's.
+/// Wedges from one end of the azimuths across a sphere around to the other: the shader's value.
 pub const BEYOND: usize = 32;
 
 /// How balls are looked at.
@@ -24,19 +24,19 @@ pub const BEYOND: usize = 32;
 pub struct SphereSh<'a> {
     /// Of the field.
     pub oracle: Oracle<'a>,
-    /// Where horizons are looked up, where not on the surface itself.
+    /// The levels from which horizons come, if not from the surface itself.
     pub pyramid: Option<(Pyramid, Stored<'a>)>,
     /// Its order, wedges, receiver, window and azimuths.
     pub quality: Quality,
     table: Option<WedgeTable>,
 }
 
-/// What a sample gets from a ball of radiance 1.
+/// Light of a grid point from a sphere light of radiance 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Soft {
-    /// Exit radiance of albedo 1, below 0 where harmonics ring.
+    /// Exit radiance of albedo 1, negative where harmonics ring.
     pub light: f64,
-    /// Series of what is seen, n² coefficients.
+    /// Visibility series, n² coefficients.
     pub seen: Vec<f64>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> SphereSh<'a> {
         Self { oracle, pyramid, quality, table }
     }
 
-    /// The light of one sample.
+    /// The light of one grid point.
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
@@ -73,7 +73,7 @@ impl<'a> SphereSh<'a> {
         Soft { light: light_of(&self.quality, sphere.radius_m, to, normal, &seen), seen }
     }
 
-    /// The series of what is seen up to the ball.
+    /// The visibility series up to the sphere's distance.
     fn seen(&self, radius_m: f64, to: DVec3, normal: DVec3, place: [usize; 2]) -> Vec<f64> {
         let Quality { sh_order, wedges, receiver, sun_azimuths, .. } = self.quality;
         let (away, towards) = (to.x.hypot(to.y), to.y.atan2(to.x));
@@ -81,7 +81,7 @@ impl<'a> SphereSh<'a> {
         let own_slope = -DVec2::new(normal.x, normal.y) / normal.z;
         let hidden = |phi: f64, free: f64| match receiver {
             Receiver::Plane => free.max(own_slope.dot(DVec2::from_angle(phi))),
-            Receiver::Lobe => free,
+            Receiver::CosineLobe => free,
         };
         let count = sun_azimuths as usize;
         if let Some(table) = &self.table {
@@ -117,11 +117,11 @@ impl<'a> SphereSh<'a> {
     }
 }
 
-/// Exit radiance of albedo 1 from a series of what is seen of a ball that stands there.
+/// Exit radiance of albedo 1 from a visibility series, of a sphere at that position.
 pub fn light_of(quality: &Quality, radius_m: f64, to: DVec3, normal: DVec3, seen: &[f64]) -> f64 {
     let order = quality.light_order();
     let axis = if to == DVec3::ZERO { DVec3::Z } else { to.normalize() };
-    let light = turned(&ball(order, radius_m, to.length()), axis);
+    let light = turned(&sphere(order, radius_m, to.length()), axis);
     let series: Vec<DVec3> = light.into_iter().map(DVec3::splat).collect();
     light_on(normal, seen, &light_matrix(quality, &series)).x
 }
@@ -131,8 +131,8 @@ fn turn(phi: f64) -> f64 {
     (phi + PI).rem_euclid(TAU) - PI
 }
 
-/// Half of the azimuths that are looked along for a ball so far away in the plane: those that it is seen in,
-/// asin(r/away), and π from where it stands above or around, without a jump.
+/// Half of the azimuth range for a sphere that far away in the plane: asin(r/away), continuous to π where it is
+/// overhead or around.
 pub fn half_width(radius_m: f64, away_m: f64) -> f64 {
     if away_m <= radius_m {
         return PI;
@@ -141,8 +141,8 @@ pub fn half_width(radius_m: f64, away_m: f64) -> f64 {
     seen.asin().max(PI * seen.powi(3))
 }
 
-/// How far away ground may hide some of a ball: as far as its middle in the plane, or as the farthest place where
-/// a ray touches it, t cos(ω - a), t the tangents' length; from within as far as it is wide.
+/// Distance up to which ground may hide part of a sphere: its centre's in the plane, or that of the farthest point
+/// where a ray touches it, t cos(ω - a), t the tangents' length; from inside its radius.
 pub fn within_m(radius_m: f64, to: DVec3) -> f64 {
     let (away, distance) = (to.x.hypot(to.y), to.length());
     if distance < radius_m {

@@ -1,15 +1,15 @@
-//! What the surface throws at a sample, as every engine of bounces adds it up: along each azimuth what is seen of
-//! the surface, from below upwards.
+//! Indirect light at a grid point, as every method of bounces sums it: along each azimuth the visible surface, from
+//! below upwards.
 
-/// What is hidden by no more than this, radians, is named as well: rounding may show it.
+/// Surface hidden by no more than this, radians, is included without weight: rounding may make it visible.
 pub const NEARLY_RAD: f64 = 1e-3;
 
-/// What is seen along one azimuth.
+/// Visible surface along one azimuth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
     /// The azimuth, radians.
     pub azimuth_rad: f64,
-    /// Elevation of the sample's own plane.
+    /// Elevation of the grid point's own plane.
     pub low_rad: f64,
     /// Weight of all directions above that plane.
     pub whole: f64,
@@ -17,10 +17,10 @@ pub struct Along {
     pub casts: Vec<Cast>,
 }
 
-/// A part of the surface that counts as one.
+/// A part of the surface with one radiance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cast {
-    /// Elevations between which it is seen: none where it is nearly seen.
+    /// Elevations of its visible interval: equal where it is nearly visible.
     pub low_rad: f64,
     /// The upper one.
     pub high_rad: f64,
@@ -30,11 +30,12 @@ pub struct Cast {
     pub facing: f64,
     /// R, G, B.
     pub radiance: [f64; 3],
-    /// By how much it may differ from that, where it is seen a bit nearer or farther.
+    /// Possible difference of that radiance, where the surface point is slightly nearer or farther.
     pub spread: [f64; 3],
-    /// How far away its upper end is found: metres of stretches, else march steps.
+    /// Distance of its upper end: metres for visible intervals of the exact march, else march steps.
     pub distance: f64,
-    /// Of stretches: the largest rise from the sample to the land around, and the steepest slope of that land.
+    /// For the exact march: the largest rise from the grid point to the terrain around, and the steepest slope of
+    /// that terrain.
     pub rise_m: f64,
     /// That slope.
     pub steepest: f64,
@@ -48,8 +49,7 @@ pub fn thrown(all: &[Along]) -> ([f64; 3], f64) {
     (sum, all.iter().map(|along| along.whole).sum())
 }
 
-/// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: light of equal radiance all around
-/// arrives as it is.
+/// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: uniform incident radiance is preserved.
 pub fn radiance(all: &[Along]) -> [f64; 3] {
     let (sum, whole) = thrown(all);
     sum.map(|s| s.max(0.0) / whole)

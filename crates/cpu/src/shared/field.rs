@@ -1,17 +1,17 @@
-//! `field.glsl`: the slope of the surface at a sample.
+//! `field.glsl`: the slope of the surface at a grid point.
 
 use super::sweep::Heights;
 use glam::{DVec2, DVec3};
 use ridgelight::scene::Border;
 
-/// Index of a neighbour along one axis: wrapped where the field repeats, else held at the edge.
+/// Index of a neighbour along one axis: wrapped where the field repeats, else clamped.
 fn neighbour(i: i32, n: i32, wraps: bool) -> i32 {
     if wraps { (i + n) % n } else { i.clamp(0, n - 1) }
 }
 
-/// Slope of the surface at a sample towards east and north: the mean over the adjoining quads that
-/// exist, which is the direction of the sum of their unnormalised normals. Where a field is one
-/// sample wide there is no quad across it: the slope across is 0.
+/// Slope of the surface at a grid point towards east and north: the mean over the adjoining quads, which is the
+/// direction of the sum of their unnormalised normals. Where a field is one grid point wide there is no quad across
+/// it, and the slope across is 0.
 ///
 /// # Panics
 /// Outside the field.
@@ -24,7 +24,7 @@ pub fn field_slope(heights: &Heights, col: i32, row: i32) -> DVec2 {
         let quads = |exists: bool| f64::from(u8::from((wraps || exists) && n > 1));
         let (before, after) = (quads(i > 0), quads(i < n - 1));
         let both = before + after;
-        // Across an axis without quads the one line of samples stands for them.
+        // Across an axis without quads the one line of grid points stands for them.
         let weight = if both > 0.0 {
             [before, both, after].map(|w| w / (2.0 * both))
         } else {

@@ -1,4 +1,4 @@
-//! `fuse.glsl`: brings the lattice of a sweep back to the field's samples.
+//! `fuse.glsl`: resamples the lattice of a sweep at the field's grid points.
 
 use super::segment::met_within;
 use super::sweep::{CELL_SHIFT, LOWEST_MET, March, NO_SLOPE, PER_CELL, on_field, wrapped};
@@ -6,23 +6,23 @@ use crate::lattice::Lattice;
 use ridgelight::plan::azimuths::CELL;
 use ridgelight::scene::Fuse;
 
-/// What a sample meets.
+/// Horizon of a grid point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Rise over world distance; [`NO_SLOPE`] where nothing is met.
+    /// Rise over world distance; [`NO_SLOPE`] for none.
     pub slope: f32,
-    /// March steps to what is met; 0 where unknown.
+    /// March steps to the occluder; 0 where unknown.
     pub steps: f32,
 }
 
-/// Nothing met.
+/// No horizon.
 pub const NOTHING: Found = Found { slope: NO_SLOPE, steps: 0.0 };
 
-/// A sample's surroundings in march and lane coordinates of one octant of azimuths: heights one
-/// step towards the horizon, straight, and to the lower lane; and of the lower lane's neighbour.
+/// A grid point's surroundings in march and lane coordinates of one octant of azimuths: heights one step towards the
+/// horizon, straight, and to the lower lane; and of the lower lane's neighbour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Octant {
-    /// The sample itself.
+    /// The grid point itself.
     pub own: f32,
     /// One step towards the horizon.
     pub ahead: f32,
@@ -56,7 +56,7 @@ pub fn surface_on_line(march: &March, y: i32, step: i32) -> Option<f32> {
     Some(ha + (y & (CELL - 1)) as f32 * PER_CELL * (hb - ha))
 }
 
-/// The sample's surroundings for all azimuths that share its march axis and flips.
+/// The grid point's surroundings for all azimuths that share its march axis and flips.
 pub fn octant_around(march: &March, lane: i32, step: i32, own: f32) -> Octant {
     let (lanes, steps) = (march.lanes, march.steps);
     let ahead_exists = march.periodic() || step > 0;
@@ -76,13 +76,13 @@ pub fn octant_around(march: &March, lane: i32, step: i32, own: f32) -> Octant {
     }
 }
 
-/// The higher of two findings.
+/// The higher of two horizons.
 fn higher(a: Found, b: Found) -> Found {
     if b.slope > a.slope { b } else { a }
 }
 
-/// What the sample's own line meets within its first step: its crossing with the next grid line, and
-/// with the cell's diagonal where that lies across. Nearly all that unit steps miss lies here.
+/// Horizon of the grid point's own line within its first step: its crossing with the next grid line, and with the
+/// cell's diagonal where that lies across. Nearly everything that unit steps miss lies here.
 pub fn first_crossings(march: &March, o: &Octant) -> Found {
     let azimuth = &march.azimuth;
     let shear = azimuth.shear as f32 * PER_CELL;
@@ -94,7 +94,7 @@ pub fn first_crossings(march: &March, o: &Octant) -> Found {
     split_slope(march, o).map_or(found, |split| higher(found, split))
 }
 
-/// Where the sample's own line crosses the diagonal of its cell, if it does within its first step.
+/// Where the grid point's own line crosses the diagonal of its cell, if it does within its first step.
 fn split_slope(march: &March, o: &Octant) -> Option<Found> {
     let shear = march.azimuth.shear as f32 * PER_CELL;
     if !(o.split_crosses && o.low_exists && o.ahead_exists) {
@@ -106,12 +106,12 @@ fn split_slope(march: &March, o: &Octant) -> Option<Found> {
     Some(Found { slope: rise / (u * march.azimuth.step_m), steps: u })
 }
 
-/// The same of a sample (lane, step) of height `own`.
+/// The same for a grid point (lane, step) of height `own`.
 pub fn split_crossing(march: &March, (lane, step): (i32, i32), own: f32) -> Option<Found> {
     split_slope(march, &octant_around(march, lane, step, own))
 }
 
-/// The surface where a proposal stands, seen from a height at lane position y.
+/// The surface at a proposed distance, relative to a height at lane position y.
 fn seen(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
     let steps = i32::from(back);
     let Some(h) = (back > 0)
@@ -124,7 +124,7 @@ fn seen(march: &March, y: i32, back: u16, step: i32, own: f32) -> Found {
     Found { slope: (h - own) / (steps * march.azimuth.step_m), steps }
 }
 
-/// The swept lines around a place: before it (or through it) and after it, where they are on the field.
+/// The swept lines around a position: before it (or through it) and after it, where they are on the field.
 struct Around {
     before: i32,
     after: i32,
@@ -132,7 +132,7 @@ struct Around {
     after_texel: Option<usize>,
     /// From the one before to the one after, 0 to 1.
     t: f32,
-    /// Whether the one after is nearer or alone; of two equally near, the one before is taken.
+    /// Whether the one after is nearer or alone; on a tie, the one before is taken.
     takes_after: bool,
 }
 
@@ -164,8 +164,8 @@ fn lines_around(
     Around { before, after, before_texel, after_texel, t, takes_after }
 }
 
-/// Where the nearest swept line's value lies at a lane position and a step of the field; none where no line
-/// is on the field.
+/// Index of the nearest swept line's value at a lane position and a step of the field; none where no line is on the
+/// field.
 ///
 /// # Panics
 /// When the lattice is not that of the azimuth and `line_shift`.
@@ -180,8 +180,8 @@ pub fn nearest_texel(
     if around.takes_after { around.after_texel } else { around.before_texel }
 }
 
-/// Slope of the horizon at a sample (lane, step) and how many march steps away it stands: unknown, 0,
-/// where slopes are read. Without a mode, the lattice holds one value a sample.
+/// Slope of the horizon at a grid point (lane, step) and its distance in march steps: 0, unknown, where slopes are
+/// read. Without a mode, the lattice holds one value per grid point.
 ///
 /// # Panics
 /// When the lattice is not that of the azimuth and `line_shift`.
@@ -210,7 +210,7 @@ pub fn fused(
         back => seen(march, y, back, step, o.own),
     };
 
-    // What unit steps miss of a ridge stands beside it.
+    // Ridges that unit steps miss stand beside a proposal.
     let around = |texel: Option<usize>| {
         let mut best = NOTHING;
         let back = i32::from(back(texel));
@@ -241,7 +241,7 @@ pub fn fused(
         ),
         Fuse::Slopes => (slope(after_texel), slope(before_texel)),
     };
-    // Where only one line met anything, it speaks for the sample.
+    // Where only one line has an occluder, use it alone.
     if b.slope <= LOWEST_MET || a.slope <= LOWEST_MET {
         return higher(a, b);
     }
@@ -251,7 +251,7 @@ pub fn fused(
     }
 }
 
-/// A slope of the lattice: what f16 clamped is nothing, too.
+/// A slope of the lattice; a value that f16 clamped is "none", too.
 fn sloped(slope: f32) -> f32 {
     if slope <= -65504.0 { NO_SLOPE } else { slope }
 }

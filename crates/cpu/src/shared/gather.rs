@@ -1,5 +1,5 @@
-//! `gather.glsl`: walks the azimuths at one sample. The shader's order, by octants, only saves it
-//! loads; here azimuths come in their own.
+//! `gather.glsl`: iterates over the azimuths at one grid point. The shader's order by octants only saves loads; here
+//! azimuths come in their own.
 
 use super::field::{field_slope, normal_of};
 use super::fuse::{Found, fused, octant_around};
@@ -10,16 +10,16 @@ use ridgelight::plan::azimuths::Azimuth;
 use ridgelight::scene::{Border, Fuse};
 use std::f64::consts::FRAC_PI_4;
 
-/// A swept field: everything that passes after the sweep read.
+/// A swept field: the input of every pass after the sweep.
 #[derive(Clone, Copy, Debug)]
 pub struct Swept<'a> {
     /// The heights.
     pub heights: Heights<'a>,
     /// The azimuths that were swept, with their layers.
     pub azimuths: &'a [Azimuth],
-    /// What the sweep left.
+    /// The result of the sweep.
     pub lattices: &'a Lattices,
-    /// How lines are brought back to samples; `None` where the lattice holds one value a sample.
+    /// The fusing mode; `None` where the lattice holds one value per grid point.
     pub fuse: Option<Fuse>,
     /// Lines are 2^line_shift / 32768 cells apart.
     pub line_shift: u32,
@@ -28,7 +28,7 @@ pub struct Swept<'a> {
 }
 
 impl Swept<'_> {
-    /// What a sample meets in one azimuth.
+    /// Horizon of a grid point in one azimuth.
     ///
     /// # Panics
     /// Outside the field.
@@ -44,8 +44,7 @@ impl Swept<'_> {
 
     /// Hands every azimuth's number, direction, lowest slope and the normal to `add_light`.
     ///
-    /// The lowest slope is that of the lowest direction that both the horizon and the sample's own
-    /// plane leave free.
+    /// The lowest slope is that of the lowest direction above both the horizon and the grid point's own plane.
     ///
     /// # Panics
     /// Outside the field.
@@ -53,7 +52,7 @@ impl Swept<'_> {
         self.add_seen(col, row, true, add_light);
     }
 
-    /// The same, the lowest slope with or without the sample's own plane.
+    /// The same, the lowest slope with or without the grid point's own plane.
     ///
     /// # Panics
     /// Outside the field.
@@ -68,7 +67,7 @@ impl Swept<'_> {
         let normal = normal_of(gradient);
         for (k, azimuth) in self.azimuths.iter().enumerate() {
             let horizon = f64::from(self.found(azimuth, col, row).slope);
-            // The sample's own plane rises towards the azimuth with the field's slope (TW10 eq. 4).
+            // Rise of the grid point's own tangent plane along the azimuth (TW10 eq. 4).
             let direction = DVec2::new(azimuth.cos_phi.into(), azimuth.sin_phi.into());
             let own = if own_plane_hides { gradient.dot(direction) } else { horizon };
             let mut lowest = horizon.max(own);
@@ -79,16 +78,16 @@ impl Swept<'_> {
         }
     }
 
-    /// `of` at every sample, row-major.
+    /// `of` at every grid point, row-major.
     pub fn per_sample<T>(&self, of: impl Fn(i32, i32) -> T) -> Vec<T> {
         let cols = self.heights.cols;
         (0..cols * self.heights.rows).map(|i| of((i % cols) as i32, (i / cols) as i32)).collect()
     }
 }
 
-/// Integrals over elevation from the one of this slope to the zenith, of cos² and of sin cos: what a
-/// slice of the sky gives to the horizontal and to the vertical part of a normal (Timonen &
-/// Westerholm 2010, eq. 5, with elevation instead of zenith angle).
+/// Integrals over elevation from the one of this slope to the zenith, of cos² and of sin cos: contribution of a slice
+/// of the sky to the horizontal and the vertical component of a normal (Timonen & Westerholm 2010, eq. 5, with
+/// elevation instead of zenith angle).
 ///   ∫ cos² = π/4 - ω/2 - sin ω cos ω / 2,   ∫ sin cos = cos² ω / 2.
 pub fn elevation_moments(slope: f64) -> [f64; 2] {
     let cos2 = 1.0 / (1.0 + slope * slope);

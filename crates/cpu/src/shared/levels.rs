@@ -3,17 +3,17 @@
 use super::sweep::wrapped;
 use ridgelight::plan::pyramid::{Level, Pyramid};
 
-/// Texels of all levels beside the field itself, as `height_levels` holds them.
+/// Texels of all levels besides the field itself, as in `height_levels`.
 #[derive(Clone, Copy, Debug)]
 pub struct LevelTexels<'a> {
-    /// How they lie.
+    /// Their layout.
     pub pyramid: &'a Pyramid,
     /// One level behind the other, row after row.
     pub texels: &'a [f32],
 }
 
-/// Four neighbouring texels of an axis of `count` and what they weigh at a place in texels: the
-/// uniform cubic B-spline; beyond the ends coefficients go on as their point reflection.
+/// Four neighbouring texels of an axis of `count` and their weights at a position in texels: the uniform cubic
+/// B-spline; beyond the ends coefficients continue by point reflection.
 pub fn spline_taps(place: f32, count: u32, periodic: bool) -> ([u32; 4], [f32; 4]) {
     let count = count as i32;
     let cell = place.floor() as i32;

@@ -1,15 +1,15 @@
-//! `lobe.glsl`.
+//! `lobe.glsl`: the normalised Phong lobe.
 
 use crate::tolerance::EPSILON;
 use crate::tolerance::near::{Near, Near3, dot};
 use std::f64::consts::TAU;
 
-/// How densely a Phong lobe of unit integral, (n + 1) / 2π cosⁿ of the angle to its axis, reflects from a direction that lies
+/// Value of a Phong lobe of unit integral, (n + 1) / 2π cosⁿ of the angle to its axis, in a direction that differs by
 /// `apart` from the axis.
 ///
-/// It falls with m = 1 - cos: what it may be lies between its values where m ends; an exponent that is off by δ changes it by
-/// (δ + δ |ln(1 - m)|) of itself. Its power n ln(1 - m) errs by the series' 1e-7 and 12 roundings of itself, or by a logarithm's
-/// 3 ulp; the exponential by (3 + 2 |x|) ulp; the rest by 8 ε. f32 ends at 1e-37.
+/// It decreases with m = 1 - cos: its range lies between its values at the ends of m; an exponent error of δ changes
+/// it by (δ + δ |ln(1 - m)|) of itself. Its power n ln(1 - m) errs by the series' 1e-7 and 12 roundings of itself, or
+/// by a logarithm's 3 ulp; the exponential by (3 + 2 |x|) ulp; the rest by 8 ε. f32 ends at 1e-37.
 pub fn lobe_density(apart: Near3, n: Near) -> Near {
     let m = Near::of(0.5) * dot(apart, apart);
     let logarithm = |m: f64| (-m.clamp(0.0, 1.0)).ln_1p();

@@ -1,4 +1,4 @@
-//! What several shaders include, file by file as in `shaders_glsl/shared/`.
+//! Code that several CPU references share, file by file as the shaders' include files.
 
 pub mod bounced;
 pub mod field;

@@ -17,13 +17,13 @@ fn mixed(v: [u32; 4]) -> [u32; 4] {
     stirred(v.map(|v| v ^ (v >> 16)))
 }
 
-/// Words for a place.
+/// Words for a grid point.
 pub fn words_of(place: [u32; 4]) -> [u32; 4] {
     let [x, y, z, w] = mixed(place);
     mixed([y, z, w, x])
 }
 
-/// A random permutation of words in which each bit is flipped by the bits below it alone (Laine & Karras 2011 with the
+/// A random permutation of words in which each bit is flipped by lower bits only (Laine & Karras 2011 with the
 /// constants of Vegdahl 2021).
 fn nested(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -47,7 +47,7 @@ pub fn net_point(order: u32, bits: u32, words: [u32; 4]) -> [f32; 2] {
     [x, y].map(|word| (word.reverse_bits() >> 8) as f32 / 16_777_216.0)
 }
 
-/// The place of `order` in a shuffled row of 2^bits.
+/// Position of `order` in a shuffled row of 2^bits.
 pub fn shuffled(order: u32, bits: u32, word: u32) -> u32 {
     nested((order << (32 - bits)).reverse_bits(), word) & ((1 << bits) - 1)
 }

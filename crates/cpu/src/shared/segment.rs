@@ -1,13 +1,13 @@
-//! One step of a sample's own line: what `horizon_march` tests step by step, and `fuse.glsl` around proposals.
+//! One step of a grid point's own line: what `horizon_march` tests step by step, and `fuse.glsl` around proposals.
 
 use super::fuse::Found;
 use super::surface::{segment_crossings, surface_rise};
 use super::sweep::{CELL_SHIFT, March, PER_CELL};
 use ridgelight::plan::azimuths::CELL;
 
-/// Raises `best` to the highest that the sample (lane, step) meets `back` steps ahead and, where asked, at
-/// the crossings with lane lines and diagonals from there to the step before. Whether any of that lies on
-/// the field.
+/// Raises `best` to the highest point that the grid point (lane, step) has `back` steps ahead and, if requested, at
+/// the crossings with lane lines and diagonals from there to the step before. Returns whether any of that lies on the
+/// field.
 pub fn met_within(
     march: &March,
     (lane, step): (i32, i32),

@@ -4,8 +4,8 @@
 /// No crossing: beyond the end of the segment.
 pub const NO_CROSSING: f32 = 2.0;
 
-/// Tells equal from greater: places are whole 1/32768 of a cell, or quotients with whole numbers up
-/// to 4096, which a device may get wrong by 2.5 ulp.
+/// Threshold between equal and greater: positions are multiples of 1/32768 of a cell, or quotients with integers up
+/// to 4096, which a device may round with an error of 2.5 ulp.
 pub const HAIR: f32 = 1e-5;
 
 /// Where a line that starts at `f0` and advances by `shear` crosses lane lines and cell diagonals

@@ -3,10 +3,10 @@
 use ridgelight::plan::azimuths::{Azimuth, CELL, FLIPS_LANES, FLIPS_MARCH};
 use ridgelight::scene::{Border, HeightField};
 
-/// Below every slope that a field can have, and safe to square.
+/// Below every slope of a field, and safe to square.
 pub const NO_SLOPE: f32 = -1e9;
 
-/// What lies at or under it stands for nothing met.
+/// Values at or below it mean "no horizon".
 pub const LOWEST_MET: f32 = -1e8;
 
 /// log2 of [`CELL`].
@@ -15,18 +15,18 @@ pub const CELL_SHIFT: u32 = CELL.trailing_zeros();
 /// One over [`CELL`]: exact.
 pub const PER_CELL: f32 = 1.0 / CELL as f32;
 
-/// The heights as the shaders see them: one texel a sample.
+/// The heights as the shaders read them: one texel per grid point.
 #[derive(Clone, Copy, Debug)]
 pub struct Heights<'a> {
     /// Row-major, row 0 in the north, metres.
     pub samples: &'a [f32],
-    /// Samples from west to east.
+    /// Grid points from west to east.
     pub cols: usize,
-    /// Samples from north to south.
+    /// Grid points from north to south.
     pub rows: usize,
     /// Spacing of columns and of rows, metres.
     pub cell_m: [f32; 2],
-    /// What lies beyond the edge.
+    /// Border beyond the edge.
     pub border: Border,
 }
 
@@ -51,16 +51,16 @@ impl<'a> Heights<'a> {
     }
 }
 
-/// A field as one azimuth marches over it.
+/// A field in the frame of one marched azimuth.
 #[derive(Clone, Copy, Debug)]
 pub struct March<'a> {
     /// The heights marched over.
     pub heights: Heights<'a>,
     /// The direction.
     pub azimuth: Azimuth,
-    /// Samples across the march.
+    /// Grid points across the march.
     pub lanes: i32,
-    /// Samples along it.
+    /// Grid points along it.
     pub steps: i32,
 }
 
@@ -87,7 +87,7 @@ impl<'a> March<'a> {
         if self.azimuth.flags & FLIPS_LANES != 0 { self.lanes - 1 - lane } else { lane }
     }
 
-    /// Lane and step of the sample in a column and row.
+    /// Lane and step of the grid point in a column and row.
     pub fn of_sample(&self, col: i32, row: i32) -> (i32, i32) {
         let (lane, march) = if self.azimuth.marches_rows() { (col, row) } else { (row, col) };
         (self.lane_position(lane), self.march_position(march))
@@ -102,7 +102,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Height of a lane at a step, wrapped where the field repeats, else held at the edge.
+    /// Height of a lane at a step, wrapped where the field repeats, else clamped.
     pub fn height_at(&self, lane: i32, step: i32) -> f32 {
         let inside = |i: i32, n: i32| {
             if self.periodic() { wrapped(i, n) } else { i.clamp(0, n - 1) }

@@ -1,27 +1,27 @@
-//! `trace.glsl`: what a ray over the triangulated surface meets, and whether rounding may decide otherwise.
+//! `trace.glsl`: the first hit of a ray on the triangulated surface, and whether rounding may decide otherwise.
 //!
-//! At a crossing rounding decides whether the ray is above the surface where it is above by no more than what both are off by. A
-//! ray that passes a corner nearer than its place is off by may be taken through another cell, whose surface differs there by no
-//! more than the field's relief times that: crossings are off by so much more.
+//! At a crossing, rounding decides whether the ray is above the surface if the height difference is within their
+//! combined error. A ray that passes a corner within its position error may be traced through another cell, whose
+//! surface differs there by at most the field's relief times that distance: the error of crossings grows by as much.
 
 use super::walk::{Ground, REACH_CELLS, Ray, Walk, cell_rise};
 use crate::tolerance::near::{Near, all, any};
 use ridgelight::scene::Border;
 
-/// What a ray met.
+/// Kind of hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
-    /// Left the field, or rose above all of it, or came to its end.
+    /// Left the field, or rose above all of it, or reached its end.
     Free,
     /// The surface.
     Hit,
-    /// Left level or falling, where the ground goes on level and black.
+    /// Left level or falling, where the ground continues level and black.
     Level,
-    /// Took more steps than there can be.
+    /// Exceeded the step limit.
     Lost,
 }
 
-/// What a ray met, and where.
+/// Kind and position of a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Met {
     /// None where rounding decides.
@@ -30,11 +30,11 @@ pub struct Met {
     pub t: Near,
     /// The cell, within the field.
     pub cell: [i32; 2],
-    /// The place in it.
+    /// The position in it.
     pub offset: [Near; 2],
-    /// Whether in its southern triangle; none where rounding decides where in the cell it is.
+    /// Whether in its southern triangle; none where rounding decides the position in the cell.
     pub lower: Option<bool>,
-    /// At every place where it was held against the surface, how many cells it had come, and one.
+    /// At every test against the surface, the number of cells crossed plus one.
     pub crossed: f64,
 }
 
@@ -57,7 +57,7 @@ fn split(ray: &Ray, from: [Near; 2]) -> Near {
     if apart.v.abs() < 1e-30 { -Near::of(1.0) } else { (from[1] - from[0]) / apart }
 }
 
-/// What a ray meets before `t_end`.
+/// First hit of a ray before `t_end`.
 pub fn trace(ground: &Ground, ray: &Ray, t_end: Near) -> Met {
     let mut crossed = 0.0;
     let met = followed(ground, ray, t_end, &mut crossed);
@@ -77,7 +77,7 @@ fn followed(ground: &Ground, ray: &Ray, t_end: Near, crossed: &mut f64) -> Met {
     let t_end = t_end.min(t_over).min(reach);
     let most_steps =
         3 * if is_periodic { REACH_CELLS } else { ground.size[0].max(ground.size[1]) } + 64;
-    // Where the ray may have ended already, or have passed over this block at once.
+    // Where the ray may have ended already, or have skipped this block at once.
     let mut may_have_ended = false;
     let mut may_have_passed = f64::NEG_INFINITY;
     for _ in 0..most_steps {
@@ -139,7 +139,7 @@ fn blocked(
     any([in_split, all([ahead.above(walk.t), over_exit.at_most(Near::ZERO)])])
 }
 
-/// How far the ray is over the surface at t.
+/// Height of the ray over the surface at t.
 fn over(ground: &Ground, ray: &Ray, corners: [Near; 4], from: [Near; 2], t: Near) -> Near {
     let place = ray.place(from, t);
     let over = t * ray.rise - cell_rise(corners, ray.own, place);
@@ -157,7 +157,7 @@ fn from(ray: &Ray, walk: &Walk) -> [Near; 2] {
     [0, 1].map(|i| ray.offset[i] + Near::given((ray.base[i] - walk.cell[i]) as f32))
 }
 
-/// Where in its cell: the surface is linear before and behind the diagonal.
+/// Position in its cell: the surface is linear before and behind the diagonal.
 fn hit(ground: &Ground, ray: &Ray, walk: &Walk, t_next: Near) -> Met {
     let (t, cell) = (walk.t, ground.within(walk.at));
     let corners = ground.corners(cell);
@@ -176,7 +176,7 @@ fn hit(ground: &Ground, ray: &Ray, walk: &Walk, t_next: Near) -> Met {
     } else {
         ([t_middle, t_next], [over_middle, over(t_next)])
     };
-    // At the start the ray is on the surface, whatever rounding says.
+    // At the start the ray is on the surface, despite rounding.
     let begins = t_a.at_most(Near::ZERO);
     let over_a = if begins == Some(true) { Near::ZERO } else { over_a.max(Near::ZERO) };
     let s = over_a / (over_a - over_b).max(Near::of(1e-30));

@@ -1,4 +1,4 @@
-//! `walk.glsl`: how a ray walks over the field's cells, skipping blocks of them.
+//! `walk.glsl`: traversal of the field's cells by a ray, with block skipping.
 
 use crate::height_bounds::height_bounds;
 use crate::height_cells::cells;
@@ -6,21 +6,21 @@ use crate::tolerance::near::{Near, Near3};
 use ridgelight::scene::{Border, HeightField};
 
 const LEVEL_BITS: i32 = 2;
-/// A ray over a field that repeats is given up after so many cells.
+/// A ray over a repeating field stops after this many cells.
 pub(super) const REACH_CELLS: i32 = 16384;
 
-/// What rays walk over.
+/// The surface that rays traverse.
 pub struct Ground {
     pub(super) border: Border,
-    /// Four corners of every cell, in rows of the field's samples.
+    /// Four corners of every cell, in rows of the field's grid points.
     pub(super) cells: Vec<[f32; 4]>,
     pub(super) cols: usize,
     /// Columns and rows of cells.
     pub(super) size: [i32; 2],
-    /// The highest of blocks of 4^level cells, from level 1 on.
+    /// Maxima of blocks of 4^level cells, from level 1 on.
     levels: Vec<Vec<f32>>,
     pub(super) top_level: i32,
-    /// One sample wide along rows, along columns.
+    /// One grid point wide along rows, along columns.
     thin: [bool; 2],
     pub(super) highest_m: Near,
     /// Highest less lowest.
@@ -70,21 +70,21 @@ impl Ground {
     }
 }
 
-/// A ray from a place on the surface.
+/// A ray from a point on the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     pub(super) base: [i32; 2],
     pub(super) offset: [Near; 2],
     pub(super) own: Near,
-    /// Cells a unit of t, towards east and south; the larger is 1 or -1.
+    /// Cells per unit of t, towards east and south; the larger is 1 or -1.
     pub(super) advance: [Near; 2],
-    /// Height a unit of t.
+    /// Height per unit of t.
     pub(super) rise: Near,
-    /// t a metre.
+    /// t per metre.
     pub scale: Near,
 }
 
-/// From a cell, a place in it and a height over the base, along a direction.
+/// From a cell, a position in it and a height over the base, along a direction.
 pub fn ray_from(ground: &Ground, base: [i32; 2], offset: [Near; 2], own: Near, e: Near3) -> Ray {
     let [x, y] = ground.cell_m;
     let direction = [e[0] / x, -e[1] / y];
@@ -96,7 +96,7 @@ pub fn ray_from(ground: &Ground, base: [i32; 2], offset: [Near; 2], own: Near, e
 }
 
 impl Ray {
-    /// Whether it runs on along either axis, rather than back; none where rounding decides that.
+    /// Whether it runs forwards along either axis; none where rounding decides that.
     pub(super) fn onward(&self) -> [Option<bool>; 2] {
         self.advance.map(|a| Near::ZERO.above(a).map(|is_back| !is_back))
     }
@@ -107,7 +107,7 @@ impl Ray {
     }
 }
 
-/// Height over `own` at a place of a cell with these corners.
+/// Height over `own` at a position in a cell with these corners.
 pub(super) fn cell_rise(corners: [Near; 4], own: Near, [u, v]: [Near; 2]) -> Near {
     let [nw, ne, sw, se] = corners;
     if v.v <= u.v {
@@ -117,7 +117,7 @@ pub(super) fn cell_rise(corners: [Near; 4], own: Near, [u, v]: [Near; 2]) -> Nea
     }
 }
 
-/// Where a ray has got to.
+/// Traversal state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Walk {
     pub cell: [i32; 2],
@@ -128,7 +128,7 @@ pub(super) struct Walk {
     pub onward: [bool; 2],
 }
 
-/// The block that it looks at.
+/// The current block.
 pub(super) struct Block {
     low: [i32; 2],
     high: [i32; 2],
@@ -180,8 +180,8 @@ impl Walk {
         Block { low, high, seen, ahead, by_x: to_edge[0].v <= to_edge[1].v }
     }
 
-    /// On to the next block of the level where this one is `clear`; a coarser one where that is entered, else a finer look at
-    /// this one.
+    /// Steps to the next block of the level where this one is `clear`. Goes to a coarser level on entering a coarser
+    /// block, else to a finer one.
     pub fn on(&mut self, ground: &Ground, ray: &Ray, block: &Block, clear: bool) {
         let bits = LEVEL_BITS * self.level;
         let mut next = self.cell;
@@ -217,7 +217,7 @@ impl Ground {
         (0..2).any(|i| at[i] < 0 || at[i] >= self.size[i])
     }
 
-    /// Held inside.
+    /// Clamped.
     pub(super) fn within(&self, at: [i32; 2]) -> [i32; 2] {
         [0, 1].map(|i| at[i].clamp(0, self.size[i] - 1))
     }

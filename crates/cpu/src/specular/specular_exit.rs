@@ -1,36 +1,36 @@
-//! What leaves a sample of the light that arrives there as a series: by its lobe, and diffuse light beside it.
+//! Exit radiance of a grid point from incident light as a series: Phong specular, and diffuse light beside it.
 
 use crate::specular_gather::Series;
 use glam::DVec3;
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::{half_turn, reconstruct};
 use ridgelight::basis::zonal::phong_bands;
-use ridgelight::scene::Phong;
+use ridgelight::scene::PhongSpecular;
 use std::f64::consts::PI;
 
-/// A channel of what arrives, smoothed by a lobe and scaled.
-fn smoothed(arriving: &Series, phong: Phong, channel: usize) -> Vec<f64> {
+/// A channel of incident light, smoothed by the Phong lobe and scaled.
+fn smoothed(arriving: &Series, phong: PhongSpecular, channel: usize) -> Vec<f64> {
     let order = arriving.len().isqrt();
     let kept = phong_bands(order, phong.exponent.into());
     let all = bands(order).zip(arriving);
     all.map(|((l, _), u)| f64::from(phong.scale) * kept[l] * u[channel]).collect()
 }
 
-/// What the lobe mirrors straight upwards; what is below 0 is 0.
+/// Phong specular straight upwards, clamped at 0.
 ///
 /// # Panics
 /// A series of no order.
-pub fn mirrored(arriving: &Series, normal: DVec3, phong: Phong) -> [f64; 3] {
+pub fn mirrored(arriving: &Series, normal: DVec3, phong: PhongSpecular) -> [f64; 3] {
     let mirror = 2.0 * normal.z * normal - DVec3::Z;
     [0, 1, 2].map(|c| reconstruct(&smoothed(arriving, phong, c), mirror).max(0.0))
 }
 
-/// Exit radiance by direction, beside that of diffuse ground: what arrives, smoothed by the lobe, at the mirror direction
-/// about the normal.
+/// Exit radiance by direction, without the diffuse part: incident light, smoothed by the lobe, at the mirror
+/// direction about the normal.
 ///
 /// # Panics
 /// A series of no order.
-pub fn thrown(arriving: &Series, normal: DVec3, phong: Phong, diffuse: [f64; 3]) -> Series {
+pub fn thrown(arriving: &Series, normal: DVec3, phong: PhongSpecular, diffuse: [f64; 3]) -> Series {
     let channels = [0, 1, 2].map(|c| {
         let mut turned = half_turn(&smoothed(arriving, phong, c), normal);
         turned[0] += (4.0 * PI).sqrt() * diffuse[c];

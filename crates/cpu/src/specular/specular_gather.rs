@@ -1,5 +1,5 @@
-//! What the surface throws at every sample, for diffuse ground as [`bounce_gather`](crate::bounce_gather) with an exact
-//! cosine finds it, and as a series of spherical harmonics for the sample's lobe.
+//! Indirect light at every grid point: for diffuse ground as [`bounce_gather`](crate::bounce_gather) with an exact
+//! cosine, and as a series of spherical harmonics for the Phong specular.
 
 use crate::bounce_gather::{BounceGather, March};
 use crate::shared::bounced::{Along, radiance};
@@ -14,28 +14,28 @@ use std::f64::consts::TAU;
 /// Coefficients of a series, R, G, B.
 pub type Series = Vec<[f64; 3]>;
 
-/// What is looked at.
+/// Heights, levels and series.
 #[derive(Clone, Copy, Debug)]
 pub struct SpecularGather<'a> {
-    /// Samples and levels; radiance where there are no series.
+    /// Grid points and levels; radiance where there are no series.
     pub gather: BounceGather<'a>,
-    /// Of what arrives.
+    /// Order of incident light.
     pub order: usize,
-    /// Series of exit radiance of the samples, and of the texels of all levels.
+    /// Series of exit radiance of the grid points, and of the texels of all levels.
     pub vectors: Option<[&'a [Series]; 2]>,
 }
 
-/// What arrives at a sample.
+/// Incident light at a grid point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arriving {
-    /// Light of one more bounce of a diffuse sample, for albedo 1.
+    /// Light of one more bounce of a diffuse grid point, for albedo 1.
     pub diffuse: [f64; 3],
     /// n² coefficients.
     pub series: Series,
 }
 
 impl SpecularGather<'_> {
-    /// What arrives at a sample.
+    /// Incident light at a grid point.
     ///
     /// # Panics
     /// Outside the field; when levels lack texels.
@@ -43,7 +43,7 @@ impl SpecularGather<'_> {
         self.of(&self.casts_along(place))
     }
 
-    /// What it is made of, azimuth by azimuth, as [`BounceGather::casts_along`].
+    /// Its parts, azimuth by azimuth, as [`BounceGather::casts_along`].
     ///
     /// # Panics
     /// As [`Self::arriving`].
@@ -51,7 +51,7 @@ impl SpecularGather<'_> {
         self.gather.casts_of(place, |march, e, of| self.radiance(march, -e, of))
     }
 
-    /// From what is cast.
+    /// From the parts of all azimuths.
     pub fn of(&self, all: &[Along]) -> Arriving {
         let Self { gather, order, .. } = self;
         let slices = Slices::new(*order);
@@ -71,7 +71,7 @@ impl SpecularGather<'_> {
         Arriving { diffuse: radiance(all), series }
     }
 
-    /// Radiance that leaves a place in a direction; what is below 0 is 0.
+    /// Exit radiance of a point in a direction, clamped at 0.
     fn radiance(&self, march: &March, towards: DVec3, of: ([f64; 2], u32)) -> [f64; 3] {
         let Some([exit, levels]) = self.vectors else { return self.gather.radiance(march, of) };
         let values = evaluate(self.order, towards);
@@ -88,7 +88,7 @@ impl SpecularGather<'_> {
         sum.map(|v| v.max(0.0))
     }
 
-    /// Texels of a level around a place, with their bilinear weights.
+    /// Texels of a level around a position, with their bilinear weights.
     fn taps(&self, march: &March, (place, number): ([f64; 2], u32)) -> Vec<(usize, f64)> {
         if number == 0 {
             let ([low, high], t) = self.gather.beside(march, place);

@@ -1,10 +1,10 @@
-//! What directions on curved bases err by against their twins.
+//! Tolerances of directions on curved base surfaces against their CPU references.
 
 use glam::{DVec2, DVec3};
 
 use super::EPSILON;
 use crate::bent_directions::ways::Way;
-use crate::bent_directions::{Fans, MOST_TURN};
+use crate::bent_directions::{Fans, MAX_TURN_RAD};
 use ridgelight::scene::Curvature;
 
 /// By how much `bent_directions` may be off beside a way that ends `to_m` away, m: components of the way err by 2 ε of themselves
@@ -38,12 +38,12 @@ pub fn bent(e: DVec3, Way { away_m, to_m, .. }: Way, own_m: f64, curvature: Curv
     if r == 0.0 {
         return 10.0 * EPSILON;
     }
-    let away = away_m.min(MOST_TURN / r);
+    let away = away_m.min(MAX_TURN_RAD / r);
     let (v, g) = (r * away, r * (own_m.abs() + away));
     let parts = 8.0 * v * v + 14.0 * g + 16.0 * v * (1.0 + g) + 2.0;
     let plan = e.truncate().length();
     let moved = r * (way(to_m) / plan + 9.0 * EPSILON * away) * (1.0 + 2.0 * g);
-    (EPSILON * parts + moved) / (0.9 * Curvature::LEAST_STRETCH) + 8.0 * EPSILON
+    (EPSILON * parts + moved) / (0.9 * Curvature::MIN_SCALE) + 8.0 * EPSILON
 }
 
 /// By how much `fan_weights` may be off, of directions as the device has them.

@@ -1,4 +1,5 @@
-//! What thrown light errs by against its twins: sample by sample, from what the twin itself has seen.
+//! Tolerances of indirect light against its CPU references: per grid point, from the CPU reference's own visible
+//! intervals.
 
 use super::{ARC_TANGENT, EPSILON, twin_level, twin_spline};
 use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
@@ -6,7 +7,7 @@ use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, wrapped};
 use ridgelight::scene::{Border, HeightField, Receiver};
 
-/// What counts of a field.
+/// Properties of a field that errors depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct Land {
     /// The largest |height| over the base.
@@ -48,7 +49,7 @@ impl Land {
         Self { largest_m, relief_m: high - low, steepest, cell_m: x.min(y) }
     }
 
-    /// How far a sample's normal may be turned, radians.
+    /// Error of a grid point's normal, radians.
     ///
     /// A component of the gradient has differences of neighbours, at most 2 of the steepest around the sample, each
     /// rounded, weighted exactly and summed twice, over a quotient's 5 ε: 8 ε; two of them √2 of that, which turn a
@@ -78,7 +79,7 @@ impl Land {
     }
 }
 
-/// What an engine errs by where a cast ends.
+/// Errors of a method where a visible part ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CastError {
     /// Of its upper elevation, radians.
@@ -91,18 +92,18 @@ pub struct CastError {
     pub radiance: f64,
 }
 
-/// What is the same along all azimuths.
+/// Values common to all azimuths.
 #[derive(Clone, Copy, Debug)]
 pub struct Slices {
-    /// How far the sample's normal may be turned, radians.
+    /// Error of the grid point's normal, radians.
     pub normal: f64,
-    /// What a slice counts for: its wedge in radians, or 1.
+    /// Weight of a slice: its wedge in radians, or 1.
     pub wedge: f64,
     /// The largest radiance of all ground.
     pub brightest: f64,
 }
 
-/// What light that is thrown at a sample may be off by.
+/// Error of the indirect light at a grid point.
 #[derive(Clone, Copy, Debug)]
 pub struct ThrownError {
     /// Radiance times weight, R, G, B.
@@ -264,7 +265,7 @@ impl Gathered {
         let radiance = twin_spline(self.brightest) + levels * twin_level(self.brightest) + places;
         let (end, weight) = match self.receiver {
             Receiver::Plane => (0.0, EPSILON * (2.0 + 24.0 * width)),
-            Receiver::Lobe => (4.0 * 2.0_f64.sqrt() * 8.0 * EPSILON, 4.0 * EPSILON * width),
+            Receiver::CosineLobe => (4.0 * 2.0_f64.sqrt() * 8.0 * EPSILON, 4.0 * EPSILON * width),
         };
         CastError { elevation_rad: angle, end, weight, radiance }
     }

@@ -1,4 +1,4 @@
-//! Light that lobes throw.
+//! Tolerances of Phong specular.
 
 use std::f64::consts::PI;
 
@@ -50,8 +50,8 @@ pub fn twin_arriving(
     2.0 * PI / all.len() as f64 * all.iter().map(slice_off).sum::<f64>()
 }
 
-/// What is stored as f16: rounded either way by a device and to nearest by the twin, 2^-10 of it, or of the smallest
-/// numbers 2^-24.
+/// Values stored as f16: a device may round either way, the CPU reference rounds to nearest: 2^-10 of it, or of the
+/// smallest numbers 2^-24.
 pub fn stored_f16(value: f64) -> f64 {
     value.abs() / 1024.0 + 1.0 / (1 << 24) as f64
 }

@@ -1,4 +1,4 @@
-//! What light errs by: through horizons, and of balls.
+//! Tolerances of light through horizons, and of sphere lights.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,7 +12,7 @@ use ridgelight::basis::legendre::occlusion_polynomials;
 use ridgelight::basis::slice::{Slices, from_nlp, slice_index};
 use ridgelight::scene::{HeightField, SphereLight, Wedges};
 
-/// What the light that a sample gets through its horizons errs by.
+/// Errors of a grid point's light through its horizons.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadeError {
     lowest_slope: f64,
@@ -158,38 +158,38 @@ impl ShadeError {
         2.0 * (2.0 * 1.25 * self.normal / OFF_PLANE + 30.0 * EPSILON)
     }
 
-    /// How far a normal is turned, radians.
+    /// Error of a normal, radians.
     pub fn normal(&self) -> f64 {
         self.normal
     }
 
-    /// How near to a point sun a horizon has to stand for the two to disagree on what is lit.
+    /// Distance of a horizon from a point sun within which the two may disagree on visibility.
     pub fn lowest_slope(&self) -> f64 {
         self.lowest_slope
     }
 }
 
-/// Where a ball of light stands to a sample, and on what field.
+/// Geometry of a sphere light relative to a grid point, and its field.
 #[derive(Clone, Copy, Debug)]
 pub struct BallSeen {
-    /// Between the sample and the ball's middle.
+    /// Distance from the grid point to the sphere's centre.
     pub distance_m: f64,
     /// The same in the plane.
     pub away_m: f64,
-    /// Of the ball.
+    /// Radius of the sphere.
     pub radius_m: f64,
-    /// The ball's middle and all heights over the base, at most.
+    /// Largest height of the sphere's centre and of the field over the base.
     pub largest_m: f64,
     /// Highest less lowest height.
     pub relief_m: f64,
     /// The smaller side of a cell.
     pub cell_m: f64,
-    /// Whether the surface may pass through the ball.
+    /// Whether the surface may intersect the sphere.
     pub is_cut: bool,
 }
 
 impl BallSeen {
-    /// Of a sample, by its place in the field's heights.
+    /// For a grid point, by its index in the field's heights.
     ///
     /// # Panics
     /// Outside the field.
@@ -214,7 +214,7 @@ impl BallSeen {
         }
     }
 
-    /// `sphere_shade` against its twin, for radiance 1.
+    /// `sphere_shade` against its CPU reference, for radiance 1.
     ///
     /// A slope errs as a march's at its first crossing, 38 ε R / c, and by places further on: a direction
     /// turned by 24 ε and a position that errs by 8 ε of the distance, across which the surface rises by

@@ -1,5 +1,5 @@
-//! What f32 may be off by, carried along with what it computes: running error analysis (Higham 2002, "Accuracy and Stability of
-//! Numerical Algorithms", §3.3). For maths with decisions, of which only what they compare tells whether f32 decides alike.
+//! Running error analysis (Higham 2002, "Accuracy and Stability of Numerical Algorithms", §3.3): every f64 value
+//! carries a bound on its f32 error. It shows for each branch whether f32 takes the same one.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,12 +12,12 @@ const SMALLEST: f64 = 1.0 / (1_u128 << 126) as f64;
 const QUOTIENT: f64 = 5.0;
 const ROOT: f64 = 9.0;
 
-/// A value in f64, and how far a device's may be from it.
+/// A value in f64, and a bound on a device's error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
     /// The value.
     pub v: f64,
-    /// How far from it, 0 or more.
+    /// The error bound, 0 or more.
     pub off: f64,
 }
 
@@ -38,8 +38,8 @@ impl Near {
         Self { v: v.into(), off: 0.0 }
     }
 
-    /// The result of an operation that rounds by so many ε, of operands that move it by `passed_on`. One of numbers without
-    /// error that has no more digits than f32 is without error where it rounds once, as are sums and products.
+    /// The result of an operation that rounds by so many ε, of operands that move it by `passed_on`. A sum or product
+    /// of exact numbers that fits f32 is exact.
     fn rounded(v: f64, passed_on: f64, roundings: f64) -> Self {
         if v.is_nan() || passed_on.is_nan() {
             return Self { v: 0.0, off: f64::INFINITY };
@@ -50,24 +50,24 @@ impl Near {
         Self { v, off: passed_on + roundings * EPSILON * (v.abs() + passed_on) + SMALLEST }
     }
 
-    /// The same, off by so much more.
+    /// The same with a larger error bound.
     #[must_use]
     pub fn wider(self, by: f64) -> Self {
         Self { off: self.off + by, ..self }
     }
 
-    /// The most that it may be, whatever its sign.
+    /// The largest possible magnitude.
     pub fn most(self) -> f64 {
         self.v.abs() + self.off
     }
 
-    /// Whether it is more than another, where no error decides that.
+    /// Whether it is more than another, unless the error decides that.
     pub fn above(self, other: Self) -> Option<bool> {
         let (apart, off) = (self.v - other.v, self.off + other.off);
         (off == 0.0 || apart.abs() > off).then_some(apart > 0.0)
     }
 
-    /// Whether it is not more than another, where no error decides that.
+    /// Whether it is not more than another, unless the error decides that.
     pub fn at_most(self, other: Self) -> Option<bool> {
         self.above(other).map(|is_above| !is_above)
     }
@@ -92,7 +92,7 @@ impl Near {
         }
     }
 
-    /// Within 0 .. 1; never off by more than that.
+    /// Clamped to 0 .. 1; the error is never larger than that.
     #[must_use]
     pub fn within_one(self) -> Self {
         Self { v: self.v.clamp(0.0, 1.0), off: self.off.min(1.0) }
@@ -104,7 +104,7 @@ impl Near {
         Self { v: self.v.abs(), ..self }
     }
 
-    /// Of what is not less than 0 but by error.
+    /// Of a value that only error makes negative.
     #[must_use]
     pub fn sqrt(self) -> Self {
         let root = self.v.max(0.0).sqrt();
@@ -219,7 +219,7 @@ pub fn normalize(a: Near3) -> Near3 {
     a.map(|a| a / length)
 }
 
-/// Whether all of these hold, where no doubt of one decides that.
+/// Whether all of these hold, unless the doubt of one decides that.
 pub fn all<const N: usize>(of: [Option<bool>; N]) -> Option<bool> {
     if of.contains(&Some(false)) {
         Some(false)
@@ -230,7 +230,7 @@ pub fn all<const N: usize>(of: [Option<bool>; N]) -> Option<bool> {
     }
 }
 
-/// Whether one of these holds, where no doubt of one decides that.
+/// Whether one of these holds, unless the doubt of one decides that.
 pub fn any<const N: usize>(of: [Option<bool>; N]) -> Option<bool> {
     all(of.map(|of| of.map(|is| !is))).map(|none| !none)
 }
@@ -239,8 +239,8 @@ pub fn any<const N: usize>(of: [Option<bool>; N]) -> Option<bool> {
 mod tests {
     use super::*;
 
-    /// A few thousand chains of operations in f32 stay within what is carried along in f64, and that is no more than 200 times
-    /// what they are off by at worst: it is a bound, and not a loose one.
+    /// A few thousand chains of f32 operations stay within the bound carried along in f64, and the bound is at most
+    /// 200 times the worst actual error.
     #[test]
     fn f32_stays_within_what_is_carried_along() {
         let mut state = 5_u64;

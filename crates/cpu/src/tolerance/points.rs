@@ -1,4 +1,4 @@
-//! What rays of `visible_points` err by against its twin.
+//! Tolerances of `visible_points` rays against the CPU reference.
 
 use super::{EPSILON, Land};
 use crate::ellipse_fit::Ellipse;
@@ -12,7 +12,7 @@ use crate::scatter_gather::Gathered;
 /// sums that err alike, a quotient, product and sum of at most a cell).
 pub const MET_SHARE: f64 = 32.0 * EPSILON;
 
-/// By how much the elevation in which a ray meets a crossing may be off, radians.
+/// Error of the elevation at which a ray meets a crossing, radians.
 ///
 /// At a crossing t away a ray and the surface are compared: t · rise errs by 8 ε of itself, which is at most the relief R
 /// where it matters, as beyond a ray is over everything; the surface by three differences, two products and two sums of at
@@ -23,7 +23,7 @@ pub fn seen_elevation(land: &Land) -> f64 {
     EPSILON * (12.0 + 32.0 * relief_m / cell_m + 22.0 * steepest)
 }
 
-/// By how much the elevation in which a ray meets the upper end of a stretch may be off, radians.
+/// Error of the elevation at which a ray meets the upper end of a visible interval, radians.
 ///
 /// At a crossing d away a ray and the surface are compared: t · rise errs by 8 ε of itself, which there is the rise of one of
 /// the triangle's corners over the sample, r at most; the surface by three differences, two products and two sums of at most

@@ -1,9 +1,9 @@
-//! A lit field from above, as a screen shows it.
+//! A shaded field from above, as displayed on a screen.
 
 use ridgelight::plan::Map;
 use ridgelight::scene::Tone;
 
-/// The four bytes of each pixel, row after row; `radiance` and `voids` are the field's, one a sample.
+/// The four bytes of each pixel, row after row; `radiance` and `voids` are the field's, one per grid point.
 pub fn map_draw(
     map: &Map,
     radiance: &[[f32; 3]],
@@ -11,7 +11,7 @@ pub fn map_draw(
     tone: Tone,
 ) -> Vec<[u8; 4]> {
     let [width, height] = map.size;
-    // In f32, as on the device: which sample a pixel's middle is in must not differ.
+    // In f32, as on the device: both must find the same grid point for a pixel's centre.
     let sample = |corner: f32, pixel: u32, count: u32| {
         let place = ((pixel as f32 + 0.5) * map.samples_per_pixel + corner).floor();
         (place >= 0.0 && place < count as f32).then_some(place as usize)

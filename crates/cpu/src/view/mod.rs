@@ -1,3 +1,6 @@
+//! CPU references of the passes that draw pictures: the map from above, and the terrain mesh
+//! and background in a perspective view.
+
 pub mod map_draw;
 pub mod picture_tone;
 pub mod sky_draw;

@@ -1,3 +1,3 @@
-//! How radiance becomes a channel of a picture: what pictures are written with.
+//! Conversion of radiance to a channel of a picture, as for written image files.
 
 pub use ridgelight::scene::picture_tone;

@@ -1,4 +1,4 @@
-//! What is behind a field in a direction, in f64.
+//! Background of a view in a direction, in f64.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use ridgelight::scene::{Border, Environment, Scene};
 
-/// Radiance from a direction, of any length. `background` is what is seen where neither ground nor sky is.
+/// Radiance from a direction, of any length. `background` applies where there is neither ground nor sky.
 pub fn sky_draw(scene: &Scene, background: [f32; 3], direction: DVec3) -> [f64; 3] {
     let lights = &scene.lights;
     let bare = if lights.environment.is_some() { [0.0; 3] } else { background };
@@ -17,7 +17,7 @@ pub fn sky_draw(scene: &Scene, background: [f32; 3], direction: DVec3) -> [f64; 
     std::array::from_fn(|k| f64::from(colour[k]) + around[k])
 }
 
-/// Bilinear between the middles of texels.
+/// Bilinear between texel centres.
 fn towards(environment: &Environment, e: DVec3) -> [f64; 3] {
     let (width, height) = (environment.width(), environment.height());
     let turn = 0.5 - (e.y.atan2(e.x) - environment.rotation_rad()) / TAU;

@@ -1,22 +1,22 @@
-//! What a ray from a camera meets of the mesh: every triangle is asked, in f64. Of camera and mesh only the conventions
-//! are shared with the recorded passes, no matrix.
+//! Hit of a camera ray on the mesh, in f64, by testing every triangle. It shares only conventions of camera and mesh
+//! with the recorded passes, no matrix.
 
 use glam::DVec3;
 
 use ridgelight::scene::{Camera, HeightField, Lens};
 
-/// A place of the surface that is seen.
+/// A visible point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
-    /// Distance along the direction of view, from the plane of the eye.
+    /// Distance along the viewing direction, from the camera's plane.
     pub distance_m: f64,
-    /// Column, in samples.
+    /// Column, in grid points.
     pub col: f64,
-    /// Row, in samples.
+    /// Row, in grid points.
     pub row: f64,
 }
 
-/// A camera's ray: an origin and what is added a metre along the direction of view.
+/// A camera's ray: an origin and the offset per metre along the viewing direction.
 pub fn ray(camera: &Camera, size: [u32; 2], pixel: [f64; 2]) -> [DVec3; 2] {
     let [right, up, back] = camera.axes();
     let [width, height] = size.map(f64::from);
@@ -29,8 +29,8 @@ pub fn ray(camera: &Camera, size: [u32; 2], pixel: [f64; 2]) -> [DVec3; 2] {
     }
 }
 
-/// What is met first at a place of a picture: `pixel` counts pixels from the upper left corner, middles at halves.
-/// The mesh has a vertex at every `step`th sample.
+/// First hit at a place of a picture: `pixel` counts pixels from the upper left corner, centres at halves. The mesh
+/// has a vertex at every `step`th grid point.
 pub fn terrain_draw(
     field: &HeightField,
     camera: &Camera,
@@ -94,7 +94,7 @@ fn triangle(
     })
 }
 
-/// Whether the field's own triangle at a place has a void corner.
+/// Whether the field's own triangle at a position has a void corner.
 fn is_hole(field: &HeightField, met: &Met) -> bool {
     let Some(voids) = field.voids() else { return false };
     let (row, col, [down, right]) = cell(field, met);
@@ -102,14 +102,14 @@ fn is_hole(field: &HeightField, met: &Met) -> bool {
     [[row, col], third, [row + 1, col + 1]].iter().any(|[r, c]| voids[r * field.cols() + c])
 }
 
-/// The cell that a place is in, and how far down and right in it.
+/// The cell of a position, and how far down and right in it.
 fn cell(field: &HeightField, met: &Met) -> (usize, usize, [f64; 2]) {
     let floor = |v: f64, samples: usize| (v.floor().max(0.0) as usize).min(samples - 2);
     let (row, col) = (floor(met.row, field.rows()), floor(met.col, field.cols()));
     (row, col, [met.row - row as f64, met.col - col as f64])
 }
 
-/// Exit radiance of a place, bilinear between the samples around it.
+/// Exit radiance of a position, bilinear between the grid points around it.
 pub fn colour(field: &HeightField, radiance: &[[f32; 3]], met: &Met) -> [f64; 3] {
     let (row, col, [down, right]) = cell(field, met);
     let at = |r: usize, c: usize, k: usize| f64::from(radiance[r * field.cols() + c][k]);

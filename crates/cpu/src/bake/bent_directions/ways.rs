@@ -1,69 +1,71 @@
-//! How far what a sample sees stands, in f64: of a field that repeats, in which repetition.
+//! Distance of a visible point, in f64; on a repeating field, its repetition.
 //!
-//! Of what a ray meets only the sample nearest to it in the plan is kept, and a field that repeats has it again and again, in
-//! rows and columns of repetitions. A ray passes many of them, high over or beside the one that it meets, and may have gone
-//! through a hundred repetitions: from a ridge falling by s a metre it goes on for up to relief / s. It has met the surface
-//! first in the repetition sought, within half a cell of the sample. So that is the first of all whose surface there, six flat
-//! triangles around the sample, the ray touches.
+//! Only the grid point nearest to the hit in plan is stored, and a repeating field contains it again and again, in
+//! rows and columns of repetitions. A ray passes many of them, high above or beside the one that it hits, and may
+//! cross a hundred repetitions: from a ridge, falling by s per metre, it continues for up to relief / s. The hit lies
+//! within half a cell of the grid point in its first repetition whose surface, six flat triangles around the grid
+//! point, the ray touches.
 
 use glam::{DVec2, DVec3};
 
-use super::MOST_TURN;
+use super::MAX_TURN_RAD;
 use ridgelight::scene::{Border, Curvature, HeightField};
 
-/// How far is looked, columns or rows along which the direction runs faster: as far as rays go (`walk.glsl`).
+/// Search range, in columns or rows along the faster axis of the direction: the reach of rays (`walk.glsl`).
 pub use ridgelight::scene::REACH_CELLS;
-/// Half the side of the square about a sample within which it is what is met, in cells, a little more: of what lies beyond, the
-/// ray meets nothing sooner.
+/// Half the side of the square around a grid point that contains its hits, in cells, plus a margin: any hit outside
+/// it belongs to another grid point.
 pub const HALF_SIDE: f64 = 0.51;
-/// A ray that is over the surface by this share of the heights that are compared, and of those that the surface rises by along
-/// the way, meets it: 128 roundings, more than rays and this err by together (`crossing_elevation` and `over` of the tolerances).
+/// Relative tolerance of a hit, against the heights that are compared and the surface's rise along the way: 128
+/// roundings, more than the combined error of the rays and this code (`crossing_elevation` and `over` of the
+/// tolerances).
 pub const GRAZE: f64 = 1.0 / (1 << 17) as f64;
 
-/// One repetition of a sample beside a ray.
+/// One repetition of a grid point beside a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// How far along the ray it stands in the plan, m. What is met lies within half a cell of the sample in the plan, but on a
-    /// steep wall far above or below: what moves with the base is off by half a cell's turn, whatever the slope. Infinite where
-    /// the base has turned by [`MOST_TURN`] before.
+    /// Horizontal distance along the ray, m. The hit lies within half a cell of the grid point in plan, except on a
+    /// steep wall, so the moved direction has an error of at most half a cell's turn at any slope. Infinite where the
+    /// base has turned by [`MAX_TURN_RAD`] before.
     pub away_m: f64,
-    /// How far it is, m; 0 of what is infinitely far.
+    /// Distance, m; 0 if infinitely far.
     pub to_m: f64,
-    /// By how much the ray stays over the surface around it, m, at least; below 0 where it goes through.
+    /// Smallest height of the ray over the surface around it, m; negative where it passes through.
     pub over_m: f64,
-    /// Up to here it counts as met, m.
+    /// Largest such height that counts as a hit, m.
     pub graze_m: f64,
     /// Cells along the ray's faster axis.
     pub cells: f64,
-    /// What the surface rises or falls by from the sample to a neighbour, m, at most.
+    /// Largest rise or fall of the surface from the grid point to a neighbour, m.
     pub relief_m: f64,
-    /// What the ray rises or falls by on the way and half a cell more, m.
+    /// Rise or fall of the ray up to half a cell past the grid point, m.
     pub climb_m: f64,
 }
 
-/// The repetitions of a sample that a ray may have met, nearest first.
+/// The repetitions of a grid point that a ray may have hit, nearest first.
 pub struct Ways {
-    /// The sample beside the ray, columns and rows: along the faster axis first.
+    /// The grid point beside the ray, columns and rows: along the faster axis first.
     gap: [i64; 2],
     size: [i64; 2],
     cell_m: [f64; 2],
     by_rows: bool,
     e: DVec3,
-    /// Heights over the sample's own, of its neighbours in the east, south, west, north, south-east and north-west.
+    /// Heights relative to the grid point, of its neighbours in the east, south, west, north, south-east and
+    /// north-west.
     around: [f64; 6],
     rise_m: f64,
     is_periodic: bool,
     /// Columns and rows, towards east and south, per cell of the faster axis.
     advance: DVec2,
     climb_m: f64,
-    /// Repetitions along the faster axis that are looked at.
+    /// Repetitions tested along the faster axis.
     turns: std::ops::RangeInclusive<i64>,
     /// Whether there are more, beyond a right angle of the base.
     is_cut: bool,
 }
 
 impl Ways {
-    /// Of a sample `there` that is seen from `here` along e.
+    /// For the grid point `there`, visible from `here` along e.
     pub fn of(
         (field, border): (&HeightField, Border),
         curvature: Curvature,
@@ -103,12 +105,12 @@ impl Ways {
         };
         if ways.is_periodic {
             let rate = (DVec2::from_array(curvature.per_m) * e.truncate()).length();
-            ways.search(MOST_TURN / rate.max(1e-30) * main);
+            ways.search(MAX_TURN_RAD / rate.max(1e-30) * main);
         }
         ways
     }
 
-    /// Where rays are level with the surface around the sample, and no farther than the base's turn.
+    /// Where rays are level with the surface around the grid point, limited to the base's turn.
     fn search(&mut self, turned_cells: f64) {
         let [size, first] = [self.size[0], self.first().abs()].map(|n| n as f64);
         let level = |rise: f64| {
@@ -124,7 +126,7 @@ impl Ways {
             self.around.iter().copied().fold(0.0, f64::max),
         ];
         let [a, b] = [level(low), level(high)];
-        // A cell for half a square and roundings.
+        // One more cell for half a square and roundings.
         let turn = |cells: f64| {
             ((cells.clamp(-2.0, f64::from(REACH_CELLS)) - first) / size).floor() as i64
         };
@@ -134,7 +136,7 @@ impl Ways {
         self.turns = from..=to.min(last);
     }
 
-    /// Cells to the nearest repetition ahead, below 0 towards west or north.
+    /// Cells to the nearest repetition ahead, negative towards west or north.
     fn first(&self) -> i64 {
         let [gap, size] = [self.gap[0], self.size[0]];
         if self.ahead() > 0.0 { gap.rem_euclid(size) } else { -(-gap).rem_euclid(size) }
@@ -144,7 +146,8 @@ impl Ways {
         if self.by_rows { self.advance.y } else { self.advance.x }
     }
 
-    /// All that may be met, nearest first; `half_side` as [`HALF_SIDE`]. Of a field that does not repeat the sample itself.
+    /// All possible hits, nearest first; `half_side` as [`HALF_SIDE`]. On a field that does not repeat, the grid
+    /// point itself.
     pub fn all(&self, half_side: f64) -> impl Iterator<Item = Way> + use<'_> {
         let turns = if self.is_periodic { self.turns.clone() } else { 0..=0 };
         turns.flat_map(move |k| self.beside(k).into_iter().flatten()).filter_map(move |gaps| {
@@ -155,7 +158,7 @@ impl Ways {
         })
     }
 
-    /// The first that is met; where none is, by roundings, the one passed nearest by.
+    /// The first hit; where roundings leave none, the one that the ray passes nearest.
     pub fn met(&self) -> Way {
         let mut nearest = None::<Way>;
         for way in self.all(HALF_SIDE) {
@@ -169,17 +172,17 @@ impl Ways {
         if self.is_cut { self.far() } else { nearest.unwrap_or(self.whole(self.gap)) }
     }
 
-    /// Whether what is met may lie beyond a right angle of the base.
+    /// Whether the hit may lie beyond a right angle of the base.
     pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
-    /// What lies so far that the base has turned away.
+    /// Hits so far away that the base has turned away.
     pub fn far(&self) -> Way {
         Way { away_m: f64::INFINITY, to_m: 0.0, ..self.whole(self.gap) }
     }
 
-    /// The repetitions that a ray may pass at its k-th along the faster axis, in the order in which it does.
+    /// The repetitions that a ray may pass at its k-th along the faster axis, in order.
     fn beside(&self, k: i64) -> [Option<[i64; 2]>; 2] {
         if !self.is_periodic {
             return [Some(self.gap), None];
@@ -188,7 +191,8 @@ impl Ways {
         let main = self.first() + if self.ahead() > 0.0 { k * size } else { -k * size };
         let turns = (main.abs() as f64 * self.aside() - self.gap[1] as f64) / other_size as f64;
         let gaps = |turns: f64| Some([main, self.gap[1] + turns as i64 * other_size]);
-        // Within a column's or row's width a ray moves aside by one at most: only of lines two samples wide or less it passes two.
+        // Within the width of a column or row, a ray moves sideways by at most one. Only on fields two grid points
+        // wide or less does it cross two.
         if other_size > 2 {
             return [gaps((turns + 0.5).floor()), None];
         }
@@ -201,12 +205,12 @@ impl Ways {
         if self.by_rows { self.advance.x } else { self.advance.y }
     }
 
-    /// Where the ray passes within the square about a sample.
+    /// Where the ray crosses the square around a grid point.
     fn way(&self, gaps: [i64; 2], half_side: f64) -> Option<Way> {
         let [main, other] = gaps.map(|gap| gap as f64);
         let cells = main.abs();
         let beside = cells * self.aside() - other;
-        // Cells from where it is beside the sample, along the faster axis; it begins at the start.
+        // Cells from the closest approach, along the faster axis; starts at the ray start.
         let (mut from, mut to) = ((-half_side).max(-cells), half_side);
         if self.aside() == 0.0 {
             if beside.abs() > half_side {
@@ -227,7 +231,7 @@ impl Ways {
         // Linear between grid lines and the diagonal.
         let kink = |at: f64, pace: f64| if pace == 0.0 { to } else { (-at / pace).clamp(from, to) };
         let mut least = over(to);
-        // A sample's own surface is left where the ray begins.
+        // The ray starts on the grid point's own surface.
         if gaps != [0, 0] {
             let (p, a) = (start, self.advance);
             for u in [from, kink(p.x, a.x), kink(p.y, a.y), kink(p.x - p.y, a.x - a.y)] {
@@ -237,7 +241,8 @@ impl Ways {
         Some(Way { over_m: least, ..self.whole(gaps) })
     }
 
-    /// The surface over the sample, so many columns east and rows south of it, within a cell: of six triangles around it.
+    /// Height of the surface above the grid point, within a cell, by columns east and rows south: six triangles meet
+    /// there.
     fn risen(&self, at: DVec2) -> f64 {
         let [east, south, west, north, south_east, north_west] = self.around;
         let [x, y] = [at.x.abs(), at.y.abs()];
@@ -250,7 +255,7 @@ impl Ways {
         both * corner + (x - both) * along + (y - both) * down
     }
 
-    /// A repetition, met whatever the heights.
+    /// A repetition, hit at any heights.
     fn whole(&self, gaps: [i64; 2]) -> Way {
         let [x, y] = if self.by_rows { [gaps[1], gaps[0]] } else { gaps };
         let to = DVec3::new(x as f64 * self.cell_m[0], -y as f64 * self.cell_m[1], self.rise_m);

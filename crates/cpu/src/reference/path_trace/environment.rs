@@ -1,4 +1,4 @@
-//! An environment: directions by its light, and what is seen of it.
+//! An environment: importance sampling, and radiance by direction.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use super::{Traced, colour};
 use crate::shared::random::on_circle;
 use crate::tolerance::near::{Near, Near3, angle, plus, times};
 
-/// Radiance, its density of choice.
+/// Radiance and sampling density.
 pub(super) struct Environment {
     pub(super) size: [i32; 2],
     pub(super) texels: Vec<[f32; 4]>,
@@ -16,7 +16,7 @@ pub(super) struct Environment {
 }
 
 impl Environment {
-    /// First entry above u of n entries of the shares from `at` on, `step` apart: f32 as the shader's.
+    /// First entry above u among n entries of the CDF from `at` on, `step` apart: in f32 as the shader.
     fn picked(&self, u: Near, at: usize, step: usize, n: i32) -> i32 {
         let (mut low, mut high) = (0, n - 1);
         while low < high {
@@ -30,7 +30,7 @@ impl Environment {
         low
     }
 
-    /// A direction by the light of its texels, and its texel.
+    /// A direction drawn in proportion to its texels' light, and its texel.
     pub(super) fn towards_light(&self, u: [Near; 2], v: [Near; 2]) -> (Near3, [f32; 4]) {
         let [width, height] = self.size;
         let across = width as usize + 1;
@@ -47,8 +47,8 @@ impl Environment {
         (at_turn(turn, below), self.texels[(row * width + col) as usize])
     }
 
-    /// Adds what is seen along e, weighed by the balance heuristic: where rounding decides between texels, that of f64, and the
-    /// largest difference to any other of them is in doubt. Straight above, e may be of any column.
+    /// Adds the radiance along e, weighted by the balance heuristic: where rounding decides between texels, that of
+    /// f64, with the largest difference to any other of them in doubt. Straight above, e may belong to any column.
     pub(super) fn towards(&self, e: Near3, density: Near, seen: &mut Traced) {
         let [width, height] = self.size;
         let length = (e[0] * e[0] + e[1] * e[1]).sqrt();
@@ -69,7 +69,7 @@ impl Environment {
         let light = at(col, row);
         seen.light = plus(seen.light, light);
         let mut apart = [0.0_f64; 3];
-        // Once around is all of them.
+        // Once around covers all of them.
         let cols = west..=east.min(west.saturating_add(width - 1));
         for other in cols.flat_map(|c| (top..=bottom).map(move |r| (c, r))) {
             let other = at(other.0, other.1);

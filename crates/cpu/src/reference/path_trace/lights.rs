@@ -1,4 +1,4 @@
-//! Suns, key lights and balls as a place is lit by them directly.
+//! Direct light of suns, key lights and sphere lights at a path vertex.
 
 use std::f64::consts::PI;
 
@@ -7,19 +7,19 @@ use super::{Tracer, colour, given, one};
 use crate::shared::random::{direction_about, on_circle};
 use crate::tolerance::near::{Near, Near3, dot, minus, product};
 
-/// A direction of a light and what it may bring.
+/// A direction of a light and its possible contribution.
 pub(super) struct ActiveLights {
     pub(super) e: Near3,
     pub(super) brought: Near3,
-    /// Whether it faces the place.
+    /// Whether it faces the vertex.
     pub(super) reflected: Option<bool>,
     pub(super) shines: Option<bool>,
-    /// Where the light begins, of balls.
+    /// Where the light begins, for sphere lights.
     pub(super) end_m: Option<Near>,
 }
 
 impl Tracer<'_> {
-    /// What a light may bring; none where rounding decides where on it a ray goes.
+    /// Possible contribution of a light; none where rounding decides which point of it a ray targets.
     pub(super) fn light(
         &self,
         place: &Place,
@@ -55,7 +55,7 @@ impl Tracer<'_> {
                 let half = (source[3] * source[3] - beside2).max(Near::ZERO).sqrt();
                 end_m = Some(((one() - off) * away - half).max(Near::ZERO));
                 solid = Near::of(2.0 * PI) * cone;
-                // From inside no ray is sent, whichever way.
+                // From inside no shadow ray is traced.
                 if shines == Some(false) {
                     let (e, brought) = (above, [Near::ZERO; 3]);
                     return Some(ActiveLights {
@@ -87,7 +87,7 @@ pub(super) fn mix(a: Near, b: Near, share: Near) -> Near {
     a * (one() - share) + b * share
 }
 
-/// A direction of a key light, evenly over its solid angle.
+/// A direction of a key light, uniform over its solid angle.
 fn towards_key(key: [Near; 4], u: [Near; 2]) -> Near3 {
     at_turn(key[0] + key[1] * u[1], Near::of(2.0) * mix(key[2], key[3], u[0]))
 }

@@ -1,4 +1,4 @@
-//! Where a path stands, and what a place reflects.
+//! Vertices of a path and their reflection.
 
 use std::f64::consts::PI;
 
@@ -7,9 +7,9 @@ use crate::shared::lobe::lobe_density;
 use crate::shared::random::{direction_about, on_circle};
 use crate::shared::trace::Met;
 use crate::tolerance::near::{Near, Near3, dot, minus, normalize, plus, times};
-use ridgelight::scene::{Albedo, Border, Lobe};
+use ridgelight::scene::{Albedo, Border, Specular};
 
-/// Where a path stands.
+/// A path vertex.
 pub(super) struct Place {
     pub(super) base: [i32; 2],
     pub(super) offset: [Near; 2],
@@ -20,7 +20,7 @@ pub(super) struct Place {
     pub(super) mirror: Near3,
 }
 
-/// What a place reflects: see the shader.
+/// Reflection at a vertex: see the shader.
 pub(super) struct Reflected {
     pub(super) facing: Near,
     pub(super) light: Near3,
@@ -29,7 +29,7 @@ pub(super) struct Reflected {
 }
 
 impl Tracer<'_> {
-    /// Of what stands at a sample.
+    /// At a grid point.
     pub(super) fn first(&self, sample: usize) -> Place {
         let cols = self.scene.field.cols();
         let [own, east, north] = given(self.samples[sample]);
@@ -46,7 +46,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// Of what a ray along e has met.
+    /// At the hit of a ray along e.
     pub(super) fn place_of(&self, met: &Met, is_lower: bool, e: Near3) -> Place {
         let [nw, ne, sw, se] = self.ground.corners(met.cell);
         let [east, south] = if is_lower { [se - sw, sw - nw] } else { [ne - nw, se - ne] };
@@ -65,7 +65,7 @@ impl Tracer<'_> {
             a + b + c
         };
         let is_map = matches!(self.scene.surface.albedo, Albedo::Map(_));
-        let lobe_is_map = matches!(self.scene.surface.phong, Some(Lobe::Map(_)));
+        let lobe_is_map = matches!(self.scene.surface.specular, Some(Specular::Map(_)));
         let channel = |c: usize| between(&|i| Near::given(self.albedo[i][c]));
         let lobe = |c: usize| match (lobe_is_map, self.lobes.first()) {
             (true, _) => between(&|i| Near::given(self.lobes[i][c])).max(Near::ZERO),
@@ -83,7 +83,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// Share of scattered rays that the lobe sends.
+    /// Fraction of scattered rays drawn from the Phong lobe.
     fn lobe_choice(place: &Place) -> Near {
         place.lobe[1] / (largest(place.albedo) + place.lobe[1]).max(Near::of(1e-30))
     }
@@ -104,7 +104,7 @@ impl Tracer<'_> {
         Reflected { facing, light, density, scattered }
     }
 
-    /// Where the place lies in the world; none where rounding decides whether a field that repeats begins again there.
+    /// World position of the vertex; none where rounding decides whether a repeating field wraps there.
     pub(super) fn centre(&self, place: &Place) -> Option<Near3> {
         let (cols, rows) = (self.scene.field.cols(), self.scene.field.rows());
         let mut from = [0, 1].map(|i| Near::given(place.base[i] as f32) + place.offset[i]);
@@ -119,7 +119,7 @@ impl Tracer<'_> {
         Some([from[0] * x, (Near::given((rows - 1) as f32) - from[1]) * y, place.own])
     }
 
-    /// Where the scattered ray goes; none where rounding decides whether by the lobe.
+    /// Direction of the scattered ray; none where rounding decides between diffuse and specular.
     pub(super) fn scattered(&self, place: &Place, u: [Near; 2], v: [Near; 2]) -> Option<Near3> {
         let by_lobe =
             if self.lobes.is_empty() { false } else { Self::lobe_choice(place).above(v[0])? };

@@ -1,7 +1,7 @@
 use super::*;
 use ridgelight::scene::{Environment as Image, HeightField, Lights, SphereLight, Surface};
 
-/// A level field of 3² samples in this light.
+/// A level field of 3² grid points in this light.
 fn scene(albedo: [f32; 3], lights: Lights) -> Scene {
     let field = HeightField::new(3, 3, &[0.0; 9], [1.0, 1.0], None).unwrap();
     Scene {
@@ -11,12 +11,12 @@ fn scene(albedo: [f32; 3], lights: Lights) -> Scene {
     }
 }
 
-/// Inside a ball of radiance 1 a ray sees that, then ground of albedo 0.3 that is in the same ball: 1 + 0.3 · 1; or the sky
-/// behind it: 1 + 0.2.
+/// Inside a sphere light of radiance 1 a ray adds that, then ground of albedo 0.3 that is in the same sphere: 1 + 0.3
+/// · 1; or the sky behind it: 1 + 0.2.
 #[test]
 fn a_ray_sees_the_ball_that_it_leaves_and_what_is_behind_it() {
     let ball = SphereLight { position_m: [1.0, 1.0, 0.0], radius_m: 9.0, radiance: [1.0; 3] };
-    let lights = Lights { sky: Some([0.2; 3]), spheres: vec![ball], ..Lights::default() };
+    let lights = Lights { sky: Some([0.2; 3]), sphere_lights: vec![ball], ..Lights::default() };
     let scene = scene([0.3; 3], lights);
     let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (1, 0), true);
     assert!(tracer.most_seen(1)[1] >= 1.3, "{:?}", tracer.most_seen(1));
@@ -24,8 +24,8 @@ fn a_ray_sees_the_ball_that_it_leaves_and_what_is_behind_it() {
     assert!((tracer.most_seen(0)[1] - 1.2).abs() < 1e-6, "{:?}", tracer.most_seen(0));
 }
 
-/// Almost straight above, a direction may be of any column of the highest row, and of no other row: all that the brightest
-/// of them differs by is in doubt, wherever it stands.
+/// Almost straight above, a direction may belong to any column of the highest row, and to no other row: the largest
+/// difference among them is in doubt, in any column.
 #[test]
 fn straight_above_every_column_is_in_doubt() {
     for bright in 0..8 {
@@ -42,7 +42,7 @@ fn straight_above_every_column_is_in_doubt() {
         let scene = scene([0.5; 3], Lights { environment: Some(image), ..Lights::default() });
         let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (0, 0), true);
         let mut environment = tracer.environment.unwrap();
-        // Whole, as if nothing were chosen.
+        // Without importance sampling.
         environment.texels.iter_mut().for_each(|t| t[3] = 0.0);
         let mut seen = Traced::default();
         let e = [Near::ZERO.wider(1e-7), Near::ZERO.wider(1e-7), Near::of(1.0)];

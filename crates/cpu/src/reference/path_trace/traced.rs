@@ -1,21 +1,21 @@
-//! What paths bring, and what of it is in doubt.
+//! Contributions of paths, and the part of them in doubt.
 
 use crate::tolerance::near::{Near, Near3, plus};
 
-/// What some paths of a sample bring.
+/// Contribution of some paths of a grid point.
 #[derive(Clone, Copy, Debug)]
 pub struct Traced {
     /// The sum of their light.
     pub light: Near3,
     /// Rays.
     pub rays: Near,
-    /// Decisions that are in doubt, of light that has been reflected so often before it is: by samples alone, once besides, more.
+    /// Branches in doubt, per number of reflections before: once for grid points alone, once more each.
     pub doubts: [u32; 3],
-    /// What the light is off by for them.
+    /// Their error bound of the light.
     pub in_doubt: [f64; 3],
-    /// Of rays of each, over all places where one was held against the surface, how many cells it had come, and one.
+    /// Per ray, the cells crossed plus one at every test against the surface.
     pub crossed: [f64; 3],
-    /// Of which of them it is now.
+    /// Current index in it.
     pub(super) reflected: usize,
 }
 
@@ -33,7 +33,8 @@ impl Default for Traced {
 }
 
 impl Traced {
-    /// What may or may not be brought, `most` at most: added where it surely is. Where rounding leaves nothing of it, any of that.
+    /// A possible contribution, `most` at most: added where it is certain. Where rounding leaves nothing of it, any
+    /// of that.
     pub(super) fn add(&mut self, light: Near3, is_brought: Option<bool>, most: [f64; 3]) {
         let is_lost = (0..3).any(|c| light[c].off > most[c]);
         match is_brought {
@@ -53,7 +54,7 @@ impl Traced {
         }
     }
 
-    /// Adds what others bring.
+    /// Adds the contribution of others.
     pub fn join(&mut self, more: &Self) {
         self.light = plus(self.light, more.light);
         self.rays = Near { v: self.rays.v + more.rays.v, off: self.rays.off + more.rays.off };
