@@ -1,4 +1,4 @@
-//! `bake`: maps for engines, of a field that does not move.
+//! `bake`: maps of a static field, for engines.
 
 mod folder;
 mod job;
@@ -21,18 +21,19 @@ use serde_json::json;
 use crate::args::BakeArgs;
 use crate::setup::{self, Outcome};
 use crate::{horizon, idle};
-use folder::{check_folder, check_memory, parent, remove_old, take_sheet};
+pub use folder::check_new;
+use folder::{check_folder, check_memory, parent, remove_old, take_manifest};
 use job::{Job, first};
 pub use kinds::Kind;
-use kinds::{Lit, LookJob, Request, Source};
+use kinds::{DirectionsJob, Lit, Request, Source};
 pub use map::Format;
 use map::{MapFiles, Whole};
 pub use request::{help, kind_named, packing};
 
-/// What the folder's contents are told by; written last.
-const SHEET: &str = "bake.json";
+/// Describes the folder's contents. It is written last.
+const MANIFEST: &str = "manifest.json";
 
-/// A kind and how it is to be packed.
+/// A kind and its encoding.
 #[derive(Clone, Copy)]
 pub struct Packing {
     kind: &'static Kind,
@@ -50,7 +51,8 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
     let scene = setup::scene(field, &args.surface, &args.lights)?;
     let (border, samples) = (scene.surface.border, scene.field.heights_m().len());
     let (directions, angles) = (request::directions(args)?, request::angles(args)?);
-    let has_lobe = scene.surface.phong.as_ref().is_some_and(|lobe| lobe.largest().scale > 0.0);
+    let has_specular =
+        scene.surface.specular.as_ref().is_some_and(|specular| specular.largest().scale > 0.0);
     let making = wanted.iter().map(|w| {
         let (quality, directions, encoding) = (&quality, &directions, w.encoding);
         let curvature = args.curvature;
@@ -62,14 +64,14 @@ pub fn run(args: &BakeArgs) -> Result<Outcome> {
             curvature,
             encoding,
             has_texels: w.formats.contains(&Format::Ktx2),
-            has_lobe,
+            has_specular,
             samples,
         })
     });
     let making = making.collect::<Result<Vec<_>>>()?;
     request::check_uses(args, making.iter().map(|m| &m.source))?;
     let scatter = request::scatter(args, &quality);
-    // Those of a device that has none: its own once it is open.
+    // Limits for a machine without a device; the device's own replace them once it is open.
     let limits = Limits::boundless(true, u64::MAX);
     let (quality, around) = (&quality, &directions);
     let seed = args.seed.unwrap_or(0);
@@ -112,7 +114,7 @@ fn bake(
     gpu: &mut Headless,
     used: &[(String, String)],
 ) -> Result<Outcome> {
-    let (has_horizons, looks_along) = (job.has_horizons(), job.looks_along());
+    let (has_horizons, traces_directions) = (job.has_horizons(), job.traces_directions());
     let is_light = job.wanted.iter().any(|w| request::is_light(w.kind));
     let Job { lit, wanted, making } = job;
     let Lit { quality, around: directions, curvature, limits, .. } = lit;
@@ -146,7 +148,7 @@ fn bake(
         match source {
             Source::Horizons(_) => {}
             Source::Directions(of) => {
-                bar.set_message("baking: what samples see".to_owned());
+                bar.set_message("baking: visible points".to_owned());
                 let own = (of.plan)(field, border, directions, curvature, &limits)?;
                 let count = own.outputs().count();
                 plan.get_or_insert_with(|| own.clone());
@@ -156,8 +158,8 @@ fn bake(
                     outputs.collect::<Result<Vec<_>>>()
                 })?;
                 let outputs = &outputs;
-                let looked = LookJob { field, border, directions, curvature, outputs };
-                (of.take)(&looked, files)?;
+                let traced = DirectionsJob { field, border, directions, curvature, outputs };
+                (of.take)(&traced, files)?;
             }
             Source::Light(of) => {
                 let kind = files.kind();
@@ -170,7 +172,7 @@ fn bake(
     times.extend(gpu.take_timings());
     let plan = plan.expect("--what has a kind");
     let mut metadata = setup::metadata(gpu, field, &plan, &times);
-    // A plan's are of a part.
+    // A plan lists the settings of its part only.
     metadata.retain(|(name, _)| {
         let is_part = ["paths", "seed", "azimuths", "sh_order"].contains(&name.as_str());
         !is_part || used.iter().all(|(known, _)| known != name)
@@ -182,7 +184,7 @@ fn bake(
     metadata.extend(setup::asked(&args.input.path, &args.surface.field, lights));
     metadata.push(("field_hash".into(), hash));
     let mut whole = Vec::new();
-    // What is the same of several kinds is said once.
+    // A note that applies to several kinds is printed once.
     let mut notes: Vec<(String, Vec<&str>)> = Vec::new();
     for (i, (source, mut files)) in all.into_iter().enumerate() {
         bar.set_message(format!("writing {} of {count}", i + 1));
@@ -198,28 +200,27 @@ fn bake(
         whole.push(files.complete(&metadata)?);
     }
     for (note, kinds) in notes.iter().filter(|_| !args.global.quiet) {
-        // A closed stderr is no panic.
         let say = || writeln!(std::io::stderr(), "note: {}: {note}", kinds.join(", "));
         let _ = bar.suspend(say);
     }
-    // From here on an earlier sheet would tell of files that are no longer its own.
-    let before = take_sheet(&args.output)?;
-    let sheets = whole.into_iter().map(Whole::place).collect::<Result<Vec<_>>>()?;
+    // An earlier manifest describes files that are about to be replaced.
+    let before = take_manifest(&args.output)?;
+    let maps = whole.into_iter().map(Whole::place).collect::<Result<Vec<_>>>()?;
     bar.finish_and_clear();
     let seconds = started.elapsed().as_secs_f64();
     metadata.push(("seconds".into(), format!("{seconds:.3}")));
-    let mut sheet = manifest::sheet(&metadata, &times, field, quality, &sheets);
+    let mut manifest = manifest::describe(&metadata, &times, field, quality, &maps);
     if !has_horizons {
-        sheet["horizons"] = serde_json::Value::Null;
+        manifest["horizons"] = serde_json::Value::Null;
     }
-    if looks_along {
+    if traces_directions {
         let vectors = directions.vectors().iter();
-        sheet["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
+        manifest["directions"] = vectors.map(|e| json!([e.x, e.y, e.z])).collect();
     }
-    files::write_json(&args.output.join(SHEET), &sheet)?;
+    files::write_json(&args.output.join(MANIFEST), &manifest)?;
     remove_old(&args.output, before)?;
     if let Some(json) = &args.global.json {
-        files::write_json(json, &sheet)?;
+        files::write_json(json, &manifest)?;
     }
     if !args.global.quiet {
         say_done(args, (lit.scene, quality, count), (&times, has_horizons, seconds), gpu);
@@ -233,14 +234,16 @@ fn say_done(
     (times, has_horizons, seconds): (&[Timing], bool, f64),
     gpu: &Headless,
 ) {
-    let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
     let way = match has_horizons {
         true => format!("{} azimuths", quality.azimuths),
         false => format!("{} directions", args.directions.unwrap_or(request::DIRECTIONS)),
     };
-    let of_them = if times.is_empty() { String::new() } else { format!(", {ms:.1} ms of them") };
+    let gpu_s: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e9;
+    let of_it =
+        if times.is_empty() { String::new() } else { format!(", {gpu_s:.1} s of it GPU time") };
     crate::say!(
-        "{}: {count} of {} × {}, {way}, {seconds:.1} s{of_them} on {}",
+        "Wrote {count} map{} to {}/ ({}x{}, {way}) in {seconds:.1} s{of_it} on {}.",
+        if count == 1 { "" } else { "s" },
         args.output.display(),
         scene.field.cols(),
         scene.field.rows(),
@@ -248,7 +251,7 @@ fn say_done(
     );
 }
 
-/// What would be written and what it takes.
+/// Prints the files that a bake would write, and its memory.
 fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
     let (name, limits) = crate::plan::limits(&args.global)?;
     let plans = job.plans(&limits)?;
@@ -263,15 +266,15 @@ fn say_plan(args: &BakeArgs, job: &Job) -> Result<Outcome> {
         crate::say!("{bytes:>14}  {name}");
     }
     let device = plans.iter().map(Plan::bytes).max().unwrap_or(0);
-    crate::say!("{device:>14}  memory of {name}, a batch of azimuths or a kind at a time");
-    crate::say!("{:>14}  memory of this program", job.host_bytes(&limits));
+    crate::say!("{device:>14}  peak memory on {name}, one batch of azimuths or one kind at a time");
+    crate::say!("{:>14}  memory of this process", job.host_bytes(&limits));
     let names: Vec<&str> = job.wanted.iter().map(|w| w.kind.name).collect();
-    // Those of one table tell of it once.
+    // Kinds of one table share its rays: list them once.
     let is_table = |name: &&str| name.starts_with("brdf");
     let first = names.iter().position(is_table);
     let own = names.iter().enumerate().filter(|(i, name)| !is_table(name) || first == Some(*i));
     let own = own.map(|(_, name)| name);
-    for (count, what) in own.filter_map(|name| kinds::looks(&job.lit, name, &limits)) {
+    for (count, what) in own.filter_map(|name| kinds::rays(&job.lit, name, &limits)) {
         crate::say!("{count:>14}  {what}");
     }
     Ok(Outcome::Done)

@@ -1,4 +1,4 @@
-//! GPU times by timestamps: verified first, then each pass alone and all of them in flow.
+//! GPU times by timestamps: verification first, then each pass alone and all passes in a frame.
 
 mod forms;
 mod rows;
@@ -20,10 +20,10 @@ use crate::setup::{self, Outcome};
 use rows::{Row, sums};
 use verify::Verifier;
 
-/// Rows that would take longer have fewer samples, which they say; at least [`FEWEST`].
+/// Rows that would take longer do fewer runs, as reported, but at least [`FEWEST`].
 const ROW_TIME: Duration = Duration::from_secs(10);
 const FEWEST: usize = 3;
-/// Largest side of a fractal field: 8 GiB of heights on the way.
+/// Largest side of a fractal field, which needs 8 GiB of heights while it is made.
 const LARGEST_SIZE: usize = 32_768;
 
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
@@ -32,9 +32,9 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             setup::check_output(flag, path, &["json"])?;
         }
     }
-    if !(1..=100_000).contains(&args.samples) {
-        let found = args.samples.to_string();
-        return Err(Error::setting("--samples", found, "a whole number from 1 to 100000"));
+    if !(1..=100_000).contains(&args.runs) {
+        let found = args.runs.to_string();
+        return Err(Error::setting("--runs", found, "a whole number from 1 to 100000"));
     }
     for size in args.sizes.iter().chain(args.sizes.is_empty().then_some(&args.size)) {
         if !(1..=LARGEST_SIZE).contains(size) {
@@ -49,10 +49,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         None => fractal(*args.sizes.first().unwrap_or(&args.size), 1)?,
     };
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    check_lobes(&scene, &quality, args)?;
+    check_specular(&scene, &quality, args)?;
     let (mut gpu, limits) = setup::device(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, Picture::default())?;
-    // Verifying takes long.
+    // Verification is slow.
     if args.sizes.is_empty() {
         check_names(&args.passes, &plan, args.forms)?;
     }
@@ -74,7 +74,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
             verifier.check(&mut gpu, &Quality { azimuths, ..quality }, &limits)?;
         }
         let lists = (&args.sizes[..], counts);
-        let table = sizes::run(&mut gpu, &scene, &quality, &limits, lists, args.samples, &bar)?;
+        let table = sizes::run(&mut gpu, &scene, &quality, &limits, lists, args.runs, &bar)?;
         bar.finish_and_clear();
         if !quiet {
             sizes::print(&table);
@@ -101,10 +101,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     }
     if args.forms {
         let sky = ridgelight::scene::Lights { sky: Some([1.0; 3]), ..Default::default() };
-        let surface = ridgelight::scene::Surface { phong: None, ..scene.surface };
+        let surface = ridgelight::scene::Surface { specular: None, ..scene.surface };
         let scene = Scene { lights: sky, surface, ..scene };
         let verifier = Verifier::new(&scene)?;
-        let wanted = (args.samples, &args.passes[..]);
+        let wanted = (args.runs, &args.passes[..]);
         let table = forms::run(&mut gpu, &scene, &quality, &limits, &verifier, wanted, &bar)?;
         bar.finish_and_clear();
         if !quiet {
@@ -119,22 +119,22 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Refuses lobes where nothing here says what is right.
-fn check_lobes(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<()> {
-    if scene.surface.phong.is_none() {
+/// Refuses specular light where no reference computes it.
+fn check_specular(scene: &Scene, quality: &Quality, args: &BenchArgs) -> Result<()> {
+    if scene.surface.specular.is_none() {
         return Ok(());
     }
     let (with, expected) = match () {
         () if quality.bounces.count > 0 => {
-            ("--bounces", "none: what lobes throw on, `reference` and `compare` judge")
+            ("--bounces", "none: check bounces of specular light with `reference` and `compare`")
         }
-        () if !args.sizes.is_empty() => ("--sizes", "none: its errors are of diffuse light"),
+        () if !args.sizes.is_empty() => ("--sizes", "none: its errors cover diffuse light only"),
         () => return Ok(()),
     };
-    Err(Error::setting(format!("--phong with bench {with}"), "a lobe", expected))
+    Err(Error::setting(format!("--specular with bench {with}"), "Phong specular", expected))
 }
 
-/// Says what was written out and changes nothing; of fields, too.
+/// Notes flags that change nothing, also those of the field.
 fn idle(args: &BenchArgs, plan: &Plan) {
     let (quiet, written) = (args.global.quiet, &args.quality.written);
     idle::say(quiet, written, &plan.settings);
@@ -148,7 +148,7 @@ fn idle(args: &BenchArgs, plan: &Plan) {
     }
 }
 
-/// Whether a label is asked for: by its first word, the pass, or by all of it.
+/// Whether a label is selected: by its first word, the pass, or in full.
 fn named(label: &str, wanted: &str) -> bool {
     label == wanted || label.split(' ').next() == Some(wanted)
 }
@@ -176,17 +176,17 @@ fn check_names(wanted: &[String], plan: &Plan, forms: bool) -> Result<()> {
     }
 }
 
-/// Whether a row has had its time.
-fn enough(begun: Instant, samples: usize) -> bool {
-    samples >= FEWEST && begun.elapsed() > ROW_TIME
+/// Whether a row has used up its time.
+fn enough(begun: Instant, runs: usize) -> bool {
+    runs >= FEWEST && begun.elapsed() > ROW_TIME
 }
 
 /// Whole frames, after one to warm up.
-fn flow(gpu: &Headless, frame: &mut Frame, samples: usize) -> Result<Vec<Vec<Timing>>> {
+fn flow(gpu: &Headless, frame: &mut Frame, most: usize) -> Result<Vec<Vec<Timing>>> {
     gpu.draw(frame)?;
     let begun = Instant::now();
     let mut runs = Vec::new();
-    while runs.len() < samples && !enough(begun, runs.len()) {
+    while runs.len() < most && !enough(begun, runs.len()) {
         runs.push(gpu.draw(frame)?);
     }
     Ok(runs)
@@ -210,7 +210,7 @@ fn time(
     let every: Vec<&Pass> = plan.passes.iter().collect();
     let mut rows = Vec::new();
     bar.set_message("frames in flow");
-    let runs = flow(gpu, frame, args.samples)?;
+    let runs = flow(gpu, frame, args.runs)?;
     let row = |pass: String, mode, passes: &[&Pass], runs: usize, times: &[f64]| {
         Row::of(pass, mode, &plan, passes, azimuths, (runs, times))
     };
@@ -220,14 +220,14 @@ fn time(
         rows.push(row(pass.label(), "in_flow", &[pass], runs.len(), &times));
     }
     rows.push(row("total".into(), "in_flow", &every, runs.len(), &sums(&runs, |_| true)));
-    let (mut totals, mut fewest) = (vec![0.0; args.samples], args.samples);
+    let (mut totals, mut fewest) = (vec![0.0; args.runs], args.runs);
     for &i in &wanted {
         let pass = &plan.passes[i];
         bar.set_message(format!("{} alone", pass.label()));
         let mut alone = Vec::new();
         let begun = Instant::now();
         gpu.draw_passes(frame, &[i])?;
-        while alone.len() < args.samples && !enough(begun, alone.len()) {
+        while alone.len() < args.runs && !enough(begun, alone.len()) {
             alone.push(gpu.draw_passes(frame, &[i])?);
         }
         let times = sums(&alone, |_| true);

@@ -60,7 +60,7 @@ pub fn run(args: &CompareArgs) -> Result<Outcome> {
     Ok(if beyond.is_empty() { Outcome::Done } else { Outcome::Beyond })
 }
 
-/// What can be known to be wrong before a file is read.
+/// Checks arguments before a file is read.
 fn check(args: &CompareArgs) -> Result<()> {
     if let Some(path) = &args.diff {
         setup::check_output("--diff", path, &["exr", "npy"])?;
@@ -77,13 +77,11 @@ fn check(args: &CompareArgs) -> Result<()> {
             return Err(Error::setting(flag, bound.to_string(), "0 or more"));
         }
     }
-    if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
-    }
+    crate::render::check_positive("--exposure", args.exposure)?;
     if args.exposure != 1.0
         && [&args.result, &args.reference].iter().all(|path| setup::extension(path) == "png")
     {
-        let expected = "at least one .exr or .hdr: a .png is shown as it is";
+        let expected = "at least one .exr or .hdr: a .png has no exposure";
         return Err(Error::setting("--exposure", "two .png files", expected));
     }
     Ok(())
@@ -110,7 +108,7 @@ fn figures(
     })
 }
 
-/// Maps are ꟻLIP of a layer each, by its name.
+/// A ꟻLIP map per layer, by the layer's name.
 fn write_difference(path: &Path, pairs: &Pairs, maps: &[(String, Vec<f32>)]) -> Result<()> {
     let differences: Vec<Vec<f32>> = pairs
         .channels

@@ -9,7 +9,7 @@ use crate::args::HorizonArgs;
 use crate::idle;
 use crate::setup::{self, Outcome};
 
-/// Azimuths computed and read back at a time: their angles stay within this many bytes.
+/// Limit of the bytes that one batch of azimuths reads back.
 const OUTPUT_BYTES: u64 = 256 << 20;
 
 /// Takes an azimuth's number, its elevations, and its distances or nothing.
@@ -21,7 +21,7 @@ pub fn at_once(field: &HeightField, limits: &Limits) -> u32 {
     (OUTPUT_BYTES.min(limits.memory_budget / 4) / plane).clamp(1, 256) as u32
 }
 
-/// Horizons from azimuth `first` on: of `most`, or of as many fewer as the limits ask for.
+/// Horizons from azimuth `first` on: of `most` azimuths, or of fewer where the limits require it.
 pub fn plan_from(
     field: &HeightField,
     border: Border,
@@ -39,7 +39,7 @@ pub fn plan_from(
     }
 }
 
-/// The settings really used.
+/// The settings used.
 pub fn used(
     field: &HeightField,
     border: Border,
@@ -52,8 +52,8 @@ pub fn used(
     Ok(used)
 }
 
-/// Hands every azimuth k in order to `each`: (k, elevations, distances or nothing). Returns the times
-/// of all passes and the last plan.
+/// Calls `each` for every azimuth k in order: (k, elevations, distances or nothing). Returns the
+/// times of all passes and the last plan.
 pub fn for_each(
     gpu: &mut Headless,
     field: &HeightField,
@@ -107,11 +107,11 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &[&args.input.path])?;
     let quality = setup::quality(&args.quality)?;
     let is_npy = setup::extension(&args.output) == "npy";
-    let is_exact = quality.lines == Lines::Exact && quality.method != Method::Brute;
+    let is_exact = quality.lines == Lines::Exact && quality.method != Method::BruteForce;
     if is_exact && is_npy && args.global.json.is_none() {
         return Err(Error::setting(
             "--lines exact",
-            "an .npy output alone",
+            "an .npy output without --json",
             "--json FILE beside it: exact azimuths are not 2πk/M, and a .npy cannot say what they are",
         ));
     }
@@ -193,11 +193,11 @@ pub fn run(args: &HorizonArgs) -> Result<Outcome> {
     if !args.global.quiet {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
         crate::say!(
-            "{}: {} azimuths of {} × {}, {ms:.1} ms on {}",
+            "Wrote {} ({}x{}, {} azimuths) in {ms:.1} ms of GPU time on {}.",
             args.output.display(),
-            quality.azimuths,
             field.cols(),
             field.rows(),
+            quality.azimuths,
             gpu.report().name
         );
     }

@@ -1,6 +1,6 @@
-//! The command line: the first embedder, through the public API alone.
+//! The program `ridgelight`. It uses the libraries' public API only.
 
-/// A line on standard output; a reader that has gone (`| head`) is no error.
+/// Prints a line to standard output. A closed pipe (`| head`) is no error.
 macro_rules! say {
     ($($text:tt)*) => {{
         use std::io::Write as _;
@@ -9,8 +9,8 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Ends where standard output cannot take what is said: with 0 where nobody reads on, with 1 where it
-/// is full or broken.
+/// Handles an error of standard output: a closed pipe is ignored, any other ends the program with
+/// 1.
 fn said(written: std::io::Result<()>) {
     match written {
         Ok(()) => {}
@@ -24,12 +24,9 @@ fn said(written: std::io::Result<()>) {
 }
 
 mod args;
-mod auto;
 mod bake;
 mod bench;
-mod camera;
 mod compare;
-mod devices;
 mod horizon;
 mod idle;
 mod plan;
@@ -42,27 +39,31 @@ mod trade;
 #[cfg(feature = "window")]
 mod view;
 #[cfg(not(feature = "window"))]
-#[path = "view/none.rs"]
-mod view;
+mod view {
+    pub fn run(_: &crate::args::ViewArgs) -> ridgelight::Result<crate::setup::Outcome> {
+        let expected = "a program that was built with --features window";
+        Err(ridgelight::Error::setting("view", "a program without windows", expected))
+    }
+}
 
 use std::io::Write as _;
 use std::process::ExitCode;
 
-/// What shells report of a command that Ctrl-C ended.
+/// The exit status that shells report for Ctrl-C.
 const INTERRUPTED: u8 = 130;
 
-/// Leaves no unfinished file behind when the user, the terminal or the system asks to end.
+/// Removes unfinished files when a signal ends the program.
 fn end_cleanly_on_signals() {
     let end = || {
-        if reference::hears_signal() {
+        if reference::takes_signal() {
             return;
         }
         ridgelight_io::abandon_unfinished();
         let _ = writeln!(std::io::stderr(), "ridgelight: interrupted");
         std::process::exit(INTERRUPTED.into());
     };
-    // Where one of the signals is ignored (nohup, jobs in the background of a script) it stays so,
-    // and the others do what they do by default: no more than tidiness is lost.
+    // Fails where a signal is ignored (nohup, background jobs): it stays ignored, others keep their
+    // defaults, and unfinished files may remain.
     let _ = ctrlc::try_set_handler(end);
 }
 
@@ -71,7 +72,7 @@ fn main() -> ExitCode {
         Ok(cli) => (cli.command, cli.scene),
         Err(args::Refused::Scene(error)) => return fail(&error),
         Err(args::Refused::Parser(error)) => {
-            // Help and version are not errors; clap's own exit status for wrong usage is 2.
+            // Help and version are not errors. clap's status for wrong usage is 2.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
@@ -83,7 +84,7 @@ fn main() -> ExitCode {
         args::Command::Plan(args) => plan::run(args),
         args::Command::Bench(args) => bench::run(args),
         args::Command::Compare(args) => compare::run(args),
-        args::Command::Devices(args) => devices::run(args),
+        args::Command::Devices(args) => plan::devices(args),
         args::Command::Reference(args) => reference::run(args),
         args::Command::Trade(args) => trade::run(args),
         args::Command::Bake(args) => bake::run(args),
@@ -97,9 +98,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says what went wrong; the exit status that goes with it.
+/// Prints an error and returns its exit status.
 fn fail(error: &ridgelight::Error) -> ExitCode {
-    // One line whatever a file is called or a driver says; a closed stderr is no panic.
+    // One line, whatever file names or drivers contain. A closed stderr must not panic.
     let line = error.to_string().replace(char::is_control, " ");
     let _ = writeln!(std::io::stderr(), "ridgelight: {line}");
     ExitCode::from(if matches!(error, ridgelight::Error::Setting { .. }) { 2 } else { 1 })

@@ -1,10 +1,12 @@
+//! `plan` and `devices`: what would run, and on which device.
+
 use ridgelight::Result;
 use ridgelight::gpu;
 use ridgelight::plan::{self, Limits, Plan, View};
 
-use crate::args::{GlobalArgs, PlanArgs, PlanFormat};
-use crate::camera;
+use crate::args::{DevicesArgs, GlobalArgs, PlanArgs, PlanFormat};
 use crate::idle;
+use crate::render::camera;
 use crate::setup::{self, Outcome};
 
 pub fn run(args: &PlanArgs) -> Result<Outcome> {
@@ -16,13 +18,13 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    let shot = camera::asked(&args.camera, &scene)?;
+    let camera_view = camera::requested(&args.camera, &scene)?;
     let (name, limits) = limits(&args.global)?;
     let plan = plan::picture(&scene, &quality, &limits, setup::wanted(&[]))?;
-    let seen = match &shot {
-        Some(shot) => {
-            let mut view = shot.view(&scene, &plan, &limits)?;
-            view.settings = shot.told(&view, &scene.field);
+    let seen = match &camera_view {
+        Some(camera_view) => {
+            let mut view = camera_view.view(&scene, &plan, &limits)?;
+            view.settings = camera_view.settings(&view, &scene.field);
             Some(view)
         }
         None => None,
@@ -31,7 +33,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     match args.format {
         _ if args.global.quiet => {}
         PlanFormat::Text => {
-            crate::say!("for {name}");
+            crate::say!("Plan for {name}");
             crate::say!("{}", plan.to_string().trim_end());
             if let Some(view) = &seen {
                 crate::say!("\n{}", view.to_string().trim_end());
@@ -46,7 +48,62 @@ pub fn run(args: &PlanArgs) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The device that would run it and its limits; without one, those of the software driver everyone has.
+/// `devices`: the Vulkan devices, their limits, and what they lack.
+pub fn devices(args: &DevicesArgs) -> Result<Outcome> {
+    if let Some(path) = &args.json {
+        setup::check_output("--json", path, &["json"])?;
+    }
+    let all = gpu::devices()?;
+    if all.is_empty() {
+        crate::say!("no device: the Vulkan loader works, but it finds no driver");
+    }
+    for (i, device) in all.iter().enumerate() {
+        crate::say!(
+            "{i}  {}  ({}, Vulkan {}, {})",
+            device.name,
+            device.kind,
+            device.api,
+            device.driver
+        );
+        let limits = &device.limits;
+        crate::say!(
+            "   images to {} texels and {} layers, storage buffers to {} MiB, allocations to {} MiB, shared memory {} KiB",
+            limits.image_side,
+            limits.image_layers,
+            limits.buffer_bytes >> 20,
+            limits.allocation_bytes >> 20,
+            limits.shared_bytes >> 10
+        );
+        let timestamps = match device.timestamp_period_ns {
+            0.0 => "no timestamps".to_owned(),
+            period => format!("timestamps of {period} ns"),
+        };
+        crate::say!("   subgroups of {}, {timestamps}", device.subgroup_size);
+        match device.missing.as_slice() {
+            [] => crate::say!("   suitable"),
+            missing => crate::say!("   not suitable, missing: {}", missing.join(", ")),
+        }
+    }
+    if let Some(path) = &args.json {
+        let rows: Vec<_> = all
+            .iter()
+            .map(|d| {
+                serde_json::json!({
+                    "name": d.name, "driver": d.driver, "api": d.api, "kind": d.kind, "missing": d.missing,
+                    "subgroup_size": d.subgroup_size, "timestamp_period_ns": d.timestamp_period_ns,
+                    "image_side": d.limits.image_side, "image_layers": d.limits.image_layers,
+                    "buffer_bytes": d.limits.buffer_bytes, "allocation_bytes": d.limits.allocation_bytes,
+                    "shared_bytes": d.limits.shared_bytes,
+                })
+            })
+            .collect();
+        ridgelight_io::write_json(path, &rows.into())?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The device that would run the plan and its limits; without a device, those of the software
+/// driver lavapipe.
 pub fn limits(global: &GlobalArgs) -> Result<(String, Limits)> {
     let devices = gpu::devices();
     let report = match &global.device {

@@ -1,4 +1,5 @@
-//! Light paths in batches until there are enough, the error is small enough, or the user has enough.
+//! `reference`: traces paths in batches until there are enough, the error is small enough, or the
+//! user stops it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,19 +13,19 @@ use ridgelight_io::{Channels, Layer};
 use crate::args::ReferenceArgs;
 use crate::setup::{self, Outcome};
 
-/// Batches before the error of the error is small: 1/√(2·7) of it.
+/// Fewest batches for a reliable error: its relative standard error is 1/√(2·7).
 const LEAST_BATCHES: u32 = 8;
 
-/// Batches between two looks at the error.
+/// Batches between two estimates of the error.
 const BATCHES_A_LOOK: u32 = 4;
 
-/// Whether a signal is to end the tracing, not the program.
+/// Whether a signal ends the tracing instead of the program.
 static IS_TRACING: AtomicBool = AtomicBool::new(false);
 static WAS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// FileNotes of a signal: whether it is heard here, where it ends the tracing and what there is is written. A
-/// second one is not.
-pub fn hears_signal() -> bool {
+/// Handles a signal. Returns whether it ends only the tracing, so that the result so far is
+/// written. A second signal ends the program.
+pub fn takes_signal() -> bool {
     IS_TRACING.load(Ordering::SeqCst) && !WAS_INTERRUPTED.swap(true, Ordering::SeqCst)
 }
 
@@ -33,7 +34,7 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     let scene = scene(args)?;
     let plan = |limits: &Limits| plan::reference(&scene, args.bounces, args.seed, limits);
     setup::check_plan(&args.global, plan)?;
-    // From here on a signal is the end of the tracing, however little there is.
+    // From here on a signal ends the tracing only.
     IS_TRACING.store(true, Ordering::SeqCst);
     let (mut gpu, limits) = setup::device(&args.global)?;
     let contents = plan::reference_inputs(&scene);
@@ -46,17 +47,17 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
     gpu.end(frame);
     let traced = traced?;
     let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
-    // What is no number is within nothing.
+    // NaN is within no error.
     let is_within = |wanted: &f64| traced.error < *wanted;
     let missed = args.until_error.filter(|wanted| !interrupted && !is_within(wanted));
     if !args.global.quiet {
         let paths = traced.batches * REFERENCE_BATCH;
         crate::say!(
-            "{}: {} × {}, {paths} paths a sample, {}, {:.1} ms on {}",
+            "Wrote {} ({}x{}, {paths} paths per texel, {}) in {:.1} ms of GPU time on {}.",
             args.output.display(),
             scene.field.cols(),
             scene.field.rows(),
-            off(traced.error),
+            error_text(traced.error),
             traced.times.iter().map(|t| t.ns).sum::<f64>() / 1e6,
             gpu.report().name
         );
@@ -64,10 +65,11 @@ pub fn run(args: &ReferenceArgs) -> Result<Outcome> {
             let least = 2 * REFERENCE_BATCH;
             let whole = match paths == args.spp {
                 true => String::new(),
-                false => format!(", whole batches of {REFERENCE_BATCH} and at least {least}"),
+                false => format!(" (whole batches of {REFERENCE_BATCH}, at least {least})"),
             };
             crate::say!(
-                "stopped by --spp {} at {paths} paths{whole}, wanted --until-error {wanted}",
+                "--spp {} ended the tracing after {paths} paths{whole}, before --until-error \
+                    {wanted} was reached",
                 args.spp
             );
         }
@@ -89,17 +91,12 @@ fn check(args: &ReferenceArgs) -> Result<()> {
     if args.spp == 0 {
         return Err(Error::setting("--spp", "0", "a whole number, 1 or more"));
     }
-    // Whole batches are counted as paths.
+    // Paths are counted in whole batches.
     let most = u32::MAX / REFERENCE_BATCH * REFERENCE_BATCH;
     if args.spp > most {
         return Err(Error::setting("--spp", args.spp.to_string(), format!("at most {most}")));
     }
-    match args.until_error {
-        Some(e) if !(e.is_finite() && e > 0.0) => {
-            Err(Error::setting("--until-error", e.to_string(), "a number above 0"))
-        }
-        _ => Ok(()),
-    }
+    args.until_error.map_or(Ok(()), |e| crate::render::check_positive("--until-error", e))
 }
 
 fn scene(args: &ReferenceArgs) -> Result<Scene> {
@@ -107,17 +104,17 @@ fn scene(args: &ReferenceArgs) -> Result<Scene> {
     setup::scene(field, &args.surface, &args.lights)
 }
 
-/// What the paths have come to.
+/// The result of the paths.
 struct Traced {
-    /// Of every sample; an interrupted one may have reached some rows more.
+    /// Paths of every texel; some rows of an interrupted run may have more.
     batches: u32,
     radiance: Vec<[f32; 3]>,
     /// From the spread between batches.
     standard_error: Vec<[f32; 3]>,
-    /// Root of the mean squared standard error, that of unmet light too, over the mean radiance.
+    /// Root mean square of the standard error, including unsampled light, over the mean radiance.
     error: f64,
-    /// Of light that no path has met, by channel: [`plan::unmet_error`].
-    unmet: [f64; 3],
+    /// Standard error of unsampled light, by channel: [`plan::unsampled_light_error`].
+    unsampled: [f64; 3],
     /// Sums, by pass.
     times: Vec<Timing>,
 }
@@ -137,17 +134,18 @@ fn trace(
     loop {
         let interrupted = WAS_INTERRUPTED.load(Ordering::SeqCst);
         let looks = batches % BATCHES_A_LOOK == 0 && batches >= LEAST_BATCHES;
-        // Two batches at least: of one, no error is known.
+        // At least two batches: one has no error estimate.
         if batches >= 2 && (batches >= wanted || interrupted || looks) {
             let [radiance, standard_error] = [picture(gpu, frame, 0)?, picture(gpu, frame, 1)?];
             let (mean, error) = mean_and_error(scene, &radiance, &standard_error)?;
-            let unmet = plan::unmet_error(scene, args.bounces, batches * REFERENCE_BATCH);
-            let error = relative(error.hypot(root_mean_square(unmet)), mean);
+            let unsampled =
+                plan::unsampled_light_error(scene, args.bounces, batches * REFERENCE_BATCH);
+            let error = relative(error.hypot(root_mean_square(unsampled)), mean);
             progress.set_message(format!(
-                "{} of {} paths a sample, {}",
+                "{} of {} paths per texel, {}",
                 batches * REFERENCE_BATCH,
                 wanted * REFERENCE_BATCH,
-                off(error)
+                error_text(error)
             ));
             let enough = batches >= LEAST_BATCHES && args.until_error.is_some_and(|e| error < e);
             if batches >= wanted || interrupted || enough {
@@ -155,7 +153,7 @@ fn trace(
                 if let Some(lost) = frame.plan().find("lost_rays") {
                     none_lost(gpu.read(frame, lost)?[0])?;
                 }
-                return Ok(Traced { batches, radiance, standard_error, error, unmet, times });
+                return Ok(Traced { batches, radiance, standard_error, error, unsampled, times });
             }
         }
         for &band in &bands {
@@ -179,15 +177,15 @@ pub fn picture(gpu: &mut Headless, frame: &Frame, output: usize) -> Result<Vec<[
     Ok(pixels.values.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect())
 }
 
-/// In words: of light that is nearly none, paths that have met more of it than there is in the mean say nothing in percent.
-fn off(error: f64) -> String {
+/// The error in words. A percentage is meaningless where almost no light has been sampled.
+fn error_text(error: f64) -> String {
     match error {
-        _ if error < 10.0 => format!("{:.3} % off", 100.0 * error),
-        _ => "off by far more than its light".to_owned(),
+        _ if error < 10.0 => format!("error {:.3} %", 100.0 * error),
+        _ => "error far above the mean radiance".to_owned(),
     }
 }
 
-/// Share of the mean: 0 of nothing, infinite where all is dark but might not be.
+/// Error over the mean: 0 for no error, infinite where all is dark with an error.
 fn relative(error: f64, mean: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / mean }
 }
@@ -196,8 +194,8 @@ fn root_mean_square(v: [f64; 3]) -> f64 {
     (v.iter().map(|v| v * v).sum::<f64>() / 3.0).sqrt()
 }
 
-/// Mean radiance, and the root of the mean squared standard error, over all channels of the samples that
-/// are no voids.
+/// Mean radiance and root mean square of the standard error, over all channels of texels that are
+/// no voids.
 fn mean_and_error(
     scene: &Scene,
     radiance: &[[f32; 3]],
@@ -214,19 +212,19 @@ fn mean_and_error(
     }
     if !(light + squares).is_finite() {
         let most = "radiances whose sum over 64 paths is within 32-bit numbers: below 1e36";
-        return Err(Error::setting("lights", "light beyond them", most));
+        return Err(Error::setting("lights", "brighter light", most));
     }
     let count = count.max(1.0);
     Ok((light / count, (squares / count).sqrt()))
 }
 
-/// Rays that were given up would be missing from the light.
+/// Refuses a result with rays that were given up, whose light would be missing.
 pub fn none_lost(count: u32) -> Result<()> {
     match count {
         0 => Ok(()),
         _ => Err(Error::Device {
             doing: "tracing paths".into(),
-            reason: format!("{count} rays took more steps than a field can ask for"),
+            reason: format!("{count} rays took more steps than the field can require"),
         }),
     }
 }
@@ -247,7 +245,7 @@ fn write(
     if let Some(wanted) = args.until_error {
         add("until_error", wanted.to_string());
     }
-    add("unmet_standard_error", traced.unmet.map(|v| v.to_string()).join(","));
+    add("unsampled_standard_error", traced.unsampled.map(|v| v.to_string()).join(","));
     let mut layers =
         [("", traced.radiance.clone()), ("standard_error", traced.standard_error.clone())];
     for (_, texels) in &mut layers {
@@ -269,14 +267,14 @@ mod tests {
     use super::*;
     use ridgelight::scene::{HeightField, Surface};
 
-    /// Nothing off of nothing; of next to nothing no number of forty digits.
+    /// No error of no light; no number of forty digits for almost no light.
     #[test]
-    fn errors_are_told_in_words_where_percent_say_nothing() {
-        let of = |error, mean| off(relative(error, mean));
-        assert_eq!(of(0.0, 0.0), "0.000 % off");
-        assert_eq!(of(0.02, 2.0), "1.000 % off");
+    fn huge_errors_are_stated_in_words() {
+        let of = |error, mean| error_text(relative(error, mean));
+        assert_eq!(of(0.0, 0.0), "error 0.000 %");
+        assert_eq!(of(0.02, 2.0), "error 1.000 %");
         for (error, mean) in [(1.0, 0.0), (1.0, 1e-40), (f64::NAN, 1.0)] {
-            assert_eq!(of(error, mean), "off by far more than its light");
+            assert_eq!(of(error, mean), "error far above the mean radiance");
         }
     }
 
@@ -287,8 +285,8 @@ mod tests {
         assert!(said.contains("3 rays took more steps"), "{said}");
     }
 
-    /// 1 and 3 with errors 3 and 4: mean 2, root of the mean square √12.5. Dark samples with an error are
-    /// no 0 % off; sums beyond f32 are no number.
+    /// 1 and 3 with errors 3 and 4: mean 2, root mean square √12.5. A dark texel with an error has
+    /// no error of 0 %; sums beyond f32 are refused.
     #[test]
     fn errors_are_shares_of_the_mean() {
         let field = HeightField::new(1, 2, &[0.0; 2], [1.0; 2], None).unwrap();

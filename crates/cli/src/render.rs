@@ -1,3 +1,8 @@
+//! `render`: lights a field and writes a picture.
+
+mod auto;
+pub mod camera;
+
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits};
 use ridgelight::scene::Tone;
@@ -7,12 +12,10 @@ use ridgelight_io as files;
 use ridgelight_io::{Channels, Layer as FileLayer};
 
 use crate::args::{Layer, RenderArgs};
-use crate::auto;
-use crate::camera;
 use crate::idle;
 use crate::setup::{self, Outcome};
 
-/// Linear; sRGB makes 240 of 255 of it.
+/// Linear radiance that sRGB encodes as 240 of 255.
 const NEARLY_WHITE: f32 = 0.87;
 
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
@@ -22,9 +25,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
     let outputs = [("-o", Some(args.output.as_path())), ("--json", args.global.json.as_deref())];
     setup::check_distinct(&outputs, &setup::inputs(&args.input.path, &args.lights, &args.surface))?;
-    if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
-    }
+    check_positive("--exposure", args.exposure)?;
     let is_exr = setup::extension(&args.output) == "exr";
     if !is_exr && !args.layers.is_empty() {
         return Err(Error::setting(
@@ -49,13 +50,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if goal.is_some() {
         setup::check_diffuse(&scene, "--max-error or --time-budget")?;
     }
-    let shot = camera::asked(&args.camera, &scene)?;
+    let camera_view = camera::requested(&args.camera, &scene)?;
     let wanted = setup::wanted(&args.layers);
     let picture =
         |quality: &Quality, limits: &Limits| plan::picture(&scene, quality, limits, wanted);
     setup::check_plan(&args.global, |limits| {
         let plan = picture(&quality, limits)?;
-        shot.as_ref().map_or(Ok(()), |shot| shot.view(&scene, &plan, limits).map(drop))?;
+        camera_view
+            .as_ref()
+            .map_or(Ok(()), |camera_view| camera_view.view(&scene, &plan, limits).map(drop))?;
         Ok(plan)
     })?;
     let (mut gpu, limits) = setup::device(&args.global)?;
@@ -82,7 +85,10 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         used.extend(crate::horizon::used(&scene.field, border, &quality, &limits, false)?);
     }
     idle::say(args.global.quiet, &args.quality.written, &used);
-    let view = shot.as_ref().map(|shot| shot.view(&scene, &plan, &limits)).transpose()?;
+    let view = camera_view
+        .as_ref()
+        .map(|camera_view| camera_view.view(&scene, &plan, &limits))
+        .transpose()?;
     let contents = plan::picture_inputs(&scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let outputs = plan.outputs().count();
@@ -106,17 +112,17 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         Some((&args.lights, &args.surface, &scene)),
     ));
     if let Some((goal, chosen)) = &chosen {
-        metadata.extend(auto::told((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
+        metadata.extend(auto::metadata((*goal, args.auto.seed.unwrap_or(0)), chosen, &scene));
     }
-    if let (Some(shot), Some(view)) = (&shot, &view) {
-        metadata.extend(shot.told(view, &scene.field));
+    if let (Some(camera_view), Some(view)) = (&camera_view, &view) {
+        metadata.extend(camera_view.settings(view, &scene.field));
     }
     let mean_horizon =
         if horizon { Some(mean_horizon(&mut gpu, &scene, &quality, &limits)?) } else { None };
     progress.finish_and_clear();
     let (rows, cols) = (scene.field.rows(), scene.field.cols());
-    if let (Some(shot), Some(seen)) = (&shot, &seen) {
-        camera::write(args, shot, seen, &metadata)?;
+    if let (Some(camera_view), Some(seen)) = (&camera_view, &seen) {
+        camera::write(args, camera_view, seen, &metadata)?;
     } else if is_exr {
         write_exr(args, &scene.field, &pixels, mean_horizon.as_deref(), &metadata)?;
     } else {
@@ -127,7 +133,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         let white = |texel: &&[f32; 3]| texel.iter().all(|v| v * args.exposure >= NEARLY_WHITE);
         if !args.global.quiet && 10 * picture.iter().filter(white).count() > 9 * picture.len() {
             crate::say!(
-                "nearly all of the picture is white: --sun 315,30 --sky 0.3 or a lower --exposure shows relief"
+                "Note: nearly all of the picture is white. Use --sun 315,30 --sky 0.3 or a lower \
+                    --exposure to see relief."
             );
         }
     }
@@ -135,12 +142,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
         files::write_json(json, &setup::as_json(&metadata, &times))?;
     }
     if !args.global.quiet {
-        if let Some(shot) = &shot {
-            shot.say(args, &scene.field, &times, gpu.report());
+        if let Some(camera_view) = &camera_view {
+            camera_view.say(args, &scene.field, &times, gpu.report());
         } else {
             let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
             crate::say!(
-                "{}: {cols} × {rows}, {ms:.1} ms on {}",
+                "Wrote {} ({cols}x{rows}) in {ms:.1} ms of GPU time on {}.",
                 args.output.display(),
                 gpu.report().name
             );
@@ -152,7 +159,12 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Lights that are numbers each may be none together.
+pub fn check_positive<T: Copy + Into<f64> + ToString>(flag: &str, x: T) -> Result<()> {
+    let is_positive = x.into().is_finite() && x.into() > 0.0;
+    is_positive.then_some(()).ok_or_else(|| Error::setting(flag, x.to_string(), "a number above 0"))
+}
+
+/// Refuses light that overflows, although each light is finite.
 pub fn check_finite(pixels: &Pixels, field: &HeightField) -> Result<()> {
     let is_void = |i: usize| field.voids().is_some_and(|v| v[i]);
     let texels = pixels.values.chunks_exact(pixels.channels).enumerate();

@@ -1,5 +1,5 @@
-//! Speed against accuracy: settings timed on the device and held against the truth, the frontier of
-//! both, and a recommendation.
+//! `trade`: times settings on the device, measures their error against the ground truth, and
+//! recommends one from the frontier of both.
 
 mod baked;
 mod ground_truth;
@@ -25,7 +25,7 @@ use ridgelight_trade::trade::{Place, Rule, ladders, places, refused, start_of};
 
 use crate::args::TradeArgs;
 use crate::setup::{self, Outcome};
-use ground_truth::Truth;
+use ground_truth::GroundTruth;
 use picture::Tones;
 use report::Report;
 use rig::{Budget, Rig};
@@ -48,12 +48,12 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_distinct(&outputs, &inputs)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
-    if args.reference.is_none() && scene.surface.phong.is_some() {
-        let expected = "--reference: no other truth here has lobes";
-        return Err(Error::setting("--phong with trade", "a lobe", expected));
+    if args.reference.is_none() && scene.surface.specular.is_some() {
+        let expected = "--reference: only a path-traced reference has specular light";
+        return Err(Error::setting("--specular with trade", "Phong specular", expected));
     }
     if args.bounces > 0 && args.reference.is_none() {
-        let expected = "--reference, made with as many: no other truth here has bounces";
+        let expected = "--reference with as many bounces: only a path-traced reference has them";
         return Err(Error::setting("--bounces", args.bounces.to_string(), expected));
     }
     let bounces = Bounces { count: args.bounces, ..Bounces::default() };
@@ -63,7 +63,11 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     setup::check_plan(&args.global, planned)?;
     if let Some(path) = args.reference.as_deref().filter(|p| setup::extension(p) != "exr") {
         let found = path.display().to_string();
-        return Err(Error::setting("--reference", found, "an .exr: others clip what is bright"));
+        return Err(Error::setting(
+            "--reference",
+            found,
+            "an .exr: other formats clip bright values",
+        ));
     }
     let mut asked = setup::asked(
         &args.input.path,
@@ -74,32 +78,40 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
         asked.push(("bounces".to_owned(), args.bounces.to_string()));
     }
     let read = |path: &Path| {
-        let truth = Truth::read(path, &scene.field)?;
-        same::check(path, &scene, &asked).map(|()| truth)
+        let ground_truth = GroundTruth::read(path, &scene.field)?;
+        same::check(path, &scene, &asked).map(|()| ground_truth)
     };
     let given = args.reference.as_deref().map(read).transpose()?;
     let (gpu, limits) = setup::device(&args.global)?;
 
-    let bar = crate::terminal::progress(args.global.quiet, "drawing the truth");
+    let bar = crate::terminal::progress(args.global.quiet, "computing the ground truth");
     let mut rig = Rig::new(gpu, limits, &scene, budget);
-    let truth = match given {
-        Some(truth) => truth,
-        None => Truth::draw(&mut rig)?,
+    let ground_truth = match given {
+        Some(ground_truth) => ground_truth,
+        None => GroundTruth::draw(&mut rig)?,
     };
-    let truth_s = rig.spent();
-    let tones = Tones::of(&truth);
+    let ground_truth_s = rig.spent();
+    let tones = Tones::of(&ground_truth);
     bar.set_message("scattering over visible points");
-    let baked = baked::measure(&mut rig, &truth, &start)?;
-    let ladders = ladders(&scene, args.bounces);
+    let baked = baked::measure(&mut rig, &ground_truth, &start)?;
+    let mut ladders = ladders(&scene, args.bounces);
+    for step in ladders.iter_mut().flat_map(|ladder| &mut ladder.steps) {
+        *step = setup::flags_in(step);
+    }
     let places = places(&ladders, &start);
     let why = |place: &Place| match rig.plan(&scene, &place.quality) {
         Err(error @ Error::Setting { .. }) => Some(setup::in_flags(error).to_string()),
         _ => None,
     };
     let refused = refused(&ladders, &places, why);
-    let (walk, recommended) =
-        walk::walk(&mut rig, (&truth, &tones), (&ladders, &places, refused), (&start, rule), &bar)?;
-    bar.set_message("moving the hull of the recommended settings");
+    let (walk, recommended) = walk::walk(
+        &mut rig,
+        (&ground_truth, &tones),
+        (&ladders, &places, refused),
+        (&start, rule),
+        &bar,
+    )?;
+    bar.set_message("timing hull storage of the recommended settings");
     let best = &walk.points[recommended.point];
     let draw_s = best.ratio * walk.baseline_ns() * 1e-9;
     let hulls = hull::places(&mut rig, &places[best.place].quality, draw_s)?;
@@ -114,9 +126,9 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
     about.extend(asked);
     let report = Report {
         about,
-        truth: &truth,
-        truth_s,
-        truth_png: picture::light_png(&scene.field, &truth.planes, &tones)?,
+        ground_truth: &ground_truth,
+        ground_truth_s,
+        ground_truth_png: picture::light_png(&scene.field, &ground_truth.planes, &tones)?,
         tones: &tones,
         hulls: &hulls,
         baked: &baked,
@@ -137,14 +149,11 @@ pub fn run(args: &TradeArgs) -> Result<Outcome> {
 }
 
 fn rule(args: &TradeArgs) -> Result<Rule> {
-    let positive = |flag: &str, value: Option<f64>| match value {
-        Some(x) if !(x.is_finite() && x > 0.0) => {
-            Err(Error::setting(flag, x.to_string(), "a number above 0"))
-        }
-        other => Ok(other),
-    };
-    let most = positive("--max-error", args.max_error)?.map(Rule::MaxError);
-    let longest = positive("--time-budget", args.time_budget)?.map(|ms| Rule::MaxCost(ms * 1e6));
+    for (flag, value) in [("--max-error", args.max_error), ("--time-budget", args.time_budget)] {
+        value.map_or(Ok(()), |x| crate::render::check_positive(flag, x))?;
+    }
+    let most = args.max_error.map(Rule::MaxError);
+    let longest = args.time_budget.map(|ms| Rule::MaxCost(ms * 1e6));
     Ok(most.or(longest).unwrap_or(Rule::Knee))
 }
 
@@ -159,26 +168,18 @@ fn budget(args: &TradeArgs) -> Result<Budget> {
     Ok(Budget::Seconds(args.budget))
 }
 
-/// A folder that is ours to write into: missing, empty, or with an earlier report.
+/// Checks the output folder: missing, empty, or with an earlier report.
 fn check_folder(path: &Path) -> Result<()> {
     let shown = || path.display().to_string();
     if !path.is_dir() {
-        if path.exists() {
-            return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
-        }
-        let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        if !parent.is_dir() {
-            let expected = format!("a folder {} that exists", parent.display());
-            return Err(Error::setting("-o", shown(), expected));
-        }
-        return files::check_writable(path);
+        return crate::bake::check_new(path);
     }
     let wrong = |source| Error::Io { path: path.to_owned(), source };
     for entry in std::fs::read_dir(path).map_err(wrong)? {
         let name = entry.map_err(wrong)?.file_name();
         if !FILES.iter().any(|f| name == *f) {
             let found = format!("{} with {} in it", shown(), name.to_string_lossy());
-            let expected = "a folder that is missing, empty, or holds an earlier report";
+            let expected = "a folder that is missing, empty or holds an earlier report";
             return Err(Error::setting("-o", found, expected));
         }
     }

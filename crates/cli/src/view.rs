@@ -26,9 +26,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
         let inputs = setup::inputs(&args.input.path, &args.lights, &args.surface);
         setup::check_distinct(&[("--json", Some(json.as_path()))], &inputs)?;
     }
-    if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(Error::setting("--exposure", args.exposure.to_string(), "a number above 0"));
-    }
+    crate::render::check_positive("--exposure", args.exposure)?;
     let quality = setup::quality(&args.quality)?;
     let field = setup::field(&args.input.path, &args.surface.field, &args.global)?;
     let scene = setup::scene(field, &args.surface, &args.lights)?;
@@ -41,7 +39,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     let steps = args.script.as_deref().map(script::read).transpose()?.map(VecDeque::from);
     let no_display = |e: winit::error::EventLoopError| {
         let text = e.to_string();
-        // Behind the place in winit's source where it was found.
+        // The reason follows winit's source position.
         let why = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
         let why = why.map_or(text.as_str(), |(_, why)| why).trim_end_matches('.');
         Error::Device { doing: "view".into(), reason: format!("needs a display: {why}") }
@@ -53,7 +51,7 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     app.end().and(ended).map(|()| Outcome::Done)
 }
 
-/// Refuses where winit would panic: it loads the library when it opens a window on X.
+/// Refuses to start where winit would panic: on X it loads this library when it opens a window.
 #[cfg(all(unix, not(target_vendor = "apple")))]
 fn check_keyboard() -> Result<()> {
     let is_there = xkbcommon_dl::xkbcommon_option().is_some()

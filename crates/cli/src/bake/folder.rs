@@ -1,38 +1,38 @@
-//! Where the files of `bake` go.
+//! The output folder of `bake`.
 
 use std::path::Path;
 
 use ridgelight::{Error, Result};
 use ridgelight_io as files;
 
-use super::SHEET;
+use super::MANIFEST;
 use super::map::Wanted;
 
 /// A kind and its files.
 type FileNotes = (String, Vec<String>);
 
-/// The kinds that a sheet tells of, each with its files; none where there is no sheet.
+/// Kinds and files that a manifest lists; none where there is no manifest.
 ///
 /// # Errors
-/// One that cannot be read, or does not tell: what lies beside it is unknown.
-fn told(path: &Path) -> Result<Vec<FileNotes>> {
+/// A manifest that cannot be read or has no list of kinds and files.
+fn listed(path: &Path) -> Result<Vec<FileNotes>> {
     let text = match std::fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
         text => text.map_err(|source| Error::Io { path: path.to_owned(), source })?,
     };
-    let kinds = serde_json::from_slice(&text).ok().and_then(|sheet| kinds(&sheet));
+    let kinds = serde_json::from_slice(&text).ok().and_then(|manifest| kinds(&manifest));
     kinds.ok_or_else(|| Error::File {
         path: path.to_owned(),
         place: "maps".into(),
         found: "no list of kinds and their files".into(),
-        expected: "what a bake wrote, whole, or a folder without this file".into(),
+        expected: "a manifest that `bake` wrote, or a folder without this file".into(),
     })
 }
 
-/// What the sheet of an earlier bake tells of, and removes it.
-pub fn take_sheet(folder: &Path) -> Result<Vec<FileNotes>> {
-    let path = folder.join(SHEET);
-    let before = told(&path)?;
+/// Reads the manifest of an earlier bake and removes it.
+pub fn take_manifest(folder: &Path) -> Result<Vec<FileNotes>> {
+    let path = folder.join(MANIFEST);
+    let before = listed(&path)?;
     match std::fs::remove_file(&path) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::Io { path, source })
@@ -41,30 +41,37 @@ pub fn take_sheet(folder: &Path) -> Result<Vec<FileNotes>> {
     }
 }
 
-fn kinds(sheet: &serde_json::Value) -> Option<Vec<FileNotes>> {
+fn kinds(manifest: &serde_json::Value) -> Option<Vec<FileNotes>> {
     let word = |value: &serde_json::Value| value.as_str().map(str::to_owned);
     let of = |map: &serde_json::Value| {
         let files = map["files"].as_array()?.iter().map(|file| word(&file["file"]));
         Some((word(&map["kind"])?, files.collect::<Option<_>>()?))
     };
-    sheet["maps"].as_array()?.iter().map(of).collect()
+    manifest["maps"].as_array()?.iter().map(of).collect()
 }
 
-/// Where files go: a folder that is there, or can be made. A bake of other kinds there would lose its sheet.
+/// Checks that the output folder exists or can be made, and that it holds no bake of other kinds,
+/// whose manifest would be lost.
 pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
     let shown = || path.display().to_string();
     if path.is_dir() {
         let is_other = |kind: &String| wanted.iter().all(|w| w.kind.name != kind);
-        let told = told(&path.join(SHEET))?;
-        if let Some((kind, _)) = told.iter().find(|(kind, _)| is_other(kind)) {
-            let found = format!("{} with {kind} in its {SHEET}", shown());
+        let listed = listed(&path.join(MANIFEST))?;
+        if let Some((kind, _)) = listed.iter().find(|(kind, _)| is_other(kind)) {
+            let found = format!("{} with {kind} in its {MANIFEST}", shown());
             let expected = "a folder without another bake, or all its kinds among --what";
             return Err(Error::setting("-o", found, expected));
         }
-        return files::check_writable(&path.join(SHEET));
+        return files::check_writable(&path.join(MANIFEST));
     }
+    check_new(path)
+}
+
+/// Checks that a folder can be made.
+pub fn check_new(path: &Path) -> Result<()> {
+    let shown = || path.display().to_string();
     if path.is_symlink() && !path.exists() {
-        return Err(Error::setting("-o", format!("{}, a link to nothing", shown()), "a folder"));
+        return Err(Error::setting("-o", format!("{}, a broken link", shown()), "a folder"));
     }
     if path.exists() {
         return Err(Error::setting("-o", format!("the file {}", shown()), "a folder"));
@@ -77,13 +84,13 @@ pub fn check_folder(path: &Path, wanted: &[Wanted]) -> Result<()> {
     files::check_writable(path)
 }
 
-/// Refuses what this machine has no memory for, before it is begun.
+/// Refuses a bake that needs more memory than the machine has.
 pub fn check_memory(bytes: u64) -> Result<()> {
     let wanted = usize::try_from(bytes).unwrap_or(usize::MAX);
     Vec::<u8>::new().try_reserve_exact(wanted).map_err(|_| Error::Limit {
-        what: "a bake of --what".into(),
-        needs: format!("{bytes} bytes of this program's memory, see --plan"),
-        limit: "what this machine gives".into(),
+        what: "bake --what".into(),
+        needs: format!("{bytes} bytes of memory in this process (see --plan)"),
+        limit: "what this machine has".into(),
     })
 }
 
@@ -91,15 +98,15 @@ pub fn parent(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Removes what an earlier bake told of and this one does not: azimuths beyond the last, other formats.
+/// Removes files of an earlier bake that this one has not written: surplus azimuths, other formats.
 pub fn remove_old(folder: &Path, before: Vec<FileNotes>) -> Result<()> {
     let now: Vec<String> =
-        told(&folder.join(SHEET))?.into_iter().flat_map(|(_, files)| files).collect();
+        listed(&folder.join(MANIFEST))?.into_iter().flat_map(|(_, files)| files).collect();
     for (kind, names) in before {
         let is_own = |name: &&String| name.starts_with(&kind.replace('-', "_"));
         for name in names.iter().filter(is_own).filter(|name| !now.contains(name)) {
             if Path::new(name).file_name().is_some_and(|own| *own == **name) {
-                // What cannot be removed stays, untold of.
+                // A file that cannot be removed stays, unlisted.
                 let _ = std::fs::remove_file(folder.join(name));
             }
         }

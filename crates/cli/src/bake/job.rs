@@ -1,11 +1,11 @@
-//! What a bake is before anything runs: its files, its memory, its plans, its settings.
+//! A bake before anything runs: its files, memory, plans and settings.
 
 use ridgelight::plan::{Limits, Plan};
 use ridgelight::{Error, Result};
 
 use super::kinds::{self, Lit, Making, OfDirections, Source};
 use super::map::{Format, Wanted};
-use super::{SHEET, request};
+use super::{MANIFEST, request};
 use crate::horizon;
 
 /// What is known before anything runs.
@@ -20,19 +20,21 @@ impl Job<'_> {
         self.lit.scene.field.heights_m().len()
     }
 
-    /// Every file and the most bytes that it may take.
+    /// Every file and an upper bound of its bytes.
     pub fn files(&self) -> Vec<(String, u64)> {
         let pairs = self.wanted.iter().zip(&self.making);
         let mut all: Vec<_> = pairs.flat_map(|(w, m)| w.files(&m.map, self.samples())).collect();
-        // Of each file what it is and how it is decoded, of each plane a name, of each direction three numbers.
+        // The manifest: each file and its decoding, each plane's name, each direction's three
+        // numbers.
         let planes: usize = self.making.iter().map(|m| m.map.planes.len()).sum();
         let directions = self.lit.around.count() + self.making.len() * self.lit.angles.count();
-        let told = 2048 * all.len() + 80 * planes + 160 * directions;
-        all.push((SHEET.into(), 65_536 + told as u64));
+        let listed = 2048 * all.len() + 80 * planes + 160 * directions;
+        all.push((MANIFEST.into(), 65_536 + listed as u64));
         all
     }
 
-    /// Bytes on this side: sums, planes that wait for their files, normals, and azimuths as they come.
+    /// Bytes in this process: sums, planes that wait for their files, normals, and azimuths read
+    /// back.
     pub fn host_bytes(&self, limits: &Limits) -> u64 {
         let (samples, field) = (self.samples(), &self.lit.scene.field);
         let of =
@@ -42,7 +44,7 @@ impl Job<'_> {
         pairs.map(of).sum::<u64>() + (24 + 4 * azimuths) * samples as u64
     }
 
-    /// Kinds of directions.
+    /// Kinds that trace directions.
     fn of_directions(&self) -> impl Iterator<Item = OfDirections> {
         self.making.iter().filter_map(|m| match m.source {
             Source::Directions(of) => Some(of),
@@ -50,7 +52,7 @@ impl Job<'_> {
         })
     }
 
-    /// Refuses a .ktx2 of more layers than an image of the device has.
+    /// Refuses a .ktx2 with more layers than an image of the device can have.
     pub fn check_layers(&self, limits: &Limits) -> Result<()> {
         for (wanted, making) in self.wanted.iter().zip(&self.making) {
             let layers = wanted.layers(&making.map);
@@ -67,13 +69,13 @@ impl Job<'_> {
             return Err(Error::Limit {
                 what: format!("the .ktx2 of {}", wanted.kind.name),
                 needs: format!("{layers} layers"),
-                limit: format!("{most} on this device; fewer {flag} or --format npy fit"),
+                limit: format!("{most} on this device; use fewer {flag} or --format npy"),
             });
         }
         Ok(())
     }
 
-    /// Why a flag changes nothing, where kinds of maps know better than plans.
+    /// Why a flag changes nothing, where the kinds know better than the plans.
     pub fn idle_reason(&self, setting: &str) -> Option<String> {
         let names: Vec<&str> = self.wanted.iter().map(|w| w.kind.name).collect();
         let has_light = self.wanted.iter().any(|w| request::is_light(w.kind));
@@ -82,12 +84,12 @@ impl Job<'_> {
             return Some(format!("without a kind that scatters light: {}", request::lights()));
         }
         if is_of_bounces {
-            return Some("for what is baked: light is scattered along --paths".into());
+            return Some("for these kinds: --paths scatter the light".into());
         }
         (!self.has_horizons() && !self.has_direct()).then(|| format!("for {}", names.join(", ")))
     }
 
-    /// Kinds that the scene's lights shine on.
+    /// Kinds that the scene's lights illuminate.
     fn has_direct(&self) -> bool {
         self.wanted.iter().any(|w| request::is_lit(w.kind))
     }
@@ -96,11 +98,11 @@ impl Job<'_> {
         self.making.iter().any(|m| matches!(m.source, Source::Horizons(_)))
     }
 
-    pub fn looks_along(&self) -> bool {
+    pub fn traces_directions(&self) -> bool {
         self.making.iter().any(|m| !matches!(m.source, Source::Horizons(_)))
     }
 
-    /// Of the horizons, a batch of azimuths, where there are any; then of each kind of directions and of light.
+    /// Plans of one batch of azimuths, if any, then of each kind of directions and of light.
     pub fn plans(&self, limits: &Limits) -> Result<Vec<Plan>> {
         self.check_layers(limits)?;
         let (field, border) = (&self.lit.scene.field, self.lit.scene.surface.border);
@@ -121,7 +123,7 @@ impl Job<'_> {
         Ok(all)
     }
 
-    /// Settings that were used, of the first plan and what its kinds add.
+    /// Settings used: those of the first plan and those that its kinds add.
     pub fn used(&self, limits: &Limits) -> Result<Vec<(String, String)>> {
         let Lit { scene, quality, .. } = &self.lit;
         let mut used = match self.has_horizons() {
@@ -139,7 +141,7 @@ impl Job<'_> {
             used.push(("bounces".into(), bounces.to_string()));
         }
         if let Some(scatter) = self.lit.scatter.filter(|_| is_light) {
-            // Plans tell of a part of them.
+            // A plan counts the directions of its part.
             used.retain(|(name, _)| !["paths", "seed"].contains(&name.as_str()));
             used.push(("paths".into(), scatter.paths.to_string()));
             used.push(("seed".into(), scatter.seed.to_string()));
@@ -149,9 +151,9 @@ impl Job<'_> {
             }
         }
         if self.has_direct() {
-            // How the light of paths is found is no method of horizons.
+            // The bounce engine of paths is not a horizon method.
             used.retain(|(name, _)| name != "method" || self.has_horizons());
-            // Light fields have their lobes along paths.
+            // Light fields find specular light along paths.
             let is_whole = has(|name| name == "scatter");
             let diffuse = if is_whole { None } else { Some(kinds::diffuse(&self.lit)) };
             let scene = diffuse.as_ref().unwrap_or(scene);

@@ -1,4 +1,4 @@
-//! What can be baked: one file a kind, and a line of [`KINDS`].
+//! The kinds of map. Each has a static entry in [`KINDS`].
 
 mod bent_normal;
 mod brdf;
@@ -8,14 +8,12 @@ mod btf;
 mod curved_ellipse;
 mod ellipse;
 mod far_field;
+mod harmonics;
 mod horizon;
 mod light_field;
 mod scatter;
-mod sh_transfer;
-mod sh_visibility;
-mod sky_view;
+mod sky;
 mod visible_points;
-mod visible_sky;
 
 use std::cell::OnceCell;
 
@@ -24,20 +22,20 @@ use ridgelight::Result;
 use ridgelight::gpu::Headless;
 use ridgelight::plan::{Limits, Plan};
 use ridgelight::scene::{Border, Directions, HeightField, Quality, Scatter, Scene};
-use ridgelight_bake::{Angles, Encoding, Ray, Sum, Summing};
+use ridgelight_bake::{Angles, Encoding, HorizonMap, HorizonSums, Ray};
 
 use super::map::{Format, MapFiles};
-pub use far_field::{diffuse, direct_plan, looks};
+pub use far_field::{diffuse, direct_plan, rays};
 pub use scatter::paths;
 
-/// All of them, as --help lists them.
+/// All kinds, in the order of --help.
 pub static KINDS: [&Kind; 15] = [
     &horizon::KIND,
-    &sky_view::KIND,
-    &visible_sky::KIND,
+    &sky::SKY_VIEW,
+    &sky::VISIBLE_SKY,
     &bent_normal::KIND,
-    &sh_visibility::KIND,
-    &sh_transfer::KIND,
+    &harmonics::SH_VISIBILITY,
+    &harmonics::SH_TRANSFER,
     &ellipse::KIND,
     &curved_ellipse::KIND,
     &visible_points::KIND,
@@ -49,80 +47,80 @@ pub static KINDS: [&Kind; 15] = [
     &light_field::KIND,
 ];
 
-/// What can be baked.
+/// A kind of map.
 pub struct Kind {
-    /// As `--what` takes it; its files are called so, with `_` for `-`.
+    /// Its name for `--what`. File names have `_` for `-`.
     pub name: &'static str,
-    /// What it is, for --help and the sheet.
+    /// Its description in --help and the manifest.
     pub about: &'static str,
-    /// How its values are packed; the first is the default.
+    /// Its encodings; the first is the default.
     pub encodings: &'static [Encoding],
-    /// Files that are written where none are asked for.
+    /// Its default file formats.
     pub formats: &'static [Format],
-    /// GLSL that reads the .ktx2, less the constants of a [`Map`].
+    /// GLSL that reads the .ktx2, without the constants of a [`Map`].
     pub decoder: &'static str,
-    /// Begins one.
+    /// Starts a map of this kind.
     pub begin: fn(&Request) -> Result<Making>,
 }
 
-/// What is asked of a kind.
+/// The request for a kind.
 pub struct Request<'a> {
     pub border: Border,
     pub quality: &'a Quality,
     pub directions: &'a Directions,
     pub angles: Angles,
-    /// Outwards and inwards, 1/m.
+    /// Outward and inward curvature of the base surface, 1/m.
     pub curvature: Option<[f64; 2]>,
     pub encoding: &'static Encoding,
-    /// Whether a .ktx2 is written, whose components may hold less than f32.
+    /// Whether a .ktx2 is written: its components may hold a smaller range than f32.
     pub has_texels: bool,
-    /// Whether ground reflects by a lobe, too.
-    pub has_lobe: bool,
+    /// Whether the surface has Phong specular.
+    pub has_specular: bool,
     /// Of the field.
     pub samples: usize,
 }
 
-/// A map as it will stand in files.
+/// The layout of a map in its files.
 #[derive(Default)]
 pub struct Map {
-    /// A plane of values each, as channels of an .exr are called, in the order of an .npy.
+    /// A plane per value: the channel names of an .exr and the order in an .npy.
     pub planes: Vec<String>,
-    /// What the planes hold, one after the other; one entry where all hold the same.
+    /// What the planes hold, in turn; one entry where all hold the same.
     pub values: Vec<Value>,
-    /// Whether the .ktx2 is an array, a layer for as many planes as its encoding takes.
+    /// Whether the .ktx2 is an array: one layer for each group of planes that its encoding packs.
     pub is_array: bool,
-    /// Constants that the decoder needs, as lines of GLSL.
+    /// GLSL constants that the decoder needs.
     pub constants: Vec<String>,
-    /// Columns and rows, where it has not a texel a sample.
+    /// Columns and rows, where they are not the field's.
     pub size: Option<[usize; 2]>,
-    /// Axes of an .npy, where they are others than planes, rows and columns: names and counts, the last the fastest.
+    /// Axes of an .npy other than planes, rows and columns: names and counts, the fastest last.
     pub axes: Vec<(&'static str, usize)>,
 }
 
 impl Map {
-    /// Texels of a plane, of a field of so many samples.
+    /// Texels of a plane, for a field of `samples` grid points.
     pub fn texels(&self, samples: usize) -> usize {
         self.size.map_or(samples, |[cols, rows]| cols * rows)
     }
 }
 
-/// A value of a sample.
+/// One value of a texel.
 pub struct Value {
     pub name: &'static str,
     pub about: &'static str,
-    /// "rad", or nothing.
+    /// "rad", or empty.
     pub unit: &'static str,
-    /// The least and the largest that it can be.
+    /// Its least and largest possible value.
     pub range: [f64; 2],
 }
 
-/// A kind on its way.
+/// A kind that is being made.
 pub struct Making {
     pub map: Map,
     pub source: Source,
 }
 
-/// What a kind is made of.
+/// The input of a kind.
 pub enum Source {
     Horizons(Box<dyn Maker>),
     Directions(OfDirections),
@@ -142,60 +140,61 @@ impl Source {
     }
 }
 
-/// What a field's samples see in directions, on bases that are bent outwards and inwards by two curvatures, 1/m.
+/// Plans visibility along directions, for base surfaces of two curvatures (outward and inward,
+/// 1/m).
 pub type PlanOf = fn(&HeightField, Border, &Directions, Option<[f64; 2]>, &Limits) -> Result<Plan>;
 
-/// A kind that the device makes of what samples see in directions.
+/// A kind that the device computes from visibility along directions.
 #[derive(Clone, Copy)]
 pub struct OfDirections {
     pub plan: PlanOf,
-    /// Bytes a sample of what comes off the device and waits for files.
+    /// Bytes per texel that wait for the files.
     pub bytes: fn(&Directions) -> u64,
-    /// To files.
-    pub take: fn(&LookJob, &mut MapFiles) -> Result<()>,
+    /// Writes the files.
+    pub take: fn(&DirectionsJob, &mut MapFiles) -> Result<()>,
 }
 
-/// Takes what is being done, for who waits.
+/// Reports progress.
 pub type Say<'a> = &'a dyn Fn(String);
 
-/// A kind that is light: the device is asked several things for it.
+/// A kind that is light. It needs several plans.
 #[derive(Clone, Copy)]
 pub struct OfLight {
-    /// What the device is asked, for what it takes.
+    /// The plans, to state their memory.
     pub plans: fn(&Lit, &Limits) -> Result<Vec<Plan>>,
     /// Bytes that it holds until the end.
     pub bytes: fn(&Lit) -> u64,
-    /// To files; the last is told what is being done.
+    /// Writes the files and reports progress.
     pub make: fn(&mut Headless, &Lit, &mut MapFiles, Say) -> Result<()>,
 }
 
-/// A whole number among the settings of a plan, which has it.
+/// A whole number among a plan's settings; the plan must have it.
 fn number(plan: &Plan, name: &str) -> u32 {
     let of = plan.settings.iter().find(|(known, _)| known == name);
-    of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light tell it")
+    of.and_then(|(_, value)| value.parse().ok()).expect("plans of scattered light state it")
 }
 
-/// What light is made of.
+/// What light is computed from.
 pub struct Lit<'a> {
     pub scene: &'a Scene,
     pub quality: &'a Quality,
     pub limits: Limits,
-    /// Of scattered light, none without bounces.
+    /// Scattered light; none without bounces.
     pub scatter: Option<Scatter>,
-    /// In which samples look for each other.
+    /// Directions in which texels find visible points.
     pub around: &'a Directions,
     /// Of lights and views.
     pub angles: Angles,
-    /// Of bent bases.
+    /// Curvatures of the base surface.
     pub curvature: Option<[f64; 2]>,
-    /// Of the pairs that a table is asked for between its angles.
+    /// Light and view pairs between the table's angles.
     pub seed: u32,
-    /// That `brdf`, `brdf-factors` and `brdf-harmonics` are of, once one of them has asked for it.
+    /// The table that `brdf`, `brdf-factors` and `brdf-harmonics` share, made on first use.
     pub table: OnceCell<brdf::Table>,
 }
 
-/// What came of its plan.
-pub struct LookJob<'a> {
+/// The result of a plan.
+pub struct DirectionsJob<'a> {
     pub field: &'a HeightField,
     pub border: Border,
     pub directions: &'a Directions,
@@ -204,12 +203,12 @@ pub struct LookJob<'a> {
     pub outputs: &'a [Vec<f32>],
 }
 
-/// Makes a map of the horizons of a circle.
+/// Makes a map from the horizons of a circle of azimuths.
 pub trait Maker {
     /// Bytes that it holds until the end.
     fn bytes(&self) -> u64;
 
-    /// Takes an azimuth, in the order of the circle: elevations, radians, and unit normals of all samples.
+    /// Takes one azimuth, in circle order: elevations (rad) and unit normals of all texels.
     fn add(
         &mut self,
         ray: Ray,
@@ -218,22 +217,22 @@ pub trait Maker {
         files: &mut MapFiles,
     ) -> Result<()>;
 
-    /// Hands over what is left, after the last azimuth.
+    /// Writes what remains after the last azimuth.
     fn end(self: Box<Self>, normals: &[DVec3], files: &mut MapFiles) -> Result<()>;
 }
 
 /// A kind that is a sum over azimuths.
 struct Sums {
-    summing: Summing,
+    summing: HorizonSums,
     bytes: u64,
 }
 
 impl Sums {
-    fn begin(what: Box<dyn Sum>, asked: &Request, map: Map) -> Making {
-        // The sums, and the values as they are made of them.
+    fn begin(what: Box<dyn HorizonMap>, asked: &Request, map: Map) -> Making {
+        // The sums, and the values computed from them.
         let bytes =
-            Summing::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
-        let summing = Summing::new(what, asked.samples);
+            HorizonSums::bytes(&*what, asked.samples) + 4 * (what.values() * asked.samples) as u64;
+        let summing = HorizonSums::new(what, asked.samples);
         Making { map, source: Source::Horizons(Box::new(Self { summing, bytes })) }
     }
 }
@@ -257,18 +256,5 @@ impl Maker for Sums {
         let planes = self.summing.end(normals)?;
         let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
         planes.chunks(files.planes_at_once()).try_for_each(|layer| files.take(layer))
-    }
-}
-
-/// Coefficients of harmonics, four a texel.
-fn coefficients(kind: &Kind, order: usize, value: Value) -> Map {
-    let stem = super::map::stem(kind);
-    let bands = (0..order as isize).flat_map(|l| (-l..=l).map(move |m| (l, m)));
-    Map {
-        planes: bands.map(|(l, m)| format!("{stem}.l{l}m{m}")).collect(),
-        values: vec![value],
-        is_array: true,
-        constants: vec![format!("const int SH_COUNT = {};", order * order)],
-        ..Map::default()
     }
 }

@@ -1,4 +1,4 @@
-//! What a folder of maps is told by.
+//! The manifest: a description of the folder's maps.
 
 use ridgelight::gpu::Timing;
 use ridgelight::scene::{HeightField, Method, Quality};
@@ -6,8 +6,8 @@ use serde_json::json;
 
 use crate::setup;
 
-/// What the folder holds.
-pub fn sheet(
+/// The manifest of all maps.
+pub fn describe(
     metadata: &[(String, String)],
     times: &[Timing],
     field: &HeightField,
@@ -16,27 +16,25 @@ pub fn sheet(
 ) -> serde_json::Value {
     let voids = field.voids().map_or(0, |v| v.iter().filter(|v| **v).count());
     let horizons = match quality.method {
-        Method::Brute => {
-            "every crossing of a sample's own line along each azimuth: exact there but for rounding in f32"
+        Method::BruteForce => {
+            "every crossing along each azimuth from each grid point: exact but for f32 rounding"
         }
-        _ => {
-            "found by the method of the settings, whose own error is besides what is stated of files"
-        }
+        _ => "found by the method in settings, whose error is not part of the files' errors",
     };
-    let mut sheet = setup::as_json(metadata, times);
-    let hash = sheet["settings"]["field_hash"].clone();
-    sheet["field"] = json!({
+    let mut manifest = setup::as_json(metadata, times);
+    let hash = manifest["settings"]["field_hash"].clone();
+    manifest["field"] = json!({
         "rows": field.rows(), "cols": field.cols(), "cell_m": field.cell_m(), "base_m": field.base_m(),
         "voids": voids, "hash": hash,
-        "hash_is": "FNV-1a of 64 bits of the text ridgelight field 1, rows and columns (u64), cells (f64), the border (a \
-                    byte: 0 plane, 1 open, 2 periodic), heights above the base (f32, -0 as 0) and, if any sample is \
-                    void, a byte a sample, 1 where it is; little-endian",
+        "hash_is": "64-bit FNV-1a of the text ridgelight field 1, rows and columns (u64), cells (f64), the \
+            border (a byte: 0 plane, 1 open, 2 periodic), heights above the base (f32, -0 as 0) \
+            and, if the field has voids, a byte per grid point, 1 at voids; little-endian",
         "first_row": "north", "first_column": "west",
     });
-    sheet["horizons"] = horizons.into();
-    sheet["error_is"] = "of decoding a file: what was computed is in it within at_most plus and_of_the_value times the \
-                         value; between the azimuths nothing is looked at, which is besides"
+    manifest["horizons"] = horizons.into();
+    manifest["error_is"] = "decoding error of a file: the computed value lies within at_most plus \
+        and_of_the_value times the value; the error between azimuths is not included"
         .into();
-    sheet["maps"] = maps.into();
-    sheet
+    manifest["maps"] = maps.into();
+    manifest
 }

@@ -1,4 +1,4 @@
-//! A map's files: values go to all of them as they come, layer by layer.
+//! A map's open files. Values go to all of them layer by layer.
 
 mod coded;
 mod notes;
@@ -22,11 +22,11 @@ enum Open {
     Exr(PathBuf, Vec<Vec<f32>>),
     Npy(PathBuf, NpyWriter),
     Ktx2(PathBuf, Ktx2Writer),
-    /// One a layer, each with what its samples are times.
+    /// One per layer, each with its scale.
     Png(Vec<(PathBuf, Written, f64)>),
 }
 
-/// A map's files, until [`Whole::place`] nowhere to be seen.
+/// A map's files, invisible under their final names until [`Whole::place`].
 pub struct MapFiles<'a> {
     wanted: Wanted,
     map: Map,
@@ -35,14 +35,14 @@ pub struct MapFiles<'a> {
     texts: Vec<(String, String)>,
     open: Vec<Open>,
     taken: usize,
-    /// Values beyond their stated range, and the most that one was.
+    /// Count of values outside their stated range, and the largest excess.
     beyond: (u64, f64),
-    told: Vec<(&'static str, Json)>,
+    entries: Vec<(&'static str, Json)>,
     remarks: Vec<String>,
 }
 
 impl<'a> MapFiles<'a> {
-    /// Begins all of them.
+    /// Opens all files.
     pub fn create(
         folder: &Path,
         wanted: Wanted,
@@ -85,27 +85,27 @@ impl<'a> MapFiles<'a> {
         });
         let open = open.collect::<Result<_>>()?;
         let folder = folder.to_owned();
-        let (told, remarks) = (Vec::new(), Vec::new());
+        let (entries, remarks) = (Vec::new(), Vec::new());
         let (taken, beyond) = (0, (0, 0.0));
-        Ok(Self { wanted, map, field, folder, texts, open, taken, beyond, told, remarks })
+        Ok(Self { wanted, map, field, folder, texts, open, taken, beyond, entries, remarks })
     }
 
-    /// As `--what` calls it.
+    /// Its name for `--what`.
     pub fn kind(&self) -> &'static str {
         self.wanted.kind.name
     }
 
-    /// Says something more of the kind in the sheet.
-    pub fn tell(&mut self, name: &'static str, what: Json) {
-        self.told.push((name, what));
+    /// Adds an entry to the kind's part of the manifest.
+    pub fn add_entry(&mut self, name: &'static str, what: Json) {
+        self.entries.push((name, what));
     }
 
-    /// Says something more of the kind to who waits.
+    /// Adds a note for the terminal.
     pub fn remark(&mut self, what: String) {
         self.remarks.push(what);
     }
 
-    /// The field's, of a map with a texel a sample.
+    /// The field's voids, if the map has its size.
     fn voids(&self) -> Option<&'a [bool]> {
         self.field.voids().filter(|_| self.map.size.is_none())
     }
@@ -115,12 +115,12 @@ impl<'a> MapFiles<'a> {
         self.map.size.unwrap_or([self.field.cols(), self.field.rows()])
     }
 
-    /// As many planes as a layer's texels stand for.
+    /// Planes that one layer encodes.
     pub fn planes_at_once(&self) -> usize {
         self.wanted.encoding.values
     }
 
-    /// Takes a layer: as many planes as [`planes_at_once`](Self::planes_at_once), fewer in the last.
+    /// Takes a layer: [`planes_at_once`](Self::planes_at_once) planes, fewer in the last.
     pub fn take(&mut self, planes: &[&[f32]]) -> Result<()> {
         self.count_beyond(planes);
         let scale = if self.is_scaled() { self.largest(planes) } else { 1.0 };
@@ -157,13 +157,14 @@ impl<'a> MapFiles<'a> {
         Ok(())
     }
 
-    /// Counts values that are no part of their range, whatever holds them.
+    /// Counts values outside their range.
     fn count_beyond(&mut self, planes: &[&[f32]]) {
         let (values, voids) = (&self.map.values, self.voids());
         let first = self.taken * self.wanted.encoding.values;
         for (at, plane) in planes.iter().enumerate() {
             let [low, high] = values[(first + at) % values.len()].range;
-            // Roundings of f32, in which a right angle is more than one, and of the device's functions.
+            // Allows f32 rounding, where π/2 is above the real one, and the device's function
+            // errors.
             let rounding = 8.0 * f64::from(f32::EPSILON) * low.abs().max(high.abs());
             for (i, value) in plane.iter().enumerate() {
                 let beyond = (f64::from(*value) - high).max(low - f64::from(*value));
@@ -178,7 +179,7 @@ impl<'a> MapFiles<'a> {
         self.wanted.formats.contains(&format)
     }
 
-    /// Channels of a picture: components, and opacity where there are voids.
+    /// Channels of a picture: components, and alpha where there are voids.
     fn channels(&self) -> usize {
         self.wanted.encoding.components + usize::from(self.voids().is_some())
     }

@@ -1,4 +1,4 @@
-//! What of `bake` is asked for.
+//! The request of `bake`: kinds, encodings, directions, angles and paths.
 
 use ridgelight::scene::{Directions, Lines, Method, Quality, Scatter};
 use ridgelight::{Error, Result};
@@ -11,10 +11,10 @@ use crate::args::{BakeArgs, MethodName};
 use crate::bake::Format;
 use crate::{idle, setup};
 
-/// Where none are asked for.
+/// Default of --directions.
 pub const DIRECTIONS: u32 = 256;
 
-/// What `--what` takes.
+/// Parses a name of `--what`.
 pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
     KINDS.into_iter().find(|kind| kind.name == name).ok_or_else(|| {
         let all: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
@@ -22,7 +22,7 @@ pub fn kind_named(name: &str) -> std::result::Result<&'static Kind, String> {
     })
 }
 
-/// What `--encoding` takes: `KIND=ENCODING`.
+/// Parses `--encoding`: `KIND=ENCODING`.
 pub fn packing(text: &str) -> std::result::Result<Packing, String> {
     let (kind, name) = text.split_once('=').ok_or("expected KIND=ENCODING")?;
     let kind = kind_named(kind)?;
@@ -33,9 +33,9 @@ pub fn packing(text: &str) -> std::result::Result<Packing, String> {
     Ok(Packing { kind, encoding })
 }
 
-/// The list below the flags.
+/// The list of kinds below the flags.
 pub fn help() -> String {
-    let mut text = String::from("Kinds, and how each can be packed:\n");
+    let mut text = String::from("Kinds and their encodings:\n");
     for kind in KINDS {
         let names: Vec<&str> = kind.encodings.iter().map(|e| e.name).collect();
         let formats: Vec<&str> = kind.formats.iter().map(|f| f.name()).collect();
@@ -48,15 +48,14 @@ pub fn help() -> String {
         );
     }
     text += "\n\
-Each .ktx2 is one level, an array where there are several layers (a horizon's azimuth, four coefficients), its first row \
-in the north. --method auto is brute here, exact in every azimuth; --method sweep is faster, and its \
-horizons are near. With --phong, brdf, brdf-factors, brdf-harmonics and btf mirror each light as their triangles lie, and scatter towards \
-each view by paths that are walked once a light but for their last step: --plan tells how many look-ups, --bounces 0 takes none. \
-scatter is then seen from straight above, and light-field from each view, the sky along --directions, with --bounces 0 along each \
-once. A lobe is bounded by the view, not by the light, and not the same with both exchanged: the sheet says by how much, where \
---angles are as close as it is wide. Vulkan does not ask devices to \
-sample unorm16 and snorm16: 8 bits, f16 and f32 all devices sample. \
-A .png of scatter has 16 bits, 1 at the largest number of each picture, whose scale the sheet has.
+Each .ktx2 has one mip level. It is an array where a map has several layers, such as one per azimuth or four coefficients. \
+Its first row is north. --method auto is brute-force here: exact in every azimuth. --method sweep is faster and approximate.\n\n\
+With --specular, the kinds brdf, brdf-factors, brdf-harmonics and btf reflect each light at the triangles. Indirect light \
+towards each view reuses the paths of the light except for their last step. --plan prints the number of rays; --bounces 0 \
+needs none. scatter then views the ground from straight above. light-field reflects the sky along --directions; with \
+--bounces 0 along each once. Phong specular is not reciprocal; the manifest states by how much where --angles resolve it.\n\n\
+Every Vulkan device can sample 8-bit, f16 and f32 textures; unorm16 and snorm16 are optional. A .png of scatter has 16 \
+bits, scaled to the largest value of each picture; the manifest holds the scale.
 
 Examples:
   ridgelight bake heights.png --cell 30 --what sky-view,bent-normal -o baked
@@ -68,7 +67,7 @@ Examples:
     text
 }
 
-/// What is asked for, each kind once.
+/// The requested kinds, each once.
 pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
     let mut all: Vec<Wanted> = Vec::new();
     for kind in &args.what {
@@ -79,7 +78,7 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
         let encoding = packings.next().map_or(&kind.encodings[0], |p| p.encoding);
         if packings.next().is_some() {
             let found = format!("two of {}", kind.name);
-            return Err(Error::setting("--encoding", found, "one of each kind"));
+            return Err(Error::setting("--encoding", found, "one per kind"));
         }
         let mut formats = if args.format.is_empty() { kind.formats } else { &args.format }.to_vec();
         let takes = |format: &Format| format.takes(kind, encoding);
@@ -102,7 +101,7 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
         args.encoding.iter().find(|p| all.iter().all(|w| w.kind.name != p.kind.name))
     {
         let found = format!("one of {}", idle.kind.name);
-        return Err(Error::setting("--encoding", found, "only kinds of --what"));
+        return Err(Error::setting("--encoding", found, "kinds of --what only"));
     }
     Ok(all)
 }
@@ -110,68 +109,69 @@ pub fn wanted(args: &BakeArgs) -> Result<Vec<Wanted>> {
 pub fn quality(args: &BakeArgs) -> Result<Quality> {
     let mut quality = setup::quality(&args.quality)?;
     if matches!(args.quality.method, MethodName::Auto) {
-        quality.method = Method::Brute;
+        quality.method = Method::BruteForce;
     }
-    if quality.lines == Lines::Exact && quality.method != Method::Brute {
+    if quality.lines == Lines::Exact && quality.method != Method::BruteForce {
         return Err(Error::setting(
             "--lines",
             "exact",
-            "--method brute, which is exact in every azimuth: grid vectors are not even",
+            "--method brute-force, which is exact in every azimuth: exact lines need unevenly \
+                spaced azimuths",
         ));
     }
     Ok(quality)
 }
 
-/// What is seen below horizontal counts, too: it may rise over it on a bent base.
-const LOOKS_BELOW: [&str; 2] = ["visible-points", "curved-ellipse"];
+/// Kinds that also need visibility below horizontal: a curved base surface can raise it above.
+const NEED_BELOW_HORIZON: [&str; 2] = ["visible-points", "curved-ellipse"];
 
-/// Of kinds that look along directions: ellipses of flat bases spend none below horizontal.
+/// Directions of the kinds that trace some. Ellipses of flat bases use none below horizontal.
 pub fn directions(args: &BakeArgs) -> Result<Directions> {
-    let looks_around =
-        args.what.iter().any(|kind| LOOKS_BELOW.contains(&kind.name) || is_light(kind));
-    let lowest_z = if looks_around { -1.0 } else { 0.0 };
+    let traces_sphere =
+        args.what.iter().any(|kind| NEED_BELOW_HORIZON.contains(&kind.name) || is_light(kind));
+    let lowest_z = if traces_sphere { -1.0 } else { 0.0 };
     Directions::fibonacci(args.directions.unwrap_or(DIRECTIONS) as usize, lowest_z, 0)
 }
 
-/// Those that scatter: the first as samples, the others as triangles seen along --angles.
+/// Kinds that are light: `scatter` by texels, the others by triangles along --angles.
 const LIGHTS: [&str; 6] =
     ["scatter", "brdf", "brdf-factors", "brdf-harmonics", "btf", "light-field"];
 
-/// Those of them that the scene's lights shine on.
+/// Kinds that the scene's lights illuminate.
 const LIT: [&str; 2] = ["scatter", "light-field"];
 
-/// Those that scatter, in words.
+/// Kinds that are light, in words.
 pub fn lights() -> String {
     either(&LIGHTS)
 }
 
-/// One of some, in words.
+/// Some names, in words.
 fn either(names: &[&str]) -> String {
     let (last, others) = names.split_last().expect("a name");
     format!("{} or {last}", others.join(", "))
 }
 
-/// Those that scatter.
+/// Whether the kind is light.
 pub fn is_light(kind: &Kind) -> bool {
     LIGHTS.contains(&kind.name)
 }
 
-/// Whose pictures are of floats, each with a scale of its own.
+/// Whether its pictures store floats with a scale each.
 pub fn is_scaled(kind: &Kind) -> bool {
     kind.name == "scatter"
 }
 
-/// Whether the scene's lights shine on it.
+/// Whether the scene's lights illuminate it.
 pub fn is_lit(kind: &Kind) -> bool {
     LIT.contains(&kind.name)
 }
 
-/// Says which flags of light were written out and shine on nothing, or are of ground that reflects nothing.
+/// Notes flags of lights and surface that the requested kinds do not use.
 pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted], scatters: bool) {
     let has = |of: fn(&Kind) -> bool| wanted.iter().any(|w| of(w.kind));
     let groups: [(&[&str], bool, &[&str]); 2] = [
-        (&["sky", "env", "env_rotate", "sun", "key", "light"], has(is_lit), &LIT),
-        (&["albedo", "phong"], has(is_light), &LIGHTS),
+        (&["sky", "env", "env_rotate", "sun", "key", "sphere_light"], has(is_lit), &LIT),
+        (&["albedo", "specular"], has(is_light), &LIGHTS),
     ];
     for (names, is_used, by) in groups {
         let is_own = |(name, _): &&(String, String)| !is_used && names.contains(&name.as_str());
@@ -184,7 +184,7 @@ pub fn say_idle_light(args: &BakeArgs, wanted: &[Wanted], scatters: bool) {
     }
 }
 
-/// Scattered light, three bounces unless others are asked for, here or in a scene file; none where 0 are written out.
+/// Scattered light: three bounces by default, none with --bounces 0.
 pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
     let default = Scatter::default();
     let bounces = if args.quality.has_bounces { quality.bounces.count } else { default.bounces };
@@ -193,7 +193,7 @@ pub fn scatter(args: &BakeArgs, quality: &Quality) -> Option<Scatter> {
     (bounces > 0).then_some(Scatter { bounces, paths, cutoff, seed, ..default })
 }
 
-/// Of lights and views: fewer where there is a picture of each pair.
+/// Angles of lights and views; fewer by default where each pair has a picture.
 pub fn angles(args: &BakeArgs) -> Result<Angles> {
     let has_pairs = args.what.iter().any(|kind| kind.name == "btf");
     let [zeniths, azimuths] = args.angles.unwrap_or(if has_pairs { [3, 8] } else { [8, 16] });
@@ -210,24 +210,22 @@ pub fn angles(args: &BakeArgs) -> Result<Angles> {
     Ok(angles)
 }
 
-/// Of pairs, each with four planes that have a name.
+/// Largest number of pairs, each with four named planes.
 const MOST_PICTURES: usize = 1 << 16;
 
-/// Refuses flags that no kind of the list has a use for.
+/// Refuses flags that none of the kinds use.
 pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>) -> Result<()> {
-    let looks_along = sources.into_iter().any(|s| !matches!(s, Source::Horizons(_)));
-    if let Some(count) = args.directions.filter(|_| !looks_along) {
+    let traces_directions = sources.into_iter().any(|s| !matches!(s, Source::Horizons(_)));
+    if let Some(count) = args.directions.filter(|_| !traces_directions) {
         let expected =
-            "--what ellipse, visible-points or what is light, which alone look along directions";
+            "--what ellipse, visible-points or a kind of light: only these trace directions";
         return Err(Error::setting("--directions", count.to_string(), expected));
     }
     let has_light = args.what.iter().any(|kind| is_light(kind));
     let has_angles = args.what.iter().any(|kind| is_light(kind) && kind.name != "scatter");
     let found = |name: &str, value: String, is_used: bool, by: &str| match is_used {
         true => Ok(()),
-        false => {
-            Err(Error::setting(name, value, format!("--what {by}, which alone have a use for it")))
-        }
+        false => Err(Error::setting(name, value, format!("--what {by}: no other kind uses it"))),
     };
     if let Some([outwards, inwards]) = args.curvature {
         let is_used = args.what.iter().any(|kind| kind.name == "curved-ellipse");
@@ -241,7 +239,7 @@ pub fn check_uses<'a>(args: &BakeArgs, sources: impl Iterator<Item = &'a Source>
             found(name, value.to_string(), has_light, &lights())?;
         }
     }
-    // Some kinds share them out among parts.
+    // Some kinds split them into parts.
     if let Some(paths) = args.paths.filter(|paths| !Scatter::PATHS.contains(paths)) {
         let expected =
             format!("a whole number from {} to {}", Scatter::PATHS.start(), Scatter::PATHS.end());

@@ -1,4 +1,4 @@
-//! Every form of the sweep beside a plain scalar sweep on the processor, in turn.
+//! Times every form of the sweep, in turn with a scalar sweep on the CPU.
 
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -17,19 +17,19 @@ use super::{enough, named};
 
 /// Azimuths that the scalar sweep runs between two runs of a form.
 const SCALAR_AZIMUTHS: u32 = 8;
-/// Slow forms run some azimuths only, from a number of the circle on; their time is in proportion.
-/// Brute force costs alike in each.
+/// Slow forms run only some azimuths, starting at a given one; their time is scaled. In brute force
+/// all azimuths take the same time.
 const BRUTE_AZIMUTHS: u32 = 2;
-/// Exact lines cost by their grid vectors, which repeat from octant to octant.
+/// The time of exact lines depends on their grid vectors, which repeat from octant to octant.
 const EXACT_CIRCLE_SHARE: u32 = 8;
 /// Runs of forms that take seconds.
-const SLOW_SAMPLES: usize = 3;
+const SLOW_RUNS: usize = 3;
 
 struct Form {
-    /// The rows' pass.
+    /// The pass of the rows.
     name: String,
     quality: Quality,
-    /// Whether the shading is timed; else what comes before it.
+    /// Whether shading is timed; otherwise the passes before it.
     shades: bool,
     slow: bool,
 }
@@ -49,7 +49,7 @@ fn forms(quality: &Quality) -> Vec<Form> {
     };
     let mut all = Vec::new();
     for (hull, place) in
-        [(Hull::Private, "private"), (Hull::Shared, "shared"), (Hull::List, "list")]
+        [(Hull::Private, "private"), (Hull::Shared, "shared"), (Hull::OccluderList, "list")]
     {
         for precision in [Precision::F32, Precision::Packed] {
             let name = format!("horizon_sweep {place} {}", precision.name());
@@ -80,21 +80,21 @@ fn forms(quality: &Quality) -> Vec<Form> {
     }
     all.push(form(
         "horizon_march brute".into(),
-        Quality { method: Method::Brute, ..base },
+        Quality { method: Method::BruteForce, ..base },
         false,
         true,
     ));
     all
 }
 
-/// Times all forms; rows of each and of the scalar sweep beside it.
+/// Times all forms. Returns rows of each and of the scalar sweep paired with it.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
     quality: &Quality,
     limits: &Limits,
     verifier: &Verifier,
-    (samples, only): (usize, &[String]),
+    (most, only): (usize, &[String]),
     bar: &ProgressBar,
 ) -> Result<Vec<[Row; 2]>> {
     let mut all = Vec::new();
@@ -108,7 +108,7 @@ pub fn run(
         let all_azimuths = form.quality.azimuths;
         let (plan, azimuths) = if form.slow {
             let some = match form.quality.method {
-                Method::Brute => (all_azimuths / 16, BRUTE_AZIMUTHS),
+                Method::BruteForce => (all_azimuths / 16, BRUTE_AZIMUTHS),
                 _ => (0, all_azimuths.div_ceil(EXACT_CIRCLE_SHARE)),
             };
             let border = scene.surface.border;
@@ -129,7 +129,7 @@ pub fn run(
         let inputs = if form.slow { &contents[..1] } else { &contents[..] };
         let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
         let mut frame = gpu.frame(plan, &inputs)?;
-        let count = if form.slow { samples.min(SLOW_SAMPLES) } else { samples };
+        let count = if form.slow { most.min(SLOW_RUNS) } else { most };
         let rows = in_turn(gpu, &mut frame, &mut scalar, &timed, (azimuths, count), &form, bar);
         gpu.end(frame);
         all.push(rows?);
@@ -137,30 +137,30 @@ pub fn run(
     Ok(all)
 }
 
-/// A form, the scalar sweep, the form again, …: both meet the same machine.
+/// Alternates the form and the scalar sweep, so that both run on the machine in the same state.
 fn in_turn(
     gpu: &Headless,
     frame: &mut Frame,
     scalar: &mut ScalarSweep<'_>,
     timed: &[usize],
-    (azimuths, samples): (u32, usize),
+    (azimuths, most): (u32, usize),
     form: &Form,
     bar: &ProgressBar,
 ) -> Result<[Row; 2]> {
     let (mut runs, mut scalar_ns) = (Vec::new(), Vec::new());
-    // All passes once: what the timed ones read is there, and pipelines are warm.
+    // Runs all passes once: the timed ones need the others' results and warm pipelines.
     gpu.draw(frame)?;
     scalar.sweep(0.0);
     let begun = Instant::now();
-    for sample in 0..samples {
-        bar.set_message(format!("{}: {} of {samples}", form.name, sample + 1));
+    for run in 0..most {
+        bar.set_message(format!("{}: {} of {most}", form.name, run + 1));
         runs.push(gpu.draw_passes(frame, timed)?);
         let start = Instant::now();
         for k in 0..SCALAR_AZIMUTHS {
             scalar.sweep((f64::from(k) + 0.37) * TAU / f64::from(SCALAR_AZIMUTHS));
         }
         scalar_ns.push(start.elapsed().as_secs_f64() * 1e9);
-        if enough(begun, sample + 1) {
+        if enough(begun, run + 1) {
             break;
         }
     }
@@ -174,14 +174,14 @@ fn in_turn(
         azimuths,
         (runs.len(), &sums(&runs, |_| true)),
     );
-    ours.settings.push(("scalar_beside".into(), format!("scalar_sweep beside {}", form.name)));
+    ours.settings.push(("scalar_beside".into(), format!("scalar_sweep with {}", form.name)));
     let rival = Row {
-        pass: format!("scalar_sweep beside {}", form.name),
+        pass: format!("scalar_sweep with {}", form.name),
         mode: "isolated",
         size: plan.size,
         azimuths: SCALAR_AZIMUTHS,
         settings: vec![("threads".into(), scalar.threads().to_string())],
-        samples: scalar_ns.len(),
+        runs: scalar_ns.len(),
         times: Summary::of(&scalar_ns),
         bytes: 0,
         work: scalar.samples() * u64::from(SCALAR_AZIMUTHS),
@@ -198,7 +198,7 @@ pub fn print(rows: &[[Row; 2]]) {
         "ms/(az·2^20)",
         "scalar's",
         "× scalar",
-        "× of mins"
+        "× of minima"
     );
     for [ours, rival] in rows {
         let mega = [ours.ms_per_azimuth_and_mega(), rival.ms_per_azimuth_and_mega()];
@@ -215,6 +215,7 @@ pub fn print(rows: &[[Row; 2]]) {
         );
     }
     crate::say!(
-        "(× scalar: of medians; where it differs much from × of mins, the machine was not quiet)"
+        "(× scalar: ratio of medians. If it differs much from the ratio of minima, the machine \
+            was busy.)"
     );
 }

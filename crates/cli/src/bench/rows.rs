@@ -1,4 +1,4 @@
-//! Samples of times to rows, for people and for machines.
+//! Rows of measured times, as text and JSON.
 
 use ridgelight::gpu::Timing;
 use ridgelight::plan::{Pass, Plan};
@@ -14,12 +14,12 @@ pub struct Row {
     pub size: [u32; 2],
     pub azimuths: u32,
     pub settings: Vec<(String, String)>,
-    /// How many times it was run.
-    pub samples: usize,
+    /// Number of timing runs.
+    pub runs: usize,
     /// Nanoseconds; none where the device has no timestamps.
     pub times: Option<Summary>,
     pub bytes: u64,
-    /// Samples (or texels) worked on, in one run.
+    /// Texels processed in one run.
     pub work: u64,
 }
 
@@ -39,7 +39,7 @@ impl Row {
             size: plan.size,
             azimuths,
             settings: plan.settings.clone(),
-            samples: runs,
+            runs,
             times: Summary::of(times_ns),
             bytes: passes.iter().map(|p| p.bytes).sum(),
             work: passes.iter().map(|p| p.samples).sum(),
@@ -51,12 +51,12 @@ impl Row {
         (amount > 0 && median > 0.0).then(|| amount as f64 / (median * 1e-9))
     }
 
-    /// Milliseconds an azimuth.
+    /// Milliseconds per azimuth.
     pub fn ms_per_azimuth(&self) -> Option<f64> {
         Some(self.times?.median * 1e-6 / f64::from(self.azimuths.max(1)))
     }
 
-    /// Milliseconds an azimuth and 2^20 samples of the field.
+    /// Milliseconds per azimuth and 2^20 texels of the field.
     pub fn ms_per_azimuth_and_mega(&self) -> Option<f64> {
         let mega = f64::from(self.size[0]) * f64::from(self.size[1]) / f64::from(1 << 20);
         Some(self.ms_per_azimuth()? / mega)
@@ -65,18 +65,18 @@ impl Row {
     pub fn json(&self) -> Value {
         json!({
             "pass": self.pass, "mode": self.mode, "cols": self.size[0], "rows": self.size[1],
-            "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "samples": self.samples,
+            "azimuths": self.azimuths, "settings": setup::typed(&self.settings), "runs": self.runs,
             "min_ns": self.times.map(|t| t.min), "median_ns": self.times.map(|t| t.median),
             "p10_ns": self.times.map(|t| t.p10), "p90_ns": self.times.map(|t| t.p90),
             "bytes": self.bytes, "gb_per_s": self.rate(self.bytes).map(|r| r * 1e-9),
-            "samples_per_s": self.rate(self.work),
+            "texels_per_s": self.rate(self.work),
         })
     }
 
     pub fn head() -> String {
         format!(
             "{:<34} {:<9} {:>10} {:>10} {:>10} {:>10} {:>7} {:>11}",
-            "pass", "mode", "median ms", "p10", "p90", "min", "GB/s", "Gsamples/s"
+            "pass", "mode", "median ms", "p10", "p90", "min", "GB/s", "Gtexels/s"
         )
     }
 
@@ -104,12 +104,13 @@ impl Row {
     }
 }
 
-/// What is not known is not 0.
+/// Unknown values are not 0.
 pub fn figure(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "unavailable".to_owned(), |v| format!("{v:.digits$}"))
 }
 
-/// Sums of each run over the passes that `wanted` picks by position; nothing where a run has no times.
+/// Sums of each run over the passes that `wanted` selects by position; none where a run has no
+/// times.
 pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
     if runs.iter().any(Vec::is_empty) {
         return Vec::new();
@@ -120,7 +121,7 @@ pub fn sums(runs: &[Vec<Timing>], wanted: impl Fn(usize) -> bool) -> Vec<f64> {
     runs.iter().map(sum).collect()
 }
 
-/// The whole file: DESIGN §7.
+/// The whole report.
 pub fn file(device: &str, driver: &str, rows: &[Row]) -> Value {
     json!({
         "device": device, "driver": driver, "ridgelight": env!("CARGO_PKG_VERSION"),
@@ -128,8 +129,8 @@ pub fn file(device: &str, driver: &str, rows: &[Row]) -> Value {
     })
 }
 
-/// A frame as Chrome's trace events, which Perfetto reads too: times in microseconds, one after the
-/// other as the device runs them. Nothing but names where the device has no timestamps.
+/// A frame as Chrome trace events, which Perfetto also reads: microseconds, in the device's order.
+/// Without timestamps it has names only.
 pub fn trace(device: &str, driver: &str, plan: &Plan, frame: &[Timing]) -> Value {
     let name = |kind: &str, name: &str| json!({ "name": kind, "ph": "M", "pid": 1, "tid": 1, "args": { "name": name } });
     let mut events = vec![name("process_name", device), name("thread_name", "frame, in flow")];
@@ -165,7 +166,7 @@ mod tests {
 
     /// Runs of 1..=5 ms: median 3, p10 1.4, p90 4.6; 6 MB in 3 ms are 2 GB/s.
     #[test]
-    fn samples_become_a_row_as_the_design_names_it() {
+    fn runs_become_a_row() {
         let times: Vec<f64> = (1..=5).map(|ms| f64::from(ms) * 1e6).collect();
         let plan = plan();
         let mut row = Row::of("total", "in_flow", &plan, &[], 64, (5, &times));
@@ -178,14 +179,14 @@ mod tests {
             "rows",
             "azimuths",
             "settings",
-            "samples",
+            "runs",
             "min_ns",
             "median_ns",
             "p10_ns",
             "p90_ns",
             "bytes",
             "gb_per_s",
-            "samples_per_s",
+            "texels_per_s",
         ];
         assert_eq!(json.as_object().unwrap().len(), keys.len());
         assert!(keys.iter().all(|k| !json[k].is_null()), "{json}");
@@ -197,7 +198,7 @@ mod tests {
         near("p10_ns", 1.4e6);
         near("p90_ns", 4.6e6);
         near("gb_per_s", 2.0);
-        near("samples_per_s", 1e9);
+        near("texels_per_s", 1e9);
         let per = row.ms_per_azimuth_and_mega().unwrap();
         assert!((per - 3.0 / 64.0 * 1024.0).abs() < 1e-9, "32² is a 1024th of 2^20: {per}");
         let whole = file("d", "v", &[row]);
@@ -215,7 +216,7 @@ mod tests {
         assert!(row.json()["median_ns"].is_null() && row.json()["gb_per_s"].is_null());
     }
 
-    /// Complete events follow each other, and the text is JSON again.
+    /// Complete events follow each other, and the text parses as JSON.
     #[test]
     fn traces_are_trace_events() {
         let plan = plan();

@@ -1,4 +1,4 @@
-//! Cost against the field's size and the number of azimuths.
+//! Time against the field's size and the number of azimuths.
 
 use indicatif::ProgressBar;
 use ridgelight::Result;
@@ -9,23 +9,23 @@ use ridgelight::scene::{Quality, Scene};
 
 use super::flow;
 use super::rows::{Row, figure, sums};
-use super::verify::Truth;
+use super::verify::GroundTruth;
 
-/// Whole frames of fixed fractal fields under the scene's lights, each of `sizes` with each of `azimuths`;
-/// with the relative RMSE of the light beside the oracle's.
+/// Whole frames of fractal fields under the scene's lights, for each pair of `sizes` and
+/// `azimuths`, with the relative RMSE against the oracle.
 pub fn run(
     gpu: &mut Headless,
     scene: &Scene,
     quality: &Quality,
     limits: &Limits,
     (sizes, azimuths): (&[usize], &[u32]),
-    samples: usize,
+    most: usize,
     bar: &ProgressBar,
 ) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for &size in sizes {
         let scene = Scene { field: fractal(size, 1)?, ..scene.clone() };
-        let truth = Truth::of(&scene);
+        let ground_truth = GroundTruth::of(&scene);
         let contents = plan::picture_inputs(&scene);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         for &count in azimuths {
@@ -34,7 +34,7 @@ pub fn run(
             let plan = plan::picture(&scene, &quality, limits, Picture::default())?;
             let mut frame = gpu.frame(plan, &contents)?;
             let drawn =
-                flow(gpu, &mut frame, samples).and_then(|runs| Ok((runs, gpu.pixels(&frame, 0)?)));
+                flow(gpu, &mut frame, most).and_then(|runs| Ok((runs, gpu.pixels(&frame, 0)?)));
             let kept = frame.plan().clone();
             gpu.end(frame);
             let (runs, pixels) = drawn?;
@@ -42,7 +42,8 @@ pub fn run(
             let times = sums(&runs, |_| true);
             let mut row = Row::of("total", "in_flow", &kept, &passes, count, (runs.len(), &times));
             row.settings.push(("device_bytes".into(), kept.bytes().to_string()));
-            row.settings.push(("light_error".into(), format!("{:.6}", truth.error(&pixels))));
+            row.settings
+                .push(("light_error".into(), format!("{:.6}", ground_truth.error(&pixels))));
             row.settings.push(("passes".into(), kept.passes.len().to_string()));
             rows.push(row);
         }
@@ -60,7 +61,7 @@ pub fn print(rows: &[Row]) {
         "device MB",
         "MB/2^20",
         "light error %",
-        "samples"
+        "runs"
     );
     for row in rows {
         let setting = |name: &str| -> Option<f64> {
@@ -77,7 +78,7 @@ pub fn print(rows: &[Row]) {
             figure(mb, 1),
             figure(mb.map(|b| b / mega), 1),
             figure(setting("light_error").map(|e| 100.0 * e), 3),
-            row.samples
+            row.runs
         );
     }
 }

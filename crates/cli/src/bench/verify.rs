@@ -1,4 +1,4 @@
-//! Before a time is printed, the light is compared with the oracle's.
+//! Compares the light with the oracle's before any time is printed.
 
 mod bounces;
 mod environments;
@@ -11,41 +11,41 @@ mod sweeps;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
 use ridgelight::scene::{
-    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Lobe, Method, Precision,
-    Quality, Scene, SphereLight, Surface,
+    Albedo, Basis, Border, Bounces, Fuse, HeightField, LightBasis, Lights, Method, Precision,
+    Quality, Scene, Specular, SphereLight, Surface,
 };
 use ridgelight::{Error, Result};
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::sphere::sphere_of;
 use ridgelight_cpu::{key, light};
 
-/// The oracle takes a whole field up to this side; of a larger one, a piece of [`PIECE`]².
+/// The oracle computes whole fields up to this side, and a piece of [`PIECE`]² of larger ones.
 const WHOLE: usize = 128;
 const PIECE: usize = 96;
-/// Samples compared: about this many, all over the field.
+/// About this many texels are compared, spread over the field.
 const PLACES: usize = 100;
 /// Azimuths of the oracle's sky.
 const TRUE_AZIMUTHS: usize = 360;
 /// Slices of the oracle's suns and key lights.
 const TRUE_STRIPS: usize = 32;
-/// Slices of the oracle's balls of light.
+/// Slices of the oracle's sphere lights.
 const TRUE_SLICES: usize = 64;
 
-/// What the light of a scene should be, at some of its samples.
+/// The correct light of a scene at some of its texels.
 #[derive(Clone)]
-pub struct Truth {
+pub struct GroundTruth {
     places: Vec<usize>,
-    /// Of sky, environment, suns and key lights, and balls of light, each alone.
+    /// Of sky, environment, suns and key lights, and sphere lights, each alone.
     expected: Vec<[f64; 4]>,
-    /// The share of a sky's light that arrives.
+    /// The unoccluded share of a sky's light.
     open: Vec<f64>,
 }
 
-impl Truth {
+impl GroundTruth {
     pub fn of(scene: &Scene) -> Self {
         let field = &scene.field;
         let (cols, count) = (field.cols(), field.rows() * field.cols());
-        // A step without a common factor visits rows and columns alike; the corners on top.
+        // A step without common factors visits rows and columns evenly. Includes the corners.
         let step = (count / PLACES).max(1) | 1;
         let mut places: Vec<usize> = (0..count).step_by(step).collect();
         places.extend([cols - 1, count - cols, count - 1]);
@@ -54,7 +54,7 @@ impl Truth {
         Self { places, expected, open }
     }
 
-    /// The same of all light but balls'.
+    /// The same of all light but sphere lights'.
     fn without_balls(&self) -> Self {
         let rest = self
             .expected
@@ -63,7 +63,7 @@ impl Truth {
         Self { places: self.places.clone(), expected: rest.collect(), open: self.open.clone() }
     }
 
-    /// RMSE of a picture over the root mean square of what is expected.
+    /// RMSE of a picture over the root mean square of the expected light.
     pub fn error(&self, pixels: &Pixels) -> f64 {
         self.error_of(&self.means(pixels))
     }
@@ -78,13 +78,13 @@ impl Truth {
         self.places.iter().map(mean).collect()
     }
 
-    /// The same of radiance at the places alone.
+    /// The same for radiance at the places alone.
     fn error_of(&self, radiance: &[f64]) -> f64 {
         let all = self.expected.iter().map(|lights| lights.iter().sum());
         rms(radiance.iter().zip(all).map(|(a, b): (_, f64)| a - b)) / self.scale()
     }
 
-    /// Root mean squares of each light alone.
+    /// Root mean squares of each kind of light.
     fn scales(&self) -> [f64; 4] {
         [0, 1, 2, 3].map(|light| rms(self.expected.iter().map(|lights| lights[light])))
     }
@@ -93,7 +93,7 @@ impl Truth {
         self.scales().iter().map(|s| s * s).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
     }
 
-    /// Share of a sky's light that the field keeps out.
+    /// Occluded share of a sky's light.
     fn dark(&self) -> f64 {
         1.0 - self.open.iter().sum::<f64>() / self.open.len() as f64
     }
@@ -105,25 +105,24 @@ fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count).sqrt()
 }
 
-/// What sky, environment, suns and key lights, and balls of light give to a sample, mean of the colours; and
-/// the share of a sky's
-/// light that reaches it.
+/// Light of sky, environment, suns and key lights, and sphere lights at a place, mean of the
+/// colours; and the unoccluded share of a sky's light.
 fn light_at(scene: &Scene, oracle: &Oracle, place: usize) -> ([f64; 4], f64) {
     let (row, col) = (place / scene.field.cols(), place % scene.field.cols());
     let albedo = albedo_of(scene, place);
     let tint = |c: [f64; 3]| c.iter().zip(albedo).map(|(c, a)| c * a).sum::<f64>() / 3.0;
-    let Lights { sky, environment, suns, keys, spheres } = &scene.lights;
+    let Lights { sky, environment, suns, keys, sphere_lights: spheres } = &scene.lights;
     let share = light::sky_of(oracle, row, col, TRUE_AZIMUTHS);
     let sky = sky.map_or(0.0, |colour| tint(colour.map(|c| f64::from(c) * share)));
     let environment =
         environment.as_ref().map_or(0.0, |e| tint(light::environment_of(oracle, row, col, e)));
     let suns = suns.iter().map(|s| tint(light::sun_of(oracle, row, col, s, TRUE_STRIPS)));
     let keys = keys.iter().map(|k| tint(key::key_of(oracle, row, col, k, TRUE_STRIPS)));
-    let ball = |s: &SphereLight| {
+    let sphere_light = |s: &SphereLight| {
         let share = sphere_of(oracle, row, col, s, TRUE_SLICES);
         tint(s.radiance.map(|c| f64::from(c) * share))
     };
-    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(ball).sum()], share)
+    ([sky, environment, suns.chain(keys).sum(), spheres.iter().map(sphere_light).sum()], share)
 }
 
 fn albedo_of(scene: &Scene, place: usize) -> [f64; 3] {
@@ -133,33 +132,35 @@ fn albedo_of(scene: &Scene, place: usize) -> [f64; 3] {
     }
 }
 
-/// A scene, or of a large one a piece from its middle, and its light.
+/// A scene, or a piece from the middle of a large one, and its light.
 pub struct Verifier {
     scene: Scene,
-    truth: Truth,
+    ground_truth: GroundTruth,
 }
 
 impl Verifier {
     pub fn new(scene: &Scene) -> Result<Self> {
         let scene = piece(scene)?;
-        let truth = Truth::of(&scene);
-        Ok(Self { scene, truth })
+        let ground_truth = GroundTruth::of(&scene);
+        Ok(Self { scene, ground_truth })
     }
 
-    /// Lights the piece on the device with these settings; what was found, in a sentence.
+    /// Lights the piece on the device with these settings. Returns a sentence with the error.
     ///
-    /// By harmonics the light is not the oracle's: horizons are held against it, and the light against f64.
+    /// Light by harmonics differs from the oracle's. There, horizons are compared with the oracle,
+    /// and light with f64.
     ///
     /// # Errors
-    /// An error beyond its bound, in a sentence.
+    /// An error above its bound.
     pub fn check(&self, gpu: &mut Headless, quality: &Quality, limits: &Limits) -> Result<String> {
-        if self.scene.surface.phong.is_some() {
+        if self.scene.surface.specular.is_some() {
             let quality = specular::quality(&self.scene, quality);
-            let lobes = specular::check(&self.scene, &self.truth.places, gpu, &quality, limits)?;
-            let surface = Surface { phong: None, ..self.scene.surface.clone() };
+            let specular_error =
+                specular::check(&self.scene, &self.ground_truth.places, gpu, &quality, limits)?;
+            let surface = Surface { specular: None, ..self.scene.surface.clone() };
             let diffuse = Scene { surface, ..self.scene.clone() };
-            let found = Self { scene: diffuse, truth: self.truth.clone() };
-            return Ok(format!("{}; {lobes}", found.check(gpu, &quality, limits)?));
+            let found = Self { scene: diffuse, ground_truth: self.ground_truth.clone() };
+            return Ok(format!("{}; {specular_error}", found.check(gpu, &quality, limits)?));
         }
         let direct = Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality };
         let found = self.check_direct(gpu, &direct, limits)?;
@@ -175,16 +176,17 @@ impl Verifier {
         quality: &Quality,
         limits: &Limits,
     ) -> Result<String> {
-        if quality.light_basis == LightBasis::Sh && !self.scene.lights.spheres.is_empty() {
-            let found = sphere_lights::check(&self.scene, &self.truth, gpu, quality, limits)?;
+        if quality.light_basis == LightBasis::Sh && !self.scene.lights.sphere_lights.is_empty() {
+            let found =
+                sphere_lights::check(&self.scene, &self.ground_truth, gpu, quality, limits)?;
             let Some(scene) = sphere_lights::without(&self.scene) else { return Ok(found) };
-            let rest = Self { scene, truth: self.truth.without_balls() };
+            let rest = Self { scene, ground_truth: self.ground_truth.without_balls() };
             return Ok(format!("{}; {found}", rest.check_direct(gpu, quality, limits)?));
         }
         if quality.basis == Basis::Sh && self.scene.lights.environment.is_some() {
             return harmonics::check(self, gpu, quality, limits);
         }
-        // What is dropped of balls of light the plan itself bounds.
+        // The plan bounds the light of culled sphere lights.
         let all = Quality { light_cutoff: 0.0, ..*quality };
         let plan = plan::picture(&self.scene, &all, limits, Picture::default())?;
         let contents = plan::picture_inputs(&self.scene);
@@ -193,21 +195,25 @@ impl Verifier {
             gpu.draw(frame)?;
             gpu.pixels(frame, 0)
         })?;
-        let (error, bound) = self.judge(self.truth.error(&picture), quality)?;
-        let of_oracle =
-            format!("light {} off the oracle's (RMSE; bound {})", percent(error), percent(bound));
-        let places = &self.truth.places;
+        let (error, bound) = self.judge(self.ground_truth.error(&picture), quality)?;
+        let of_oracle = format!(
+            "light error {} against the oracle (RMSE; bound {})",
+            percent(error),
+            percent(bound)
+        );
+        let places = &self.ground_truth.places;
         let swept = sweeps::check(&self.scene, places, gpu, quality, limits)?;
-        let balls = spheres::check(&self.scene, places, gpu, &all, limits)?;
-        let found: Vec<String> = [swept, balls, Some(of_oracle)].into_iter().flatten().collect();
+        let sphere_lights = spheres::check(&self.scene, places, gpu, &all, limits)?;
+        let found: Vec<String> =
+            [swept, sphere_lights, Some(of_oracle)].into_iter().flatten().collect();
         Ok(found.join("; "))
     }
 
     /// A relative error and its bound, where it is within.
     fn judge(&self, error: f64, quality: &Quality) -> Result<(f64, f64)> {
-        let shares = bounds(&self.scene, self.truth.dark(), quality);
-        let sum: f64 = self.truth.scales().iter().zip(shares).map(|(s, b)| s * b).sum();
-        within("the light is", "the oracle's", error, sum / self.truth.scale(), quality)
+        let shares = bounds(&self.scene, self.ground_truth.dark(), quality);
+        let sum: f64 = self.ground_truth.scales().iter().zip(shares).map(|(s, b)| s * b).sum();
+        within("light", "the oracle", error, sum / self.ground_truth.scale(), quality)
     }
 }
 
@@ -218,41 +224,43 @@ fn percent(share: f64) -> String {
 /// An error and its bound, where it is within.
 fn within(
     what: &str,
-    truth: &str,
+    ground_truth: &str,
     error: f64,
     bound: f64,
     quality: &Quality,
 ) -> Result<(f64, f64)> {
-    // NaN is beyond every bound.
+    // NaN is above every bound.
     if error <= bound {
         return Ok((error, bound));
     }
     Err(Error::Device {
         doing: format!("verifying before timing (fuse {})", quality.fuse.name()),
         reason: format!(
-            "{what} {:.2} % off {truth}, more than {:.2} %: no time is worth printing",
+            "{what} has an error of {:.2} % against {ground_truth}, above the bound of {:.2} %: times \
+                would be meaningless",
             100.0 * error,
             100.0 * bound
         ),
     })
 }
 
-/// Largest relative RMSE of sky, environment, suns and key lights, and balls of light that settings may have.
+/// Bounds of the relative RMSE of sky, environment, suns and key lights, and sphere lights.
 ///
-/// A line sweep: twice what each fuse and spacing was measured to have on the roughest of four fields
-/// (a displacement map of moss that keeps half of the sky out), in proportion to the share kept out:
-/// where nothing is hidden nothing can be hidden wrongly. Three elevation models stay below that line,
-/// too. Azimuths: 0.36 % on the moss with 64, in proportion to their spacing; four times that. Packed
-/// heights are within 2^-11 of the highest, a change of slope of at most twice that over the cell, and
-/// light changes by no more than the slope. A periodic field is marched for two periods: what lies
-/// farther is missed, at most relief / (2·side). An environment's bright places and a sun are seen or
-/// hidden whole: mean errors stay small but squares do not, hence the wide bounds there. A ball's horizons
-/// are exact; an upright edge before it is half a slice off, of which the widest has 2/n of the light.
+/// A line sweep: twice the error measured for each fuse and spacing on the roughest of four fields
+/// (a displacement map of moss that occludes half of the sky), proportional to the occluded share,
+/// because only occlusion can be wrong. Three elevation models also stay below that line. Azimuths:
+/// 0.36 % on the moss with 64, proportional to their spacing; four times that. Packed heights are
+/// within 2^-11 of the highest: the slope changes by at most twice that over the cell, and light by
+/// no more than the slope. A periodic field is marched for two periods, which misses at most relief
+/// / (2·side). An environment's bright texels and a sun are visible or hidden whole: mean errors
+/// stay small but squares do not, hence the wide bounds there. Horizons towards a sphere light are
+/// exact; an upright edge in front of it has an error of half a slice, and the widest slice has 2/n
+/// of the light.
 fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
     let transfer = match (quality.method, quality.lines.shift()) {
-        (Method::Brute, _) | (_, None) => 0.001,
+        (Method::BruteForce, _) | (_, None) => 0.001,
         (Method::Pyramid, _) => {
-            // Offsets 0, 1, 2 and more, on the same moss with one level an octave: the least there are.
+            // Offsets 0, 1, 2 and more, on the same moss with one level per octave, the fewest.
             2.0 * [0.46, 0.35, 0.28][quality.level_offset.min(2) as usize]
         }
         (_, Some(shift)) => {
@@ -262,7 +270,7 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
                 Fuse::Slopes => [0.043, 0.048, 0.059, 0.094, 0.160],
                 Fuse::Own => [0.038, 0.038, 0.039, 0.051, 0.082],
                 Fuse::AimedNearest => [0.014, 0.016, 0.024, 0.062, 0.133],
-                // The latter sees all that the former does, and nothing above the horizon.
+                // The latter includes all occluders of the former and adds none above the horizon.
                 Fuse::Aimed | Fuse::AimedAround => [0.013, 0.014, 0.017, 0.038, 0.095],
             };
             2.0 * measured[(shift as usize).saturating_sub(13).min(4)]
@@ -283,14 +291,14 @@ fn bounds(scene: &Scene, dark: f64, quality: &Quality) -> [f64; 4] {
         Border::Periodic => 2.0 * highest / (2.0 * side),
         _ => 0.0,
     };
-    // No field hides so little that f32 sums and normals would not show.
+    // A floor, because f32 sums and normals have errors even without occlusion.
     let dark = dark.clamp(0.01, 0.5) / 0.5;
     let sky = dark * (transfer + azimuths) + packed + periods;
-    let ball = 0.001 + 1.0 / f64::from(quality.sun_azimuths);
-    [sky, 2.0 * sky + 0.05, sky + 0.4, ball]
+    let sphere_light = 0.001 + 1.0 / f64::from(quality.sun_azimuths);
+    [sky, 2.0 * sky + 0.05, sky + 0.4, sphere_light]
 }
 
-/// The scene, or of one too large for the oracle a piece of its middle, with its own heights.
+/// The scene, or a piece of its middle with its own heights where it is too large for the oracle.
 pub fn piece(scene: &Scene) -> Result<Scene> {
     let field = &scene.field;
     let (rows, cols) = (field.rows(), field.cols());
@@ -308,17 +316,17 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
         Albedo::Map(map) => Albedo::Map(of.iter().map(|i| map[*i]).collect()),
         constant => constant.clone(),
     };
-    let phong = scene.surface.phong.as_ref().map(|lobe| match lobe {
-        Lobe::Map(map) => Lobe::Map(of.iter().map(|i| map[*i]).collect()),
+    let phong = scene.surface.specular.as_ref().map(|specular| match specular {
+        Specular::Map(map) => Specular::Map(of.iter().map(|i| map[*i]).collect()),
         constant => constant.clone(),
     });
-    // The piece's western column and southern row are where its lights are counted from.
+    // Lights of the piece are relative to its western column and southern row.
     let west = range(cols).start as f64 * field.cell_m()[0];
     let south = (rows - range(rows).end) as f64 * field.cell_m()[1];
     let mut lights = scene.lights.clone();
-    for ball in &mut lights.spheres {
-        ball.position_m[0] -= west;
-        ball.position_m[1] -= south;
+    for sphere_light in &mut lights.sphere_lights {
+        sphere_light.position_m[0] -= west;
+        sphere_light.position_m[1] -= south;
     }
     Ok(Scene {
         field: HeightField::new(
@@ -328,7 +336,7 @@ pub fn piece(scene: &Scene) -> Result<Scene> {
             field.cell_m(),
             None,
         )?,
-        surface: Surface { albedo, border: scene.surface.border, phong },
+        surface: Surface { albedo, border: scene.surface.border, specular: phong },
         lights,
     })
 }
@@ -346,9 +354,9 @@ mod tests {
         }
     }
 
-    /// What a broken pass would give: no shadows, black, a mirrored field, horizons all too high, NaN.
-    /// Each is refused at the bound of the settings that a bench starts with; the oracle itself, at the
-    /// settings' number of azimuths, is not.
+    /// Results of broken passes (no shadows, black, a mirrored field, horizons too high, NaN) are
+    /// refused at the bound of the default settings; the oracle at the settings' number of azimuths
+    /// is accepted.
     #[test]
     fn wrong_light_is_refused() {
         let verifier = Verifier::new(&scene(300)).unwrap();
@@ -358,15 +366,15 @@ mod tests {
         let cols = field.cols();
         let oracle = Oracle::new(field, Border::Plane);
         let right: Vec<f64> = verifier
-            .truth
+            .ground_truth
             .places
             .iter()
             .map(|p| light::sky_of(&oracle, p / cols, p % cols, 64))
             .collect();
-        let (error, _) = verifier.judge(verifier.truth.error_of(&right), &quality).unwrap();
+        let (error, _) = verifier.judge(verifier.ground_truth.error_of(&right), &quality).unwrap();
         assert!(error < 0.01, "{error}");
         let mirrored: Vec<f64> = verifier
-            .truth
+            .ground_truth
             .places
             .iter()
             .map(|p| light::sky_of(&oracle, p / cols, cols - 1 - p % cols, 64))
@@ -375,7 +383,7 @@ mod tests {
         let flat = HeightField::new(field.rows(), cols, &flat, field.cell_m(), None).unwrap();
         let free = Oracle::new(&flat, Border::Plane);
         let unshadowed: Vec<f64> = verifier
-            .truth
+            .ground_truth
             .places
             .iter()
             .map(|p| light::sky_of(&free, p / cols, p % cols, 64))
@@ -386,7 +394,7 @@ mod tests {
         holed[7] = f64::NAN;
         let wrong = [mirrored, unshadowed, dim, black, holed];
         for (i, light) in wrong.iter().enumerate() {
-            let error = verifier.judge(verifier.truth.error_of(light), &quality);
+            let error = verifier.judge(verifier.ground_truth.error_of(light), &quality);
             let error = error.expect_err(&format!("wrong light {i}"));
             assert!(error.to_string().contains("verifying"), "{error}");
         }
@@ -396,6 +404,6 @@ mod tests {
     fn small_fields_are_verified_whole() {
         let verifier = Verifier::new(&scene(33)).unwrap();
         assert_eq!(verifier.scene.field.rows(), 33);
-        assert!(verifier.truth.expected.len() >= PLACES);
+        assert!(verifier.ground_truth.expected.len() >= PLACES);
     }
 }

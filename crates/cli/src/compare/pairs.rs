@@ -1,4 +1,4 @@
-//! What two files have in common.
+//! Channels and pictures that two files share.
 
 use std::path::Path;
 
@@ -24,8 +24,7 @@ pub struct Pairs<'a> {
     /// Names of channels that the other file lacks.
     pub only_a: Vec<&'a str>,
     pub only_b: Vec<&'a str>,
-    /// Those of `only_b` that the result should have: all but an alpha that is 1 everywhere, as of a picture
-    /// without.
+    /// Those of `only_b` that the result should have: all except an alpha that is 1 everywhere.
     pub lost: Vec<&'a str>,
 }
 
@@ -42,8 +41,8 @@ pub fn read(path: &Path) -> Result<Planes> {
     Ok(file)
 }
 
-/// Whether a file's planes can be elevations, radians: as `horizon` names its channels where there are
-/// names, and from straight down to straight up.
+/// Whether a file's planes can be elevations in radians: by `horizon`'s channel names where there
+/// are names, and by their range.
 pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
     let wrong = |place: String, found: String, expected: &str| {
         Err(Error::File { path: path.to_owned(), place, found, expected: expected.to_owned() })
@@ -52,7 +51,7 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
         let degrees = name.strip_prefix("horizon.").and_then(|d| d.parse::<f64>().ok());
         degrees.is_some_and(|d| (0.0..=360.0).contains(&d))
     };
-    let expected = "horizons: horizon.000.000 and so on, an azimuth in degrees each";
+    let expected = "horizon channels horizon.000.000 and so on, with the azimuth in degrees";
     match extension(path).as_str() {
         "npy" => {}
         "exr" => {
@@ -63,7 +62,7 @@ pub fn check_horizons(path: &Path, file: &Planes) -> Result<()> {
         other => return wrong("name".into(), format!("the extension .{other}"), "an .exr or .npy"),
     }
     for (name, plane) in file.names.iter().zip(&file.planes) {
-        // Vulkan lets atan be off by 4096 units in the last place.
+        // Vulkan allows atan an error of 4096 units in the last place.
         let most = std::f32::consts::FRAC_PI_2 * (1.0 + 4096.0 * f32::EPSILON);
         let steep = |v: &f32| v.abs() > most;
         if let Some(i) = plane.iter().position(steep) {
@@ -84,7 +83,7 @@ pub fn pixels_per_degree(args: &CompareArgs) -> f64 {
     args.pixels_per_degree.unwrap_or(flip::PIXELS_PER_DEGREE)
 }
 
-/// The result is not like the reference.
+/// An error: the result does not match the reference.
 pub fn unlike(args: &CompareArgs, place: &str, found: String, expected: String) -> Error {
     Error::File {
         path: args.result.clone(),
@@ -100,7 +99,7 @@ impl<'a> Pairs<'a> {
         if (a.rows, a.cols) != (b.rows, b.cols) {
             return Err(unlike(args, "size", size(a), size(b)));
         }
-        // Numbers are no names: a plane more or less shifts what the others stand for.
+        // Without names, an additional plane would shift all others.
         let numbered = [&args.result, &args.reference].iter().any(|path| extension(path) == "npy");
         if args.horizons || numbered {
             let count = |p: &Planes| p.names.len().to_string();
@@ -132,7 +131,7 @@ impl<'a> Pairs<'a> {
         let is_opaque = |name: &str| {
             name == "A" && place(b, name).is_none_or(|i| b.planes[i].iter().all(|v| *v == 1.0))
         };
-        // What a reference says of itself is no light that a result could lack.
+        // The reference's own statistics layers need no counterpart.
         let is_own = |name: &str| name.split('.').next() == Some("standard_error");
         let lost =
             only_b.iter().copied().filter(|name| !is_opaque(name) && !is_own(name)).collect();
@@ -182,7 +181,7 @@ pub struct PicturePair<'a> {
 }
 
 impl PicturePair<'_> {
-    /// ꟻLIP of every pixel; radiance is shown as a .png of this exposure would show it.
+    /// ꟻLIP of every pixel; radiance as a .png of this exposure shows it.
     pub fn flip(&self, args: &CompareArgs, pairs: &Pairs) -> Result<Vec<f32>> {
         let shown = |path: &Path, planes: [&[f32]; 3]| -> Vec<[f32; 3]> {
             let exposure = if extension(path) == "png" { 1.0 } else { args.exposure };

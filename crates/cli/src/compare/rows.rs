@@ -1,4 +1,4 @@
-//! What is said of a channel, a picture or horizons, and held against bounds.
+//! Rows of errors for channels, pictures and horizons, and their bounds.
 
 use std::fmt;
 
@@ -14,24 +14,24 @@ pub struct Row {
     pub name: String,
     pub text: String,
     pub json: Value,
-    /// By the bound that they are held against, each with its unit and perhaps its place.
+    /// The values that bounds apply to, each with its unit and perhaps its place.
     figures: Vec<(&'static str, f64, String)>,
     /// Voids in one file only; a picture's are those of its channels.
     mismatched: usize,
 }
 
-/// How a row lies beyond a bound.
+/// A value above its bound.
 pub struct Excess {
-    /// None for what is beyond any: voids in one file only, a channel that the result lacks.
+    /// None for what no bound allows: voids in one file only, a missing channel.
     bound: Option<(&'static str, f64)>,
     row: String,
-    /// None of a channel that the result lacks.
+    /// None for a missing channel.
     found: Option<f64>,
     unit: String,
 }
 
 impl Excess {
-    /// Of a channel of the reference that the result lacks.
+    /// For a channel of the reference that the result lacks.
     pub fn lost(channel: &str) -> Self {
         Self { bound: None, row: channel.to_owned(), found: None, unit: String::new() }
     }
@@ -71,7 +71,7 @@ pub fn beyond<'a>(
         }
         for (flag, found, unit) in &row.figures {
             let limit = bounds.iter().find(|bound| bound.0 == *flag).and_then(|bound| bound.1);
-            // What is no number is beyond every bound.
+            // NaN exceeds every bound.
             if let Some(limit) = limit.filter(|limit| found.is_nan() || found > limit) {
                 excess(Some((*flag, limit)), *found, unit);
             }
@@ -162,7 +162,7 @@ pub fn horizons(args: &CompareArgs, pairs: &Pairs) -> Result<Row> {
     Ok(Row { name: "horizons".to_owned(), text, json, figures, mismatched: e.mismatched })
 }
 
-/// No sample that both hold is the files' fault, not a setting's.
+/// The error of a channel without shared data, which is the files' fault.
 fn nothing(args: &CompareArgs, place: &str, error: Error) -> Error {
     match error {
         Error::Setting { found, expected, .. } => unlike(args, place, found, expected),

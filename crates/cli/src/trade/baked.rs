@@ -1,5 +1,5 @@
-//! Bounces over what samples see of each other, found once: what a field that does not move may take instead of bounces that
-//! are found in every frame.
+//! Bounces over visible points that are found once: the alternative for a static field to bounces
+//! that are computed every frame.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
 use serde_json::{Value, json};
 
-use super::ground_truth::{Distance, Truth};
+use super::ground_truth::{Distance, GroundTruth};
 use super::point::Point;
 use super::report::{Report, ms};
 use super::rig::Rig;
@@ -19,31 +19,31 @@ use crate::terminal::{digits, percent};
 
 const DIRECTIONS: [usize; 3] = [64, 256, 1024];
 const PATHS: [u32; 3] = [40, 100, 400];
-/// Draws of each, beside the baseline's, after one that warms up.
+/// Timed draws of each, paired with the baseline's, after one to warm up.
 const DRAWS: usize = 5;
-/// Share of the budget that all of them may take; what would take more is left out.
+/// Share of the budget for all of them; longer ones are left out.
 const SHARE: f64 = 0.2;
 
-/// Direct light by the baseline's settings, bounces over so many directions by so many paths.
+/// Direct light by the baseline's settings, and bounces over so many directions by so many paths.
 pub struct Baked {
     pub directions: usize,
     pub paths: u32,
-    /// Seconds of finding what samples see, once, all told.
+    /// Seconds in total to find the visible points.
     pub found_s: f64,
-    /// What that is kept in.
+    /// Memory of the visible points.
     pub bytes: u64,
-    /// Median of a frame's time over that of the baseline drawn beside it.
+    /// Median of a frame's time over that of the baseline drawn next to it.
     pub ratio: f64,
     pub distance: Distance,
 }
 
-/// What the device or the memory budget refused.
+/// A variant that the device or the memory budget refused.
 pub struct Refused {
     pub what: String,
     pub why: String,
 }
 
-/// What was measured, from few directions and paths on, and what was refused.
+/// Measured variants, in ascending order, and refused ones.
 #[derive(Default)]
 pub struct Tried {
     pub measured: Vec<Baked>,
@@ -51,7 +51,7 @@ pub struct Tried {
 }
 
 impl Tried {
-    /// What was made; none, and a note of it, where it was refused. Other errors end the trade.
+    /// The made value; none, with a note, where it was refused. Other errors end the command.
     fn made<T>(&mut self, what: String, of: Result<T>) -> Result<Option<T>> {
         match of {
             Ok(made) => Ok(Some(made)),
@@ -64,7 +64,8 @@ impl Tried {
     }
 }
 
-/// Whether more than there is was asked for, of a device that goes on: not where one is lost or a driver fails.
+/// Whether the request was too large for a device that still works; false for a lost device or a
+/// failed driver.
 fn is_refusal(error: &Error) -> bool {
     use ash::vk::Result as Answer;
     match error {
@@ -78,11 +79,12 @@ fn is_refusal(error: &Error) -> bool {
     }
 }
 
-/// From few directions and paths on, as many as the share of the budget holds, of which the first takes what it takes: nothing
-/// tells before; none without bounces, and none of lobes, whose direct light is no colour a sample. What is refused is noted, and what would need more of the same is left.
-pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
+/// Measures variants in ascending order while the share of the budget lasts. The first always runs,
+/// because its time is unknown. There are none without bounces, and none with specular, whose
+/// direct light depends on the view. A refusal is noted and ends the larger variants.
+pub fn measure(rig: &mut Rig, ground_truth: &GroundTruth, start: &Quality) -> Result<Tried> {
     let mut tried = Tried::default();
-    if start.bounces.count == 0 || rig.scene.surface.phong.is_some() {
+    if start.bounces.count == 0 || rig.scene.surface.specular.is_some() {
         return Ok(tried);
     }
     let bounces = Bounces { count: 0, ..start.bounces };
@@ -90,7 +92,7 @@ pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
     let direct = rig.frame(&Quality { bounces, ..*start });
     let measured = tried.made("direct light".to_owned(), direct).and_then(|direct| {
         let Some(mut direct) = direct else { return Ok(()) };
-        let measured = fill(rig, truth, start.bounces, [&mut own, &mut direct], &mut tried);
+        let measured = fill(rig, ground_truth, start.bounces, [&mut own, &mut direct], &mut tried);
         rig.gpu.end(direct);
         measured
     });
@@ -100,7 +102,7 @@ pub fn measure(rig: &mut Rig, truth: &Truth, start: &Quality) -> Result<Tried> {
 
 fn fill(
     rig: &mut Rig,
-    truth: &Truth,
+    ground_truth: &GroundTruth,
     bounces: Bounces,
     [own, direct]: [&mut Frame; 2],
     tried: &mut Tried,
@@ -113,7 +115,7 @@ fn fill(
     let light = colours(rig, direct)?;
     let mut found_s = 0.0;
     for count in DIRECTIONS {
-        // Time goes with the number of directions.
+        // Time is proportional to the number of directions.
         if !fits(4.0 * found_s) {
             break;
         }
@@ -144,7 +146,7 @@ fn fill(
                 found_s,
                 bytes: 4 * points.words().len() as u64,
                 ratio,
-                distance: truth.distance(&planes)?,
+                distance: ground_truth.distance(&planes)?,
             });
             frame_s = since.elapsed().as_secs_f64();
         }
@@ -152,7 +154,8 @@ fn fill(
     Ok(())
 }
 
-/// What a frame of scattered light and one of direct light take in the baseline's time, and their radiance.
+/// Time of a frame of scattered light plus one of direct light, relative to the baseline's, and
+/// their radiance.
 fn scattered(
     rig: &mut Rig,
     scatter: &Scatter,
@@ -173,14 +176,14 @@ fn sum(times: &[Timing]) -> f64 {
     times.iter().map(|t| t.ns).sum()
 }
 
-/// The first output of a frame, filled voids and all.
+/// The first output of a frame, voids still filled.
 fn colours(rig: &mut Rig, frame: &Frame) -> Result<Vec<[f32; 3]>> {
     let pixels = rig.gpu.pixels(frame, 0)?;
     let texel = |t: &[f32]| [0, 1, 2].map(|c: usize| t[c.min(t.len() - 1)]);
     Ok(pixels.values.chunks_exact(pixels.channels).map(texel).collect())
 }
 
-/// What a frame of both takes in the baseline's, and its radiance.
+/// Time of both frames relative to the baseline's, and their radiance.
 fn timed(
     rig: &mut Rig,
     frame: &mut Frame,
@@ -202,17 +205,18 @@ fn timed(
 }
 
 impl Report<'_> {
-    /// What may be baked, beside what is recommended; nothing where nothing was.
+    /// Sentences about the baked variants; none where none were tried.
     pub fn baked_text(&self, recommended: &Point) -> Vec<String> {
         let refused = self.baked.refused.iter().map(|r| format!("{}: refused: {}", r.what, r.why));
         if self.baked.measured.is_empty() {
             return refused.collect();
         }
-        // The truth's own error at least, as of all others.
-        let off = |baked: &Baked| baked.distance.rmse.max(self.truth.floor());
+        // Errors are at least the ground truth's own.
+        let off = |baked: &Baked| baked.distance.rmse.max(self.ground_truth.floor());
         let row = |baked: &Baked| {
             format!(
-                "{} directions, {} paths: {} a frame, {} off, found once in {}, {} MB",
+                "{} directions, {} paths: {} per frame, error {}; visible points take {} once, \
+                    {} MB",
                 baked.directions,
                 baked.paths,
                 ms(baked.ratio * self.walk.baseline_ns()),
@@ -226,7 +230,8 @@ impl Report<'_> {
         let cheapest = as_near.min_by(|a, b| a.ratio.total_cmp(&b.ratio));
         let verdict = match cheapest {
             Some(b) => format!(
-                "as near as what is recommended are {} directions with {} paths, in {} × its time",
+                "{} directions with {} paths are as accurate as the recommended settings, in {} \
+                    × the time",
                 b.directions,
                 b.paths,
                 digits(b.ratio / recommended.ratio)
@@ -234,14 +239,14 @@ impl Report<'_> {
             None => {
                 let nearest = self.baked.measured.iter().map(off).fold(f64::INFINITY, f64::min);
                 format!(
-                    "none is as near as what is recommended; the nearest is {} off",
+                    "none is as accurate as the recommended settings; the best has an error of {}",
                     percent(nearest)
                 )
             }
         };
         let about = format!(
-            "Of a field that does not move, bounces may be scattered over visible points that are found once \
-             (`plan::scatter`), beside direct light by the defaults: {verdict}."
+            "For a static field, visible points can be found once and bounces scattered over \
+                them (`plan::scatter`), added to direct light by the defaults: {verdict}."
         );
         let rows = self.baked.measured.iter().map(row);
         std::iter::once(about).chain(rows).chain(refused).collect()
@@ -252,7 +257,7 @@ impl Report<'_> {
             json!({
                 "directions": baked.directions, "paths": baked.paths, "found_once_ns": 1e9 * baked.found_s, "bytes": baked.bytes,
                 "time_ns": baked.ratio * self.walk.baseline_ns(),
-                "relative_rmse": baked.distance.rmse.max(self.truth.floor()),
+                "relative_rmse": baked.distance.rmse.max(self.ground_truth.floor()),
                 "mean_shift": baked.distance.mean_shift,
             })
         };
@@ -271,7 +276,8 @@ mod tests {
 
     use super::*;
 
-    /// What is too large is left out; a device that is lost, a driver that fails and a file that is not there end the trade.
+    /// Too large a request is left out; a lost device, a failed driver and a missing file end the
+    /// command.
     #[test]
     fn only_what_is_too_large_is_refused() {
         let device = |reason: String| Error::Device { doing: "making it".into(), reason };

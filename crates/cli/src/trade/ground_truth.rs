@@ -1,4 +1,4 @@
-//! What settings are held against, and how good that is itself.
+//! The ground truth that settings are compared with, and its own error.
 
 mod drawn;
 
@@ -12,27 +12,27 @@ use ridgelight_trade::error::ImageError;
 
 use crate::terminal::percent;
 
-/// The layer of a reference that holds one standard deviation of its noise.
+/// The layer of a reference that holds one standard deviation of its Monte Carlo noise.
 const NOISE_LAYER: &str = "standard_error";
 
-pub struct Truth {
+pub struct GroundTruth {
     /// One plane or three, row-major, NaN at voids.
     pub planes: Vec<Vec<f32>>,
     cols: usize,
     rows: usize,
-    /// What it is, and how its own error was found.
+    /// Its source, and how its own error was found.
     pub about: String,
     pub quality_of: String,
-    /// Relative RMSE that it may have itself, where that is known.
+    /// Its own relative RMSE, where known.
     pub own_error: Option<f64>,
     /// Mean variance of its noise over the square of its mean.
     noise: f64,
 }
 
-/// How far settings are from the truth. Relative to the truth's mean, over all channels.
+/// Error of settings relative to the ground truth's mean, over all channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Distance {
-    /// RMSE, the truth's noise taken off.
+    /// RMSE, with the ground truth's noise subtracted.
     pub rmse: f64,
     pub mean_shift: f64,
     pub p99: f64,
@@ -41,8 +41,8 @@ pub struct Distance {
     pub worst_col: usize,
 }
 
-impl Truth {
-    /// What errors below it cannot be told apart by.
+impl GroundTruth {
+    /// Smaller errors cannot be distinguished.
     pub fn floor(&self) -> f64 {
         self.own_error.unwrap_or(0.0)
     }
@@ -52,7 +52,7 @@ impl Truth {
         self.own_error.map_or_else(|| "unknown".to_owned(), |e| format!("at most {}", percent(e)))
     }
 
-    /// A file's.
+    /// Reads a file.
     pub fn read(path: &Path, field: &HeightField) -> Result<Self> {
         let Planes { rows, cols, names, mut planes } = files::read_planes(path)?;
         let wrong = |place: &str, found: String, expected: String| {
@@ -78,41 +78,42 @@ impl Truth {
         let count = planes[0].iter().filter(known).count().max(1) as f64;
         let mean = planes.iter().flatten().filter(known).map(|v| f64::from(*v)).sum::<f64>()
             / (count * planes.len() as f64);
-        let mut truth = Self {
+        let mut ground_truth = Self {
             planes,
             cols,
             rows,
             about: path.display().to_string(),
-            quality_of: format!("it has no layer {NOISE_LAYER} and is taken as it is"),
+            quality_of: format!("it has no layer {NOISE_LAYER}, so its noise is unknown"),
             own_error: None,
             noise: 0.0,
         };
         if let Some(errors) = errors {
-            // A texel's channels come of the same paths: they waver together.
+            // A texel's channels share paths, so their errors are correlated.
             let variance = |i: usize| {
                 errors.iter().map(|e| f64::from(e[i]).powi(2)).sum::<f64>() / errors.len() as f64
             };
             let known: Vec<f64> = (0..rows * cols).map(variance).filter(|v| !v.is_nan()).collect();
             let relative = mean.powi(2).max(f64::MIN_POSITIVE);
-            truth.noise = known.iter().sum::<f64>() / count / relative;
-            // The mean of squared normal noise wavers by √(2 Σσ⁴) / n: twice that is left of it.
+            ground_truth.noise = known.iter().sum::<f64>() / count / relative;
+            // The mean of squared normal noise has a standard error of √(2 Σσ⁴) / n: twice that
+            // remains after subtraction.
             let fourth: f64 = known.iter().map(|v| v * v).sum();
             let left = (2.0 * (2.0 * fourth).sqrt() / count / relative).sqrt();
-            let unmet = unmet(path)? / relative.sqrt();
-            truth.own_error = Some(left.hypot(unmet));
-            truth.quality_of = format!(
-                "its noise, {} of the mean by its layer {NOISE_LAYER}, is taken off each RMSE (not \
-                 off percentiles); what is left of it is twice the wavering of its mean square, {}, \
-                 and light that its paths may not have met, {}",
-                percent(truth.noise.sqrt()),
+            let unsampled = unsampled(path)? / relative.sqrt();
+            ground_truth.own_error = Some(left.hypot(unsampled));
+            ground_truth.quality_of = format!(
+                "its Monte Carlo noise, {} of the mean by its layer {NOISE_LAYER}, is subtracted \
+                    from each RMSE (not from percentiles); what remains is twice the standard \
+                    error of its mean square, {}, and unsampled light, {}",
+                percent(ground_truth.noise.sqrt()),
                 percent(left),
-                percent(unmet)
+                percent(unsampled)
             );
         }
-        Ok(truth)
+        Ok(ground_truth)
     }
 
-    /// How far planes are from it.
+    /// The error of planes.
     pub fn distance(&self, planes: &[Vec<f32>]) -> Result<Distance> {
         let channels = planes.len().max(self.planes.len());
         let all = |planes: &[Vec<f32>]| -> Vec<f32> {
@@ -120,8 +121,12 @@ impl Truth {
         };
         let e = ImageError::of(&all(planes), &all(&self.planes), self.cols)?;
         if e.mismatched > 0 {
-            let found = format!("{} texels with data where the other has none", e.mismatched);
-            return Err(Error::setting("--reference", found, "the same scene, voids alike"));
+            let found = format!("{} texels that have data in only one of the two", e.mismatched);
+            return Err(Error::setting(
+                "--reference",
+                found,
+                "the same scene, with the same voids",
+            ));
         }
         let relative = |x: f64| if x == 0.0 { 0.0 } else { x / e.mean_reference.abs() };
         Ok(Distance {
@@ -135,11 +140,13 @@ impl Truth {
     }
 }
 
-/// Standard error of light that no path of a `reference` may have met: the root of the mean square of its
-/// channels', 0 where a file tells of none.
-fn unmet(path: &Path) -> Result<f64> {
+/// Standard error of unsampled light of a `reference`: the root mean square of its channels'; 0
+/// where the file states none.
+fn unsampled(path: &Path) -> Result<f64> {
     let all = files::read_metadata(path)?;
-    let Some((name, text)) = all.iter().find(|(name, _)| name == "unmet_standard_error") else {
+    // The second name is that of the first release.
+    let names = ["unsampled_standard_error", "unmet_standard_error"];
+    let Some((name, text)) = all.iter().find(|(name, _)| names.contains(&name.as_str())) else {
         return Ok(0.0);
     };
     let channels: Option<Vec<f64>> = text.split(',').map(|v| v.parse().ok()).collect();
@@ -148,7 +155,7 @@ fn unmet(path: &Path) -> Result<f64> {
             path: path.to_owned(),
             place: format!("header: {name}"),
             found: text.clone(),
-            expected: "finite numbers with commas between them".to_owned(),
+            expected: "comma-separated finite numbers".to_owned(),
         });
     };
     Ok((channels.iter().map(|v| v * v).sum::<f64>() / channels.len() as f64).sqrt())
@@ -158,36 +165,37 @@ fn unmet(path: &Path) -> Result<f64> {
 mod tests {
     use super::*;
 
-    fn truth(planes: Vec<Vec<f32>>, noise: f64) -> Truth {
+    fn ground_truth(planes: Vec<Vec<f32>>, noise: f64) -> GroundTruth {
         let (about, quality_of) = (String::new(), String::new());
-        Truth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise }
+        GroundTruth { planes, cols: 2, rows: 2, about, quality_of, own_error: None, noise }
     }
 
-    /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of a
-    /// variance of 0.0036 means² leaves √(0.01 - 0.0036) = 0.08.
+    /// Mean 2; differences 0, 0, 0, 0.4 in each channel: RMSE 0.2, a tenth of the mean. Noise of
+    /// variance 0.0036 means² leaves √(0.01 - 0.0036) = 0.08.
     #[test]
-    fn noise_is_taken_off_and_grey_is_compared_with_colour() {
+    fn noise_is_subtracted_and_grey_compares_with_colour() {
         let colour = vec![vec![2.0; 4]; 3];
         let grey = [vec![2.0, 2.0, 2.0, 2.4]];
-        let found = truth(colour.clone(), 0.0).distance(&grey).unwrap();
+        let found = ground_truth(colour.clone(), 0.0).distance(&grey).unwrap();
         assert!((found.rmse - 0.1).abs() < 1e-7, "{found:?}");
         assert!((found.mean_shift - 0.05).abs() < 1e-7 && (found.worst - 0.2).abs() < 1e-7);
         assert_eq!([found.worst_row, found.worst_col], [1, 1]);
-        let less = truth(colour.clone(), 0.0036).distance(&grey).unwrap();
+        let less = ground_truth(colour.clone(), 0.0036).distance(&grey).unwrap();
         assert!((less.rmse - 0.08).abs() < 1e-7, "{less:?}");
-        assert_eq!(truth(colour, 0.02).distance(&grey).unwrap().rmse, 0.0);
+        assert_eq!(ground_truth(colour, 0.02).distance(&grey).unwrap().rmse, 0.0);
         let holed = [vec![2.0, f32::NAN, 2.0, 2.0]];
-        let error = truth(vec![vec![2.0; 4]], 0.0).distance(&holed).unwrap_err();
+        let error = ground_truth(vec![vec![2.0; 4]], 0.0).distance(&holed).unwrap_err();
         assert!(error.to_string().contains("1 texels"), "{error}");
     }
 
-    /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², which wavers by
-    /// √(2/64) of itself; the RMSE of what it may be twice off is √(2 · 0.01 · √(2/64)). Unmet light of 0.02,
-    /// 0.02 and 0.04 is √(0.0008) in its mean square, √(0.0002) of the mean.
+    /// Radiance 2 with a standard error of 0.2 in 64 texels: variance 0.01 of the mean², whose own
+    /// relative standard error is √(2/64); twice that leaves an RMSE of √(2 · 0.01 · √(2/64)).
+    /// Unsampled light of 0.02, 0.02 and 0.04 is √(0.0008) in its mean square, √(0.0002) of the
+    /// mean.
     #[test]
-    fn a_references_noise_is_read() {
+    fn noise_of_a_reference_is_read() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("truth.exr");
+        let path = folder.path().join("ground_truth.exr");
         let (light, noise) = (vec![[2.0; 3]; 64], vec![[0.2; 3]; 64]);
         let layer = |name: &str, texels| files::Layer {
             name: name.to_owned(),
@@ -196,23 +204,23 @@ mod tests {
         let all = [layer("", &light), layer(NOISE_LAYER, &noise)];
         let field = HeightField::new(8, 8, &[0.0; 64], [1.0; 2], None).unwrap();
         files::write_exr(&path, 8, 8, &all, &[]).unwrap();
-        let truth = Truth::read(&path, &field).unwrap();
-        assert!((truth.noise - 0.01).abs() < 1e-7, "{}", truth.noise);
+        let ground_truth = GroundTruth::read(&path, &field).unwrap();
+        assert!((ground_truth.noise - 0.01).abs() < 1e-7, "{}", ground_truth.noise);
         let own = (0.02 * (2.0_f64 / 64.0).sqrt()).sqrt();
-        assert!((truth.floor() - own).abs() < 1e-7, "{:?}", truth.own_error);
-        let unmet = |text: &str| [("unmet_standard_error".to_owned(), text.to_owned())];
-        files::write_exr(&path, 8, 8, &all, &unmet("0.02,0.02,0.04")).unwrap();
-        let met = Truth::read(&path, &field).unwrap();
+        assert!((ground_truth.floor() - own).abs() < 1e-7, "{:?}", ground_truth.own_error);
+        let unsampled = |text: &str| [("unsampled_standard_error".to_owned(), text.to_owned())];
+        files::write_exr(&path, 8, 8, &all, &unsampled("0.02,0.02,0.04")).unwrap();
+        let met = GroundTruth::read(&path, &field).unwrap();
         assert!((met.floor() - own.hypot(0.0002_f64.sqrt())).abs() < 1e-7, "{:?}", met.own_error);
-        files::write_exr(&path, 8, 8, &all, &unmet("0.02,none")).unwrap();
-        let error = Truth::read(&path, &field).err().unwrap().to_string();
-        assert!(error.contains("unmet_standard_error: found 0.02,none"), "{error}");
+        files::write_exr(&path, 8, 8, &all, &unsampled("0.02,none")).unwrap();
+        let error = GroundTruth::read(&path, &field).err().unwrap().to_string();
+        assert!(error.contains("unsampled_standard_error: found 0.02,none"), "{error}");
         files::write_exr(&path, 8, 8, &all[..1], &[]).unwrap();
-        let bare = Truth::read(&path, &field).unwrap();
+        let bare = GroundTruth::read(&path, &field).unwrap();
         assert_eq!((bare.noise, bare.own_error), (0.0, None));
         assert_eq!(bare.own_text(), "unknown");
         let other = HeightField::new(4, 16, &[0.0; 64], [1.0; 2], None).unwrap();
-        let error = Truth::read(&path, &other).err().unwrap().to_string();
+        let error = GroundTruth::read(&path, &other).err().unwrap().to_string();
         assert!(error.contains("found 8 × 8, expected 16 × 4"), "{error}");
     }
 }

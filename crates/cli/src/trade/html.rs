@@ -1,4 +1,4 @@
-//! One page that needs nothing else: the template with its places filled.
+//! The report as one self-contained HTML page.
 
 use super::left_out::{EXAMPLES, GROUPS};
 use super::point::Point;
@@ -20,14 +20,14 @@ pub fn page(report: &Report) -> String {
     let breaks: Vec<String> =
         report.walk.search.breaks().iter().map(|b| report.break_text(b)).collect();
     let broken = if breaks.is_empty() {
-        "<p>No ladder was found the wrong way round.".to_owned()
+        "<p>All ladders were monotonic.".to_owned()
     } else {
-        let held = "<p>Ladders found the wrong way round, which ruled nothing out from then on:";
+        let held = "<p>Ladders that were not monotonic, and ruled nothing out from then on:";
         format!("{held}<ul>{}</ul>", lines(breaks))
     };
     let recommended = report.recommended();
     let headline = format!(
-        "{} a frame, {} off (RMSE over the mean)",
+        "{} per frame, error {} (RMSE over the mean)",
         report.time_text(recommended),
         report.error_text(recommended)
     );
@@ -41,7 +41,7 @@ pub fn page(report: &Report) -> String {
             ("headline", text(headline)),
             ("why", why),
             ("plot", super::plot::svg(report)),
-            ("truth", text(report.truth_text())),
+            ("ground_truth", text(report.ground_truth_text())),
             ("drift", text(report.drift_text())),
             ("summary", text(report.summary())),
             ("tones", text(report.tones.text())),
@@ -51,14 +51,14 @@ pub fn page(report: &Report) -> String {
             ("broken", broken),
             ("ruled_out", ruled_out(report)),
             ("not_tried", not_tried(report)),
-            ("knobs", ladders(report)),
+            ("settings", ladders(report)),
             ("about", about),
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ],
     )
 }
 
-/// Replaces each {{name}}; what is filled in is not looked at again.
+/// Replaces each {{name}} once; values are not expanded again.
 fn filled(template: &str, values: &[(&str, String)]) -> String {
     let mut parts = template.split("{{");
     let mut page = parts.next().unwrap_or_default().to_owned();
@@ -71,24 +71,24 @@ fn filled(template: &str, values: &[(&str, String)]) -> String {
     page
 }
 
-/// A picture and its difference for each point of the frontier, after the truth's.
+/// A picture and its difference for each point of the frontier, after the ground truth's.
 fn cards(report: &Report) -> String {
     let picture = |png: &[u8], alt: &str| {
         format!("<img src=\"data:image/png;base64,{}\" alt=\"{}\">", base64(png), escaped(alt))
     };
     let mut all = format!(
-        "<figure>{}<figcaption><b>the truth</b><br>{}</figcaption></figure>\n",
-        picture(&report.truth_png, "the truth"),
-        escaped(&report.truth.about)
+        "<figure>{}<figcaption><b>the ground truth</b><br>{}</figcaption></figure>\n",
+        picture(&report.ground_truth_png, "the ground truth"),
+        escaped(&report.ground_truth.about)
     );
     for point in report.frontier() {
         let Some(pictures) = &point.pictures else { continue };
         let flags = report.flags(point.place);
         let is_it = point.place == report.recommended().place;
         all += &format!(
-            "<figure{}>{}{}<figcaption><b>{}, {}</b>{}<br>{}<br>ꟻLIP {} in the mean, {} at the 99th \
-             percentile<br>difference: <span class=scale>−{scale} too dark <i></i> {scale} too \
-             bright</span></figcaption></figure>\n",
+            "<figure{}>{}{}<figcaption><b>{}, {}</b>{}<br>{}<br>mean ꟻLIP {}, 99th percentile \
+                {}<br>difference: <span class=scale>−{scale} too dark <i></i> {scale} too \
+                bright</span></figcaption></figure>\n",
             if is_it { " class=best" } else { "" },
             picture(&pictures.light, &flags),
             picture(&pictures.difference, &format!("difference of {flags}")),
@@ -116,7 +116,7 @@ fn rows(report: &Report) -> String {
         };
         let (t, d) = (&p.total_ns, &p.distance);
         let drawn = format!(
-            "{} draws: {} in the middle, {} – {}; the baseline beside them {}. ",
+            "{} draws: median {}, {} – {}; the baseline paired with them {}. ",
             p.totals_ns.len(),
             ms(t.median),
             ms(t.p10),
@@ -180,38 +180,41 @@ fn not_tried(report: &Report) -> String {
         .collect();
     let rest = open.len().saturating_sub(GROUPS);
     if rest > 0 {
-        all += &format!("<li>{rest} more, which trade.json counts by the values of each setting\n");
+        all += &format!("<li>{rest} more; trade.json counts them by setting and value\n");
     }
     if all.is_empty() {
-        "<li>nothing: every setting was measured, ruled out or given up\n".to_owned()
+        "<li>none: every setting was measured, ruled out or given up\n".to_owned()
     } else {
         all
     }
 }
 
 fn ladders(report: &Report) -> String {
-    let row = |knob: &ridgelight_trade::trade::Ladder| {
-        let range = knob.range.as_ref();
+    let row = |ladder: &ridgelight_trade::trade::Ladder| {
+        let range = ladder.range.as_ref();
         format!(
             "<tr><th>{}<td>{}<td>{}<td>{}<td>{}\n",
-            escaped(knob.name),
-            knob.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
-            code(&knob.steps[knob.default]),
-            range.map_or_else(|| "these".to_owned(), |r| format!("{} to {}", r.start(), r.end())),
-            escaped(knob.dearer)
+            escaped(ladder.name),
+            ladder.steps.iter().map(|s| code(s)).collect::<Vec<_>>().join(" "),
+            code(&ladder.steps[ladder.default]),
+            range.map_or_else(
+                || "as listed".to_owned(),
+                |r| format!("{} to {}", r.start(), r.end())
+            ),
+            escaped(ladder.slower)
         )
     };
     report.ladders.iter().map(row).collect()
 }
 
-/// Flags that lines break between, not within.
+/// Flags that wrap between flags only.
 fn code(flags: &str) -> String {
     let each: Vec<String> =
         flags.split(" --").map(|f| escaped(f.trim_start_matches("--"))).collect();
     format!("<code><span>--{}</span></code>", each.join("</span> <span>--"))
 }
 
-/// Of a round number: no zeros at its end.
+/// A round number without trailing zeros.
 fn short_percent(share: f64) -> String {
     let text = digits(100.0 * share);
     let is_plain = text.contains('.') && !text.contains('e');
@@ -219,7 +222,7 @@ fn short_percent(share: f64) -> String {
     format!("{text} %")
 }
 
-/// Text that stands for itself in HTML, in quoted attributes too.
+/// Escapes text for HTML content and quoted attributes.
 pub fn escaped(text: &str) -> String {
     text.chars()
         .map(|c| match c {

@@ -1,5 +1,5 @@
-//! Where the hull lives: the one knob without an error. It is turned for the recommended settings
-//! alone.
+//! Hull storage: the one setting that changes no pixel. It is timed for the recommended settings
+//! only.
 
 use ridgelight::plan::Plan;
 use ridgelight::scene::{Hull, Quality};
@@ -10,25 +10,26 @@ use super::rig::Rig;
 use super::walk::KEPT;
 use crate::terminal::digits;
 
-/// Draws in each place, each beside one in the planner's, after one that warms up.
+/// Timed draws with each storage, each paired with one of the planner's choice, after one to warm
+/// up.
 const DRAWS: usize = 5;
-/// A place is worth a flag where it is faster than this, by more than times waver.
+/// A storage is recommended if it is faster than this ratio and by more than the times vary.
 const WORTH: f64 = 0.95;
 
-/// The recommended settings with the hull in one place.
+/// The recommended settings with one hull storage.
 pub struct Place {
     pub name: &'static str,
-    /// Whether it is the planner's own choice, whose ratio says how far times waver.
+    /// Whether it is the planner's own choice, whose ratio shows how much times vary.
     pub is_own: bool,
-    /// Median ratio to draws with the planner's own choice; or why there is none.
+    /// Median time ratio to the planner's choice, or why there is none.
     pub ratio: std::result::Result<f64, String>,
 }
 
-/// Settings without a hull have no places. A draw is expected to take `draw_s`; three of them are drawn where
-/// they fit into a place's share of the time kept, even if that is spent.
+/// Times each storage. There are none without a hull. A draw is expected to take `draw_s`; three
+/// pairs are drawn if they fit into their share of the time, even if that is spent.
 ///
 /// # Errors
-/// A place that changes the picture.
+/// A storage that changes the picture.
 pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place>> {
     let planned = rig.plan(rig.scene, quality)?;
     let Some(home) = home(&planned) else { return Ok(Vec::new()) };
@@ -36,12 +37,13 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
     let drawn = rig.gpu.draw(&mut own).and_then(|_| rig.radiance(&own));
     let measured = |rig: &mut Rig| -> Result<Vec<Place>> {
         let right = drawn?;
-        let all = [("private", Hull::Private), ("shared", Hull::Shared), ("list", Hull::List)];
+        let all =
+            [("private", Hull::Private), ("shared", Hull::Shared), ("list", Hull::OccluderList)];
         let one = |(name, hull)| {
             let is_own = home == name;
             let none = |why: String| Ok(Place { name, is_own, ratio: Err(why) });
             if 3.0 * draw_s > rig.left().max(rig.share(KEPT) / 3.0) {
-                return none("too dear for what was left of the budget".to_owned());
+                return none("too slow for the rest of the budget".to_owned());
             }
             let mut frame = match rig.frame(&Quality { hull, ..*quality }) {
                 Ok(frame) => frame,
@@ -58,7 +60,7 @@ pub fn places(rig: &mut Rig, quality: &Quality, draw_s: f64) -> Result<Vec<Place
     all
 }
 
-/// Where a plan keeps its hull: brute force, exact sweeps and pyramids have none.
+/// Hull storage of a plan; brute force, exact sweeps and pyramids have no hull.
 fn home(plan: &Plan) -> Option<&str> {
     plan.settings.iter().find(|(name, _)| name == "hull").map(|(_, place)| place.as_str())
 }
@@ -74,8 +76,8 @@ fn ratio(
         |planes: &[Vec<f32>]| planes.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
     if bits(&rig.radiance(frame)?) != bits(right) {
         return Err(Error::Device {
-            doing: "moving the hull".into(),
-            reason: "the picture changed, which it never should".into(),
+            doing: "changing hull storage".into(),
+            reason: "the picture changed, which is a bug".into(),
         });
     }
     let mut ratios = Vec::new();
@@ -87,21 +89,21 @@ fn ratio(
     Ok(Summary::of(&ratios).map_or(1.0, |s| s.median))
 }
 
-/// In a sentence; none where there is no hull or no time was left.
+/// A sentence; none without a hull or without time.
 pub fn text(places: &[Place]) -> Option<String> {
     let timed: Vec<(&Place, f64)> =
         places.iter().filter_map(|p| Some((p, *p.ratio.as_ref().ok()?))).collect();
-    let wavers = timed.iter().find(|(p, _)| p.is_own).map_or(1.0, |(_, r)| r.max(r.recip()));
+    let spread = timed.iter().find(|(p, _)| p.is_own).map_or(1.0, |(_, r)| r.max(r.recip()));
     let (best, ratio) = timed.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let advice = if !best.is_own && ratio * wavers < WORTH {
+    let advice = if !best.is_own && ratio * spread < WORTH {
         format!("add --hull {}", best.name)
     } else {
-        "leave it to the planner".to_owned()
+        "keep the planner's choice".to_owned()
     };
     let each: Vec<String> = timed
         .iter()
         .map(|(p, ratio)| {
-            let own = if p.is_own { " (the same, drawn again)" } else { "" };
+            let own = if p.is_own { " (measured twice)" } else { "" };
             format!("{} {} ×{own}", p.name, digits(*ratio))
         })
         .collect();
@@ -109,8 +111,8 @@ pub fn text(places: &[Place]) -> Option<String> {
         Some(format!("; --hull {} was not timed: {}", p.name, p.ratio.as_ref().err()?))
     });
     Some(format!(
-        "Where the hull lives never changes the picture (the same bits here), only the time; beside the \
-         planner's choice: {}{}. So {advice}.",
+        "Hull storage changes the time but not the picture (bit-identical here). Time relative \
+            to the planner's choice: {}{}. Advice: {advice}.",
         each.join(", "),
         untimed.collect::<String>()
     ))
@@ -130,28 +132,28 @@ mod tests {
         let base = Quality { method: Method::Sweep, ..Quality::default() };
         for (quality, has_hull) in [
             (base, true),
-            (Quality { hull: Hull::List, ..base }, true),
+            (Quality { hull: Hull::OccluderList, ..base }, true),
             (Quality { lines: Lines::Exact, ..base }, false),
-            (Quality { method: Method::Brute, ..base }, false),
+            (Quality { method: Method::BruteForce, ..base }, false),
             (Quality { method: Method::Pyramid, ..base }, false),
         ] {
             let limits = Limits::boundless(true, 1 << 30);
             let plan = plan::picture(&scene, &quality, &limits, Picture::default()).unwrap();
             assert_eq!(home(&plan).is_some(), has_hull, "{quality:?}");
         }
-        // Balls of light look themselves for what hides them: no sweep, whatever the method.
-        let ball = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
-        let lights = Lights { spheres: vec![ball], ..Lights::default() };
+        // Sphere lights march to their occluders; they use no sweep.
+        let light = SphereLight { position_m: [4.0, 4.0, 3.0], radius_m: 1.0, radiance: [1.0; 3] };
+        let lights = Lights { sphere_lights: vec![light], ..Lights::default() };
         let scene = Scene { lights, ..scene };
         let limits = Limits::boundless(true, 1 << 30);
         let plan = plan::picture(&scene, &base, &limits, Picture::default()).unwrap();
         assert!(home(&plan).is_none(), "{:?}", plan.settings);
     }
 
-    /// 0.97 of the time is not worth a flag, 0.8 is, but not where the same place took 1.3 × or the
-    /// 1.3th of its own.
+    /// A ratio of 0.97 is not worth a flag; 0.8 is, unless the planner's choice repeated at 1.3 ×
+    /// or 1/1.3 of its own time.
     #[test]
-    fn a_place_is_advised_where_it_is_faster_than_times_waver() {
+    fn advice_needs_a_gain_above_the_noise() {
         let said = |own: f64, other: f64| {
             let places = [
                 Place { name: "private", is_own: true, ratio: Ok(own) },
@@ -160,13 +162,17 @@ mod tests {
             ];
             text(&places).unwrap()
         };
-        assert!(said(1.0, 0.97).ends_with("So leave it to the planner."), "{}", said(1.0, 0.97));
-        assert!(said(1.0, 0.8).ends_with("So add --hull shared."));
+        assert!(
+            said(1.0, 0.97).ends_with("Advice: keep the planner's choice."),
+            "{}",
+            said(1.0, 0.97)
+        );
+        assert!(said(1.0, 0.8).ends_with("Advice: add --hull shared."));
         assert!(
             said(1.3, 0.8).ends_with("planner.") && said(1.0 / 1.3, 0.75).ends_with("planner.")
         );
         let all = said(1.0, 0.8);
-        assert!(all.contains("private 1.00 × (the same, drawn again), shared 0.800 ×;"), "{all}");
+        assert!(all.contains("private 1.00 × (measured twice), shared 0.800 ×;"), "{all}");
         assert!(all.contains("--hull list was not timed: late."), "{all}");
         assert!(text(&[]).is_none());
     }

@@ -1,4 +1,4 @@
-//! What a walk has not measured, and why: a few settings of each kind spelt out, all of them counted.
+//! Settings that were not measured, and why: some spelt out, all counted.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use super::report::ms;
 use super::walk::Walk;
 use crate::terminal::percent;
 
-/// Reasons, and settings that were not tried, that a report spells out; settings of each reason.
+/// Limits of a report: reasons and untried settings that it spells out; settings per reason.
 pub const GROUPS: usize = 40;
 pub const EXAMPLES: usize = 6;
 
-/// Settings, and what is known of them.
+/// The settings, and what is known of them.
 #[derive(Clone, Copy)]
 pub struct LeftOut<'a> {
     pub ladders: &'a [Ladder],
@@ -21,7 +21,7 @@ pub struct LeftOut<'a> {
     pub walk: &'a Walk,
 }
 
-/// Places without a measurement that share a reason.
+/// Unmeasured places that share a reason.
 pub struct Group {
     pub why: String,
     pub places: Vec<usize>,
@@ -34,21 +34,24 @@ impl LeftOut<'_> {
 
     fn skip_text(&self, skip: &Skip) -> String {
         match skip {
-            Skip::Covered { by, dearer_than, worse_than } => {
+            Skip::Covered { by, slower_than, worse_than } => {
                 let error = match worse_than {
                     Some(worse) => format!("no more accurate than {}", self.flags(*worse)),
-                    None => "no more accurate than the truth can tell".to_owned(),
+                    None => "no error that the ground truth can resolve".to_owned(),
                 };
-                let dearer = self.flags(*dearer_than);
-                format!("no cheaper than {dearer} and {error}: {} is both", self.flags(*by))
+                let slower = self.flags(*slower_than);
+                format!(
+                    "not faster than {slower} and {error}: {} is better in both",
+                    self.flags(*by)
+                )
             }
             Skip::TooDear { than } => {
-                format!("dearer than {}, which was too dear", self.flags(*than))
+                format!("slower than {}, which was too slow", self.flags(*than))
             }
         }
     }
 
-    /// Places ruled out, by reason, the largest groups first.
+    /// Ruled-out places by reason, the largest groups first.
     pub fn skipped(&self) -> Vec<Group> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         for place in 0..self.places.len() {
@@ -80,7 +83,7 @@ impl LeftOut<'_> {
         format!("{time}, {}", percent(value.error))
     }
 
-    /// The largest groups of what was ruled out, some settings of each.
+    /// The largest groups of ruled-out settings, some of each spelt out.
     pub fn ruled_out_json(&self) -> Vec<Value> {
         let of = |group: &Group| {
             let some: Vec<String> =
@@ -90,7 +93,7 @@ impl LeftOut<'_> {
         self.skipped().iter().take(GROUPS).map(of).collect()
     }
 
-    /// The most promising of what was not tried.
+    /// The most promising untried settings.
     pub fn not_tried_json(&self) -> Vec<Value> {
         let of = |place: &usize| {
             let expected = self.walk.search.predicted(*place);
@@ -102,7 +105,7 @@ impl LeftOut<'_> {
         self.not_tried().iter().take(GROUPS).map(of).collect()
     }
 
-    /// How many settings there are of each kind: in all, and with each step of each knob where that is not idle.
+    /// Counts of settings by outcome: in total, and for each step of each setting where it matters.
     pub fn counts_json(&self) -> Value {
         #[derive(Clone, Copy, PartialEq)]
         enum Kind {
@@ -127,18 +130,18 @@ impl LeftOut<'_> {
                 "not_tried": count(Kind::NotTried),
             })
         };
-        let by_step = |(k, knob): (usize, &Ladder)| {
-            let steps = knob.steps.iter().enumerate().map(|(s, spelt)| {
+        let by_step = |(k, ladder): (usize, &Ladder)| {
+            let steps = ladder.steps.iter().enumerate().map(|(s, spelt)| {
                 let mut of = counted(&|place| place.steps[k] == Some(s));
                 of["step"] = json!(spelt);
                 of
             });
-            json!({ "name": knob.name, "steps": steps.collect::<Vec<_>>() })
+            json!({ "name": ladder.name, "steps": steps.collect::<Vec<_>>() })
         };
         let mut all = counted(&|_| true);
         all["settings"] = json!(self.places.len());
         all["reasons"] = json!(self.skipped().len());
-        all["by_knob"] = self.ladders.iter().enumerate().map(by_step).collect();
+        all["by_setting"] = self.ladders.iter().enumerate().map(by_step).collect();
         all
     }
 }
@@ -149,11 +152,11 @@ mod tests {
     use ridgelight::scene::{Bounces, HeightField, Lights, Quality, Scene, Sun, Surface};
     use ridgelight_trade::trade::{Search, Value as Measured, ladders, places, start_of};
 
-    /// Under a sky and a sun with bounces there are over a hundred thousand settings. With four measured, nearly all are either
-    /// ruled out or open: the report stays below 64 KiB, 40 settings and 40 reasons with 6 each of 250 letters and 12 KiB of
-    /// counts, and says of every setting what became of it, once.
+    /// A sky and a sun with bounces have over a hundred thousand settings. With four measured,
+    /// nearly all are ruled out or open. The report stays below 64 KiB (40 settings and 40 reasons
+    /// with 6 each of 250 letters, and 12 KiB of counts) and accounts for every setting once.
     #[test]
-    fn what_is_left_out_is_counted_and_not_listed() {
+    fn unmeasured_settings_are_counted_not_listed() {
         let sun =
             Sun { azimuth_rad: 0.0, elevation_rad: 0.5, diameter_rad: 0.01, irradiance: [1.0; 3] };
         let scene = Scene {
@@ -187,10 +190,10 @@ mod tests {
         let kinds = ["measured", "ruled_out", "not_tried"];
         let sum = |of: &Value| kinds.iter().map(|kind| number(of, kind)).sum::<usize>();
         assert_eq!((sum(&counts), number(&counts, "measured")), (places.len(), 4));
-        for (k, knob) in counts["by_knob"].as_array().unwrap().iter().enumerate() {
+        for (k, ladder) in counts["by_setting"].as_array().unwrap().iter().enumerate() {
             let busy = places.iter().filter(|p| p.steps[k].is_some()).count();
-            let steps = knob["steps"].as_array().unwrap();
-            assert_eq!(steps.iter().map(sum).sum::<usize>(), busy, "{}", knob["name"]);
+            let steps = ladder["steps"].as_array().unwrap();
+            assert_eq!(steps.iter().map(sum).sum::<usize>(), busy, "{}", ladder["name"]);
         }
         let (out, open) = (left.ruled_out_json(), left.not_tried_json());
         assert_eq!(open.len(), GROUPS);

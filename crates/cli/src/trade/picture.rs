@@ -1,4 +1,4 @@
-//! What the eye is shown of a setting: its light, its difference to the truth, and ꟻLIP.
+//! Pictures of a setting: its light, its difference from the ground truth, and ꟻLIP.
 
 use ridgelight::Result;
 use ridgelight::scene::HeightField;
@@ -8,23 +8,23 @@ use ridgelight_trade::flip;
 use ridgelight_trade::flip::{FlipError, PIXELS_PER_DEGREE};
 use ridgelight_trade::statistics::quantiles;
 
-use super::ground_truth::Truth;
+use super::ground_truth::GroundTruth;
 
 /// Longest side of a picture in the report, pixels.
 const PICTURE_SIDE: usize = 240;
 
-/// Radiances that stand at the ends of a picture's range, the truth's: a faint relief under an even sky
-/// would be white on white without the lower one.
+/// Radiances at the ends of the grey scale, from the ground truth. The lower end keeps a faint
+/// relief under an even sky from being white on white.
 pub struct Tones {
     pub black: f32,
     pub white: f32,
-    /// The truth's mean radiance.
+    /// The ground truth's mean radiance.
     pub mean: f64,
 }
 
 impl Tones {
-    pub fn of(truth: &Truth) -> Self {
-        let mut known: Vec<f64> = truth
+    pub fn of(ground_truth: &GroundTruth) -> Self {
+        let mut known: Vec<f64> = ground_truth
             .planes
             .iter()
             .flatten()
@@ -34,39 +34,40 @@ impl Tones {
         let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
         let [low, high] = quantiles(&mut known, [0.005, 0.99]).unwrap_or([0.0, 1.0]);
         let white = if high > 0.0 { high } else { 1.0 };
-        // All of one brightness is shown as that.
+        // A field of one radiance keeps its range.
         let black = if low < 0.999 * white { low } else { 0.0 };
         Self { black: black as f32, white: white as f32, mean }
     }
 
-    /// Where black and white stand, for people.
+    /// The grey scale, in words.
     pub fn text(&self) -> String {
         let share =
             |v: f32| crate::terminal::digits(f64::from(v) / self.mean.max(f64::MIN_POSITIVE));
         format!(
-            "Light: from black at {} to white at {} of the truth's mean radiance, the truth's 0.5th and \
-             99th percentiles.",
+            "Light: black at {} and white at {} of the ground truth's mean radiance, its 0.5th \
+                and 99th percentiles.",
             share(self.black),
             share(self.white)
         )
     }
 }
 
-/// PNGs, downsized, and how different the light looks.
+/// Downsized PNGs, and ꟻLIP.
 pub struct Pictures {
     pub light: Vec<u8>,
     pub difference: Vec<u8>,
-    /// The difference that has the full colour, over the truth's mean.
+    /// The difference at full saturation, over the ground truth's mean.
     pub scale: f64,
-    /// At full size, at an exposure where the truth's 99th percentile is white, 67 pixels a degree.
+    /// At full size, at an exposure where the ground truth's 99th percentile is white, 67 pixels
+    /// per degree.
     pub flip: FlipError,
 }
 
-/// `p99`: the 99th percentile of the differences over the truth's mean.
+/// `p99`: the 99th percentile of the differences over the ground truth's mean.
 pub fn pictures(
     field: &HeightField,
     planes: &[Vec<f32>],
-    truth: &Truth,
+    ground_truth: &GroundTruth,
     tones: &Tones,
     p99: f64,
 ) -> Result<Pictures> {
@@ -75,9 +76,9 @@ pub fn pictures(
         planes.iter().map(|p| f64::from(p[i])).sum::<f64>() / planes.len() as f64
     };
     let texels = downsized(field, |samples| {
-        // The largest of either sign: a mean would hide what one texel has too much.
+        // The largest of either sign: a mean would hide single texels.
         let largest = samples
-            .map(|i| mean(planes, i) - mean(&truth.planes, i))
+            .map(|i| mean(planes, i) - mean(&ground_truth.planes, i))
             .fold(0.0, |m: f64, d| if d.abs() > m.abs() { d } else { m });
         let share = largest / tones.mean.abs().max(f64::MIN_POSITIVE) / scale;
         let full = if share > 0.0 { [1.0, 0.35, 0.02] } else { [0.05, 0.3, 1.0] };
@@ -90,28 +91,29 @@ pub fn pictures(
             .map(|i| [0, 1, 2].map(|c| planes[c.min(last)][i] / tones.white))
             .collect()
     };
-    let map = flip::map(&seen(planes), &seen(&truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
+    let map =
+        flip::map(&seen(planes), &seen(&ground_truth.planes), field.cols(), PIXELS_PER_DEGREE)?;
     let flip = FlipError::of(&map, field.cols())?;
     Ok(Pictures { light: light_png(field, planes, tones)?, difference, scale, flip })
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is no less: scales that can be compared.
+/// The least of 1, 2 and 5 times a power of ten that is no less, so that scales are comparable.
 fn round_up(value: f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 1.0;
     }
     let decade = 10_f64.powf(value.log10().floor());
-    // 10 as well, for what the logarithm rounds.
+    // 10 as well, because the logarithm rounds.
     [1.0, 2.0, 5.0, 10.0].map(|m| m * decade).into_iter().find(|s| *s >= value).unwrap_or(value)
 }
 
-/// Sides of the downsized picture, and samples a pixel.
+/// Sides of the downsized picture, and texels per pixel.
 fn small(field: &HeightField) -> ([usize; 2], usize) {
     let factor = field.rows().max(field.cols()).div_ceil(PICTURE_SIDE).max(1);
     ([field.rows().div_ceil(factor), field.cols().div_ceil(factor)], factor)
 }
 
-/// One value a pixel of the downsized picture, from the samples under it that hold data.
+/// One value per pixel of the downsized picture, from the texels under it that hold data.
 fn downsized<T>(
     field: &HeightField,
     each: impl Fn(&mut dyn Iterator<Item = usize>) -> T,
@@ -130,7 +132,7 @@ fn downsized<T>(
         .collect()
 }
 
-/// A PNG of radiance, black and white where the tones say.
+/// A PNG of radiance between the tones' black and white.
 pub fn light_png(field: &HeightField, planes: &[Vec<f32>], tones: &Tones) -> Result<Vec<u8>> {
     let last = planes.len() - 1;
     let texels = downsized(field, |samples| {

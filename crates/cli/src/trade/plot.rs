@@ -8,10 +8,10 @@ const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 500.0;
 /// Left, top, right, bottom.
 const MARGIN: [f64; 4] = [78.0, 16.0, 18.0, 52.0];
-/// Decimal logarithms that stand free at each end of an axis.
+/// Margin at each end of an axis, decades.
 const AIR: f64 = 0.08;
 
-/// A log axis from one place on the page to another.
+/// A log axis between two places on the page.
 struct Axis {
     low: f64,
     high: f64,
@@ -26,18 +26,18 @@ impl Axis {
                 (l.min(v.log10()), h.max(v.log10()))
             });
         let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-        // Half a decade at least, so that ticks fall into it.
+        // At least half a decade, so that it has ticks.
         let more = AIR.max(0.25 - (high - low) / 2.0);
         Self { low: low - more, high: high + more, from, to }
     }
 
-    /// Where a value stands; 0 and what is below the axis at its low end.
+    /// Position of a value; values below the axis are at its low end.
     fn at(&self, value: f64) -> f64 {
         let log = if value > 0.0 { value.log10() } else { self.low };
         self.from + (self.to - self.from) * ((log - self.low) / (self.high - self.low)).max(0.0)
     }
 
-    /// 1, 2 and 5 in each decade, all of whose numbers are shown where the axis is short.
+    /// 1, 2 and 5 in each decade; on a short axis all have labels.
     fn ticks(&self) -> Vec<(f64, bool)> {
         let short = self.high - self.low < 4.0;
         (self.low.floor() as i32..=self.high.ceil() as i32)
@@ -47,7 +47,7 @@ impl Axis {
     }
 }
 
-/// A power of ten times 1, 2 or 5, without digits that say nothing.
+/// A power of ten times 1, 2 or 5, without trailing digits.
 fn number(value: f64) -> String {
     let places = (-value.log10().floor()).max(0.0) as usize;
     if places > 6 { format!("{value:.0e}") } else { format!("{value:.places$}") }
@@ -55,7 +55,7 @@ fn number(value: f64) -> String {
 
 pub fn svg(report: &Report) -> String {
     let points = &report.walk.points;
-    let own = report.truth.floor();
+    let own = report.ground_truth.floor();
     let [left, top, right, bottom] = MARGIN;
     let x = Axis::of(points.iter().map(|p| report.time_ns(p) * 1e-6), left, WIDTH - right);
     let errors = points.iter().map(|p| 100.0 * report.error(p)).chain([100.0 * own]);
@@ -83,7 +83,7 @@ pub fn svg(report: &Report) -> String {
         }
     }
     let (middle, low) = ((left + WIDTH - right) / 2.0, HEIGHT - 12.0);
-    svg += &format!("<text class=name x={middle} y={low} text-anchor=middle>ms a frame</text>\n");
+    svg += &format!("<text class=name x={middle} y={low} text-anchor=middle>ms per frame</text>\n");
     let half = (top + HEIGHT - bottom) / 2.0;
     svg += &format!(
         "<text class=name transform=\"translate(16 {half}) rotate(-90)\" text-anchor=middle>relative \
@@ -92,8 +92,8 @@ pub fn svg(report: &Report) -> String {
     if own > 0.0 {
         let (at, end) = (y.at(100.0 * own), WIDTH - right);
         svg += &format!(
-            "<line class=own x1={left} x2={end} y1={at:.1} y2={at:.1} /><text class=small x={end} \
-             y={:.1} text-anchor=end>the truth's own error</text>\n",
+            "<line class=own x1={left} x2={end} y1={at:.1} y2={at:.1} /><text class=small \
+                x={end} y={:.1} text-anchor=end>the ground truth's own error</text>\n",
             at + 14.0
         );
     }
@@ -102,7 +102,7 @@ pub fn svg(report: &Report) -> String {
     let mut path = String::new();
     for (i, point) in front.iter().enumerate() {
         let (px, py) = place(point);
-        // Steps: between two points the cheaper one's error holds.
+        // Steps: between two points the faster one's error holds.
         path += &if i == 0 { format!("M{px:.1} {py:.1}") } else { format!("H{px:.1}V{py:.1}") };
     }
     svg += &format!("<path class=front d=\"{path}\" />\n");
@@ -110,10 +110,10 @@ pub fn svg(report: &Report) -> String {
     let best = report.recommended();
     let baseline = points.iter().find(|p| p.place == report.walk.baseline);
     let mut named = vec![(best, "name", "recommended", -10.0)];
-    // Below its point: the two may be neighbours.
+    // The defaults' label goes below its point, which may be next to the recommended one.
     let other = baseline.filter(|b| b.place != best.place);
     named.extend(other.map(|b| (b, "small", "the defaults", 20.0)));
-    // The frontier on top.
+    // Draws the frontier on top.
     let mut order: Vec<&Point> = points.iter().collect();
     order.sort_by_key(|p| is_front(p));
     for point in order {
@@ -139,7 +139,7 @@ pub fn svg(report: &Report) -> String {
             escaped(&label)
         );
     }
-    // Above and to the right no point of the frontier is near; where the page ends, to the left.
+    // The frontier has no point above and to the right; at the page's edge labels go to the left.
     for (point, class, name, down) in named {
         let (px, py) = place(point);
         let (dx, anchor) =
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(ticks, [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
     }
 
-    /// One value, none, and nothing above 0 still are an axis with a tick.
+    /// An axis of one value, of none, or of none above 0 still has a tick.
     #[test]
     fn an_axis_is_never_empty() {
         for values in [vec![3.0], vec![], vec![0.0]] {

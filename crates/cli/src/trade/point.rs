@@ -1,4 +1,4 @@
-//! One setting measured: its time, its error, its picture.
+//! One measured setting: its time, its error, its picture.
 
 use std::time::Instant;
 
@@ -8,20 +8,21 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
 use ridgelight_trade::trade::Value;
 
-use super::ground_truth::{Distance, Truth};
+use super::ground_truth::{Distance, GroundTruth};
 use super::picture::Pictures;
 use super::rig::Rig;
 
-/// Draws after one that warms up: fewer, which is said, once they take this share of the budget.
+/// Timed draws after one to warm up. There are fewer, as the report states, once they take this
+/// share of the budget.
 const DRAWS: usize = 7;
 const FEWEST: usize = 3;
 const TIMING: f64 = 0.005;
 const COMPILING_S: f64 = 20.0;
 
 pub struct Point {
-    /// Its number among the places of the walk.
+    /// Its index among the places of the search.
     pub place: usize,
-    /// Nanoseconds of all passes of each frame drawn, and those in few numbers.
+    /// Nanoseconds of all passes of each frame, and their statistics.
     pub totals_ns: Vec<f64>,
     pub total_ns: Summary,
     /// Median nanoseconds of each pass.
@@ -30,10 +31,10 @@ pub struct Point {
     /// Bytes on the device.
     pub bytes: u64,
     pub settings: Vec<(String, String)>,
-    /// When it was begun and done, seconds from the start.
+    /// Begin and end of the measurement, seconds from the start.
     pub at_s: [f64; 2],
-    /// Median of each draw's time over that of the baseline drawn right after it: what a busy machine
-    /// or a changing clock does to both falls out. 1 for the baseline itself.
+    /// Median of each draw's time over that of the baseline drawn right after it, which cancels a
+    /// busy machine or a changing clock. 1 for the baseline itself.
     pub ratio: f64,
     ratios: Vec<f64>,
     /// Nanoseconds of those draws of the baseline.
@@ -43,12 +44,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// Median nanoseconds of the baseline's frame beside its own draws.
+    /// Median nanoseconds of the paired draws of the baseline.
     pub fn baseline_median(&self) -> f64 {
         Summary::of(&self.baseline_ns).map_or(0.0, |s| s.median)
     }
 
-    /// Takes in the times of the same settings measured again.
+    /// Adds the times of a repeated measurement.
     pub fn add(&mut self, again: Point) {
         self.totals_ns.extend(again.totals_ns);
         self.total_ns = Summary::of(&self.totals_ns).unwrap_or(self.total_ns);
@@ -63,20 +64,20 @@ impl Point {
     }
 }
 
-/// What measuring gives: a point, without pictures yet, its frame and its radiance.
+/// A measurement: a point without pictures yet, its frame and its radiance.
 pub type Measured = (Point, Frame, Vec<Vec<f32>>);
 
-/// Measures a quality beside the baseline, none for the baseline itself.
+/// Measures a quality paired with the baseline; without one for the baseline itself.
 pub fn measure(
     rig: &mut Rig,
-    truth: &Truth,
+    ground_truth: &GroundTruth,
     place: usize,
     quality: &Quality,
     baseline: Option<&mut Frame>,
 ) -> Result<Measured> {
     let begun_s = rig.spent();
     let mut frame = rig.frame(quality)?;
-    match fill(rig, truth, place, begun_s, &mut frame, baseline) {
+    match fill(rig, ground_truth, place, begun_s, &mut frame, baseline) {
         Ok((point, planes)) => Ok((point, frame, planes)),
         Err(error) => {
             rig.gpu.end(frame);
@@ -87,7 +88,7 @@ pub fn measure(
 
 fn fill(
     rig: &mut Rig,
-    truth: &Truth,
+    ground_truth: &GroundTruth,
     place: usize,
     begun_s: f64,
     frame: &mut Frame,
@@ -95,12 +96,12 @@ fn fill(
 ) -> Result<(Point, Vec<Vec<f32>>)> {
     let first = rig.gpu.draw(frame)?;
     let planes = rig.radiance(frame)?;
-    let distance = truth.distance(&planes)?;
+    let distance = ground_truth.distance(&planes)?;
     let begun = Instant::now();
     let most = rig.share(TIMING);
     let sum = |times: &[Timing]| times.iter().map(|t| t.ns).sum::<f64>();
-    // The first compiles, up to seconds: only a frame much longer than that, and than what is left,
-    // is timed by it.
+    // The first draw compiles, for up to seconds. It is only timed if it takes far longer than that
+    // and than the time left.
     let long = sum(&first) * 1e-9 > rig.left().max(COMPILING_S);
     let mut runs: Vec<Vec<Timing>> = if long { vec![first] } else { Vec::new() };
     let mut baseline_ns = Vec::new();

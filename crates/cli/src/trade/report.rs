@@ -1,10 +1,10 @@
-//! What a walk found, for people, for spreadsheets and for machines.
+//! The results as text, CSV and JSON.
 
 use ridgelight_trade::trade::{Break, Ladder, Place, Recommendation, Rule, SLACK, Side};
 use serde_json::{Value, json};
 
 use super::baked::Tried;
-use super::ground_truth::Truth;
+use super::ground_truth::GroundTruth;
 use super::hull;
 use super::left_out::LeftOut;
 use super::picture::Tones;
@@ -17,9 +17,9 @@ use crate::terminal::{digits, percent};
 pub struct Report<'a> {
     /// Device, driver, field and lights, as (name, value).
     pub about: Vec<(String, String)>,
-    pub truth: &'a Truth,
-    pub truth_s: f64,
-    pub truth_png: Vec<u8>,
+    pub ground_truth: &'a GroundTruth,
+    pub ground_truth_s: f64,
+    pub ground_truth_png: Vec<u8>,
     pub tones: &'a Tones,
     pub hulls: &'a [hull::Place],
     pub baked: &'a Tried,
@@ -46,7 +46,7 @@ impl Report<'_> {
         LeftOut { ladders: self.ladders, places: self.places, walk: self.walk }
     }
 
-    /// Points that no other covers, from cheap to dear.
+    /// Points of the frontier, from fast to slow.
     pub fn frontier(&self) -> Vec<&Point> {
         let front = self.walk.search.frontier().iter();
         front.filter_map(|f| self.walk.points.iter().find(|p| p.place == *f)).collect()
@@ -56,12 +56,12 @@ impl Report<'_> {
         &self.walk.points[self.recommended.point]
     }
 
-    /// Whether the truth cannot tell a point's error from none.
+    /// Whether the ground truth cannot distinguish a point's error from none.
     pub fn is_at_most(&self, point: &Point) -> bool {
-        point.distance.rmse <= self.truth.floor()
+        point.distance.rmse <= self.ground_truth.floor()
     }
 
-    /// Nanoseconds of a frame, had the machine been throughout as it was in the middle of the run.
+    /// Nanoseconds of a frame at the machine's median speed of the run.
     pub fn time_ns(&self, point: &Point) -> f64 {
         point.ratio * self.walk.baseline_ns()
     }
@@ -70,29 +70,30 @@ impl Report<'_> {
         ms(self.time_ns(point))
     }
 
-    /// A point's error, the truth's own at least.
+    /// A point's error, at least the ground truth's own.
     pub fn error(&self, point: &Point) -> f64 {
-        point.distance.rmse.max(self.truth.floor())
+        point.distance.rmse.max(self.ground_truth.floor())
     }
 
     pub fn error_text(&self, point: &Point) -> String {
-        let sign = if self.is_at_most(point) && self.truth.floor() > 0.0 { "≤ " } else { "" };
+        let sign =
+            if self.is_at_most(point) && self.ground_truth.floor() > 0.0 { "≤ " } else { "" };
         format!("{sign}{}", percent(self.error(point)))
     }
 
-    /// What the drift means, in a sentence.
+    /// The baseline's drift, in a sentence.
     pub fn drift_text(&self) -> String {
         let Some(s) = self.walk.drift() else { return String::new() };
         let spread = s.p90 / s.p10.max(f64::MIN_POSITIVE) - 1.0;
         let meaning = if spread > 0.1 {
-            "the machine was busy or changed its clock, so times were taken as ratios to draws of the \
-             baseline beside them"
+            "the machine was busy or changed its clock, so times are ratios to paired draws of \
+                the baseline"
         } else {
             "the machine was steady"
         };
         format!(
-            "The baseline ({}), drawn in turn with every point: {} in the middle, {} to {} four \
-             fifths of the time, {} to {} in all; {meaning}.",
+            "The baseline ({}), drawn in turn with every point, had a median of {}, {} to {} \
+                between its 10th and 90th percentile and {} to {} in all; {meaning}.",
             self.flags(self.walk.baseline),
             ms(s.median),
             ms(s.p10),
@@ -112,8 +113,8 @@ impl Report<'_> {
             })
         };
         let what = match found.side {
-            Side::Cost => "dearer steps were faster",
-            Side::Error => "dearer steps were less accurate",
+            Side::Cost => "slower steps were faster",
+            Side::Error => "slower steps were less accurate",
         };
         format!(
             "{}: {what}: {} ({}) against {} ({})",
@@ -133,37 +134,37 @@ impl Report<'_> {
             Budget::Seconds(all) => format!(" of {all:.1} s"),
             Budget::Evaluations(_) => String::new(),
         };
-        let end = if self.walk.out_of_time { "the budget ended" } else { "nothing was left" };
+        let end = if self.walk.out_of_time { "the budget ended" } else { "none were left" };
         format!(
             "{} settings measured, {skipped} ruled out or given up, {open} not tried when {end}; \
-             {:.1} s{of}, {:.1} s of them for the truth.",
+                {:.1} s{of}, of which the ground truth took {:.1} s.",
             self.walk.points.len(),
             self.spent_s,
-            self.truth_s
+            self.ground_truth_s
         )
     }
 
-    pub fn truth_text(&self) -> String {
+    pub fn ground_truth_text(&self) -> String {
         format!(
-            "Truth: {}. Its own error (relative RMSE): {}: {}.",
-            self.truth.about,
-            self.truth.own_text(),
-            self.truth.quality_of
+            "Ground truth: {}. Its own error (relative RMSE): {}: {}.",
+            self.ground_truth.about,
+            self.ground_truth.own_text(),
+            self.ground_truth.quality_of
         )
     }
 
     pub fn assumption() -> String {
         format!(
-            "Ruled out: what costs at least as much as one measured point and errs at least as much \
-             as another, where a third is better than both, if a dearer step never costs less and is \
-             never less accurate. Every measured pair is held against that; a ladder that broke it by \
-             more than {} rules nothing out.",
+            "A setting is ruled out if a measured point is both faster and more accurate than \
+                its bounds. The bounds assume that a slower step of a ladder never takes less \
+                time and never has a larger error. Every measured pair tests this; a ladder that \
+                violates it by more than {} rules nothing out.",
             percent(SLACK)
         )
     }
 
     pub fn print(&self) {
-        crate::say!("{}", self.truth_text());
+        crate::say!("{}", self.ground_truth_text());
         crate::say!("{:>12}  {:>12}  settings", "time", "error");
         for point in self.frontier() {
             let mark = if point.place == self.recommended().place { " <- recommended" } else { "" };
@@ -190,8 +191,8 @@ impl Report<'_> {
         for point in &self.walk.points {
             let (t, d) = (&point.total_ns, &point.distance);
             let place = &self.places[point.place];
-            let steps = self.ladders.iter().zip(&place.steps).map(|(knob, step)| {
-                let spelt = step.map_or("", |s| knob.steps[s].as_str());
+            let steps = self.ladders.iter().zip(&place.steps).map(|(ladder, step)| {
+                let spelt = step.map_or("", |s| ladder.steps[s].as_str());
                 spelt.split(' ').next_back().unwrap_or_default()
             });
             let mut row = vec![self.flags(point.place)];
@@ -248,8 +249,8 @@ impl Report<'_> {
             .iter()
             .map(|k| {
                 json!({
-                    "name": k.name, "cheap_to_dear": k.steps, "default": k.steps[k.default],
-                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "dearer": k.dearer,
+                    "name": k.name, "fast_to_slow": k.steps, "default": k.steps[k.default],
+                    "range": k.range.as_ref().map(|r| [r.start(), r.end()]), "slower": k.slower,
                 })
             })
             .collect();
@@ -267,12 +268,12 @@ impl Report<'_> {
         };
         json!({
             "ridgelight": env!("CARGO_PKG_VERSION"), "about": setup::typed(&self.about),
-            "truth": {
-                "what": self.truth.about, "own_relative_rmse": self.truth.own_error,
-                "how": self.truth.quality_of, "seconds": self.truth_s,
+            "ground_truth": {
+                "what": self.ground_truth.about, "own_relative_rmse": self.ground_truth.own_error,
+                "how": self.ground_truth.quality_of, "seconds": self.ground_truth_s,
             },
             "budget_s": budget_s, "evaluations": evaluations, "spent_s": self.spent_s,
-            "knobs": ladders,
+            "settings": ladders,
             "points": self.walk.points.iter().map(|p| self.point_json(p)).collect::<Vec<_>>(),
             "frontier": front,
             "recommendation": {

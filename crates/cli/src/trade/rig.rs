@@ -1,4 +1,4 @@
-//! The device, the scene and the time that is left.
+//! The device, the scene and the remaining time.
 
 use std::time::Instant;
 
@@ -10,12 +10,12 @@ use ridgelight::scene::{HeightField, Method, Quality, Scene};
 use crate::bench::verify;
 use crate::setup;
 
-/// What ends a trade.
+/// The end of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Budget {
-    /// Wall-clock seconds for the whole trade.
+    /// Wall-clock seconds for the whole command.
     Seconds(f64),
-    /// A number of measured settings. Takes as long as it takes, and measures as many on a slow machine as on a fast one.
+    /// A number of measured settings, independent of the machine's speed.
     Evaluations(usize),
 }
 
@@ -30,7 +30,7 @@ pub struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     pub fn new(gpu: Headless, limits: Limits, scene: &'a Scene, budget: Budget) -> Self {
-        // The baseline's frame stays beside the one that is measured.
+        // Two frames exist at a time: the baseline's and the measured one.
         let limits = Limits { memory_budget: limits.memory_budget / 2, ..limits };
         let contents = plan::picture_inputs(scene);
         Self { gpu, limits, scene, contents, begun: Instant::now(), budget }
@@ -41,7 +41,7 @@ impl<'a> Rig<'a> {
         self.begun.elapsed().as_secs_f64()
     }
 
-    /// Seconds of the budget that are left: below 0 when it is overdrawn, infinite where evaluations are counted.
+    /// Seconds left of the budget: negative when overdrawn, infinite where evaluations are counted.
     pub fn left(&self) -> f64 {
         self.share(1.0) - self.spent()
     }
@@ -54,7 +54,7 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// Whether the search ends after `measured` settings, with a fraction of the seconds kept back.
+    /// Whether the search ends after `measured` settings, with a fraction of the seconds reserved.
     pub fn is_spent(&self, measured: usize, kept: f64) -> bool {
         match self.budget {
             Budget::Seconds(_) => self.left() <= self.share(kept),
@@ -72,10 +72,10 @@ impl<'a> Rig<'a> {
         self.gpu.frame(plan, &contents)
     }
 
-    /// The radiance that a frame holds, as one plane where all is grey, else three; voids are NaN.
+    /// A frame's radiance: one plane where all is grey, else three; voids are NaN.
     ///
     /// # Errors
-    /// Light that is no number.
+    /// Radiance that is not finite.
     pub fn radiance(&mut self, frame: &Frame) -> Result<Vec<Vec<f32>>> {
         let pixels = self.gpu.pixels(frame, 0)?;
         crate::render::check_finite(&pixels, &self.scene.field)?;
@@ -98,8 +98,8 @@ impl<'a> Rig<'a> {
         drawn
     }
 
-    /// Seconds that an azimuth of the whole field will take, from drawing a piece of its middle: in
-    /// proportion to the samples, and by brute force to the length of the rays.
+    /// Estimated seconds per azimuth of the whole field, from a piece of its middle: proportional
+    /// to the texels, and for brute force to the rays' length.
     pub fn seconds_per_azimuth(&mut self, scene: &Scene, quality: &Quality) -> Result<f64> {
         let piece = verify::piece(scene)?;
         let few = Quality { azimuths: 8, sun_azimuths: 2, ..*quality };
@@ -108,7 +108,7 @@ impl<'a> Rig<'a> {
         let contents = plan::picture_inputs(&piece);
         let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
         let mut frame = self.gpu.frame(plan, &contents)?;
-        // The first compiles.
+        // The first draw compiles.
         let first = self.gpu.draw(&mut frame);
         let begun = Instant::now();
         let second = first.and_then(|_| self.gpu.draw(&mut frame));
@@ -119,7 +119,7 @@ impl<'a> Rig<'a> {
         let side = |f: &HeightField| f.rows().max(f.cols()) as f64;
         let (whole, part) = (&self.scene.field, &piece.field);
         let longer = match quality.method {
-            Method::Brute => side(whole) / side(part),
+            Method::BruteForce => side(whole) / side(part),
             _ => 1.0,
         };
         Ok(seconds / azimuths * longer * samples(whole) / samples(part))

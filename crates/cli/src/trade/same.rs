@@ -1,4 +1,4 @@
-//! Whether a truth from a file is of this scene, by what `render` and `reference` write of theirs.
+//! Checks by the metadata of `render` and `reference` that a reference file shows this scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,14 +9,14 @@ use ridgelight_io as files;
 
 use crate::args::albedo_colour;
 
-/// Numbers that were written and read back as text are as near.
+/// Tolerance of numbers that were written and read back as text.
 const NEAR: f64 = 1e-6;
 
-/// Refuses a file that says that it is of another scene: surface, borders, lights, or light that no settings
-/// give. `asked` is this scene's, as in a picture's header. What says nothing is taken.
+/// Refuses a file whose metadata states another surface, border or light, or light that no settings
+/// here compute. `asked` is this scene's metadata. A file without metadata is accepted.
 pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<()> {
-    let told: BTreeMap<String, String> = files::read_metadata(path)?.into_iter().collect();
-    if !told.contains_key("ridgelight") {
+    let stated: BTreeMap<String, String> = files::read_metadata(path)?.into_iter().collect();
+    if !stated.contains_key("ridgelight") {
         return Ok(());
     }
     let field = &scene.field;
@@ -24,14 +24,15 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
     ours.insert("cell_m".to_owned(), format!("{},{}", field.cell_m()[0], field.cell_m()[1]));
     ours.insert("base_m".to_owned(), field.base_m().to_string());
     ours.insert("border".to_owned(), format!("{:?}", scene.surface.border).to_lowercase());
-    let names: BTreeSet<&String> = told.keys().chain(ours.keys()).filter(|n| is_scene(n)).collect();
+    let names: BTreeSet<&String> =
+        stated.keys().chain(ours.keys()).filter(|n| is_scene(n)).collect();
     for name in names {
-        let [found, expected] = [&told, &ours].map(|all| all.get(name).map(String::as_str));
+        let [found, expected] = [&stated, &ours].map(|all| all.get(name).map(String::as_str));
         if !is_same(name, found, expected) {
             let expected = match name.as_str() {
-                "bounces" => format!("{}, as --bounces here", expected.unwrap_or("0")),
+                "bounces" => format!("{} (--bounces here)", expected.unwrap_or("0")),
                 name if gives_none(name) => format!("none: {NO_SETTINGS}"),
-                _ => format!("{}, as in this scene", expected.unwrap_or("none")),
+                _ => format!("{} (in this scene)", expected.unwrap_or("none")),
             };
             return Err(Error::File {
                 path: path.to_owned(),
@@ -44,11 +45,11 @@ pub fn check(path: &Path, scene: &Scene, asked: &[(String, String)]) -> Result<(
     Ok(())
 }
 
-const NO_SETTINGS: &str = "no settings that are walked give such light";
+const NO_SETTINGS: &str = "no settings of this search compute such light";
 
-/// Light that no settings that are walked give where the scene has none.
+/// Light that no settings compute if the scene has none.
 fn gives_none(name: &str) -> bool {
-    matches!(name, "bounces" | "phong") || is_numbered(name, "light")
+    matches!(name, "bounces" | "phong" | "specular") || is_numbered(name, "light")
 }
 
 fn is_scene(name: &str) -> bool {
@@ -66,7 +67,7 @@ fn is_numbered(name: &str, word: &str) -> bool {
     name.strip_prefix(word).is_some_and(|rest| rest.parse::<u32>().is_ok())
 }
 
-/// Whether two values are of one thing, however they are spelt; a file by its name alone, wherever it lies.
+/// Whether two values are equal however they are spelt; a file matches by name, in any folder.
 fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
     let numbers = |text: &str| -> Option<Vec<f64>> {
         if name == "albedo" {
@@ -84,7 +85,7 @@ fn is_same(name: &str, found: Option<&str>, expected: Option<&str>) -> bool {
     };
     match (numbers(a), numbers(b)) {
         (Some(a), Some(b)) => {
-            // Whole turns are none.
+            // Ignores whole turns.
             let turns = is_aimed(name) || name == "env_rotate_deg";
             a.len() == b.len()
                 && (0..a.len()).all(|i| {
@@ -134,7 +135,7 @@ mod tests {
             assert!(!is_same(name, a, b), "{name}: {a:?} {b:?}");
         }
         assert!(["key1", "sun12", "light3", "bounces"].iter().all(|name| is_scene(name)));
-        // Settings of one method are no scene.
+        // A method's settings are not part of the scene.
         assert!(!["sun_azimuths", "lights", "spp", "seed"].iter().any(|name| is_scene(name)));
     }
 }

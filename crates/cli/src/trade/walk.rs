@@ -1,5 +1,5 @@
-//! Which settings are measured, in which order, until the budget ends; then the ones to recommend, timed
-//! again.
+//! The search: which settings are measured, in which order, until the budget ends; then the
+//! recommended ones are timed again.
 
 use ridgelight::gpu::Frame;
 use ridgelight::scene::{Lines, Method, Quality};
@@ -7,7 +7,7 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::statistics::Summary;
 use ridgelight_trade::trade::{Ladder, Place, Recommendation, Rule, Search, recommend};
 
-use super::ground_truth::Truth;
+use super::ground_truth::GroundTruth;
 use super::picture::{self, Tones};
 use super::point::{self, Point};
 use super::rig::{Budget, Rig};
@@ -15,17 +15,17 @@ use crate::setup;
 
 /// Share of the budget that one setting may take.
 const DEAREST: f64 = 0.1;
-/// Share that is kept for timing what is recommended again, and moving its hull.
+/// Share reserved for timing the recommended settings again, and their hull storage.
 pub const KEPT: f64 = 0.15;
 
-/// What a walk has found.
+/// Results of a search.
 pub struct Walk {
     pub search: Search,
-    /// In the order in which they were measured.
+    /// In the order of measurement.
     pub points: Vec<Point>,
     /// Places that could not be measured, and why.
     pub given_up: Vec<(usize, String)>,
-    /// The place whose frame is drawn again between others.
+    /// The place whose frame is redrawn between others.
     pub baseline: usize,
     /// Whether the budget ended it.
     pub out_of_time: bool,
@@ -37,7 +37,7 @@ impl Walk {
         self.drift().map_or(0.0, |s| s.median)
     }
 
-    /// A rule whose times are nanoseconds, in the unit of costs.
+    /// Converts a rule's nanoseconds into the unit of costs.
     pub fn in_baselines(&self, rule: Rule) -> Rule {
         match rule {
             Rule::MaxCost(ns) => Rule::MaxCost(ns / self.baseline_ns()),
@@ -45,7 +45,7 @@ impl Walk {
         }
     }
 
-    /// What to take of the points so far.
+    /// The recommendation among the points so far.
     fn recommended(&self, rule: Rule) -> Result<Recommendation> {
         let values: Vec<_> =
             self.points.iter().filter_map(|p| self.search.value(p.place)).collect();
@@ -55,7 +55,7 @@ impl Walk {
         })
     }
 
-    /// The baseline's frame through the run, nanoseconds.
+    /// The baseline's frame times during the run, nanoseconds.
     pub fn drift(&self) -> Option<Summary> {
         let all: Vec<f64> =
             self.points.iter().flat_map(|p| p.baseline_ns.iter().copied()).collect();
@@ -63,10 +63,11 @@ impl Walk {
     }
 }
 
-/// Walks from `start` on, past what is refused, and recommends by `rule`, whose times are nanoseconds.
+/// Searches from `start`, skipping refused places, and recommends by `rule`, whose times are
+/// nanoseconds.
 pub fn walk(
     rig: &mut Rig,
-    (truth, tones): (&Truth, &Tones),
+    (ground_truth, tones): (&GroundTruth, &Tones),
     (ladders, places, refused): (&[Ladder], &[Place], Vec<(usize, String)>),
     (start, rule): (&Quality, Rule),
     bar: &indicatif::ProgressBar,
@@ -75,7 +76,7 @@ pub fn walk(
         places.iter().position(|p| p.quality == *start).expect("the defaults are on the ladders");
     let steps = places.iter().map(|p| p.steps.clone()).collect();
     let mut walk = Walk {
-        search: Search::new(steps, baseline, truth.floor()),
+        search: Search::new(steps, baseline, ground_truth.floor()),
         points: Vec::new(),
         given_up: Vec::new(),
         baseline,
@@ -103,14 +104,14 @@ pub fn walk(
             },
             places[place].flags(ladders)
         ));
-        let truths = (truth, tones);
+        let truths = (ground_truth, tones);
         if let Err(error) = visit(rig, truths, place, places, &mut walk, &mut frame, &mut slow) {
             break Err(error);
         }
     };
-    bar.set_message("timing what is recommended again");
+    bar.set_message("timing the recommended settings again");
     let recommended = walked.and_then(|()| match &mut frame {
-        Some(baseline) => confirm(rig, (truth, tones), places, &mut walk, rule, baseline),
+        Some(baseline) => confirm(rig, (ground_truth, tones), places, &mut walk, rule, baseline),
         None => walk.recommended(rule),
     });
     if let Some(frame) = frame {
@@ -119,11 +120,11 @@ pub fn walk(
     Ok((walk, recommended?))
 }
 
-/// Measures again what is recommended until that is settled: of many wavering times the least one is too
-/// low. What comes up onto the frontier without a picture gets one, whatever the time.
+/// Times the recommended settings again until they stay recommended: the least of many noisy times
+/// is too low. New points of the frontier get a picture even if the time is up.
 fn confirm(
     rig: &mut Rig,
-    (truth, tones): (&Truth, &Tones),
+    (ground_truth, tones): (&GroundTruth, &Tones),
     places: &[Place],
     walk: &mut Walk,
     rule: Rule,
@@ -145,22 +146,24 @@ fn confirm(
         let place = walk.points[at].place;
         sure.push(place);
         let quality = &places[place].quality;
-        let (again, frame, planes) = point::measure(rig, truth, place, quality, Some(baseline))?;
+        let (again, frame, planes) =
+            point::measure(rig, ground_truth, place, quality, Some(baseline))?;
         rig.gpu.end(frame);
         let point = &mut walk.points[at];
         point.add(again);
         if point.pictures.is_none() {
-            let p99 = point.distance.p99.max(truth.floor());
-            point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
+            let p99 = point.distance.p99.max(ground_truth.floor());
+            point.pictures =
+                Some(picture::pictures(&rig.scene.field, &planes, ground_truth, tones, p99)?);
         }
         walk.search.measured_again(place, point.value());
     }
 }
 
-/// Measures one place, or finds that it cannot be.
+/// Measures one place, or records why it cannot be measured.
 fn visit(
     rig: &mut Rig,
-    (truth, tones): (&Truth, &Tones),
+    (ground_truth, tones): (&GroundTruth, &Tones),
     place: usize,
     places: &[Place],
     walk: &mut Walk,
@@ -168,8 +171,8 @@ fn visit(
     slow: &mut Vec<((Method, Lines), f64)>,
 ) -> Result<()> {
     let quality = &places[place].quality;
-    let give_up = |walk: &mut Walk, why: String, too_dear| {
-        walk.search.give_up(place, too_dear);
+    let give_up = |walk: &mut Walk, why: String, too_slow| {
+        walk.search.give_up(place, too_slow);
         walk.given_up.push((place, why));
     };
     let plan = match rig.plan(rig.scene, quality) {
@@ -181,12 +184,12 @@ fn visit(
         Err(error) => return Err(error),
     };
     if baseline.is_some() {
-        // Two draws at least: one to warm up, one that counts.
+        // At least two draws: one to warm up, one timed.
         let needs = 2.0 * expected_s(rig, walk, place, quality, plan.azimuths.len(), slow)?;
         let most = rig.share(DEAREST);
         if needs > most {
             let why = format!(
-                "would take about {} s, more than {} s, a tenth of the budget",
+                "would take about {} s, more than a tenth of the budget ({} s)",
                 crate::terminal::digits(needs),
                 crate::terminal::digits(most)
             );
@@ -199,7 +202,7 @@ fn visit(
         }
     }
     let (mut point, frame, planes) =
-        match point::measure(rig, truth, place, quality, baseline.as_mut()) {
+        match point::measure(rig, ground_truth, place, quality, baseline.as_mut()) {
             Ok(measured) => measured,
             Err(error @ Error::Device { .. }) if baseline.is_some() => {
                 give_up(walk, error.to_string(), false);
@@ -214,11 +217,12 @@ fn visit(
     walk.search.measured(place, point.value());
     let front = walk.search.frontier();
     if front.contains(&place) {
-        let p99 = point.distance.p99.max(truth.floor());
-        point.pictures = Some(picture::pictures(&rig.scene.field, &planes, truth, tones, p99)?);
+        let p99 = point.distance.p99.max(ground_truth.floor());
+        point.pictures =
+            Some(picture::pictures(&rig.scene.field, &planes, ground_truth, tones, p99)?);
     }
     walk.points.push(point);
-    // The baseline is not measured again should it come up later: it keeps its own.
+    // The baseline keeps its own time.
     let baseline = walk.baseline;
     let is_off = |p: &&mut Point| !front.contains(&p.place) && p.place != baseline;
     for point in walk.points.iter_mut().filter(is_off) {
@@ -227,8 +231,8 @@ fn visit(
     Ok(())
 }
 
-/// Seconds that a draw is expected to take: of sweeps along lines by what was measured, of exact and
-/// brute ones, which nothing measured is like, by a piece of the field.
+/// Expected seconds per draw: for line sweeps from earlier measurements; for exact and brute-force
+/// ones from a piece of the field.
 fn expected_s(
     rig: &mut Rig,
     walk: &Walk,
@@ -237,11 +241,11 @@ fn expected_s(
     azimuths: usize,
     slow: &mut Vec<((Method, Lines), f64)>,
 ) -> Result<f64> {
-    if quality.method != Method::Brute && quality.lines != Lines::Exact {
+    if quality.method != Method::BruteForce && quality.lines != Lines::Exact {
         return Ok(walk.search.predicted(place).cost * walk.baseline_ns() * 1e-9);
     }
     let form = match quality.method {
-        Method::Brute => (Method::Brute, Lines::Exact),
+        Method::BruteForce => (Method::BruteForce, Lines::Exact),
         method => (method, quality.lines),
     };
     let each = match slow.iter().find(|(known, _)| *known == form) {

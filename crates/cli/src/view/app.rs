@@ -1,4 +1,4 @@
-//! The window's events, and its frames.
+//! The window's events and frames.
 
 mod compare;
 mod drawing;
@@ -25,49 +25,49 @@ use super::state::{Figures, Light, State, Wish};
 use crate::args::ViewArgs;
 use compare::Compare;
 
-/// How soon a window that shows nothing is looked at again.
+/// Interval between attempts of a window that shows nothing.
 const PAUSE: Duration = Duration::from_millis(50);
 
 pub struct App<'a> {
     args: &'a ViewArgs,
     state: State,
-    shown: Option<Shown>,
-    /// None without a script; what is left of it.
+    shown: Option<OpenWindow>,
+    /// The rest of the script; none without a script.
     steps: Option<VecDeque<Step>>,
     /// Why it ended.
     error: Option<Error>,
     keys: ModifiersState,
     cursor: [f64; 2],
     held: Option<Button>,
-    /// Whether nobody can see the window, as far as its system tells.
+    /// Whether the window is hidden, as far as its system reports that.
     is_hidden: bool,
-    /// Frames that are still to be drawn; the figures of one are known two frames later.
+    /// Frames still to be drawn; timings of a frame arrive two frames later.
     due: u32,
     frames: u64,
     /// Milliseconds of the frames since the last report.
     spent: Vec<f64>,
     last: Option<Instant>,
-    /// Since when the window shows nothing, and why, where it should.
+    /// Since when the window has shown nothing though it should, and why.
     blank: Option<(Instant, &'static str)>,
 }
 
-/// A window and what is drawn in it.
-struct Shown {
+/// A window and its frames.
+struct OpenWindow {
     lit: Option<Frame>,
-    /// Whether the light has to be found anew.
+    /// Whether the light must be recomputed.
     is_stale: bool,
-    /// Light that could be drawn.
+    /// The last light that could be drawn.
     good: Option<Light>,
-    /// What is shown beside, where anything is.
+    /// The comparison pictures, if shown.
     compare: Option<Compare>,
     figures: Figures,
     last_edit: Option<Rectangle>,
     limits: Limits,
     screen: Screen,
     window: Arc<Window>,
-    /// What its system last said it is, for those where surfaces have no size of their own.
+    /// The size that the system last reported, for surfaces without a size of their own.
     inner: [u32; 2],
-    /// Of its pictures.
+    /// Size of each picture.
     size: [u32; 2],
 }
 
@@ -91,7 +91,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// What it ended with.
+    /// The result of the run.
     pub fn end(mut self) -> Result<()> {
         self.close();
         self.error.map_or(Ok(()), Err)
@@ -118,7 +118,7 @@ impl<'a> App<'a> {
         if let Some(budget) = self.args.global.memory_budget {
             limits.memory_budget = budget;
         }
-        self.shown = Some(Shown {
+        self.shown = Some(OpenWindow {
             lit: None,
             is_stale: true,
             good: None,
@@ -135,7 +135,7 @@ impl<'a> App<'a> {
         Ok(())
     }
 
-    /// Frees what is on the device; tells what validation said.
+    /// Frees the device's resources and reports validation messages.
     fn close(&mut self) {
         let Some(mut shown) = self.shown.take() else { return };
         let beside = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
@@ -153,7 +153,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// Whether there is something to be drawn that nobody has seen.
+    /// Whether an unseen change must be drawn.
     fn is_due(&self) -> bool {
         let gathers = |compare: &Compare| compare.is_busy(&self.state);
         let compare = self.shown.as_ref().and_then(|shown| shown.compare.as_ref());
@@ -165,12 +165,13 @@ impl<'a> App<'a> {
         events.exit();
     }
 
-    /// The window's.
+    /// The window's pixels.
     fn size(&self) -> [u32; 2] {
         self.shown.as_ref().map_or(self.args.size, |shown| shown.size)
     }
 
-    /// That of one of the pictures side by side, or of the only one; and a place of the window in the one that it is in.
+    /// The size of one of the pictures side by side, or of the only one; and the position within it
+    /// of a place in the window.
     fn within(&self, [x, y]: [f64; 2]) -> ([u32; 2], [f64; 2]) {
         let (lefts, size) = drawing::places(self.size(), self.state.is_split);
         let left = lefts.iter().map(|l| f64::from(*l)).rev().find(|l| *l <= x).unwrap_or(0.0);
@@ -262,7 +263,8 @@ impl App<'_> {
                 self.due = self.due.max(1);
             }
             WindowEvent::ModifiersChanged(keys) => self.keys = keys.state(),
-            // Keys that are down as the window gets the keyboard were pressed for another, or are told again.
+            // Keys that are down when the window gets the focus belong to another window, or are
+            // repeats.
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
                 if event.state == ElementState::Pressed =>
             {
@@ -319,7 +321,7 @@ impl App<'_> {
         self.do_plainly(wish)
     }
 
-    /// From the cursor on.
+    /// A drag that starts at the cursor.
     fn drag(&mut self, button: Button, way: [f64; 2]) -> Result<bool> {
         let (size, from) = self.within(self.cursor);
         let before = self.state.light();
@@ -333,7 +335,7 @@ impl App<'_> {
         self.do_plainly(wish)
     }
 
-    /// What changes no light.
+    /// Events that change no light.
     fn do_plainly(&mut self, wish: Wish) -> Result<bool> {
         if wish != Wish::Nothing {
             self.due = self.due.max(1);

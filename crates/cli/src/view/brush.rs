@@ -4,36 +4,37 @@ use ridgelight::Result;
 use ridgelight::plan::Rectangle;
 use ridgelight::scene::HeightField;
 
-/// What a brush does.
+/// A brush's effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Raise,
     Lower,
-    /// What is steeper than [`TALUS_DEG`] slides.
+    /// Slopes above [`TALUS_DEG`] slide.
     Erode,
 }
 
-/// A round brush, softer towards its rim.
+/// A round brush with a soft rim.
 #[derive(Clone, Copy, Debug)]
 pub struct Brush {
     pub radius_m: f64,
-    /// Of a dab in the middle, share of the radius that heights go up or down by, (0..1]; of erosion ten times the share
-    /// of what is too steep that moves, at most all that is stable.
+    /// For a dab's centre: the share of the radius by which heights rise or fall, (0..1]; for
+    /// erosion, ten times the share of the excess height that moves, limited for stability.
     pub strength: f64,
 }
 
-/// The angle that loose ground keeps.
+/// Talus angle of loose ground.
 const TALUS_DEG: f64 = 30.0;
 
-/// Rounds of erosion a dab.
+/// Iterations of erosion per dab.
 const ROUNDS: u32 = 8;
 
-/// What goes over one of a sample's eight edges, share of what is too high: all eight together half of it, so that no
-/// sample falls below what it is compared with.
+/// Share of the excess height that crosses one of a texel's eight edges. All eight together move
+/// half of it, so that no texel falls below its neighbour.
 const RATE: f64 = 1.0 / 16.0;
 
 impl Brush {
-    /// Changes heights around a place; which, none where the brush reaches none.
+    /// Changes heights around a place. Returns the changed rectangle; none where the brush reaches
+    /// no texel.
     pub fn dab(
         &self,
         field: &mut HeightField,
@@ -83,8 +84,8 @@ impl Brush {
     }
 }
 
-/// One round of thermal erosion (after Musgrave, Kolb & Mace 1989): over each edge that is steeper than the talus a
-/// share of what is too high goes down. What leaves one sample arrives at another: the sum stays, but for roundings.
+/// One iteration of thermal erosion (after Musgrave, Kolb & Mace 1989): each edge steeper than the
+/// talus moves a share of the excess height down. The sum of heights is constant but for rounding.
 fn erode(heights: &mut [f64], weights: &[f64], cols: usize, [x, y]: [f64; 2], rate: f64) {
     let talus = TALUS_DEG.to_radians().tan();
     let mut change = vec![0.0; heights.len()];
@@ -137,9 +138,10 @@ mod tests {
 
     const BRUSH: Brush = Brush { radius_m: 12.0, strength: 0.1 };
 
-    /// Each height is rounded to f32 once a dab: by half a unit of its last place, 2^-24 of it, at most.
+    /// Each height is rounded to f32 once per dab: by at most half a unit in the last place, 2^-24
+    /// of it.
     #[test]
-    fn erosion_keeps_the_sum_and_wears_off_what_is_steep() {
+    fn erosion_keeps_the_sum_and_flattens_steep_slopes() {
         let mut field = field(|x, y| (20.0 - 2.0 * x.hypot(y)).max(0.0) + (3.0 * x).sin());
         let steepest = |f: &HeightField| {
             let at = |c: usize| f64::from(f.heights_m()[15 * 33 + c]);
@@ -156,7 +158,8 @@ mod tests {
         assert!(steepest(&field) < steep / 2.0, "{} of {steep}", steepest(&field));
     }
 
-    /// No edge is steeper than the talus: slopes of 0.5 along the steepest direction, tan 30° being 0.577.
+    /// No edge is steeper than the talus: slopes of 0.5 along the steepest direction, tan 30° being
+    /// 0.577.
     #[test]
     fn erosion_leaves_gentle_ground_as_it_is() {
         let mut field = field(|x, y| 0.3 * x + 0.4 * y);
@@ -165,7 +168,8 @@ mod tests {
         assert!(field == before);
     }
 
-    /// In the middle by a tenth of the radius; beyond the rim nothing; lowered by as much to within a rounding of each.
+    /// The centre rises by a tenth of the radius, nothing beyond the rim; lowering restores the
+    /// heights to within a rounding of each.
     #[test]
     fn what_is_raised_is_lowered_again() {
         let mut field = field(|_, _| 7.0);

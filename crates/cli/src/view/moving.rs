@@ -1,42 +1,43 @@
-//! Waves, or a ridge, that travel over a field.
+//! Waves or a ridge that travel over a field.
 
 use std::f64::consts::TAU;
 
 use ridgelight::Result;
 use ridgelight::scene::HeightField;
 
-/// Seconds that pass from frame to frame.
+/// Seconds from frame to frame.
 const FRAME_S: f64 = 1.0 / 30.0;
 
-/// Each by its direction (counter-clockwise from east), waves across the field's shorter side, share of the height,
-/// and waves that pass a place in a second.
+/// Each: direction (counter-clockwise from east), waves across the field's shorter side, share of
+/// the height, and waves per second at a place.
 const WAVES: [(f64, f64, f64, f64); 3] =
     [(0.4, 4.0, 0.5, 0.45), (1.9, 7.0, 0.3, 0.6), (3.6, 11.0, 0.2, 0.8)];
 
-/// A ridge's way: counter-clockwise from east; seconds from one end of the field to the other; its half width, share
-/// of the field's shorter side.
+/// A ridge: direction counter-clockwise from east; seconds from one end of the field to the other;
+/// half width as a share of the field's shorter side.
 const RIDGE_TOWARDS: f64 = 0.3;
 const RIDGE_S: f64 = 6.0;
 const RIDGE_WIDTH: f64 = 0.06;
 
-/// What travels.
+/// The moving shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Waves,
     Ridge,
 }
 
-/// A field with something travelling over it.
+/// A field with a moving shape.
 pub struct Moving {
     pub kind: Kind,
     still: HeightField,
-    /// Of all waves together, or of the ridge, metres.
+    /// Height of all waves together, or of the ridge, metres.
     height_m: f64,
     frames: u32,
 }
 
 impl Moving {
-    /// Waves an eighth of the field's relief high, a fortieth of its side where that is more; a ridge twice that.
+    /// Waves an eighth of the field's relief high, or a fortieth of its side where that is more; a
+    /// ridge twice that.
     pub fn over(still: HeightField, kind: Kind) -> Self {
         let heights = || still.heights_m().iter().copied();
         let (low, high) =
@@ -46,7 +47,7 @@ impl Moving {
         Self { kind, still, height_m, frames: 0 }
     }
 
-    /// The field a frame later.
+    /// The field one frame later.
     pub fn next(&mut self) -> Result<HeightField> {
         self.frames += 1;
         let seconds = f64::from(self.frames) * FRAME_S;
@@ -66,7 +67,7 @@ impl Moving {
         HeightField::new(field.rows(), cols, &all, field.cell_m(), voids)
     }
 
-    /// The field as it was.
+    /// The original field.
     pub fn end(self) -> HeightField {
         self.still
     }
@@ -77,7 +78,7 @@ fn side_m(field: &HeightField) -> f64 {
     (field.cols() as f64 * x).min(field.rows() as f64 * y)
 }
 
-/// Of waves of a height of 1, by the place from the north-western corner.
+/// Waves of height 1, by the position from the north-western corner.
 fn waves(side: f64, seconds: f64) -> Box<dyn Fn([f64; 2]) -> f64> {
     Box::new(move |place: [f64; 2]| {
         let wave = |&(towards, count, share, passing): &(f64, f64, f64, f64)| {
@@ -88,13 +89,15 @@ fn waves(side: f64, seconds: f64) -> Box<dyn Fn([f64; 2]) -> f64> {
     })
 }
 
-/// The same of a ridge, a bell across its way: it comes in at one end and goes out at the other, again and again.
+/// The same for a ridge: a bell-shaped cross section that enters at one end and leaves at the
+/// other, repeatedly.
 fn ridge(field: &HeightField, seconds: f64) -> Box<dyn Fn([f64; 2]) -> f64> {
     let (sin, cos) = RIDGE_TOWARDS.sin_cos();
     let [cell_x, cell_y] = field.cell_m();
     let (length, height) = ((field.cols() - 1) as f64 * cell_x, (field.rows() - 1) as f64 * cell_y);
     let width = RIDGE_WIDTH * side_m(field);
-    // Along the way the south-western corner is first and the north-eastern last.
+    // Along the direction of travel the south-western corner comes first and the north-eastern
+    // last.
     let (first, last) = (-height * sin - 3.0 * width, length * cos + 3.0 * width);
     let middle = first + (seconds / RIDGE_S).fract() * (last - first);
     Box::new(move |place: [f64; 2]| {
@@ -107,7 +110,7 @@ fn ridge(field: &HeightField, seconds: f64) -> Box<dyn Fn([f64; 2]) -> f64> {
 mod tests {
     use super::*;
 
-    /// Half of the way after half of the time: on a line of samples along x, in its middle.
+    /// After half of the time it is halfway: on a row along x, in its middle.
     #[test]
     fn a_ridge_is_where_it_has_come_to() {
         let still = HeightField::new(1, 201, &[5.0; 201], [1.0; 2], None).unwrap();

@@ -1,15 +1,15 @@
-//! Text as pixels: 8 × 8 dots a letter, plain ASCII.
+//! Text as pixels: 8 × 8 dots per letter, plain ASCII.
 
 use font8x8::legacy::BASIC_LEGACY;
 
 const INK: [u8; 4] = [0xe8, 0xe8, 0xe0, 0xff];
 const PAPER: [u8; 4] = [0x18, 0x1a, 0x20, 0xff];
-/// Around the text, and a letter's and a line's room, dots.
+/// Padding of the text; width of a letter and height of a line, dots.
 const MARGIN: usize = 6;
 const LETTER: usize = 8;
 const LINE: usize = 11;
 
-/// Around the chosen mark, and around others.
+/// Rim of the chosen mark, and of others.
 const RIM: [[u8; 4]; 2] = [[0xff; 4], [0, 0, 0, 0xff]];
 
 /// Pixels of some lines, or of a mark.
@@ -19,12 +19,12 @@ pub struct Drawn {
     pub pixels: Vec<[u8; 4]>,
 }
 
-/// Letters that a line of a width, pixels, has room for.
+/// Letters per line of a width in pixels.
 pub fn letters(width: u32, scale: usize) -> usize {
     (width as usize / scale).saturating_sub(2 * MARGIN) / LETTER
 }
 
-/// A square with a rim, `half` pixels to each side of its middle without it.
+/// A square with a rim, `half` pixels from its centre to each side, without the rim.
 pub fn square(half: u32, colour: [u8; 4], is_chosen: bool) -> Drawn {
     let side = 2 * half + 3;
     let rim = RIM[usize::from(!is_chosen)];
@@ -33,7 +33,7 @@ pub fn square(half: u32, colour: [u8; 4], is_chosen: bool) -> Drawn {
     Drawn { size: [side, side], pixels }
 }
 
-/// `scale` pixels a side of a dot; nothing of no lines.
+/// `scale` pixels per side of a dot; none without lines.
 pub fn draw(lines: &[String], scale: usize) -> Drawn {
     if lines.is_empty() {
         return Drawn { size: [0, 0], pixels: Vec::new() };

@@ -1,4 +1,4 @@
-//! What a user would do, from a file: for tests.
+//! User input from a file, for tests.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -10,38 +10,38 @@ use ridgelight::{Error, Result};
 pub enum Step {
     /// A key by its name, as [`State::key`](super::state::State::key) takes it.
     Key(String),
-    /// A drag by a button: from where, by how much, pixels.
+    /// A drag by a button: start and offset, pixels.
     Drag(Button, [f64; 2], [f64; 2]),
     /// Notches of the wheel, upwards, and where.
     Wheel(f64, [f64; 2]),
-    /// So many frames are drawn.
+    /// Draws so many frames.
     Frames(u32),
-    /// The window's columns and rows; goes on when pictures have them.
+    /// Sets the window's columns and rows, and waits until pictures have them.
     Size([u32; 2]),
-    /// The window's surface is thrown away, as if it had been lost.
+    /// Drops the window's surface, as if it had been lost.
     Lose,
     Picture(PathBuf),
     Scene(PathBuf),
-    /// The window's pixels.
+    /// Saves the window's pixels.
     Screenshot(PathBuf),
-    /// The text over them.
+    /// Saves the text over them.
     Text(PathBuf),
-    /// Frames are drawn until the reference beside has so many paths a sample.
+    /// Draws until the reference has so many paths per texel.
     Paths(u32),
-    /// Frames so far, and milliseconds of each since the last report; after some words.
+    /// Prints the frames so far and their milliseconds since the last report, after some words.
     Report(String),
-    /// Input is awaited for so many seconds, as without a script.
+    /// Waits for input for so many seconds, as without a script.
     Wait(f64),
-    /// A size that has been asked for, and until when it may come.
+    /// A requested size, and its deadline.
     Resizing([u32; 2], Instant),
-    /// Until when input is awaited.
+    /// The end of a wait for input.
     Waiting(Instant),
 }
 
-/// A mouse button's work.
+/// What a mouse button drags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// What the tool at hand does: turns the view.
+    /// The active tool; by default it turns the view.
     Left,
     /// Moves the sun.
     Right,
@@ -49,10 +49,10 @@ pub enum Button {
     Middle,
 }
 
-/// Steps of a file, one a line; `#` begins a comment.
+/// Parses a file with one step per line; `#` begins a comment.
 ///
 /// # Errors
-/// A file that cannot be read, a line that is none of them.
+/// A file that cannot be read, or an unknown line.
 pub fn read(path: &Path) -> Result<Vec<Step>> {
     let io = |source| Error::Io { path: path.to_owned(), source };
     let text = std::fs::read_to_string(path).map_err(io)?;
@@ -68,8 +68,8 @@ pub fn read(path: &Path) -> Result<Vec<Step>> {
                 place: format!("line {number}"),
                 found: line.to_owned(),
                 expected:
-                    "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, paths, \
-                       report or wait, and what belongs to it"
+                    "key, drag, wheel, frames, size, lose, picture, scene, screenshot, text, \
+                        paths, report or wait, with its values"
                         .into(),
             }
         })?);
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_steps_and_others_are_told_by_number() {
+    fn unknown_lines_are_refused_by_number() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("script");
         std::fs::write(&path, "# begin\nkey shift+left\n\ndrag right 1,2 -3,4 # sun\nsize 64,48\n")

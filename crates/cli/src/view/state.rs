@@ -1,4 +1,4 @@
-//! What is shown and by what it is lit, and what keys and drags change of it.
+//! The viewer's state: the shown scene, its lights, and what keys and drags change.
 
 mod figures;
 mod lights;
@@ -18,29 +18,29 @@ use super::strokes::Strokes;
 use crate::args::ViewArgs;
 use crate::scene_file::Request;
 use settings::{Refused, Settings};
-use viewpoint::{FOV_DEG, Sight};
+use viewpoint::{FOV_DEG, Viewpoint};
 
 pub use figures::Figures;
 pub use settings::said;
 
-/// What a key asks for.
+/// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
     Nothing,
-    /// The same light, shown otherwise.
+    /// The same light, displayed differently.
     Show,
     /// Other light or another field.
     Light,
     /// Other heights in a rectangle: [`State::take_edited`].
     Heights,
-    /// How far from the reference the light is.
+    /// Measures the error against the reference.
     Error,
     Picture,
     Scene,
     End,
 }
 
-/// Settings, lights, and the words that they were given by.
+/// Settings and lights, and the words that they were given by.
 pub type Light = (Quality, Lights, Request);
 
 /// How much text is shown.
@@ -52,7 +52,7 @@ enum Text {
     Nothing,
 }
 
-/// What the left button does.
+/// The left button's tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Tool {
     Look,
@@ -66,7 +66,7 @@ pub struct State {
     asked: Request,
     moving: Option<Moving>,
     exposure: f32,
-    sight: Sight,
+    viewpoint: Viewpoint,
     text: Text,
     settings: Settings,
     tool: Tool,
@@ -74,14 +74,14 @@ pub struct State {
     strokes: Strokes,
     /// Where heights have changed since they were last taken.
     edited: Option<Rectangle>,
-    /// Where the stroke that is being drawn has come to, absolute.
+    /// The current end of the stroke that is being drawn, absolute.
     stroke_m: [f64; 2],
-    /// The ball of light that is chosen.
-    ball: Option<usize>,
+    /// The chosen sphere light.
+    sphere_light: Option<usize>,
     cursor: [f64; 2],
-    /// Whether the light is shown between that without shadows and the reference.
+    /// Whether the comparison pictures are shown.
     pub is_split: bool,
-    /// Said until the next key.
+    /// A message, shown until the next key.
     pub message: Option<String>,
 }
 
@@ -93,7 +93,7 @@ impl State {
             asked: args.asked.clone(),
             moving: None,
             exposure: args.exposure,
-            sight: Sight::default(),
+            viewpoint: Viewpoint::default(),
             text: Text::Keys,
             settings: Settings::new(),
             tool: Tool::Look,
@@ -101,7 +101,7 @@ impl State {
             strokes: Strokes::default(),
             edited: None,
             stroke_m: [0.0; 2],
-            ball: None,
+            sphere_light: None,
             cursor: [0.0; 2],
             is_split: false,
             message: None,
@@ -110,12 +110,12 @@ impl State {
         state
     }
 
-    /// What a key or a drag may change of the light.
+    /// The parts of the light that a key or a drag may change.
     pub fn light(&self) -> Light {
         (self.quality, self.scene.lights.clone(), self.asked.clone())
     }
 
-    /// Goes back to light that could be drawn, and says why.
+    /// Returns to the last light that could be drawn, and shows why.
     pub fn go_back(&mut self, light: Light, why: Error) {
         (self.quality, self.scene.lights, self.asked) = light;
         if let Err(Refused(why)) = said::<()>(Err(why)) {
@@ -131,7 +131,7 @@ impl State {
         self.moving.is_some()
     }
 
-    /// Whether heights are other than they were read.
+    /// Whether heights differ from the file's.
     pub fn has_other_heights(&self) -> bool {
         self.is_moving() || self.strokes.have_changed()
     }
@@ -141,8 +141,8 @@ impl State {
         Wish::Show
     }
 
-    /// What was given and what has been changed since, for a scene file; of a picture of this size. `heights` is the file
-    /// of other heights.
+    /// Arguments and changes for a scene file, for a picture of this size. `heights` is the file of
+    /// changed heights.
     pub fn asked(
         &self,
         [width, height]: [u32; 2],
@@ -163,13 +163,13 @@ impl State {
         }
         // The window's, where there is no camera.
         asked.clear("size");
-        let Some(camera) = &self.sight.camera else { return asked };
+        let Some(camera) = &self.viewpoint.camera else { return asked };
         let Camera { target_m: [x, y, z], azimuth_rad, elevation_rad, distance_m, .. } = camera;
         let compass = hundredths(90.0 - azimuth_rad.to_degrees());
         let elevation = hundredths(elevation_rad.to_degrees());
         asked.set("camera", vec![format!("{compass},{elevation},{distance_m}")]);
         asked.set("look_at", vec![format!("{x},{y},{z}")]);
-        let options = Sight::options(&self.scene.field, [width, height], limits);
+        let options = Viewpoint::options(&self.scene.field, [width, height], limits);
         asked.set("fov", vec![FOV_DEG.to_string()]);
         asked.set("size", vec![format!("{width}x{height}")]);
         asked.set("samples", vec![options.samples.to_string()]);
@@ -177,7 +177,8 @@ impl State {
         asked
     }
 
-    /// As `render` would, while nothing moves and no brush is at hand, which needs what edits go on from.
+    /// The light that `render` computes; while the field moves or a brush is active, the kind that
+    /// edits continue from.
     pub fn plan(&self, limits: &Limits) -> Result<Plan> {
         let has_brush = matches!(self.tool, Tool::Brush(_));
         let wanted = Picture { still: !self.is_moving() && !has_brush, ..Picture::default() };
@@ -199,7 +200,7 @@ impl State {
         plan::picture(&self.scene, &self.quality, limits, wanted)
     }
 
-    /// The field of the next frame, where it moves.
+    /// The field of the next frame, if it moves.
     pub fn step(&mut self) -> Result<()> {
         if let Some(moving) = &mut self.moving {
             self.scene.field = moving.next()?;
@@ -207,39 +208,39 @@ impl State {
         Ok(())
     }
 
-    /// What is seen from above in a picture of a size.
+    /// The map section in a picture of a size.
     pub fn map(&self, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
-        self.sight.map(&self.scene.field, size, swaps, has_colour)
+        self.viewpoint.map(&self.scene.field, size, swaps, has_colour)
     }
 
-    /// What a camera sees of what a plan draws, where there is one.
+    /// A camera view of a plan's light, if there is a camera.
     pub fn view(&self, lit: &Plan, size: [u32; 2], limits: &Limits) -> Result<Option<View>> {
-        self.sight.view(&self.scene, lit, size, limits)
+        self.viewpoint.view(&self.scene, lit, size, limits)
     }
 
-    /// A key by its name: a letter, `left`, `shift+left`, `escape`.
+    /// Handles a key by its name: a letter, `left`, `shift+left`, `escape`.
     pub fn key(&mut self, name: &str, size: [u32; 2]) -> Wish {
         self.message = None;
         let middle = size.map(|n| f64::from(n) / 2.0);
         let step = f64::from(size[0].min(size[1])) / 16.0;
         let field = &self.scene.field;
         match name {
-            "left" => self.sight.turn(field, size, [step, 0.0]),
-            "right" => self.sight.turn(field, size, [-step, 0.0]),
-            "up" => self.sight.turn(field, size, [0.0, step]),
-            "down" => self.sight.turn(field, size, [0.0, -step]),
-            "j" => self.sight.pan(field, size, [step, 0.0]),
-            "l" => self.sight.pan(field, size, [-step, 0.0]),
-            "i" => self.sight.pan(field, size, [0.0, step]),
-            "k" => self.sight.pan(field, size, [0.0, -step]),
-            "+" | "=" => self.sight.near(field, size, 1.25, middle),
-            "-" => self.sight.near(field, size, 0.8, middle),
-            "home" => self.sight.all(field, size),
-            "v" if self.sight.camera.is_some() => self.sight.camera = None,
+            "left" => self.viewpoint.turn(field, size, [step, 0.0]),
+            "right" => self.viewpoint.turn(field, size, [-step, 0.0]),
+            "up" => self.viewpoint.turn(field, size, [0.0, step]),
+            "down" => self.viewpoint.turn(field, size, [0.0, -step]),
+            "j" => self.viewpoint.pan(field, size, [step, 0.0]),
+            "l" => self.viewpoint.pan(field, size, [-step, 0.0]),
+            "i" => self.viewpoint.pan(field, size, [0.0, step]),
+            "k" => self.viewpoint.pan(field, size, [0.0, -step]),
+            "+" | "=" => self.viewpoint.near(field, size, 1.25, middle),
+            "-" => self.viewpoint.near(field, size, 0.8, middle),
+            "home" => self.viewpoint.all(field, size),
+            "v" if self.viewpoint.camera.is_some() => self.viewpoint.camera = None,
             "v" if field.rows().min(field.cols()) < 2 => {
                 return self.say("a camera needs two rows and two columns");
             }
-            "v" => self.sight.begin_camera(field, size),
+            "v" => self.viewpoint.begin_camera(field, size),
             "e" => self.exposure = (self.exposure * 1.25).clamp(1e-30, 1e30),
             "d" => self.exposure = (self.exposure * 0.8).clamp(1e-30, 1e30),
             "h" => {
@@ -258,7 +259,7 @@ impl State {
         Wish::Show
     }
 
-    /// Keys that change more than what is seen.
+    /// Keys that change more than the view.
     fn key_of_light(&mut self, name: &str, size: [u32; 2]) -> Wish {
         match name {
             "shift+left" => self.turn_sun(-5.0, 0.0),
@@ -272,7 +273,7 @@ impl State {
                 self.turn_setting(&chosen, name == ".")
             }
             "tab" | "shift+tab" => {
-                // The list first, then another of it.
+                // The first press opens the list, the next ones move in it.
                 if self.text == Text::Settings {
                     self.settings.choose(name == "tab");
                 }
@@ -286,11 +287,11 @@ impl State {
             "5" => self.take(Tool::Lights),
             "[" | "]" | ";" | "'" if self.tool != Tool::Lights => self.change_brush(name),
             "[" | "]" | ";" | "'" | "t" | "x" | "delete" | "pageup" | "pagedown" => {
-                self.change_ball(name)
+                self.change_light(name)
             }
             "o" => {
                 self.tool = Tool::Lights;
-                self.place_ball(size, size.map(|n| f64::from(n) / 2.0))
+                self.place_light(size, size.map(|n| f64::from(n) / 2.0))
             }
             "z" => self.undo(true),
             "y" => self.undo(false),
@@ -304,14 +305,14 @@ impl State {
         }
     }
 
-    /// Goes over to another tool; brushes have another plan.
+    /// Switches tools. Brushes need another plan.
     fn take(&mut self, tool: Tool) -> Wish {
         self.strokes.end(&self.scene.field);
         self.tool = tool;
         Wish::Light
     }
 
-    /// Begins or ends what moves.
+    /// Starts or stops the movement.
     fn move_by(&mut self, kind: Kind) -> Wish {
         self.strokes.end(&self.scene.field);
         let before = self.moving.take().map(|moving| {
@@ -345,13 +346,13 @@ impl State {
         }
     }
 
-    /// A button that goes down at a pixel.
+    /// Presses a button at a pixel.
     pub fn press(&mut self, button: Button, at: [f64; 2], size: [u32; 2]) -> Wish {
         match (button, self.tool) {
             (Button::Left, Tool::Brush(action)) => self.begin_stroke(action, at, size),
             (Button::Left, Tool::Lights) => {
                 self.message = None;
-                self.take_ball(size, at)
+                self.take_light(size, at)
             }
             _ => Wish::Nothing,
         }
@@ -364,21 +365,21 @@ impl State {
         let field = &self.scene.field;
         match (button, self.tool) {
             (Button::Left, Tool::Brush(action)) => return self.draw_stroke(action, to, size),
-            (Button::Left, Tool::Lights) => return self.drag_ball(size, from, to),
-            (Button::Left, Tool::Look) => self.sight.turn(field, size, way),
-            (Button::Middle, _) => self.sight.pan(field, size, way),
+            (Button::Left, Tool::Lights) => return self.drag_light(size, from, to),
+            (Button::Left, Tool::Look) => self.viewpoint.turn(field, size, way),
+            (Button::Middle, _) => self.viewpoint.pan(field, size, way),
             (Button::Right, _) => return self.turn_sun(way[0] / 2.0, -way[1] / 4.0),
         }
         Wish::Show
     }
 
-    /// The button goes up.
+    /// Releases the button.
     pub fn release(&mut self) -> Wish {
         self.strokes.end(&self.scene.field);
         Wish::Show
     }
 
-    /// The mouse without a button, over a picture: brushes show where they are.
+    /// Moves the mouse without a button over a picture: brushes show where they are.
     pub fn point(&mut self, at: [f64; 2]) -> Wish {
         self.cursor = at;
         if matches!(self.tool, Tool::Brush(_)) { Wish::Show } else { Wish::Nothing }
@@ -387,7 +388,7 @@ impl State {
     /// Notches of the wheel, upwards, at a pixel.
     pub fn wheel(&mut self, notches: f64, at: [f64; 2], size: [u32; 2]) -> Wish {
         let factor = 1.25_f64.powf(notches.clamp(-20.0, 20.0));
-        self.sight.near(&self.scene.field, size, factor, at);
+        self.viewpoint.near(&self.scene.field, size, factor, at);
         Wish::Show
     }
 }

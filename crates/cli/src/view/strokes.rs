@@ -1,4 +1,4 @@
-//! What brushes have changed, to be undone.
+//! Undo history of brush strokes.
 
 use ridgelight::Result;
 use ridgelight::plan::Rectangle;
@@ -6,7 +6,7 @@ use ridgelight::scene::HeightField;
 
 use super::brush::together;
 
-/// Strokes that can be undone; the oldest are kept for good.
+/// Strokes that can be undone; older ones are permanent.
 const MOST: usize = 64;
 
 /// Heights of a rectangle before and after.
@@ -20,9 +20,9 @@ struct Stroke {
 pub struct Strokes {
     done: Vec<Stroke>,
     undone: Vec<Stroke>,
-    /// All heights before the stroke that is being drawn, and what it has reached.
+    /// All heights before the current stroke, and the rectangle that it has reached.
     begun: Option<(Vec<f32>, Option<Rectangle>)>,
-    /// Whether strokes are kept that can no longer be undone.
+    /// Whether strokes exist that can no longer be undone.
     is_past: bool,
 }
 
@@ -41,7 +41,7 @@ impl Strokes {
         }
     }
 
-    /// The stroke is over; what was undone before is gone.
+    /// Ends the stroke; clears the redo history.
     pub fn end(&mut self, field: &HeightField) {
         let Some((heights, Some(at))) = self.begun.take() else { return };
         let before = cut(&heights, field.cols(), at);
@@ -54,7 +54,7 @@ impl Strokes {
         }
     }
 
-    /// Takes the last stroke back; where it was.
+    /// Undoes the last stroke. Returns its rectangle.
     pub fn undo(&mut self, field: &mut HeightField) -> Result<Option<Rectangle>> {
         let Some(stroke) = self.done.pop() else { return Ok(None) };
         let at = put(field, stroke.at, &stroke.before)?;
@@ -62,7 +62,7 @@ impl Strokes {
         Ok(Some(at))
     }
 
-    /// Does again what was undone last.
+    /// Redoes the last undone stroke.
     pub fn redo(&mut self, field: &mut HeightField) -> Result<Option<Rectangle>> {
         let Some(stroke) = self.undone.pop() else { return Ok(None) };
         let at = put(field, stroke.at, &stroke.after)?;
@@ -70,12 +70,12 @@ impl Strokes {
         Ok(Some(at))
     }
 
-    /// How many can be undone and done again.
+    /// Numbers of strokes that can be undone and redone.
     pub fn count(&self) -> [usize; 2] {
         [self.done.len(), self.undone.len()]
     }
 
-    /// Whether heights are other than they were read, by a stroke that is still drawn too.
+    /// Whether heights differ from the file's, also by the current stroke.
     pub fn have_changed(&self) -> bool {
         let is_drawn = matches!(self.begun, Some((_, Some(_))));
         self.is_past || is_drawn || !self.done.is_empty()

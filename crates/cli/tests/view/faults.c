@@ -1,7 +1,7 @@
-// A Vulkan layer under which one function fails, as drivers may have it fail: RIDGELIGHT_FAULT is "NAME FIRST COUNT RESULT",
-// by which COUNT calls from number FIRST on, from 1, return RESULT and reach no driver. Of vkQueueSubmit2 those that wait
-// for a semaphore count, which are a window's. vkGetPhysicalDeviceSurfaceCapabilitiesKHR with RESULT 0 tells of a window
-// without area. For one instance and one device.
+// A Vulkan layer that makes one function fail. RIDGELIGHT_FAULT is "NAME FIRST COUNT RESULT": COUNT calls from number FIRST
+// on, counted from 1, return RESULT and do not reach the driver. vkQueueSubmit2 counts only calls that wait for a semaphore,
+// which a window makes. vkGetPhysicalDeviceSurfaceCapabilitiesKHR with RESULT 0 reports a window without area.
+// Supports one instance and one device.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static PFN_vkGetDeviceProcAddr next_of_device;
 static VkInstance instance;
 static VkDevice device;
 
-// Whether a call of this name is to fail, and how.
+// Whether a call of this name must fail, and the result.
 static int fails(const char *name, VkResult *result) {
     static char wanted[64];
     static int first, count, code, calls;
@@ -62,21 +62,21 @@ static VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfo
     return ((PFN_vkQueuePresentKHR)next_of_device(device, "vkQueuePresentKHR"))(queue, info);
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL capabilities(VkPhysicalDevice of, VkSurfaceKHR surface, VkSurfaceCapabilitiesKHR *told) {
+static VKAPI_ATTR VkResult VKAPI_CALL capabilities(VkPhysicalDevice of, VkSurfaceKHR surface, VkSurfaceCapabilitiesKHR *reported) {
     const char *name = "vkGetPhysicalDeviceSurfaceCapabilitiesKHR";
     VkResult result;
     int is_faulty = fails(name, &result);
     if (is_faulty && result != VK_SUCCESS) {
         return result;
     }
-    VkResult known = ((PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR)next_of_instance(instance, name))(of, surface, told);
+    VkResult known = ((PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR)next_of_instance(instance, name))(of, surface, reported);
     if (is_faulty) {
-        told->currentExtent = (VkExtent2D){0, 0};
+        reported->currentExtent = (VkExtent2D){0, 0};
     }
     return known;
 }
 
-// What the loader has for the next layer, in the chain that it hands down.
+// The next layer's entry in the loader's chain.
 static void *link_of(const void *chain, VkStructureType type) {
     const VkLayerInstanceCreateInfo *info = chain;
     while (info && !(info->sType == type && info->function == VK_LAYER_LINK_INFO)) {

@@ -1,12 +1,12 @@
-//! What hands do in the window: brushes, lights, settings, keys and the mouse.
+//! User input in the window: brushes, lights, settings, keys and the mouse.
 
 use std::process::{Command, Output, Stdio};
 
 use super::{Display, Folder, LIT, apart, assert_same, code, colours};
 
-/// Strokes are drawn by edits of what was drawn before, undone to the same bits as before, done again to the same as
-/// after. What is saved is drawn by `render`, from heights above another median, each rounded to f32 once more: which may
-/// take a light over the step between two codes.
+/// Strokes are drawn as edits and undone and redone bit for bit. `render` draws the saved field,
+/// whose heights are relative to another median and rounded to f32 once more, which may change a
+/// code by one.
 #[test]
 fn gpu_brushes_are_undone_and_saved() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -17,9 +17,9 @@ fn gpu_brushes_are_undone_and_saved() {
     folder.view(&display, &format!("hills.asc {LIT} --size 64x48"), script);
     let text = |name: &str| std::fs::read_to_string(folder.0.path().join(name)).unwrap();
     let said = text("raised.txt");
-    assert!(said.contains("undo 1, again 0") && said.contains("edit of "), "{said}");
+    assert!(said.contains("undo 1, redo 0") && said.contains("edit of "), "{said}");
     let said = text("undone.txt");
-    assert!(said.contains("undo 0, again 2") && said.contains("nothing to undo"), "{said}");
+    assert!(said.contains("undo 0, redo 2") && said.contains("nothing to undo"), "{said}");
     folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     assert_same(&folder, "undone.png", "render.png");
     assert_same(&folder, "again.png", "eroded.png");
@@ -31,13 +31,13 @@ fn gpu_brushes_are_undone_and_saved() {
         // The comparison can fail.
         assert!(apart(&window, &folder.picture("undone.png")) > 16.0, "{name}");
     }
-    // As it was read.
+    // The file that was read.
     let scene: serde_json::Value = serde_json::from_str(&text("undone.json")).unwrap();
     assert_eq!(scene["field"]["file"], "hills.asc");
 }
 
-/// A click places a light, a key colours it, a drag moves it, and the mark on it is where it is: `render` draws the saved
-/// scene to the same bytes. Deleted, it leaves nothing.
+/// A click places a light, a key colours it, a drag moves it, and its mark is at its place:
+/// `render` draws the saved scene to the same bytes. Deletion leaves nothing.
 #[test]
 fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
     let (folder, display) = (Folder::new(), Display::new());
@@ -48,7 +48,7 @@ fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
     let scene = |name: &str| -> serde_json::Value {
         serde_json::from_slice(&std::fs::read(folder.0.path().join(name)).unwrap()).unwrap()
     };
-    let lights = scene("lit.json")["lights"]["balls"].clone();
+    let lights = scene("lit.json")["lights"]["sphere_lights"].clone();
     assert_eq!(lights.as_array().map(Vec::len), Some(1), "{lights}");
     // Placed over column 19.5, row 29.5, moved by 12 and 8, of 48 rows.
     let place: Vec<f64> =
@@ -60,19 +60,19 @@ fn gpu_lights_are_placed_dragged_coloured_and_deleted() {
     assert_same(&folder, "lit.png", "lit_r.png");
     folder.done(&format!("render hills.asc {LIT} -o first_r.png --quiet"));
     assert_same(&folder, "dark.png", "first_r.png");
-    assert!(scene("dark.json")["lights"].get("balls").is_none(), "{}", scene("dark.json"));
+    assert!(scene("dark.json")["lights"].get("sphere_lights").is_none(), "{}", scene("dark.json"));
     let said = std::fs::read_to_string(folder.0.path().join("none.txt")).unwrap();
     assert!(said.contains("no light is chosen"), "{said}");
-    // The brightest channel of the mark's middle is all of it.
+    // The mark's middle has the full brightest channel.
     let (mark, at) = (folder.picture("mark.png"), 22 * 64 + 32);
     let shown = colours(&mark).iter().map(|plane| code(plane[at])).collect::<Vec<_>>();
     assert!(shown[0] == 255.0 && shown[1] < 255.0 && shown[2] < shown[1], "{shown:?}");
 }
 
-/// A setting that would not do is refused in the command line's sentence, and what was drawn stays; one that does is
-/// `render`'s.
+/// A wrong setting is refused with the command line's message and leaves the picture; a right one
+/// gives `render`'s picture.
 #[test]
-fn gpu_settings_turn_or_are_refused_as_by_flags() {
+fn gpu_settings_match_the_command_line() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "frames 2\nkey tab\nkey ,\nkey ,\ntext azimuths.txt\nkey tab\nkey tab\nkey tab\nkey tab\nkey ,\n\
         key ,\nkey ,\ntext lines.txt\nkey tab\nkey .\nkey shift+tab\nframes 2\nkey h\nkey h\nframes 1\nscreenshot fine.png\n\
@@ -100,10 +100,10 @@ fn gpu_settings_turn_or_are_refused_as_by_flags() {
     assert!(text("idle.txt").contains(note), "{}", text("idle.txt"));
 }
 
-/// Radii of brushes end where strokes would have dabs without number, and at the field's side: a sixteenth of 48 m times
-/// 0.8 and 1.25 to the fortieth is beyond both.
+/// Radii of brushes have limits: below, so that strokes have finitely many dabs, and above, at the
+/// field's side. A sixteenth of 48 m times 0.8 and 1.25 to the fortieth exceeds both.
 #[test]
-fn gpu_brushes_have_a_least_and_a_most() {
+fn gpu_brushes_have_size_limits() {
     let (folder, display) = (Folder::new(), Display::new());
     let keys = |key: &str| format!("key {key}\n").repeat(40);
     let script = format!(
@@ -122,16 +122,16 @@ fn gpu_brushes_have_a_least_and_a_most() {
     }
 }
 
-/// Real events, from another client of the display.
+/// Real events from another client of the display.
 #[test]
-fn gpu_keys_and_the_mouse_are_heard() {
+fn gpu_real_keys_and_mouse_events_work() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.write("script", b"frames 2\nwait 6\nscene heard.json\n");
     let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200 --script script"));
     let mut view = view.env("DISPLAY", &display.name).stdout(Stdio::null()).spawn().unwrap();
-    // Nobody manages windows here, so that nobody gives them the keyboard.
+    // Without a window manager the window does not get the keyboard by itself.
     let act = "search --sync --name hills.asc windowfocus --sync sleep 0.5 mousemove 100 100 key period key m key Tab key Tab key period mousedown 3 mousemove 120 100 mousemove 140 100 mouseup 3 key 2 mousemove 200 120 mousedown 1 mousemove 210 120 mouseup 1";
-    // It waits for a window that never comes, too.
+    // `timeout` ends a wait for a window that never appears.
     let mut xdotool = Command::new("timeout");
     xdotool.args(["1200", "xdotool"]).args(act.split(' '));
     let acted = xdotool.env("DISPLAY", &display.name).status();

@@ -1,19 +1,19 @@
-//! What befalls windows: drivers that fail, surfaces that are lost, no area, other programs.
+//! Window failures: driver errors, lost surfaces, no area, other programs.
 
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
 use super::{Display, Folder, LIT, assert_same, silent};
 
-/// Vulkan's names of what drivers say, and their numbers.
+/// Vulkan result codes.
 const OUT_OF_HOST_MEMORY: i32 = -1;
 const OUT_OF_DEVICE_MEMORY: i32 = -2;
 const SURFACE_LOST: i32 = -1_000_000_000;
 const OUT_OF_DATE: i32 = -1_000_001_004;
-/// Calls, for as long as there are any.
+/// As many calls as there are.
 const ALL: u32 = 1_000_000;
 
-/// The layer of faults.c, compiled, with its manifest.
+/// The compiled layer of faults.c, with its manifest.
 fn layer(folder: &Folder) -> PathBuf {
     let layers = folder.0.path().join("layers");
     std::fs::create_dir(&layers).unwrap();
@@ -37,14 +37,14 @@ fn layer(folder: &Folder) -> PathBuf {
     layers
 }
 
-/// A fault: a function, the number of the first call that fails, how many do, and with what.
+/// A fault: a function, the number of the first call that fails, how many do, and the result.
 type Fault = (&'static str, u32, u32, i32);
 
-/// Has a window meet a fault.
+/// Adds a fault to a window's command.
 fn beset(folder: &Folder, command: &mut Command, (name, first, count, result): Fault) {
     let layers = folder.0.path().join("layers");
     let layers = if layers.exists() { layers } else { layer(folder) };
-    // Without a layer below ours loaders lead its calls back to it.
+    // Without a layer below ours, loaders lead its calls back to it.
     let others = std::env::var_os("VK_LAYER_PATH");
     let others = others.expect("VK_LAYER_PATH: the validation layer's, as tools/test has it");
     let mut path = layers.into_os_string();
@@ -54,7 +54,7 @@ fn beset(folder: &Folder, command: &mut Command, (name, first, count, result): F
     command.env("RIDGELIGHT_FAULT", format!("{name} {first} {count} {result}"));
 }
 
-/// Runs what must end with 1 and one sentence, which it returns.
+/// Runs a command that must end with 1 and one sentence. Returns the sentence.
 fn sentence(mut command: Command) -> String {
     let Output { status, stderr, .. } = command.output().unwrap();
     ended(status.code(), &stderr)
@@ -66,10 +66,11 @@ fn ended(code: Option<i32>, stderr: &[u8]) -> String {
     said
 }
 
-/// A device that fails once between the taking of a picture and its showing: it is said in the window, the frames after it
-/// are right, and validation finds no semaphore or fence in a wrong state. A window that fails again ends with the sentence.
+/// A device fails once between acquiring and presenting an image: the window shows the error, later
+/// frames are right, and validation finds no semaphore or fence in a wrong state. A window that
+/// fails again ends with the sentence.
 #[test]
-fn gpu_a_frame_that_fails_is_not_the_last() {
+fn gpu_failed_frame_is_recovered() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     for (name, result, says) in [
@@ -90,16 +91,15 @@ fn gpu_a_frame_that_fails_is_not_the_last() {
         assert_same(&folder, "still.png", "render.png");
         let said = sentence(run(3, ALL));
         assert!(said.starts_with(&format!("ridgelight: {says}")), "{said}");
-        // Nothing had been drawn that could be gone back to.
+        // There was no earlier light to return to.
         let said = sentence(run(1, 1));
         assert!(said.starts_with(&format!("ridgelight: {says}")), "{said}");
     }
 }
 
-/// What a frame that fails was to light is lit by the next: a stroke of a brush, as without the failure; and paths that were
-/// being traced begin anew.
+/// The next frame applies the changes of a failed one: a brush stroke; paths restart.
 #[test]
-fn gpu_what_a_failed_frame_was_to_light_is_lit_after_it() {
+fn gpu_failed_frame_keeps_its_changes() {
     let (folder, display) = (Folder::new(), Display::new());
     let args = format!("hills.asc {LIT} --size 64x48");
     let script =
@@ -114,10 +114,10 @@ fn gpu_what_a_failed_frame_was_to_light_is_lit_after_it() {
     silent(window);
 }
 
-/// A surface that the driver has lost while its window lives is made anew, wherever that is met; the same of pictures that
-/// are no longer as the window is.
+/// A surface that the driver loses is recreated wherever the loss is reported; also one that is out
+/// of date.
 #[test]
-fn gpu_a_lost_surface_is_made_anew() {
+fn gpu_lost_surface_is_recreated() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     let script = "key h\nkey h\nframes 2\nscreenshot lost.png\nframes 1\nscreenshot after.png\n";
@@ -135,7 +135,7 @@ fn gpu_a_lost_surface_is_made_anew() {
         assert_same(&folder, "lost.png", "render.png");
         assert_same(&folder, "after.png", "render.png");
     }
-    // For good: of a window that is gone.
+    // Permanently, as for a destroyed window.
     let mut window = folder.window(&display, &format!("hills.asc {LIT}"), "frames 9\n");
     let fault = ("vkGetPhysicalDeviceSurfaceCapabilitiesKHR", 3, ALL, SURFACE_LOST);
     beset(&folder, &mut window, fault);
@@ -146,10 +146,10 @@ fn gpu_a_lost_surface_is_made_anew() {
     );
 }
 
-/// A window without area, as a minimised one is on some systems, shows nothing and goes on once it has one; a script does
-/// not wait for ever.
+/// A window without area, as some systems give a minimised one, shows nothing and continues once it
+/// has one. A script stops waiting after a time.
 #[test]
-fn gpu_a_window_without_area_waits() {
+fn gpu_window_without_area_waits() {
     let (folder, display) = (Folder::new(), Display::new());
     folder.done(&format!("render hills.asc {LIT} -o render.png --quiet"));
     let script = "key h\nkey h\nframes 2\nscreenshot shown.png\n";
@@ -169,14 +169,14 @@ fn gpu_a_window_without_area_waits() {
     assert!(!folder.0.path().join("none.png").exists());
 }
 
-/// What a window without a script, as people have it, ends with once a tool of X's has done something to it.
+/// The result of a window without a script after an X tool has acted on it.
 fn treated(folder: &Folder, display: &Display, how: &str) -> Output {
     let mut view = folder.command(&format!("view hills.asc {LIT} --size 300x200"));
     view.env("DISPLAY", &display.name).stdout(Stdio::null()).stderr(Stdio::piped());
     let view = view.spawn().unwrap();
-    // It waits for a window that never comes, too.
+    // `timeout` ends a wait for a window that never appears.
     let mut xdotool = Command::new("timeout");
-    // Its title says so once it has drawn.
+    // The title changes once it has drawn.
     xdotool.args([
         "1200",
         "xdotool",
@@ -193,10 +193,10 @@ fn treated(folder: &Folder, display: &Display, how: &str) -> Output {
     ended
 }
 
-/// Another program destroys the window (XDestroyWindow), or ends its connection to the display (XKillClient): a sentence, no
-/// panic, nothing that hangs.
+/// Another program destroys the window (XDestroyWindow) or ends its connection to the display
+/// (XKillClient): one sentence, no panic, no hang.
 #[test]
-fn gpu_a_window_that_others_end_says_so() {
+fn gpu_destroyed_window_gives_one_sentence() {
     let (folder, display) = (Folder::new(), Display::new());
     let Output { status, stderr, .. } = treated(&folder, &display, "windowclose");
     let said = ended(status.code(), &stderr);

@@ -1,5 +1,5 @@
-//! The window, in a display of its own (Xvfb): what it shows is what `render` writes, it outlives what happens to
-//! windows, holds no more memory after many frames, and validation has nothing to say.
+//! The window in a display of its own (Xvfb): it shows what `render` writes, survives window
+//! events, does not leak memory over many frames, and passes validation.
 #![cfg(all(feature = "window", target_os = "linux"))]
 
 mod hands;
@@ -11,7 +11,7 @@ use std::process::{Child, Command, Output, Stdio};
 
 use ridgelight_io::{Planes, read_planes};
 
-/// A display without a screen, gone with the value.
+/// A display without a screen, removed on drop.
 struct Display {
     server: Child,
     name: String,
@@ -25,7 +25,7 @@ impl Display {
             .stderr(Stdio::null())
             .spawn()
             .expect("Xvfb: run tools/setup --tests");
-        // Its number, once it takes clients.
+        // The server writes its number once it accepts clients.
         let mut number = String::new();
         let out = server.stdout.as_mut().expect("piped");
         BufReader::new(out).read_line(&mut number).expect("a display's number");
@@ -43,7 +43,7 @@ impl Drop for Display {
 struct Folder(tempfile::TempDir);
 
 impl Folder {
-    /// With a field of hills, 64 columns and 48 rows, as "hills.asc".
+    /// Has a field of hills, 64 columns and 48 rows, as "hills.asc".
     fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         let height = |i: usize| {
@@ -61,7 +61,7 @@ impl Folder {
     }
 
     fn command(&self, args: &str) -> Command {
-        // Longer than any takes: what hangs ends with 124.
+        // A hang ends with 124.
         let mut command = Command::new("timeout");
         command.current_dir(self.0.path()).args(["1200", env!("CARGO_BIN_EXE_ridgelight")]);
         command.args(args.split(' '));
@@ -69,7 +69,7 @@ impl Folder {
         command
     }
 
-    /// Runs what must succeed; its standard output.
+    /// Runs a command that must succeed. Returns its standard output.
     fn done(&self, args: &str) -> String {
         succeed(self.command(args))
     }
@@ -79,7 +79,7 @@ impl Folder {
         silent(self.window(display, args, script))
     }
 
-    /// The same, to be run.
+    /// The command of such a window.
     fn window(&self, display: &Display, args: &str, script: &str) -> Command {
         self.write("script", script.as_bytes());
         let flag = if is_validated() { " --validate" } else { "" };
@@ -93,7 +93,7 @@ impl Folder {
     }
 }
 
-/// Its standard output; it says nothing else.
+/// Standard output of a command that must print nothing else.
 fn succeed(mut command: Command) -> String {
     let Output { status, stdout, stderr } = command.output().unwrap();
     let said = String::from_utf8_lossy(&stderr);
@@ -101,7 +101,7 @@ fn succeed(mut command: Command) -> String {
     String::from_utf8(stdout).unwrap()
 }
 
-/// The same of a window, of which validation says nothing where it listens.
+/// The same for a window, with no validation messages where validation runs.
 fn silent(command: Command) -> String {
     let out = succeed(command);
     assert_eq!(is_validated(), out.lines().last() == Some("0 validation messages"), "{out}");
@@ -127,7 +127,7 @@ fn assert_same(folder: &Folder, got: &str, want: &str) {
 const LIT: &str = "--sun 315,30 --sky 0.3 --azimuths 8";
 
 #[test]
-fn gpu_a_window_shows_what_render_writes() {
+fn gpu_window_equals_render() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nframes 2\nscreenshot first.png\npicture saved.png\n\
         key shift+right\nkey .\nkey b\nframes 2\nscreenshot second.png\nscene second.json\n\
@@ -153,10 +153,10 @@ fn gpu_a_window_shows_what_render_writes() {
     assert!(colours(&folder.picture("first.png")) != colours(&folder.picture("second.png")));
 }
 
-/// What the window draws, and what `render --camera` does: the same passes, whose codes are rounded here by the
-/// device after its own power function, there by the host.
+/// The window and `render --camera` use the same passes. Codes are rounded here by the device after
+/// its own power function, there by the host.
 #[test]
-fn gpu_a_camera_sees_what_render_does() {
+fn gpu_camera_view_equals_render() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nkey v\nframes 2\nscreenshot shot.png\npicture saved.png\n\
         key left\nkey up\nkey +\nkey k\ndrag middle 9,9 5,3\nframes 1\nscreenshot other.png\npicture other_p.png\nscene other.json\nkey home\nlose\n\
@@ -181,18 +181,18 @@ fn code(light: f32) -> f64 {
     (255.0 * encoded).round()
 }
 
-/// Numbers of a line that a report printed.
+/// Numbers of a report line.
 fn reported(line: &str) -> (u64, u64) {
     let number = |text: Option<&str>| text.and_then(|t| t.parse().ok()).expect("a number");
     let frames = line.split(&[' ', ','][..]).nth(1);
     (number(frames), number(line.split(' ').next_back()))
 }
 
-/// Two hundred frames of moving heights. A frame that left behind anything of its own, its heights (12 KiB), its
-/// text (460 KiB) or its pixels, would hold 2.4 MiB more or a multiple; what the allocators keep of themselves and the
-/// driver's threads grow into is given 2 MiB. The same beside a reference that gathers paths, a picture of three parts.
+/// Two hundred frames of moving heights. A leak per frame of its heights (12 KiB), its text (460
+/// KiB) or its pixels would be at least 2.4 MiB; allocator caches and driver threads may use 2 MiB.
+/// The same with the comparison pictures and paths.
 #[test]
-fn gpu_two_hundred_frames_hold_no_memory() {
+fn gpu_two_hundred_frames_leak_nothing() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key w\nframes 60\nreport\nframes 200\nreport\n\
         key w\nkey c\npaths 640\nreport\nframes 200\nreport\n";
@@ -222,11 +222,12 @@ fn apart(a: &Planes, b: &Planes) -> f64 {
     pairs.map(|(a, b)| (code(a) - code(b)).abs()).fold(0.0, f64::max)
 }
 
-/// A wall across level ground, a sun behind it. Without shadows all ground that does not touch the wall has the light of
-/// the sky and the sun's irradiance times the sine of its elevation over π. Ours is `render`'s, the reference
-/// `reference`'s, and how far they are apart is what their files say.
+/// A wall across level ground, with a sun behind it. Without shadows all ground that does not touch
+/// the wall has the sky's light and the sun's irradiance times the sine of its elevation over π.
+/// The main picture equals `render`'s, the reference `reference`'s, and the error follows from
+/// their files.
 #[test]
-fn gpu_a_split_window_shows_what_shadows_do() {
+fn gpu_split_window_compares_with_the_reference() {
     let (folder, display) = (Folder::new(), Display::new());
     let height = |i: usize| if (40..43).contains(&(i % 64)) { "12" } else { "0" };
     let heights: Vec<&str> = (0..64 * 24).map(height).collect();
@@ -270,13 +271,13 @@ fn gpu_a_split_window_shows_what_shadows_do() {
     let apart: f64 = ours.iter().zip(&red).map(|(a, b)| square(*a, *b)).sum::<f64>() - noise;
     let rmse = 100.0 * (apart / (64.0 * 24.0)).sqrt() / f64::from(mean);
     let said = std::fs::read_to_string(folder.0.path().join("split.txt")).unwrap();
-    // Three digits are said; sums of f32 and of f64 differ beyond those.
-    let expected = format!("ours is {rmse:.3} % RMSE +- ");
+    // Three digits are shown; sums of f32 and of f64 differ beyond those.
+    let expected = format!("RMSE {rmse:.3} % +- ");
     assert!(said.contains(&expected), "{expected} in {said}");
 }
 
 #[test]
-fn gpu_a_window_outlives_its_sizes() {
+fn gpu_window_survives_resizing() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "frames 2\nsize 301,203\nframes 2\nkey +\nkey left\nwheel -3 20,20\nsize 64,48\nkey home\n\
         key h\nkey h\nframes 1\nsize 1,1\nframes 2\nsize 64,48\nframes 1\nscreenshot last.png\n";
@@ -285,10 +286,10 @@ fn gpu_a_window_outlives_its_sizes() {
     assert_same(&folder, "last.png", "render.png");
 }
 
-/// Three pictures and the columns between them take 7 pixels: in 6 ours alone is shown, all of it, and paths that
-/// nobody sees are refused; so are those that never come.
+/// Three pictures and the columns between them take 7 pixels: in 6 only the main one is shown, in
+/// full. Paths for a hidden or impossible reference are refused.
 #[test]
-fn gpu_pictures_side_by_side_need_place() {
+fn gpu_narrow_window_shows_one_picture() {
     let (folder, display) = (Folder::new(), Display::new());
     let script = "key h\nkey h\nkey c\nframes 2\nsize 6,24\nframes 2\nscreenshot narrow.png\nkey c\nframes 1\n\
         screenshot alone.png\nsize 64,48\nkey c\npaths 64\nscreenshot wide.png\n";
@@ -297,8 +298,8 @@ fn gpu_pictures_side_by_side_need_place() {
     assert_eq!(folder.picture("wide.png").cols, 64);
     for (script, says) in [
         ("key c\nframes 1\nsize 6,24\npaths 64\n", "a window 6 pixels wide"),
-        ("paths 64\n", "no reference beside the light"),
-        ("key c\nkey w\npaths 64\n", "a field that moves"),
+        ("paths 64\n", "no reference"),
+        ("key c\nkey w\npaths 64\n", "a moving field"),
         ("key c\npaths 4097\n", "found 4097, expected 4096 or less"),
     ] {
         folder.write("script", script.as_bytes());
@@ -319,7 +320,7 @@ fn refused(mut command: Command, says: &[&str]) {
 }
 
 #[test]
-fn no_display_is_one_sentence() {
+fn no_display_gives_one_sentence() {
     let folder = Folder::new();
     refused(folder.command("view hills.asc"), &["ridgelight: view: needs a display: "]);
     let mut elsewhere = folder.command("view hills.asc");
@@ -328,7 +329,7 @@ fn no_display_is_one_sentence() {
 }
 
 #[test]
-fn a_window_without_a_driver_is_one_sentence() {
+fn window_without_a_driver_gives_one_sentence() {
     let (folder, display) = (Folder::new(), Display::new());
     let mut command = folder.command("view hills.asc");
     for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {

@@ -9,7 +9,8 @@ use super::{Kind, Making, Map, Request, Sums, Value};
 
 pub static KIND: Kind = Kind {
     name: "bent-normal",
-    about: "the mean direction of all that is free, and the half-angle of the cone whose solid angle that is",
+    about: "mean unoccluded direction, and the half-angle of the cone with the unoccluded solid \
+        angle",
     encodings: &bake::BENT_NORMAL,
     formats: &[Format::Ktx2, Format::Png],
     decoder: include_str!("../../../../../shaders_glsl/decode/bent_normal.glsl"),
@@ -19,13 +20,14 @@ pub static KIND: Kind = Kind {
 fn begin(asked: &Request) -> Result<Making> {
     let component = |name| Value {
         name,
-        about: "of the unit vector along ∫ V e de; the zenith where nothing is free",
+        about: "unit vector along ∫ V e de; the zenith where everything is occluded",
         unit: "",
         range: [-1.0, 1.0],
     };
     let cone = Value {
         name: "cone",
-        about: "half-angle a: 2π (1 - cos a) = ∫ V de, over directions below horizontal, too, where the border is open",
+        about: "half-angle a: 2π (1 - cos a) = ∫ V de; with an open border also over directions \
+            below horizontal",
         unit: "rad",
         range: [0.0, PI],
     };

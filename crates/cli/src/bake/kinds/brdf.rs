@@ -11,27 +11,27 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, far_fi
 
 pub static KIND: Kind = Kind {
     name: "brdf",
-    about: "what ground that repeats reflects as seen from afar, a table over all pairs of --angles lights and views; \
-            --bounces 0 without scattered light",
+    about: "far-field reflectance of periodic ground: a table over all pairs of --angles lights \
+        and views; --bounces 0 omits indirect light",
     encodings: &bake::REFLECTED,
     formats: &[Format::Ktx2, Format::Npy],
     decoder: include_str!("../../../../../shaders_glsl/decode/brdf.glsl"),
     begin,
 };
 
-/// Pairs of light and view that the table is asked for beside its own.
+/// Light and view pairs at which the table is tested between its angles.
 pub const PAIRS: usize = 64;
 
-/// From afar a field is a plane where it repeats.
+/// In the far field a periodic field is a plane.
 pub fn check(asked: &Request, name: &str) -> Result<()> {
     if asked.border == Border::Periodic {
         return Ok(());
     }
     let found = format!("{:?} with --what {name}", asked.border).to_lowercase();
-    Err(Error::setting("--border", found, "periodic: from afar, a plane without end"))
+    Err(Error::setting("--border", found, "periodic: the far field is of an infinite plane"))
 }
 
-/// On this side.
+/// Bytes in this process.
 pub fn bytes(lit: &Lit) -> u64 {
     let count = lit.angles.count();
     far_field::bytes(lit, count.max(2 * PAIRS)) + 72 * (count as u64).pow(2)
@@ -42,8 +42,9 @@ fn begin(asked: &Request) -> Result<Making> {
     check(asked, KIND.name)?;
     let value = |name| Value {
         name,
-        about: "mean radiance of what is seen over the irradiance cos θ of the plane: texel (x, y) is of the view x and the \
-                light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        about: "mean visible radiance over the plane's irradiance cos θ; texel (x, y) is view x \
+            and light y, θ by θ and in each all φ; θ = (k + ½) π/2 / thetas, φ = 2π j / phis \
+            counter-clockwise from east",
         unit: "1/sr",
         range: [0.0, far_field::largest(asked)],
     };
@@ -65,15 +66,15 @@ fn begin(asked: &Request) -> Result<Making> {
     Ok(Making { map, source: Source::Light(of) })
 }
 
-/// What three kinds keep each its own way.
+/// The table, which three kinds store in different ways.
 pub struct Table {
     pub brdf: Brdf,
     pub facets: Facets,
-    /// Seeded pairs of light and view between the angles, each with the field's own.
+    /// Seeded light and view pairs between the angles, each with the field's own value.
     between: Vec<([DVec3; 2], [f64; 3])>,
 }
 
-/// That of this bake, made when it is asked for first.
+/// The table of this bake, computed on first use.
 pub fn table<'a>(gpu: &mut Headless, lit: &'a Lit, say: Say) -> Result<&'a Table> {
     if let Some(known) = lit.table.get() {
         return Ok(known);
@@ -99,18 +100,20 @@ fn make_table(gpu: &mut Headless, lit: &Lit, say: Say) -> Result<Table> {
     far_field::each_light(gpu, lit, &facets, of, &mut |light, radiance| {
         say(format!("light {} of {count}", light + 1));
         let z = directions.vectors()[light].z;
-        values.extend(facets.seen_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)));
+        values.extend(
+            facets.radiance_from_all(&radiance).into_iter().map(|seen| seen.map(|v| v / z)),
+        );
         Ok(())
     })?;
     let brdf = Brdf::from_values(directions.vectors().to_vec(), values)?;
-    say(format!("{PAIRS} pairs between"));
+    say(format!("{PAIRS} pairs between the angles"));
     let pairs = bake::pairs(PAIRS, lit.seed)?;
     let seen = ridgelight_bake::facets(gpu, lit.scene, facets.times(), &pairs, &lit.limits)?;
     let mut between = Vec::with_capacity(PAIRS);
     let own = |light| PAIRS + light..PAIRS + light + 1;
     far_field::each_light(gpu, lit, &seen, (0..PAIRS, &own), &mut |light, radiance| {
         let [l, v] = [light, PAIRS + light].map(|i| pairs.vectors()[i]);
-        between.push(([l, v], seen.seen_from(PAIRS + light, &radiance).map(|m| m / l.z)));
+        between.push(([l, v], seen.radiance_from(PAIRS + light, &radiance).map(|m| m / l.z)));
         Ok(())
     })?;
     Ok(Table { brdf, facets, between })
@@ -123,14 +126,14 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         (0..count * count).map(|i| table.brdf.at(i / count, i % count)[c] as f32).collect()
     });
     files.take(&planes.each_ref().map(Vec::as_slice))?;
-    tell(lit, table, (&|l, v| table.brdf.between(&lit.angles, l, v), true), files)
+    add_entries(lit, table, (&|l, v| table.brdf.between(&lit.angles, l, v), true), files)
 }
 
-/// Between all directions what is kept of a table, and whether that is linear between its angles.
+/// The stored table evaluated between all directions, and whether it is linear between its angles.
 type Kept<'a> = (&'a dyn Fn(DVec3, DVec3) -> [f64; 3], bool);
 
-/// As [`tell`], and what of the table itself is left by what is kept of it, light by light towards all views: weighted by what a
-/// plane receives and sends.
+/// Like [`add_entries`], with the error that storage adds to the table, light by light over all views,
+/// weighted by what a plane receives and sends.
 pub fn tell_in_short(
     lit: &Lit,
     table: &Table,
@@ -148,40 +151,49 @@ pub fn tell_in_short(
             }
         }
     }
-    files.tell("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
-    tell(lit, table, kept, files)
+    files.add_entry("residual_of_table", (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt().into());
+    add_entries(lit, table, kept, files)
 }
 
-/// What the table is like, and what of the field's own is left between its angles by what is `kept` of it.
-pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFiles) -> Result<()> {
+/// Statistics of the table, and the error of the `kept` table between its angles.
+pub fn add_entries(
+    lit: &Lit,
+    table: &Table,
+    (kept, is_linear): Kept,
+    files: &mut MapFiles,
+) -> Result<()> {
     let weights = lit.angles.projected_sr();
     let reflected = (0..lit.angles.count()).flat_map(|light| table.brdf.reflected(light, &weights));
     let [least, most] = reflected.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
     let is_coarse = far_field::is_coarse(lit, &table.facets);
     let is = if is_coarse {
-        "of a light's irradiance, over all lights and colours, summed over --angles: the sharpest lobe is narrower than they are \
-         apart, and sums say nothing of what it reflects"
+        "share of a light's irradiance, over all lights and colours, summed over --angles: the \
+            sharpest specular lobe is narrower than their spacing, so sums do not measure what \
+            it reflects"
     } else {
-        "of a light's irradiance, over all lights and colours, summed over --angles"
+        "share of a light's irradiance, over all lights and colours, summed over --angles"
     };
-    files.tell("reflected", json!({ "least": least, "most": most, "is": is }));
-    files.tell("unreciprocal", table.brdf.unreciprocal().into());
-    if table.facets.has_lobes() {
+    files.add_entry("reflected", json!({ "least": least, "most": most, "is": is }));
+    files.add_entry("unreciprocal", table.brdf.unreciprocal().into());
+    if table.facets.has_specular() {
         let gathered = (0..lit.angles.count()).flat_map(|view| table.brdf.gathered(view, &weights));
         let [low, high] = gathered.fold([f64::MAX, 0.0_f64], |[l, m], r| [l.min(r), m.max(r)]);
         let is = if is_coarse {
-            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: the sharpest \
-             lobe is narrower than they are apart, and sums may be many times what the surface reflects"
+            "radiance of a view under light of 1 from all sides, over all views and colours, \
+                summed over --angles: the sharpest specular lobe is narrower than their spacing, \
+                so sums may be many times what the surface reflects"
         } else {
-            "radiance of a view under light of 1 from all sides, over all views and colours, summed over --angles: but for \
-             that and worst_closure at most what the surface reflects; of one light, reflected, more than all may leave at \
-             grazing angles, as lobes have no cosine"
+            "radiance of a view under light of 1 from all sides, over all views and colours, \
+                summed over --angles: at most what the surface reflects, but for that sum and \
+                worst_closure; at grazing angles one light may reflect more than arrives, \
+                because Phong specular has no cosine"
         };
-        files.tell("gathered", json!({ "least": low, "most": high, "is": is }));
+        files.add_entry("gathered", json!({ "least": low, "most": high, "is": is }));
         if most > 1.0 && !is_coarse {
             files.remark(format!(
-                "of a light at grazing angles up to {most:.2} of what arrives is reflected: lobes are bounded by the view, not by the \
-                 light, and are not the same with both exchanged ({:.3} unreciprocal)",
+                "at grazing angles up to {most:.2} of a light's irradiance is reflected: Phong \
+                    specular is normalised over views, not lights, and is not reciprocal \
+                    (difference {:.3})",
                 table.brdf.unreciprocal()
             ));
         }
@@ -193,16 +205,16 @@ pub fn tell(lit: &Lit, table: &Table, (kept, is_linear): Kept, files: &mut MapFi
             all += own * own;
         }
     }
-    files.tell(
+    files.add_entry(
         "between",
         json!({
             "residual": (apart / f64::max(all, f64::MIN_POSITIVE)).sqrt(), "pairs": PAIRS, "seed": lit.seed,
             "is": format!(
-                "rms of what is kept, {}, less the field's own, over that: seeded pairs of light and view, each even in what a \
-                 level plane receives",
-                if is_linear { "linear between its angles" } else { "harmonics of all directions" }
+                "RMS of the stored value less the field's own, {}, over that value: seeded light \
+                    and view pairs, each uniform in what a level plane receives",
+                if is_linear { "linear between its angles" } else { "by harmonics over all directions" }
             ),
         }),
     );
-    far_field::tell(files, lit, &table.facets, far_field::walked(lit)?.as_ref(), is_linear)
+    far_field::add_entries(files, lit, &table.facets, far_field::walked(lit)?.as_ref(), is_linear)
 }

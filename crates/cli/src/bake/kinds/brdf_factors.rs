@@ -8,15 +8,17 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, brdf, 
 
 pub static KIND: Kind = Kind {
     name: "brdf-factors",
-    about: "the same in short: eight functions g of one direction, as layers over --angles, whose products Σ g(light) g(view) \
-            it is, with --phong Σ g(light) h(view), eight layers more; what they leave of it is told",
+    about: "brdf in short: eight functions g of one direction, as layers over --angles, with \
+        brdf = Σ g(light) g(view); with --specular Σ g(light) h(view), which adds eight layers; \
+        the manifest states its error",
     encodings: &bake::REFLECTED,
     formats: &[Format::Ktx2, Format::Npy],
     decoder: include_str!("../../../../../shaders_glsl/decode/brdf_factors.glsl"),
     begin,
 };
 
-/// Products: what more of them would take off is less than a table's own steps leave (`examples/scatter`).
+/// More factors would remove less error than the table's own angular steps leave
+/// (`examples/scatter`).
 const COUNT: usize = 8;
 
 fn begin(asked: &Request) -> Result<Making> {
@@ -27,21 +29,22 @@ fn begin(asked: &Request) -> Result<Making> {
         return Err(Error::setting(
             "--angles",
             found,
-            format!("{COUNT} angles or more, one a factor"),
+            format!("{COUNT} angles or more, one per factor"),
         ));
     }
     let largest = far_field::largest(asked);
     let value = |name| Value {
         name,
-        about: "of a function of one direction: the table is the sum over k of layer k for the light times layer views + k for \
-                the view, views being 0 without --phong, else 8; texel (j, k) is of θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
+        about: "a function of one direction: the table is the sum over k of layer k for the \
+            light times layer views + k for the view; views is 0 without --specular, else 8; \
+            texel (j, k) is θ = (k + ½) π/2 / thetas, φ = 2π j / phis counter-clockwise from east",
         unit: "1/√sr",
         range: [-largest, largest],
     };
     let mut constants = far_field::constants("BRDF", angles);
     constants.push(format!("const int BRDF_FACTORS = {COUNT};"));
-    // What lobes mirror is of other functions of the view than of the light.
-    let views = if asked.has_lobe { COUNT } else { 0 };
+    // Specular is not symmetric in light and view.
+    let views = if asked.has_specular { COUNT } else { 0 };
     constants.push(format!("const int BRDF_VIEWS = {views};"));
     let map = Map {
         planes: (0..COUNT + views)
@@ -65,7 +68,7 @@ fn begin(asked: &Request) -> Result<Making> {
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     let table = brdf::table(gpu, lit, say)?;
     say("factors".into());
-    let factors = Factors::of(&table.brdf, lit.angles, COUNT, table.facets.has_lobes())?;
+    let factors = Factors::of(&table.brdf, lit.angles, COUNT, table.facets.has_specular())?;
     for of_k in factors.values().iter().chain(factors.of_views().unwrap_or_default()) {
         let planes = [0, 1, 2].map(|c| -> Vec<f32> { of_k.iter().map(|v| v[c] as f32).collect() });
         files.take(&planes.each_ref().map(Vec::as_slice))?;

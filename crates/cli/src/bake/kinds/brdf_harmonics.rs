@@ -8,8 +8,8 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, brdf, 
 
 pub static KIND: Kind = Kind {
     name: "brdf-harmonics",
-    about: "the same, smooth between all directions: weights of the products of harmonics of --sh-order of light and view; what \
-            they leave of it is told",
+    about: "brdf, smooth between all directions: weights of the products of SH of --sh-order of \
+        light and view; the manifest states its error",
     encodings: &bake::HARMONIC_WEIGHTS,
     formats: &[Format::Ktx2, Format::Npy],
     decoder: include_str!("../../../../../shaders_glsl/decode/brdf_harmonics.glsl"),
@@ -27,8 +27,9 @@ fn begin(asked: &Request) -> Result<Making> {
     let largest = far_field::largest(asked);
     let value = |name| Value {
         name,
-        about: "the table is the sum over texels (j, i) of their values times Y_i of the light and Y_j of the view; real, \
-                orthonormal, x east, y north, z up, no sign of Condon and Shortley, index l(l+1) + m; above horizontal alone",
+        about: "the table is the sum over texels (j, i) of their values times Y_i of the light \
+            and Y_j of the view; real, orthonormal, x east, y north, z up, no Condon-Shortley \
+            phase, index l(l+1) + m; only above horizontal",
         unit: "1/sr",
         range: [-largest, largest],
     };
@@ -50,8 +51,8 @@ fn begin(asked: &Request) -> Result<Making> {
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     let table = brdf::table(gpu, lit, say)?;
     say("harmonics".into());
-    let (order, has_lobes) = (lit.quality.sh_order as usize, table.facets.has_lobes());
-    let harmonics = BrdfHarmonics::of(&table.brdf, lit.angles, order, has_lobes)?;
+    let (order, has_specular) = (lit.quality.sh_order as usize, table.facets.has_specular());
+    let harmonics = BrdfHarmonics::of(&table.brdf, lit.angles, order, has_specular)?;
     let texels = harmonics.coefficients();
     let planes = [0, 1, 2].map(|c| -> Vec<f32> { texels.iter().map(|t| t[c] as f32).collect() });
     files.take(&planes.each_ref().map(Vec::as_slice))?;

@@ -8,8 +8,9 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source};
 
 pub static KIND: Kind = Kind {
     name: "btf",
-    about: "a picture in the field's own texels for each pair of --angles lights and views: radiance under a light of \
-            irradiance 1 facing it, and what of the view each texel fills; --bounces 0 without scattered light",
+    about: "an image in the field's own texels for each pair of --angles lights and views: \
+        radiance under a light of irradiance 1 facing it, and the share of the view that each \
+        texel fills; --bounces 0 omits indirect light",
     encodings: &bake::TEXELS,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/btf.glsl"),
@@ -25,7 +26,8 @@ fn begin(asked: &Request) -> Result<Making> {
     let map = Map {
         planes: (0..count * count).flat_map(name).collect(),
         values: texel(
-            "of what leaves the texel towards the view under a light of irradiance 1 facing it; 0 where the view sees none of it",
+            "radiance that leaves the texel towards the view under a light of irradiance 1 \
+                facing it; 0 where it is not visible",
             "1/sr",
             asked,
         ),
@@ -55,5 +57,5 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         }
         Ok(())
     })?;
-    far_field::tell(files, lit, &facets, far_field::walked(lit)?.as_ref(), true)
+    far_field::add_entries(files, lit, &facets, far_field::walked(lit)?.as_ref(), true)
 }

@@ -5,12 +5,13 @@ use ridgelight_bake::{CurvedEllipses, Ellipse};
 use ridgelight_cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
 
 use super::super::map::{Format, MapFiles};
-use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
+use super::{DirectionsJob, Kind, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "curved-ellipse",
-    about: "ellipses of visible sky on a base of any small curvature, for shadows and for what views see: five of each sample, \
-            fitted to --directions on a flat base and bent by --curvature along both axes, and linear between",
+    about: "ellipses of visible sky for any small curvature of the base surface, for shadows and \
+        view visibility: five per texel, fitted to --directions on a flat base and at \
+        --curvature along both axes, with linear interpolation between",
     encodings: &bake::CURVED_ELLIPSE,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/curved_ellipse.glsl"),
@@ -22,14 +23,15 @@ const BASES: [&str; 5] =
 
 fn begin(asked: &Request) -> Result<Making> {
     let Some([outwards, inwards]) = asked.curvature else {
-        let expected = "OUT[,IN], the curvatures that ellipses are fitted at, 1/m";
+        let expected = "OUT[,IN], the curvatures at which ellipses are fitted, 1/m";
         return Err(Error::setting("--curvature", "none with --what curved-ellipse", expected));
     };
-    // A radius as far as all steps of the search lead from within the disc.
+    // The largest radius that the search's steps can reach from inside the disc.
     let far = 2.0 + MOST_STEPS as f64 * FIRST_STEP;
     let value = |name, about, low| Value { name, about, unit: "", range: [low, far] };
-    let centre = "of the ellipse's centre, where a direction is (x, y), its z dropped";
-    let matrix = "of the symmetric matrix that takes the unit disc to the ellipse's shape; 0 where nothing is lit";
+    let centre = "of the ellipse's centre, where a direction is (x, y) without its z";
+    let matrix = "of the symmetric matrix that maps the unit disc to the ellipse; 0 where \
+        everything is shadowed";
     let four = [
         value("centre_x", centre, -far),
         value("centre_y", centre, -far),
@@ -58,23 +60,23 @@ fn begin(asked: &Request) -> Result<Making> {
         ..Map::default()
     };
     let plan: super::PlanOf = |field, border, directions, curvature, limits| {
-        let curvature = curvature.expect("looked for by begin");
+        let curvature = curvature.expect("checked by begin");
         plan::curved_ellipses(field, border, directions, curvature, limits)
     };
     let of = OfDirections { plan, bytes: |_| 10 * 16 + 5 * 40 + 25 * 4, take };
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
-    let steps = looked.curvature.expect("looked for by begin");
+fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
+    let steps = traced.curvature.expect("checked by begin");
     let [outwards, inwards] = steps;
     let bent = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
     for (per_m, base) in bent.into_iter().zip(&BASES[1..]) {
-        let changed = Curvature { per_m }.changed(looked.field, looked.border);
-        files.remark(format!("the base bent {}: {changed}", base.replace('_', " ")));
+        let changed = Curvature { per_m }.occlusion_change(traced.field, traced.border);
+        files.remark(format!("base surface curved {}: {changed}", base.replace('_', " ")));
     }
     let texel = |image: usize, at: usize| {
-        <[f32; 4]>::try_from(&looked.outputs[image][4 * at..4 * at + 4]).expect("four")
+        <[f32; 4]>::try_from(&traced.outputs[image][4 * at..4 * at + 4]).expect("four")
     };
     let of = |at: usize| {
         let five = [0, 1, 2, 3, 4].map(|k| {
@@ -83,7 +85,7 @@ fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
         });
         CurvedEllipses::of(&five, steps).numbers
     };
-    let all: Vec<[[f64; 5]; 5]> = (0..looked.field.heights_m().len()).map(of).collect();
+    let all: Vec<[[f64; 5]; 5]> = (0..traced.field.heights_m().len()).map(of).collect();
     let plane = |base: usize, number: usize| -> Vec<f32> {
         all.iter().map(|five| five[base][number] as f32).collect()
     };

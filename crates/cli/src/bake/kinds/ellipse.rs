@@ -4,12 +4,12 @@ use ridgelight_bake as bake;
 use ridgelight_cpu::ellipse_fit::{FIRST_STEP, MOST_STEPS};
 
 use super::super::map::{Format, MapFiles};
-use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
+use super::{DirectionsJob, Kind, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "ellipse",
-    about: "six numbers for a test of shadows: the ellipse in the plan of the hemisphere that holds the visible sky, \
-            fitted to --directions",
+    about: "six numbers for a shadow test: the ellipse in the hemisphere's plan view that holds \
+        the visible sky, fitted to --directions",
     encodings: &bake::ELLIPSE,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/ellipse.glsl"),
@@ -18,11 +18,12 @@ pub static KIND: Kind = Kind {
 
 fn begin(_: &Request) -> Result<Making> {
     let value = |name, about, range| Value { name, about, unit: "", range };
-    let centre = "of the ellipse's centre, where a direction is (x, y), its z dropped; (4, 0) where all is shadowed";
+    let centre = "of the ellipse's centre, where a direction is (x, y) without its z; (4, 0) \
+        where everything is shadowed";
     let axis = "of the unit axis";
-    let radius = "one over the radius; 0 where all is lit";
+    let radius = "one over the radius; 0 where everything is lit";
     let largest = (*Directions::COUNT.end() as f64 / 2.0).sqrt();
-    // From within the disc, as far as all steps of the search go to one side.
+    // The farthest that the search's steps can move a centre from inside the disc to one side.
     let far = 1.0 + MOST_STEPS as f64 * FIRST_STEP;
     let numbers = [
         value("centre_x", centre, [-far, far]),
@@ -45,12 +46,12 @@ fn begin(_: &Request) -> Result<Making> {
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
+fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
     let plane = |image: &[f32], part: usize| -> Vec<f32> {
         image.chunks_exact(4).map(|texel| texel[part]).collect()
     };
-    let axes = [0, 1, 2, 3].map(|part| plane(&looked.outputs[0], part));
+    let axes = [0, 1, 2, 3].map(|part| plane(&traced.outputs[0], part));
     files.take(&axes.each_ref().map(Vec::as_slice))?;
-    let radii = [0, 1].map(|part| plane(&looked.outputs[1], part));
+    let radii = [0, 1].map(|part| plane(&traced.outputs[1], part));
     files.take(&radii.each_ref().map(Vec::as_slice))
 }

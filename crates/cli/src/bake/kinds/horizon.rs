@@ -11,7 +11,7 @@ use super::{Kind, Maker, Making, Map, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "horizon",
-    about: "elevations at which the ground ends, along --azimuths directions: a layer each",
+    about: "horizon elevations along --azimuths directions: a layer each",
     encodings: &bake::HORIZON,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/horizon.glsl"),
@@ -25,7 +25,7 @@ fn begin(asked: &Request) -> Result<Making> {
         return Err(Error::setting(
             format!("--encoding {}=", KIND.name),
             format!("{} with --border open", encoding.name),
-            "snorm16-angle, snorm8-angle or f32: horizons below horizontal are below 0",
+            "snorm16-angle, snorm8-angle or f32: these hold horizons below 0",
         ));
     }
     let lowest = if asked.border == Border::Open { -FRAC_PI_2 } else { 0.0 };
@@ -37,7 +37,8 @@ fn begin(asked: &Request) -> Result<Making> {
             .collect(),
         values: vec![Value {
             name: "elevation",
-            about: "where the ground ends, up from horizontal; along 2π k / azimuths counter-clockwise from east in plane or layer k",
+            about: "horizon elevation above horizontal, along 2π k / azimuths counter-clockwise \
+                from east in plane or layer k",
             unit: "rad",
             range: [lowest, FRAC_PI_2],
         }],

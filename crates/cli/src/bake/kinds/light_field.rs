@@ -10,8 +10,9 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source};
 
 pub static KIND: Kind = Kind {
     name: "light-field",
-    about: "a picture in the field's own texels for each of --angles views under the scene's lights: radiance, and what \
-            of the view each texel fills; lobes mirror suns as points and the sky along --directions",
+    about: "an image in the field's own texels for each of --angles views under the scene's \
+        lights: radiance, and the share of the view that each texel fills; specular reflects \
+        suns as points and the sky along --directions",
     encodings: &bake::TEXELS,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/light_field.glsl"),
@@ -25,7 +26,7 @@ fn begin(asked: &Request) -> Result<Making> {
             .flat_map(|view| ["R", "G", "B", "share"].map(|c| format!("light_field.{view:04}.{c}")))
             .collect(),
         values: texel(
-            "of what leaves the texel; 0 where the view sees none of it",
+            "radiance that leaves the texel; 0 where it is not visible",
             "radiance",
             asked,
         ),
@@ -40,7 +41,7 @@ fn begin(asked: &Request) -> Result<Making> {
 fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     let field = &lit.scene.field;
     let mut all = vec![far_field::direct_plan(lit, &far_field::diffuse(lit), limits)?];
-    if far_field::lobe(lit).is_some() {
+    if far_field::specular(lit).is_some() {
         all.extend(walked(lit, limits)?);
         all.push(plan::visible_points(field, lit.scene.surface.border, lit.around, limits)?);
         all.push(far_field::mask_plan(lit, limits)?);
@@ -51,9 +52,9 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
     Ok(all)
 }
 
-/// Of paths, towards as many views as go side by side where they are others towards each.
+/// Path bounces, towards as many views as are traced together where specular depends on the view.
 fn walked(lit: &Lit, limits: &Limits) -> Result<Option<Plan>> {
-    if far_field::lobe(lit).is_none() {
+    if far_field::specular(lit).is_none() {
         let of = |scatter: &Scatter| plan::scatter(lit.scene, lit.around, scatter, limits);
         return lit.scatter.as_ref().map(of).transpose();
     }
@@ -62,18 +63,19 @@ fn walked(lit: &Lit, limits: &Limits) -> Result<Option<Plan>> {
     plan::scatter_views(lit.scene, lit.around, &paths(lit), views, limits).map(Some)
 }
 
-/// Of lobes, their own direct light in it; without bounces that alone, along each direction once.
+/// Scatter settings with Phong specular, whose direct light is part of the result. Without bounces
+/// only that, with one path along each direction.
 pub fn paths(lit: &Lit) -> Scatter {
     let alone = Scatter { bounces: 0, paths: lit.around.count() as u32, ..Scatter::default() };
-    Scatter { own_lobe: true, ..lit.scatter.unwrap_or(alone) }
+    Scatter { direct_specular: true, ..lit.scatter.unwrap_or(alone) }
 }
 
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
     let mut light = far_field::direct(gpu, lit, &far_field::diffuse(lit))?;
-    let has_lobe = far_field::lobe(lit).is_some();
-    if let Some(scatter) = lit.scatter.as_ref().filter(|_| !has_lobe) {
-        say(format!("what samples see in {} directions", lit.around.count()));
+    let has_specular = far_field::specular(lit).is_some();
+    if let Some(scatter) = lit.scatter.as_ref().filter(|_| !has_specular) {
+        say(format!("visible points in {} directions", lit.around.count()));
         let border = lit.scene.surface.border;
         let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
         say("scattered light".into());
@@ -82,7 +84,7 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
             *own += more;
         }
     }
-    say("what is seen of triangles".into());
+    say("triangle visibility".into());
     let directions = lit.angles.directions()?;
     let facets = ridgelight_bake::facets(
         gpu,
@@ -103,8 +105,8 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
         let colours = [0, 1, 2].map(plane);
         files.take(&[&colours[0], &colours[1], &colours[2], &shares])
     };
-    if has_lobe {
-        say(format!("what samples see in {} directions", lit.around.count()));
+    if has_specular {
+        say(format!("visible points in {} directions", lit.around.count()));
         let border = lit.scene.surface.border;
         let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
         let of = (lit.scene, &points, light.as_slice());
@@ -121,6 +123,6 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let lights = &lit.scene.lights;
     let has_sky = lights.environment.is_some() || lights.sky.is_some_and(|sky| sky != [0.0; 3]);
     let walked = walked(lit, &lit.limits)?;
-    let walked = walked.map(|plan| Walked { plan, mirrors_sky: has_lobe && has_sky });
-    far_field::tell(files, lit, &facets, walked.as_ref(), true)
+    let walked = walked.map(|plan| Walked { plan, mirrors_sky: has_specular && has_sky });
+    far_field::add_entries(files, lit, &facets, walked.as_ref(), true)
 }

@@ -10,27 +10,30 @@ use super::{Kind, Lit, Making, Map, OfLight, Request, Say, Source, Value, far_fi
 
 pub static KIND: Kind = Kind {
     name: "scatter",
-    about: "exit radiance under the scene's lights with what the ground scatters of it, --bounces and --paths, and its \
-            standard error",
+    about: "exit radiance under the scene's lights with indirect light by --bounces and --paths, \
+        and its standard error",
     encodings: &bake::RADIANCE,
     formats: &[Format::Ktx2, Format::Exr],
     decoder: include_str!("../../../../../shaders_glsl/decode/scatter.glsl"),
     begin,
 };
 
-/// Parts of the paths, each with directions of its own order, whose spread tells of chance.
+/// Parts of the paths, each with its own order of directions. Their spread gives the Monte Carlo
+/// noise.
 const PARTS: u32 = 8;
 
 fn begin(asked: &Request) -> Result<Making> {
     let range = [0.0, far_field::largest(asked)];
     let value = |name, about| Value { name, about, unit: "radiance", range };
-    let light = match asked.has_lobe {
-        false => "what leaves diffuse ground: direct light and all bounces",
+    let light = match asked.has_specular {
+        false => "radiance that leaves diffuse ground: direct light and all bounces",
         true => {
-            "what leaves towards straight above, diffusely and by lobes: direct light as render draws it, and all bounces"
+            "radiance that leaves straight up, diffuse and specular: direct light as render \
+                computes it, and all bounces"
         }
     };
-    let error = "one standard error of it by the paths alone, from eight parts of them; samples alike err alike";
+    let error = "one standard error from the paths alone, from eight parts of them; similar \
+        texels have similar errors";
     let map = Map {
         planes: ["R", "G", "B", "standard_error.R", "standard_error.G", "standard_error.B"]
             .map(|name| format!("scatter.{name}"))
@@ -50,14 +53,14 @@ fn begin(asked: &Request) -> Result<Making> {
     Ok(Making { map, source: Source::Light(of) })
 }
 
-/// Paths that are traced, of all parts together: a few more than are asked for, fewer where a part has looked along every
-/// direction before its last, 0 where nothing is scattered.
+/// Paths that are traced by all parts: slightly more than requested; fewer where a part runs out of
+/// directions; 0 where nothing is scattered.
 pub fn paths(lit: &Lit, limits: &Limits) -> Result<u32> {
     let of_part = plan::scatter(lit.scene, lit.around, &part(lit, 0)?, limits)?;
     Ok(PARTS * number(&of_part, "paths"))
 }
 
-/// Of each part as many paths, together as many as are asked for or a few more.
+/// An equal number of paths for each part, in total as many as requested or slightly more.
 fn part(lit: &Lit, k: u32) -> Result<Scatter> {
     let Some(scatter) = lit.scatter else {
         return Err(Error::setting("--bounces", "0 with --what scatter", "1 to 64"));
@@ -78,18 +81,18 @@ fn plans(lit: &Lit, limits: &Limits) -> Result<Vec<Plan>> {
 fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result<()> {
     say("direct light".into());
     let direct = far_field::direct(gpu, lit, lit.scene)?;
-    // Of lobes paths find themselves what they throw on: it is another towards each place.
-    let thrown = match far_field::lobe(lit) {
+    // With specular, bounces start from the diffuse light only: specular depends on the receiver.
+    let diffuse = match far_field::specular(lit) {
         Some(_) => far_field::direct(gpu, lit, &far_field::diffuse(lit))?,
         None => direct.clone(),
     };
-    say(format!("what samples see in {} directions", lit.around.count()));
+    say(format!("visible points in {} directions", lit.around.count()));
     let border = lit.scene.surface.border;
     let points = gpu.visible_points((&lit.scene.field, border), lit.around, &lit.limits)?;
     let mut sums = vec![[[0.0_f64; 2]; 3]; direct.len()];
     for k in 0..PARTS {
         say(format!("scattered light, part {} of {PARTS}", k + 1));
-        let light = gpu.scattered(lit.scene, &points, &thrown, &part(lit, k)?, &lit.limits)?;
+        let light = gpu.scattered(lit.scene, &points, &diffuse, &part(lit, k)?, &lit.limits)?;
         for (sum, light) in sums.iter_mut().zip(&light) {
             for (sum, v) in sum.iter_mut().zip(light) {
                 let v = f64::from(*v);
@@ -116,14 +119,15 @@ fn make(gpu: &mut Headless, lit: &Lit, files: &mut MapFiles, say: Say) -> Result
     let mean = |of: &dyn Fn(&[f64; 2]) -> f64| values().map(of).sum::<f64>() / count;
     let light = planes[0].iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / count;
     let paths = paths(lit, &lit.limits)?;
-    files.tell(
-        "chance",
+    files.add_entry(
+        "monte_carlo_noise",
         json!({
             "paths": paths, "directions": lit.around.count(), "mean_radiance": light,
             "mean_scattered": mean(&|v| v[0]),
             "rms_standard_error": mean(&|v| v[1] * v[1]).sqrt(),
             "worst_standard_error": values().map(|v| v[1]).fold(0.0, f64::max),
-            "is": "of paths: what so many directions and the samples nearest to what is met err by is besides",
+            "is": "standard error of paths; excludes the error of the finite directions and of nearest \
+                grid points at hits",
         }),
     );
     Ok(())

@@ -3,11 +3,12 @@ use ridgelight::{Result, plan};
 use ridgelight_bake as bake;
 
 use super::super::map::{Format, MapFiles};
-use super::{Kind, LookJob, Making, Map, OfDirections, Request, Source, Value};
+use super::{DirectionsJob, Kind, Making, Map, OfDirections, Request, Source, Value};
 
 pub static KIND: Kind = Kind {
     name: "visible-points",
-    about: "row and column of the sample that each sample sees in each of --directions: a layer each",
+    about: "row and column of the grid point visible from each grid point in each of \
+        --directions: a layer each",
     encodings: &bake::POINTS,
     formats: &[Format::Ktx2],
     decoder: include_str!("../../../../../shaders_glsl/decode/visible_points.glsl"),
@@ -18,8 +19,8 @@ fn begin(asked: &Request) -> Result<Making> {
     let count = asked.directions.count();
     let value = |name| Value {
         name,
-        about: "of the sample nearest to what is met, from the north-west; -1 where the sky is seen, -2 the ground beyond; \
-                layer k is of directions[k] of this sheet",
+        about: "of the grid point nearest to the hit, from the north-west; -1 for the sky, -2 \
+            for the ground beyond; layer k is directions[k] of this manifest",
         unit: "samples",
         range: [-2.0, VisiblePoints::LARGEST_SIDE as f64 - 1.0],
     };
@@ -31,7 +32,7 @@ fn begin(asked: &Request) -> Result<Making> {
         constants: Vec::new(),
         ..Map::default()
     };
-    // Words, and the points made of them.
+    // Words, and the points decoded from them.
     let bytes = |directions: &Directions| 8 * directions.count() as u64;
     let plan: super::PlanOf = |field, border, directions, _, limits| {
         plan::visible_points(field, border, directions, limits)
@@ -40,14 +41,15 @@ fn begin(asked: &Request) -> Result<Making> {
     Ok(Making { map, source: Source::Directions(of) })
 }
 
-fn take(looked: &LookJob, files: &mut MapFiles) -> Result<()> {
-    let LookJob { field, border, directions, outputs, .. } = looked;
+fn take(traced: &DirectionsJob, files: &mut MapFiles) -> Result<()> {
+    let DirectionsJob { field, border, directions, outputs, .. } = traced;
     let words = outputs.iter().flatten().map(|v| v.to_bits()).collect();
     let points = VisiblePoints::new(field, *border, (*directions).clone(), words)?;
     let (samples, cols) = (field.rows() * field.cols(), field.cols());
-    // The net that a light lies in, of three directions: what `visible_share` of the decoder is told. Few directions span none.
+    // The triangulation of the directions, which the decoder's `visible_share` needs. Too few
+    // directions have none.
     if let Ok(net) = directions.triangles() {
-        files.tell("triangles", serde_json::json!(net.corners()));
+        files.add_entry("triangles", serde_json::json!(net.corners()));
     }
     for direction in 0..directions.count() {
         let seen = |sample| match points.seen(direction, sample) {

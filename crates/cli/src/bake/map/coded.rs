@@ -1,16 +1,16 @@
-//! Values as texels of textures and samples of pictures.
+//! Encodes values as texture texels and picture pixels.
 
 use ridgelight_io::Component;
 
 use super::{Format, MapFiles};
 
 impl MapFiles<'_> {
-    /// Whether its pictures are of floats: 16 bits, 1 at the largest of each.
+    /// Whether its pictures store floats: 16 bits, scaled to each picture's largest value.
     pub(super) fn is_scaled(&self) -> bool {
         self.has(Format::Png) && !self.wanted.encoding.component.is_normalised()
     }
 
-    /// What holds a component in its pictures.
+    /// The component type of its pictures.
     fn picture_component(&self) -> Component {
         if self.is_scaled() { Component::Unorm16 } else { self.wanted.encoding.component }
     }
@@ -20,7 +20,7 @@ impl MapFiles<'_> {
         (self.channels(), 8 * self.picture_component().bytes() as u32)
     }
 
-    /// What its pictures say of themselves.
+    /// Text metadata of its pictures.
     pub(super) fn picture_texts(&self, scale: f64) -> Vec<(String, String)> {
         let mut texts = self.texts.clone();
         if self.is_scaled() {
@@ -31,7 +31,7 @@ impl MapFiles<'_> {
         texts
     }
 
-    /// The largest number of a layer that is no void's, 1 of none.
+    /// The largest finite value of a layer outside voids; 1 if none is positive.
     pub(super) fn largest(&self, planes: &[&[f32]]) -> f64 {
         let voids = self.voids();
         let own = |plane: &&[f32]| {
@@ -42,7 +42,8 @@ impl MapFiles<'_> {
         if largest > 0.0 { largest.into() } else { 1.0 }
     }
 
-    /// A layer's texels, and its picture's samples: of signed components (v + 1)/2, over `scale`, 16 bits big-endian.
+    /// A layer's texels, and its picture's pixels: signed components as (v + 1)/2, divided by
+    /// `scale`, 16 bits big-endian.
     pub(super) fn coded(&self, planes: &[&[f32]], scale: f64) -> (Vec<u8>, Vec<u8>) {
         let (encoding, voids) = (self.wanted.encoding, self.voids());
         let (component, format) = (encoding.component, self.wanted.texels());
@@ -86,7 +87,7 @@ impl MapFiles<'_> {
     }
 }
 
-/// A sample of a picture, of as many bits as the component.
+/// Appends a pixel value with as many bits as the component.
 fn sample(picture: &mut Vec<u8>, component: Component, value: f64) {
     match component.bytes() {
         1 => Component::Unorm8.put(value, picture),

@@ -1,4 +1,4 @@
-//! What is written of a kind: files, what they take, and texts beside.
+//! A requested map: its file names and sizes.
 
 use clap::ValueEnum;
 use ridgelight_bake::Encoding;
@@ -25,19 +25,19 @@ impl Format {
         }
     }
 
-    /// Whether it can hold what the encoding makes of a kind.
+    /// Whether it can hold the encoded kind.
     pub fn takes(self, kind: &Kind, encoding: &Encoding) -> bool {
         let is_picture = encoding.component.is_normalised() && encoding.components < 4;
         self != Format::Png || is_picture || request::is_scaled(kind)
     }
 }
 
-/// What a kind's files are called, before the dot.
+/// The stem of a kind's file names.
 pub fn stem(kind: &Kind) -> String {
     kind.name.replace('-', "_")
 }
 
-/// What is written of a kind, and how.
+/// A requested kind, its encoding and its formats.
 pub struct Wanted {
     pub kind: &'static Kind,
     pub encoding: &'static Encoding,
@@ -50,7 +50,7 @@ impl Wanted {
     }
 
     pub(super) fn texels(&self) -> TexelFormat {
-        // Three components have a fourth beside them, as no device must sample textures of three.
+        // Three components become four: devices need not sample three-component textures.
         let count = self.encoding.components;
         TexelFormat {
             component: self.encoding.component,
@@ -58,13 +58,13 @@ impl Wanted {
         }
     }
 
-    /// Of a layer's picture.
+    /// The file name of a layer's picture.
     pub(super) fn picture(&self, map: &Map, layer: usize) -> String {
         let stem = stem(self.kind);
         if map.is_array { format!("{stem}_{layer:04}.png") } else { format!("{stem}.png") }
     }
 
-    /// Every file, and the most bytes that it may take.
+    /// Every file and an upper bound of its bytes.
     pub fn files(&self, map: &Map, samples: usize) -> Vec<(String, u64)> {
         let (stem, planes) = (stem(self.kind), map.planes.len() as u64);
         let samples = map.texels(samples) as u64;
@@ -73,7 +73,7 @@ impl Wanted {
             let name = format!("{stem}.{}", format.name());
             let texels = self.texels().bytes() as u64;
             match format {
-                // ZIP adds little to what it cannot make smaller.
+                // ZIP adds little to incompressible data.
                 Format::Exr => all.push((name, 4 * planes * samples / 100 * 101 + 65_536)),
                 Format::Npy => all.push((name, 4 * planes * samples + 256)),
                 Format::Ktx2 => {
@@ -89,19 +89,19 @@ impl Wanted {
         all
     }
 
-    /// Bytes that its files hold until they are written: the others a layer, on its way.
+    /// Bytes that the files hold before they are written; formats that stream hold one layer.
     pub fn held_bytes(&self, map: &Map, samples: usize) -> u64 {
         let samples = map.texels(samples) as u64;
         let of = |format: &Format| match format {
             Format::Exr => 4 * map.planes.len() as u64 * samples,
-            // Its samples, and what is packed of them.
+            // Pixels, and the compressed copy.
             Format::Png => 2 * (self.texels().bytes() + 2) as u64 * samples,
             Format::Npy | Format::Ktx2 => self.texels().bytes() as u64 * samples,
         };
         self.formats.iter().map(of).sum()
     }
 
-    /// GLSL: constants, then what reads the map by them.
+    /// GLSL: the constants, then the decoder.
     pub fn decoder(&self, map: &Map) -> String {
         let constants: String = map.constants.iter().map(|line| format!("{line}\n")).collect();
         constants + self.kind.decoder

@@ -1,4 +1,4 @@
-//! A map's files from its last value to their places.
+//! Finishes a map's files and moves them to their names.
 
 use std::path::{Path, PathBuf};
 
@@ -9,19 +9,19 @@ use serde_json::Value as Json;
 
 use super::{Format, MapFiles, Open, stem};
 
-/// A file that waits for its place, and what it is.
+/// A finished file under a temporary name.
 pub(super) struct Waiting {
     file: Written,
     pub path: PathBuf,
     pub format: Format,
-    /// Texels or samples, in words.
+    /// Texel or pixel type, in words.
     pub holds: String,
-    /// Of samples of pictures.
+    /// Scale of a picture's values.
     pub scale: f64,
 }
 
 impl<'a> MapFiles<'a> {
-    /// Ends all files, which wait beside their places; `metadata` is for those that keep it.
+    /// Finishes all files under temporary names. Formats that can, store `metadata`.
     pub fn complete(mut self, metadata: &[(String, String)]) -> Result<Whole<'a>> {
         let of_texels = self.wanted.texels().vulkan().map_or("", |(_, name)| name);
         let mut waiting = Vec::new();
@@ -63,33 +63,34 @@ impl<'a> MapFiles<'a> {
         });
         let layers: Vec<Layer> = layers.collect();
         let mut all = metadata.to_vec();
-        // It holds the values themselves, and the field's hash is of the metadata.
+        // Stores f32 values; the encoding's entry does not apply. The field's hash is in the
+        // metadata.
         all.push(("ridgelight.kind".into(), self.wanted.kind.name.into()));
         let [cols, rows] = self.size();
         files::write_exr_aside(path, rows, cols, &layers, &all)
     }
 }
 
-/// A map whose files are all made and wait.
+/// A map with all files finished.
 pub struct Whole<'a> {
     map: MapFiles<'a>,
     waiting: Vec<Waiting>,
 }
 
 impl Whole<'_> {
-    /// Puts all files at their places, and says what they are.
+    /// Moves all files to their names. Returns the map's manifest entry.
     pub fn place(mut self) -> Result<Json> {
-        let mut sheets = Vec::new();
+        let mut files = Vec::new();
         for waiting in self.waiting {
             let path = waiting.path.clone();
             let about = std::fs::metadata(waiting.file.path());
             let bytes = about.map_err(|source| Error::Io { path, source })?.len();
-            sheets.push(self.map.sheet(&waiting, bytes));
+            files.push(self.map.file_entry(&waiting, bytes));
             waiting.file.place()?;
         }
         let decoder = format!("{}.glsl", stem(self.map.wanted.kind));
         let text = self.map.wanted.decoder(&self.map.map);
         files::write_text(&self.map.folder.join(&decoder), &text)?;
-        Ok(self.map.told(sheets, &decoder))
+        Ok(self.map.entry(files, &decoder))
     }
 }

@@ -1,4 +1,4 @@
-//! One bounce beside what the surface throws, stretch by stretch in f64.
+//! Compares one bounce with the exact one over visible intervals in f64.
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
@@ -9,20 +9,21 @@ use ridgelight_cpu::oracle::Oracle;
 
 use super::{PLACES, percent, rms, within};
 
-/// Azimuths of the truth.
+/// Azimuths of the reference.
 const TRUE_AZIMUTHS: u32 = 256;
 
-/// The first bounce of a scene that the oracle takes whole, from the direct light that the device finds.
+/// Checks the first bounce of a scene that the oracle computes whole, from the device's direct
+/// light.
 ///
 /// # Errors
-/// An error beyond its bound, in a sentence.
+/// An error above its bound.
 pub fn check(
     scene: &Scene,
     gpu: &mut Headless,
     quality: &Quality,
     limits: &Limits,
 ) -> Result<String> {
-    // An albedo of 0 has no bounce; light that arrives does not depend on it.
+    // An albedo of 0 has no bounce. Incoming light does not depend on it.
     let scene = &white(scene);
     let [direct, lit] = [0, 1].map(|count| {
         let bounces = Bounces { count, cutoff: 0.0, ..quality.bounces };
@@ -52,8 +53,8 @@ pub fn check(
         all.extend(want);
     }
     let error = rms(off.into_iter()) / rms(all.into_iter()).max(f64::MIN_POSITIVE);
-    let (error, bound) = within("a bounce is", "f64's", error, bound(quality), quality)?;
-    Ok(format!("a bounce {} off f64's (RMSE; bound {})", percent(error), percent(bound)))
+    let (error, bound) = within("the bounce", "f64", error, bound(quality), quality)?;
+    Ok(format!("bounce error {} against f64 (RMSE; bound {})", percent(error), percent(bound)))
 }
 
 fn white(scene: &Scene) -> Scene {
@@ -62,11 +63,12 @@ fn white(scene: &Scene) -> Scene {
     scene
 }
 
-/// A rule over azimuths errs by a squared part of the circle where light is smooth and by a part where the edge
-/// of something bright turns past: a quarter of what a part is of a radian. Sweeps: twice what lines a cell apart
-/// have on the bundled mountain and on a fractal, 0.015, in proportion to their distance. Pyramids: half as much
-/// again as their coarsest settings have on that mountain under a low sun, 0.5; no bounce at all has 1. Sub-sampling:
-/// twice what every second sample has on that mountain, 0.05, and every fourth, less than three times as much.
+/// A quadrature over azimuths has an error proportional to the squared step where light is smooth
+/// and to the step at the edges of bright surfaces: a quarter of the step in radians. Sweeps: twice
+/// the error of lines a cell apart on the bundled mountain and on a fractal, 0.015, proportional to
+/// their spacing. Pyramids: 1.5 times the error of their coarsest settings on that mountain under a
+/// low sun, 0.5; no bounce at all has 1. Sub-sampling: twice the error of every second texel on
+/// that mountain, 0.05; every fourth has less than three times as much.
 fn bound(quality: &Quality) -> f64 {
     let rule = std::f64::consts::TAU / f64::from(quality.bounces.azimuths) / 4.0;
     // Cells from line to line.
@@ -74,8 +76,8 @@ fn bound(quality: &Quality) -> f64 {
     let between = 0.1 * f64::from(quality.subsample - 1);
     rule + between
         + match quality.bounces.engine {
-            BounceEngine::Brute => 0.0,
-            // The planner's is one of these two.
+            BounceEngine::BruteForce => 0.0,
+            // The planner chooses one of these two.
             BounceEngine::Auto | BounceEngine::Sweep => 0.03 * apart.max(1.0),
             BounceEngine::Pyramid => 0.75,
         }

@@ -1,5 +1,5 @@
-//! An environment by tables through horizons of sweeps along lines, beside the same tables and sweeps in f64 on the processor:
-//! what f32 may do is all that may lie between.
+//! Compares an environment by tables through swept horizons with the same tables and sweeps in f64
+//! on the CPU. They may differ by f32 rounding only.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +16,7 @@ use ridgelight_cpu::tolerance::{ShadeError, twin_resolved, twin_table, twin_wedg
 use super::sweeps::{lit, white};
 use super::{percent, rms, within};
 
-/// The scene's environment on its ground, white, at some of its samples; nothing where there is none.
+/// The scene's environment on white ground, at some texels; none without an environment.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
@@ -46,17 +46,17 @@ pub(super) fn check(
     let found: Vec<DVec3> = places.iter().map(texel).collect();
     let (error, bound) = wanted.judge(&found, quality)?;
     Ok(Some(format!(
-        "an environment {} off the same sweeps' (RMSE; bound {})",
+        "environment error {} against the CPU reference (RMSE; bound {})",
         percent(error),
         percent(bound)
     )))
 }
 
-/// Light of the twin at each place, and what a device's may be off by there.
+/// Light of the CPU reference at each place, and its tolerance.
 struct Wanted(Vec<[DVec3; 2]>);
 
 impl Wanted {
-    /// In the azimuths of a plan, which lie closer where the environment is bright.
+    /// At the plan's azimuths, which are denser where the environment is bright.
     fn of(
         scene: &Scene,
         plan: &Plan,
@@ -89,7 +89,8 @@ impl Wanted {
         Self(all)
     }
 
-    /// RMSE over the root mean square and that of the bounds, where every place is within its own.
+    /// RMSE and RMS of the bounds, both over the root mean square, if every place is within its
+    /// bound.
     fn judge(&self, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
         let flat = |of: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
             (0..self.0.len()).flat_map(|i| of(i).to_array()).collect()
@@ -98,15 +99,21 @@ impl Wanted {
         let off = flat(&|i| (found[i] - self.0[i][0]) / scale);
         let bounds = flat(&|i| self.0[i][1] / scale);
         for (off, bound) in off.iter().zip(&bounds) {
-            within("an environment at one place is", "the twin's", off.abs(), *bound, quality)?;
+            within(
+                "the environment at one place",
+                "the CPU reference",
+                off.abs(),
+                *bound,
+                quality,
+            )?;
         }
         Ok((rms(off.into_iter()), rms(bounds.into_iter())))
     }
 }
 
-/// What the tables of one azimuth are off by, moment by moment: themselves ([`twin_table`]), and by rows of the wedge, each by
-/// what the brightest of its own texels makes it ([`twin_wedge_row`]), of which a table has elevations' moments: no more than a
-/// row's height of each, over π.
+/// Tolerance of one azimuth's tables, per moment: their own ([`twin_table`]), and that of the
+/// wedge's rows by the brightest of their texels ([`twin_wedge_row`]). A table holds moments of
+/// elevations: at most a row's height of each, over π.
 fn tables_off(
     environment: &Environment,
     border: Border,
@@ -136,7 +143,7 @@ fn tables_off(
     })
 }
 
-/// Columns of texels that a wedge has a part of, and one more on either side.
+/// Columns of texels that overlap a wedge, and one more on either side.
 fn columns_of(environment: &Environment, azimuth: &Azimuth) -> impl Iterator<Item = usize> {
     let width = environment.width() as f64;
     let middle = (PI + environment.rotation_rad() - f64::from(azimuth.centre_rad)) / TAU * width;
@@ -152,8 +159,9 @@ mod tests {
     use ridgelight::scene::fractal;
     use ridgelight::scene::{Fuse, Surface};
 
-    /// What broken passes would give is refused, of an even environment with a peak in it as of one without: light a hundredth
-    /// dim, twice what the bound allows, of another fuse, of half the elevations, turned by a column, of a neighbour, of other colours, and NaN.
+    /// Wrong light is refused, with and without a peak in an even environment: 1 % too dark, twice
+    /// the tolerance, of another fuse, of half the elevations, rotated by a column, of a neighbour,
+    /// of other colours, and NaN.
     #[test]
     fn wrong_environments_are_refused() {
         for peak in [0.0, 3000.0] {

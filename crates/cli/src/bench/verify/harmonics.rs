@@ -1,5 +1,6 @@
-//! Light by harmonics: the device's horizons are held against the oracle, and what it makes of them against
-//! the same series in f64, within what f32 may do. What harmonics miss is told, not judged.
+//! Verifies light by harmonics: the device's horizons against the oracle, and the light from them
+//! against the same series in f64, within f32 rounding. The error of the series itself is reported,
+//! not bounded.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -20,7 +21,7 @@ use ridgelight_cpu::tolerance::{
 
 use super::{Verifier, albedo_of, bounds, percent, rms, within};
 
-/// What is known of a sample before it is lit.
+/// A place before it is lit.
 pub(super) struct Place {
     pub index: usize,
     pub normal: DVec3,
@@ -38,7 +39,8 @@ impl Place {
         Self { index, normal: normal_of(gradient), gradient, horizons: Vec::new() }
     }
 
-    /// Slopes of the lowest directions that horizon, ground and where asked the own plane leave free.
+    /// Slopes of the lowest directions above the horizon, the ground and, if requested, the own
+    /// plane.
     fn lowest(&self, border: Border, own_plane_hides: bool) -> Vec<(Azimuth, f64)> {
         let ground = if border == Border::Open { f64::NEG_INFINITY } else { 0.0 };
         let free = |(azimuth, horizon): &(Azimuth, f64)| {
@@ -56,49 +58,53 @@ impl Place {
     }
 }
 
-/// Lights the piece of a verifier by harmonics; what was found, in a sentence.
+/// Lights the piece of a verifier by harmonics. Returns a sentence with the error.
 pub(super) fn check(
     verifier: &Verifier,
     gpu: &mut Headless,
     quality: &Quality,
     limits: &Limits,
 ) -> Result<String> {
-    let Verifier { scene, truth } = verifier;
+    let Verifier { scene, ground_truth } = verifier;
     let border = scene.surface.border;
-    let all = with_nodes(scene, &truth.places, gpu, quality, limits)?;
-    let (places, nodes) = all.split_at(truth.places.len());
-    let sky = rms(places.iter().zip(&truth.open).map(|(place, open)| place.sky(border) - open));
-    let open = rms(truth.open.iter().copied());
-    let [of_sky, _, of_suns, of_balls] = bounds(scene, truth.dark(), quality);
-    let what = "a uniform sky through the horizons is";
-    let (sky, sky_bound) = within(what, "the oracle's", sky / open, of_sky, quality)?;
+    let all = with_nodes(scene, &ground_truth.places, gpu, quality, limits)?;
+    let (places, nodes) = all.split_at(ground_truth.places.len());
+    let sky =
+        rms(places.iter().zip(&ground_truth.open).map(|(place, open)| place.sky(border) - open));
+    let open = rms(ground_truth.open.iter().copied());
+    let [of_sky, _, of_suns, of_balls] = bounds(scene, ground_truth.dark(), quality);
+    let what = "a uniform sky through the horizons";
+    let (sky, sky_bound) = within(what, "the oracle", sky / open, of_sky, quality)?;
 
     let [whole, own] = draw(scene, gpu, quality, limits)?;
     let wanted = Wanted::of(scene, quality, places, nodes);
-    let what = format!("light of order {} at one place is", quality.sh_order);
-    let (series, series_bound) = wanted.judge(&what, &texels(&own, &truth.places), quality)?;
+    let what = format!("light of order {} at one place", quality.sh_order);
+    let (series, series_bound) =
+        wanted.judge(&what, &texels(&own, &ground_truth.places), quality)?;
 
-    let [whole_means, own_means] = [&whole, &own].map(|p| truth.means(p));
-    let rest = whole_means.iter().zip(&own_means).zip(&truth.expected);
-    let rest =
-        rms(rest.map(|((whole, own), [sky, _, suns, balls])| whole - own - sky - suns - balls));
-    let scales = truth.scales();
+    let [whole_means, own_means] = [&whole, &own].map(|p| ground_truth.means(p));
+    let rest = whole_means.iter().zip(&own_means).zip(&ground_truth.expected);
+    let rest = rms(rest.map(|((whole, own), [sky, _, suns, sphere_lights])| {
+        whole - own - sky - suns - sphere_lights
+    }));
+    let scales = ground_truth.scales();
     let aimed = scales[2] * of_suns + scales[3] * of_balls;
-    let bound = (scales[0] * of_sky + aimed) / truth.scale();
-    within("all other light is", "the oracle's", rest / truth.scale(), bound, quality)?;
+    let bound = (scales[0] * of_sky + aimed) / ground_truth.scale();
+    within("other light", "the oracle", rest / ground_truth.scale(), bound, quality)?;
     Ok(format!(
-        "the sky through its horizons {} off the oracle's (RMSE; bound {}), harmonics of them {} off f64 \
-         (bound {}); with what order {} misses, the light is {} off the oracle's",
+        "sky error through the horizons {} against the oracle (RMSE; bound {}), harmonics {} \
+            against f64 (bound {}); including truncation at order {}, the light's error is {} \
+            against the oracle",
         percent(sky),
         percent(sky_bound),
         percent(series),
         percent(series_bound),
         quality.sh_order,
-        percent(truth.error(&whole)),
+        percent(ground_truth.error(&whole)),
     ))
 }
 
-/// A sample's nodes as samples, and what each counts.
+/// The lattice nodes of a place as places, and their weights.
 fn around(heights: &Heights, quality: &Quality, index: usize) -> [(usize, f64); 4] {
     let nodes = Nodes { stride: quality.subsample };
     let at = [(index % heights.cols) as i32, (index / heights.cols) as i32];
@@ -109,7 +115,7 @@ fn around(heights: &Heights, quality: &Quality, index: usize) -> [(usize, f64); 
     })
 }
 
-/// The nodes of some samples, in order.
+/// The nodes of some places, in order.
 fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize> {
     if quality.subsample == 1 {
         return places.to_vec();
@@ -118,7 +124,7 @@ fn nodes_of(heights: &Heights, quality: &Quality, places: &[usize]) -> Vec<usize
     all.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-/// Places, and behind them their nodes, with the device's horizons.
+/// Places followed by their nodes, with the device's horizons.
 pub(super) fn with_nodes(
     scene: &Scene,
     of: &[usize],
@@ -131,7 +137,7 @@ pub(super) fn with_nodes(
     places(scene, all.collect(), gpu, quality, limits)
 }
 
-/// Samples with the device's horizons.
+/// Places with the device's horizons.
 fn places(
     scene: &Scene,
     places: Vec<usize>,
@@ -154,7 +160,7 @@ fn places(
     Ok(all)
 }
 
-/// The picture, and the environment's layer of it.
+/// The picture, and its environment layer.
 fn draw(
     scene: &Scene,
     gpu: &mut Headless,
@@ -172,7 +178,7 @@ fn draw(
     })
 }
 
-/// A picture of three channels or more at some places.
+/// A picture of three or more channels at some places.
 fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
     let texel = |p: &usize| {
         let t = &pixels.values[p * pixels.channels..];
@@ -181,11 +187,11 @@ fn texels(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
     places.iter().map(texel).collect()
 }
 
-/// Light at each place by the same series in f64, and how far a device may be from it.
+/// Light at each place by the same series in f64, and the tolerance of a device.
 pub(super) struct Wanted(pub Vec<[DVec3; 2]>);
 
 impl Wanted {
-    /// The environment's, of places, by what their nodes see.
+    /// The environment's light at the places, from the visibility of their nodes.
     fn of(scene: &Scene, quality: &Quality, places: &[Place], nodes: &[Place]) -> Self {
         let environment = scene.lights.environment.as_ref().expect("an environment");
         let harmonics = Harmonics::new(environment, scene.surface.border, quality);
@@ -197,8 +203,8 @@ impl Wanted {
         })
     }
 
-    /// What `light` makes of what places see, by nodes whose horizons a device has found: it finds them again, from the same
-    /// lattice.
+    /// Applies `light` to the visibility at the places, interpolated from nodes whose horizons the
+    /// device has found; the lattice is rebuilt from them.
     pub fn lit(
         scene: &Scene,
         quality: &Quality,
@@ -231,8 +237,8 @@ impl Wanted {
         Self(places.iter().map(of).collect())
     }
 
-    /// A device's light at the places: RMSE over the root mean square, and that of what it may be off, where
-    /// it is within that at every place.
+    /// RMSE of the device's light and RMS of its tolerance, both over the root mean square, if
+    /// every place is within its tolerance.
     pub fn judge(&self, what: &str, found: &[DVec3], quality: &Quality) -> Result<(f64, f64)> {
         let of = |i: usize| self.0.iter().map(move |w| w[i]);
         let all = |values: Vec<DVec3>| {
@@ -290,8 +296,8 @@ pub(super) mod tests {
         (7..64 * 64).step_by(397).map(of).collect()
     }
 
-    /// What broken passes would give is refused whatever the order and the form: light a little dim, of the
-    /// next order, of the other receiver, without shadows, of a neighbour, of swapped colours, and NaN.
+    /// Wrong light is refused for every order and form: slightly too dark, of the next order, of
+    /// the other receiver, without shadows, of a neighbour, of swapped colours, and NaN.
     #[test]
     fn wrong_harmonics_are_refused() {
         let scene = scene();
@@ -301,8 +307,8 @@ pub(super) mod tests {
             for (wedges, receiver, window) in [
                 (Wedges::Slices, Receiver::Plane, Window::None),
                 (Wedges::Nlp, Receiver::Plane, Window::Lanczos),
-                (Wedges::Slices, Receiver::Lobe, Window::Hann),
-                (Wedges::Nlp, Receiver::Lobe, Window::Nonnegative),
+                (Wedges::Slices, Receiver::CosineLobe, Window::Hann),
+                (Wedges::Nlp, Receiver::CosineLobe, Window::Nonnegative),
                 (Wedges::Table, Receiver::Plane, Window::None),
             ] {
                 let quality = Quality { sh_order, wedges, receiver, window, ..base };
@@ -311,9 +317,9 @@ pub(super) mod tests {
                     Wanted::of(&scene, quality, places, places).0.iter().map(|w| w[0]).collect()
                 };
                 let right = light(&quality, &known);
-                let (error, bound) = wanted.judge("light is", &right, &quality).unwrap();
+                let (error, bound) = wanted.judge("light", &right, &quality).unwrap();
                 println!("order {sh_order} {wedges:?} {receiver:?} {window:?}: bound {bound:e}");
-                // What f32 loses to the fits' weights, 60 and 100 times their light.
+                // f32 cancellation of the fits' weights, 60 and 100 times their light.
                 let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.98] };
                 assert!(error == 0.0 && bound < most, "{error} {bound}");
                 let free = |p: &Place| {
@@ -322,8 +328,8 @@ pub(super) mod tests {
                 };
                 let free: Vec<Place> = known.iter().map(free).collect();
                 let other = match receiver {
-                    Receiver::Plane => Receiver::Lobe,
-                    Receiver::Lobe => Receiver::Plane,
+                    Receiver::Plane => Receiver::CosineLobe,
+                    Receiver::CosineLobe => Receiver::Plane,
                 };
                 let next = if sh_order == 6 { 5 } else { sh_order + 1 };
                 let mut turned = right.clone();
@@ -344,7 +350,7 @@ pub(super) mod tests {
                     ("NaN", holed),
                 ];
                 for (name, light) in wrong {
-                    let refused = wanted.judge("light is", &light, &quality);
+                    let refused = wanted.judge("light", &light, &quality);
                     assert!(refused.is_err(), "{name} passes: {quality:?}");
                 }
             }

@@ -1,11 +1,13 @@
-//! What lobes mirror, beside the same sums in f64, within what f32 may do: of sky and environment what their series make of
-//! the device's horizons, of a sun what the device's own diffuse light says of it.
+//! Compares Phong specular with the same sums in f64, within f32 rounding: sky and environment by
+//! their series through the device's horizons, a sun by the device's own diffuse light.
 
 use glam::DVec3;
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Pixels};
 use ridgelight::plan::{self, Limits, Picture};
-use ridgelight::scene::{Albedo, Basis, Lights, Lobe, Phong, Quality, Scene, Sun, Surface};
+use ridgelight::scene::{
+    Albedo, Basis, Lights, PhongSpecular, Quality, Scene, Specular, Sun, Surface,
+};
 use ridgelight_cpu::harmonics::Harmonics;
 use ridgelight_cpu::sun_specular::gloss_on;
 use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_specular};
@@ -13,7 +15,7 @@ use ridgelight_cpu::tolerance::{EPSILON, Land, twin_resolved, twin_sun_specular}
 use super::harmonics::{Place, Wanted, with_nodes};
 use super::percent;
 
-/// What sky and environment are lit by beside a lobe, diffuse ground too.
+/// Sky and environment that light the specular surface.
 pub(super) fn quality(scene: &Scene, quality: &Quality) -> Quality {
     match quality.basis {
         Basis::Auto if shines_around(&scene.lights) => Quality { basis: Basis::Sh, ..*quality },
@@ -25,7 +27,7 @@ fn shines_around(lights: &Lights) -> bool {
     lights.sky.is_some_and(|c| c.iter().any(|v| *v > 0.0)) || lights.environment.is_some()
 }
 
-/// The lobes of a scene, at some of its samples.
+/// Phong specular of a scene at some of its texels.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
@@ -38,7 +40,7 @@ pub(super) fn check(
     let plan = plan::picture(scene, quality, limits, wanted)?;
     let number = |name: &str| plan.outputs().position(|(_, r)| r.name == name);
     let Some(glossy) = number("direct.glossy") else {
-        return Ok("no lobe reflects anything".to_owned());
+        return Ok("the specular scale is 0 everywhere".to_owned());
     };
     let suns: Vec<Option<usize>> =
         (1..=scene.lights.suns.len()).map(|n| number(&format!("direct.sun{n}"))).collect();
@@ -56,19 +58,20 @@ pub(super) fn check(
     };
     let (seeing, nodes) = all.split_at(places.len());
     let wanted = wanted_of(scene, quality, [seeing, nodes], &suns);
-    let (error, bound) = wanted.judge("what lobes mirror at one place is", &found, quality)?;
-    Ok(format!("lobes {} off f64 (RMSE; bound {})", percent(error), percent(bound)))
+    let (error, bound) = wanted.judge("specular light at one place", &found, quality)?;
+    Ok(format!("specular error {} against f64 (RMSE; bound {})", percent(error), percent(bound)))
 }
 
-/// Half the lobe on grey ground, whose diffuse light tells of each sun how much of it is seen: lobes are linear in their
-/// scale, and reflect no more than there is beside any albedo then.
+/// Half the specular scale on grey ground. Its diffuse light gives each sun's visible share.
+/// Specular is linear in its scale, and at half scale never exceeds the energy left beside any
+/// albedo.
 fn half(scene: &Scene) -> Scene {
-    let halved = |phong: &Phong| Phong { scale: 0.5 * phong.scale, ..*phong };
-    let phong = scene.surface.phong.as_ref().map(|lobe| match lobe {
-        Lobe::Constant(phong) => Lobe::Constant(halved(phong)),
-        Lobe::Map(map) => Lobe::Map(map.iter().map(halved).collect()),
+    let halved = |phong: &PhongSpecular| PhongSpecular { scale: 0.5 * phong.scale, ..*phong };
+    let phong = scene.surface.specular.as_ref().map(|specular| match specular {
+        Specular::Constant(phong) => Specular::Constant(halved(phong)),
+        Specular::Map(map) => Specular::Map(map.iter().map(halved).collect()),
     });
-    let surface = Surface { albedo: Albedo::Constant([0.5; 3]), phong, ..scene.surface };
+    let surface = Surface { albedo: Albedo::Constant([0.5; 3]), specular: phong, ..scene.surface };
     Scene { surface, ..scene.clone() }
 }
 
@@ -79,14 +82,14 @@ fn colours(pixels: &Pixels, places: &[usize]) -> Vec<DVec3> {
     places.iter().map(|p| DVec3::from_array([0, 1, 2].map(|c| channel(p, c).into()))).collect()
 }
 
-/// What the lobes of a [`half`] scene mirror at some places, of suns by their diffuse light there.
+/// Specular light of a [`half`] scene at some places; suns by their diffuse light there.
 fn wanted_of(
     scene: &Scene,
     quality: &Quality,
     [places, nodes]: [&[Place]; 2],
     suns: &[Option<Vec<DVec3>>],
 ) -> Wanted {
-    let lobe = scene.surface.phong.as_ref().expect("a lobe");
+    let specular = scene.surface.specular.as_ref().expect("Phong specular");
     let Lights { sky, environment, .. } = &scene.lights;
     let mut all = match shines_around(&scene.lights) {
         true => {
@@ -94,7 +97,7 @@ fn wanted_of(
             let sky = sky.unwrap_or_default();
             let harmonics = Harmonics::of_lobes(environment.as_ref(), sky, border, quality);
             Wanted::lit(scene, quality, [places, nodes], &harmonics, |place, seen, error| {
-                harmonics.mirrored(place.normal, lobe.at(place.index), seen, error)
+                harmonics.mirrored(place.normal, specular.at(place.index), seen, error)
             })
         }
         false => Wanted(vec![[DVec3::ZERO; 2]; places.len()]),
@@ -102,7 +105,7 @@ fn wanted_of(
     for (sun, light) in scene.lights.suns.iter().zip(suns) {
         let Some(light) = light else { continue };
         for (i, place) in places.iter().enumerate() {
-            let [mirrored, off] = of_sun(scene, sun, place, lobe.at(place.index), light[i]);
+            let [mirrored, off] = of_sun(scene, sun, place, specular.at(place.index), light[i]);
             all.0[i][0] += mirrored;
             all.0[i][1] += off;
         }
@@ -112,9 +115,15 @@ fn wanted_of(
     all
 }
 
-/// What a lobe mirrors of a sun that gives `light` to ground of albedo ½, and what a device's may be off by. That light is
-/// rounded thrice, which what is mirrored follows in proportion.
-fn of_sun(scene: &Scene, sun: &Sun, place: &Place, phong: Phong, light: DVec3) -> [DVec3; 2] {
+/// Specular light of a sun that gives `light` to ground of albedo ½, and its tolerance. That light
+/// is rounded three times, and specular light is proportional to it.
+fn of_sun(
+    scene: &Scene,
+    sun: &Sun,
+    place: &Place,
+    phong: PhongSpecular,
+    light: DVec3,
+) -> [DVec3; 2] {
     let irradiance = DVec3::from_array(sun.irradiance.map(f64::from));
     let brightest = irradiance.max_position();
     let sum = light[brightest] / (0.5 * irradiance[brightest]);
@@ -126,7 +135,7 @@ fn of_sun(scene: &Scene, sun: &Sun, place: &Place, phong: Phong, light: DVec3) -
     let turned = Land::normal_at(field, border, at);
     let facing = place.normal.dot(towards);
     let off = twin_sun_specular(phong.exponent.into(), turned, facing);
-    // No sun is seen, and none is mirrored.
+    // A hidden sun has no specular light.
     let off = if sum > 0.0 { f64::from(phong.scale) * off } else { 0.0 };
     [mirrored, irradiance * off + 6.0 * EPSILON * mirrored]
 }
@@ -136,10 +145,10 @@ mod tests {
     use super::super::harmonics::tests::{places, scene as sunlit};
     use super::*;
 
-    /// What broken passes would give is refused: lobes a little dim, sharper, without the sun, of the sun alone, of a
-    /// neighbour, of swapped colours, and NaN.
+    /// Wrong light is refused: specular slightly too dark, sharper, without the sun, of the sun
+    /// alone, of a neighbour, of swapped colours, and NaN.
     #[test]
-    fn wrong_lobes_are_refused() {
+    fn wrong_specular_light_is_refused() {
         let sun = Sun {
             azimuth_rad: 1.0,
             elevation_rad: 1.2,
@@ -150,14 +159,14 @@ mod tests {
         scene.lights.suns = vec![sun];
         let base = Quality { basis: Basis::Sh, azimuths: 16, ..Quality::default() };
         for (exponent, sh_order) in [(5.0, 3), (40.0, 4), (9.0, 2)] {
-            let lobed = |scale: f32, exponent: f32| {
-                let phong = Some(Lobe::Constant(Phong { exponent, scale }));
-                let surface = Surface { phong, ..scene.surface.clone() };
+            let with_specular = |scale: f32, exponent: f32| {
+                let phong = Some(Specular::Constant(PhongSpecular { exponent, scale }));
+                let surface = Surface { specular: phong, ..scene.surface.clone() };
                 half(&Scene { surface, ..scene.clone() })
             };
             let quality = Quality { sh_order, ..base };
             let known = places(&scene, &quality);
-            // All of the sun is seen.
+            // The whole sun is visible.
             let facing = |p: &Place| {
                 let (sin, cos) = sun.elevation_rad.sin_cos();
                 let e = DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin);
@@ -169,29 +178,29 @@ mod tests {
                 wanted_of(scene, &quality, [&known, &known], &[light])
             };
             let values = |wanted: &Wanted| wanted.0.iter().map(|w| w[0]).collect::<Vec<DVec3>>();
-            let wanted = of(&lobed(0.5, exponent), Some(light.clone()));
+            let wanted = of(&with_specular(0.5, exponent), Some(light.clone()));
             let right = values(&wanted);
-            let (error, bound) = wanted.judge("light is", &right, &quality).unwrap();
+            let (error, bound) = wanted.judge("light", &right, &quality).unwrap();
             println!("{exponent}, order {sh_order}: bound {bound:e}");
-            // Sums of n⁴ products of what is seen and what shines, each of which may be off.
+            // Sums of n⁴ products of visibility and light, each with its own error.
             assert!(error == 0.0 && bound < 0.05, "{error} {bound}");
             let mut turned = right.clone();
             turned.rotate_left(1);
             let mut holed = right.clone();
             holed[3].y = f64::NAN;
-            let mut dark = lobed(0.5, exponent);
+            let mut dark = with_specular(0.5, exponent);
             dark.lights.environment = None;
             let wrong = [
                 ("dim", right.iter().map(|v| 0.9 * *v).collect()),
-                ("sharper", values(&of(&lobed(0.5, 1.5 * exponent), Some(light.clone())))),
-                ("without the sun", values(&of(&lobed(0.5, exponent), None))),
+                ("sharper", values(&of(&with_specular(0.5, 1.5 * exponent), Some(light.clone())))),
+                ("without the sun", values(&of(&with_specular(0.5, exponent), None))),
                 ("of the sun alone", values(&of(&dark, Some(light)))),
                 ("of a neighbour", turned),
                 ("of other colours", right.iter().map(|v| DVec3::new(v.z, v.y, v.x)).collect()),
                 ("NaN", holed),
             ];
             for (name, light) in wrong {
-                let refused = wanted.judge("light is", &light, &quality);
+                let refused = wanted.judge("light", &light, &quality);
                 assert!(refused.is_err(), "{name} passes: {exponent}, order {sh_order}");
             }
         }

@@ -1,5 +1,5 @@
-//! Balls of light by harmonics beside the same series in f64, within what f32 may do. What harmonics themselves
-//! miss is told, not judged.
+//! Compares sphere lights by harmonics with the same series in f64, within f32 rounding. The error
+//! of the series itself is reported, not bounded.
 
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Pixels};
@@ -13,45 +13,45 @@ use ridgelight_cpu::soft_sphere::{SoftBall, twin_pyramid_within, twin_surface_wi
 use ridgelight_cpu::sphere_sh_shade::SphereSh;
 use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_pyramid_slope, twin_resolved};
 
-use super::{Truth, albedo_of, percent, rms, within};
+use super::{GroundTruth, albedo_of, percent, rms, within};
 
-/// A scene's balls of light, alone, at some of its samples.
+/// A scene's sphere lights alone, at some of its texels.
 pub(super) fn check(
     scene: &Scene,
-    truth: &Truth,
+    ground_truth: &GroundTruth,
     gpu: &mut Headless,
     quality: &Quality,
     limits: &Limits,
 ) -> Result<String> {
-    let lights = Lights { spheres: scene.lights.spheres.clone(), ..Lights::default() };
+    let lights = Lights { sphere_lights: scene.lights.sphere_lights.clone(), ..Lights::default() };
     let scene = &Scene { lights, ..scene.clone() };
-    // What is dropped of balls of light the plan itself bounds.
+    // The plan bounds the light of culled sphere lights.
     let all = Quality { light_cutoff: 0.0, ..*quality };
     let plan = plan::picture(scene, &all, limits, Picture::default())?;
     let contents = plan::picture_inputs(scene);
     let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
     let (picture, levels) = gpu.with_frame(plan, &contents, |gpu, frame| {
         gpu.draw(frame)?;
-        // A pyramid's levels are the device's own: what is made of them is judged.
+        // A pyramid's levels are the device's own: only the light from them is compared.
         let names = ["height_stack", "height_levels"];
         let id = names.into_iter().find_map(|name| frame.plan().find(name));
         let words = id.map(|id| gpu.read(frame, id)).transpose()?.unwrap_or_default();
         let levels: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
         Ok((gpu.pixels(frame, 0)?, levels))
     })?;
-    let wanted = Wanted::of(scene, quality, &levels, &truth.places);
-    let (error, bound) = wanted.judge(&texels(&picture, &truth.places), quality)?;
-    let means = truth.means(&picture);
-    let balls = truth.expected.iter().map(|[.., balls]| *balls);
-    let missed = rms(means.iter().zip(balls.clone()).map(|(a, b)| a - b));
-    let scale = rms(balls).max(f64::MIN_POSITIVE);
+    let wanted = Wanted::of(scene, quality, &levels, &ground_truth.places);
+    let (error, bound) = wanted.judge(&texels(&picture, &ground_truth.places), quality)?;
+    let means = ground_truth.means(&picture);
+    let sphere_lights = ground_truth.expected.iter().map(|[.., sphere_lights]| *sphere_lights);
+    let missed = rms(means.iter().zip(sphere_lights.clone()).map(|(a, b)| a - b));
+    let scale = rms(sphere_lights).max(f64::MIN_POSITIVE);
     Ok(format!(
-        "harmonics of balls {} off f64 (RMSE; bound {}), below 0 at {} of {} places; with what order {} misses, their \
-         light is {} off the oracle's",
+        "sphere light harmonics {} against f64 (RMSE; bound {}), below 0 at {} of {} places; \
+            including truncation at order {}, their light's error is {} against the oracle",
         percent(error),
         percent(bound),
         wanted.negative,
-        truth.places.len(),
+        ground_truth.places.len(),
         quality.sh_order,
         percent(missed / scale),
     ))
@@ -64,10 +64,10 @@ fn texels(pixels: &Pixels, places: &[usize]) -> Vec<[f64; 3]> {
     places.iter().map(|p| [0, 1, 2].map(|c| f64::from(channel(p, c)))).collect()
 }
 
-/// The light of all balls at each place by the same series in f64, and how far a device may be from it.
+/// Sphere light at each place by the same series in f64, and the tolerance of a device.
 struct Wanted {
     light: Vec<[[f64; 2]; 3]>,
-    /// Places where a ball's series rings below 0, and is 0.
+    /// Places where a light's series rings below 0 and is clamped to 0.
     negative: usize,
 }
 
@@ -82,7 +82,7 @@ impl Wanted {
             };
             (pyramid, stored)
         });
-        let twin = SphereSh::new(Oracle::new(field, border), levels, *quality);
+        let reference = SphereSh::new(Oracle::new(field, border), levels, *quality);
         let (errors, mut negative) = (SoftBall::new(quality), 0);
         let largest = field.heights_m().iter().fold(0.0, |m, h| f64::from(h.abs()).max(m));
         let mut at = |place: &usize| {
@@ -91,35 +91,35 @@ impl Wanted {
             let albedo = albedo_of(scene, *place);
             let mut all = [[0.0; 2]; 3];
             let mut rings = false;
-            for ball in &scene.lights.spheres {
-                let soft = twin.at(ball, row, col);
+            for sphere_light in &scene.lights.sphere_lights {
+                let soft = reference.at(sphere_light, row, col);
                 rings |= soft.light < 0.0;
-                let seen = BallSeen::of(field, ball, *place);
+                let seen = BallSeen::of(field, sphere_light, *place);
                 let off =
                     errors.twin(&seen, slope_error(&seen, quality, largest), normal, &soft.seen);
                 let light = soft.light.max(0.0);
                 for (c, [want, bound]) in all.iter_mut().enumerate() {
-                    let radiance = f64::from(ball.radiance[c]) * albedo[c];
+                    let radiance = f64::from(sphere_light.radiance[c]) * albedo[c];
                     *want += radiance * light;
                     *bound += radiance * (off + 4.0 * EPSILON * light);
                 }
             }
             negative += usize::from(rings);
-            let balls = scene.lights.spheres.len();
-            all.map(|[want, bound]| [want, bound + twin_resolved(want, balls)])
+            let sphere_lights = scene.lights.sphere_lights.len();
+            all.map(|[want, bound]| [want, bound + twin_resolved(want, sphere_lights)])
         };
         let light = places.iter().map(&mut at).collect();
         Self { light, negative }
     }
 
-    /// A device's light: RMSE over the root mean square, and that of what it may be off, where it is within that
-    /// at every place.
+    /// RMSE of the device's light and RMS of its tolerance, both over the root mean square, if
+    /// every place is within its tolerance.
     fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
         let of = |i: usize| -> Vec<f64> {
             self.light.as_flattened().iter().map(|pair| pair[i]).collect()
         };
         let scale = rms(of(0).into_iter()).max(f64::MIN_POSITIVE);
-        let what = format!("light of balls by order {} at one place is", quality.sh_order);
+        let what = format!("sphere light of order {} at one place", quality.sh_order);
         for (found, [want, off]) in found.as_flattened().iter().zip(self.light.as_flattened()) {
             let error = (found - want).abs() / scale;
             within(&what, "the same series in f64", error, off / scale, quality)?;
@@ -129,7 +129,7 @@ impl Wanted {
     }
 }
 
-/// What slopes towards a ball err by: of the surface, or of a pyramid's levels.
+/// Error of slopes towards a sphere light: of the surface, or of a pyramid's levels.
 fn slope_error(seen: &BallSeen, quality: &Quality, largest: f64) -> f64 {
     if quality.method != Method::Pyramid {
         return twin_surface_within(seen);
@@ -140,9 +140,9 @@ fn slope_error(seen: &BallSeen, quality: &Quality, largest: f64) -> f64 {
     twin_pyramid_within(seen, march, steepest, quality.level_step)
 }
 
-/// A scene without its balls; none where nothing else shines.
+/// A scene without its sphere lights; none without other lights.
 pub(super) fn without(scene: &Scene) -> Option<Scene> {
-    let lights = Lights { spheres: Vec::<SphereLight>::new(), ..scene.lights.clone() };
+    let lights = Lights { sphere_lights: Vec::<SphereLight>::new(), ..scene.lights.clone() };
     let Lights { sky, environment, suns, keys, .. } = &lights;
     let shines = sky.is_some() || environment.is_some() || !suns.is_empty() || !keys.is_empty();
     shines.then(|| Scene { lights, ..scene.clone() })
@@ -154,22 +154,22 @@ mod tests {
     use ridgelight::scene::fractal;
     use ridgelight::scene::{LightBasis, Receiver, Surface, Wedges};
 
-    /// What broken passes would give is refused whatever the order and the form: light a little dim, of a ball beside
-    /// it, of another order, of the exact form, of a neighbour, of swapped colours, and NaN.
+    /// Wrong light is refused for every order and form: slightly too dark, of a light moved aside,
+    /// of another order, of the exact form, of a neighbour, of swapped colours, and NaN.
     #[test]
-    fn wrong_harmonics_of_balls_are_refused() {
+    fn wrong_sphere_light_harmonics_are_refused() {
         let field = fractal(32, 1).unwrap();
         let up = field.base_m() + 9.0;
-        let ball =
+        let sphere_light =
             SphereLight { position_m: [13.0, 17.0, up], radius_m: 2.0, radiance: [3.0, 1.0, 0.5] };
-        let lights = Lights { spheres: vec![ball], ..Lights::default() };
+        let lights = Lights { sphere_lights: vec![sphere_light], ..Lights::default() };
         let scene = Scene { field, surface: Surface::default(), lights };
         let places: Vec<usize> = (5..32 * 32).step_by(97).collect();
         let base = Quality { light_basis: LightBasis::Sh, sun_azimuths: 8, ..Quality::default() };
         for (sh_order, wedges, receiver) in [
             (2, Wedges::Slices, Receiver::Plane),
             (4, Wedges::Nlp, Receiver::Plane),
-            (4, Wedges::Table, Receiver::Lobe),
+            (4, Wedges::Table, Receiver::CosineLobe),
             (6, Wedges::Slices, Receiver::Plane),
         ] {
             let quality = Quality { sh_order, wedges, receiver, ..base };
@@ -181,15 +181,16 @@ mod tests {
             let right = light(&scene, &quality);
             let (error, bound) = wanted.judge(&right, &quality).unwrap();
             println!("order {sh_order} {wedges:?} {receiver:?}: bound {bound:e}");
-            // What f32 loses to the fits' weights grows with the order.
+            // f32 cancellation of the fits' weights grows with the order.
             let [most, dim] = if sh_order > 4 { [0.05, 0.9] } else { [0.01, 0.97] };
             assert!(error == 0.0 && bound < most, "{error} {bound}");
             let mut moved = scene.clone();
-            moved.lights.spheres[0].position_m[0] += 0.5;
+            moved.lights.sphere_lights[0].position_m[0] += 0.5;
             let oracle = Oracle::new(&scene.field, scene.surface.border);
             let exact = |p: &usize| {
-                let share = ridgelight_cpu::sphere::sphere_of(&oracle, p / 32, p % 32, &ball, 32);
-                ball.radiance.map(|r| f64::from(r) * share)
+                let share =
+                    ridgelight_cpu::sphere::sphere_of(&oracle, p / 32, p % 32, &sphere_light, 32);
+                sphere_light.radiance.map(|r| f64::from(r) * share)
             };
             let mut turned = right.clone();
             turned.rotate_left(1);
@@ -201,7 +202,7 @@ mod tests {
                 ("dim", right.iter().map(|v| v.map(|c| dim * c)).collect()),
                 ("black", vec![[0.0; 3]; right.len()]),
                 ("of another order", light(&scene, &other)),
-                ("of a ball beside it", light(&moved, &quality)),
+                ("of a light moved aside", light(&moved, &quality)),
                 ("of the exact form", places.iter().map(exact).collect()),
                 ("of a neighbour", turned),
                 ("of other colours", right.iter().map(|[r, g, b]| [*b, *g, *r]).collect()),

@@ -1,4 +1,5 @@
-//! Balls of light slice by slice beside the same slices in f64 on the processor: what f32 may do is all that may lie between.
+//! Compares sphere lights slice by slice with the same slices in f64 on the CPU. They may differ by
+//! f32 rounding only.
 
 use ridgelight::Result;
 use ridgelight::gpu::Headless;
@@ -11,7 +12,7 @@ use ridgelight_cpu::tolerance::{BallSeen, EPSILON, twin_resolved};
 use super::sweeps::white;
 use super::{percent, rms, within};
 
-/// The scene's balls on its ground, white, at some of its samples; nothing where none shines.
+/// The scene's sphere lights on white ground, at some texels; none where none has radiance.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
@@ -19,12 +20,13 @@ pub(super) fn check(
     quality: &Quality,
     limits: &Limits,
 ) -> Result<Option<String>> {
-    let mut spheres = scene.lights.spheres.clone();
-    spheres.retain(|ball| ball.radiance.iter().any(|v| *v > 0.0));
+    let mut spheres = scene.lights.sphere_lights.clone();
+    spheres.retain(|sphere_light| sphere_light.radiance.iter().any(|v| *v > 0.0));
     if spheres.is_empty() {
         return Ok(None);
     }
-    let scene = Scene { lights: Lights { spheres, ..Lights::default() }, ..white(scene) };
+    let scene =
+        Scene { lights: Lights { sphere_lights: spheres, ..Lights::default() }, ..white(scene) };
     let plan = plan::picture(&scene, quality, limits, Picture::default())?;
     let picture = gpu.with_frame(plan, &[scene.field.heights_m()], |gpu, frame| {
         gpu.draw(frame)?;
@@ -39,35 +41,37 @@ pub(super) fn check(
     let wanted = Wanted::of(&scene, places, quality);
     let (error, bound) = wanted.judge(&found, quality)?;
     Ok(Some(format!(
-        "balls of light {} off the same slices' in f64 (RMSE; bound {})",
+        "sphere light error {} against f64 slices (RMSE; bound {})",
         percent(error),
         percent(bound)
     )))
 }
 
-/// Light of the twin at each place, R, G, B, and what a device's may be off by there.
+/// Light of the CPU reference at each place, R, G, B, and its tolerance.
 struct Wanted(Vec<[[f64; 2]; 3]>);
 
 impl Wanted {
     fn of(scene: &Scene, places: &[usize], quality: &Quality) -> Self {
         let oracle = Oracle::new(&scene.field, scene.surface.border);
-        let (cols, balls) = (scene.field.cols(), &scene.lights.spheres);
+        let (cols, sphere_lights) = (scene.field.cols(), &scene.lights.sphere_lights);
         let at = |p: &usize| {
             let mut all = [[0.0; 2]; 3];
-            for ball in balls {
-                let light = sphere_at(&oracle, ball, quality.sun_azimuths, p / cols, p % cols);
-                let off = BallSeen::of(&scene.field, ball, *p).twin() + 4.0 * EPSILON;
-                for ([want, bound], radiance) in all.iter_mut().zip(ball.radiance) {
+            for sphere_light in sphere_lights {
+                let light =
+                    sphere_at(&oracle, sphere_light, quality.sun_azimuths, p / cols, p % cols);
+                let off = BallSeen::of(&scene.field, sphere_light, *p).twin() + 4.0 * EPSILON;
+                for ([want, bound], radiance) in all.iter_mut().zip(sphere_light.radiance) {
                     *want += f64::from(radiance) * light;
                     *bound += f64::from(radiance) * off;
                 }
             }
-            all.map(|[want, bound]| [want, bound + twin_resolved(want, balls.len())])
+            all.map(|[want, bound]| [want, bound + twin_resolved(want, sphere_lights.len())])
         };
         Self(places.iter().map(at).collect())
     }
 
-    /// RMSE over the root mean square and that of the bounds, where every place is within its own.
+    /// RMSE and RMS of the bounds, both over the root mean square, if every place is within its
+    /// bound.
     fn judge(&self, found: &[[f64; 3]], quality: &Quality) -> Result<(f64, f64)> {
         let all = self.0.as_flattened();
         let scale = rms(all.iter().map(|w| w[0])).max(f64::MIN_POSITIVE);
@@ -75,7 +79,7 @@ impl Wanted {
         let off: Vec<f64> = pairs.map(|(found, [want, _])| (found - want) / scale).collect();
         for (off, [_, bound]) in off.iter().zip(all) {
             let bound = bound / scale;
-            within("light of balls at one place is", "the twin's", off.abs(), bound, quality)?;
+            within("sphere light at one place", "the CPU reference", off.abs(), bound, quality)?;
         }
         Ok((rms(off.into_iter()), rms(all.iter().map(|w| w[1] / scale))))
     }
@@ -87,10 +91,10 @@ mod tests {
     use ridgelight::scene::fractal;
     use ridgelight::scene::{SphereLight, Surface};
 
-    /// What broken passes would give is refused: light a hundredth dim, of fewer slices, of a ball a tenth of a cell beside or
-    /// a tenth wider, as if nothing hid it, of a neighbour, of other colours, and NaN.
+    /// Wrong light is refused: 1 % too dark, of fewer slices, of a light a tenth of a cell aside or
+    /// a tenth wider, without occlusion, of a neighbour, of other colours, and NaN.
     #[test]
-    fn wrong_balls_are_refused() {
+    fn wrong_sphere_lights_are_refused() {
         let field = fractal(48, 1).unwrap();
         let cell = field.cell_m()[0];
         let highest = f64::from(field.heights_m().iter().fold(0.0_f32, |m, h| m.max(*h)));
@@ -99,8 +103,8 @@ mod tests {
             let z = field.base_m() + highest + 2.0 * cell;
             let radiance = [4.0, 2.0, 1.0];
             let position_m = [(20.0 + aside) * cell, 30.0 * cell, z];
-            let ball = SphereLight { position_m, radius_m: wider * cell, radiance };
-            let lights = Lights { spheres: vec![ball], ..Lights::default() };
+            let sphere_light = SphereLight { position_m, radius_m: wider * cell, radiance };
+            let lights = Lights { sphere_lights: vec![sphere_light], ..Lights::default() };
             let mut field = field.clone();
             if is_flat {
                 let level = vec![field.base_m(); 48 * 48];

@@ -1,5 +1,5 @@
-//! A sky through horizons of sweeps along lines, beside the same sweeps and the same look around each sample on the
-//! processor: what f32 may do is all that may lie between.
+//! Compares a sky through swept horizons with the same sweeps and the same near search on the CPU.
+//! They may differ by f32 rounding only.
 
 use ridgelight::Result;
 use ridgelight::gpu::{Headless, Pixels};
@@ -18,9 +18,9 @@ use ridgelight_cpu::tolerance::{EPSILON, ShadeError, twin_fused_slope};
 
 use super::{environments, percent, rms, within};
 
-/// A sky of radiance 1, and the scene's suns and key lights, on its ground, white, at some of its samples; nothing where it is
-/// not swept along lines that the twin follows: packed horizons are rounded, and where a field repeats lines may stand closer
-/// than asked for.
+/// A sky of radiance 1 and the scene's suns and key lights on white ground, at some texels. None
+/// where the CPU reference does not follow the sweeps: packed horizons are rounded, and lines of a
+/// periodic field may be denser than requested.
 pub(super) fn check(
     scene: &Scene,
     places: &[usize],
@@ -52,9 +52,9 @@ pub(super) fn check(
     let found: Vec<f64> =
         places.iter().map(|p| picture.values[p * picture.channels].into()).collect();
     let (want, bound) = wanted(&scene, places, quality, lines);
-    let (error, bound) = judge("a sky at one place is", &found, &want, bound, quality)?;
+    let (error, bound) = judge("the sky at one place", &found, &want, bound, quality)?;
     let of_sky = format!(
-        "a sky {} off the same sweeps' on the processor (RMSE; bound {})",
+        "sky error {} against the CPU reference (RMSE; bound {})",
         percent(error),
         percent(bound)
     );
@@ -62,7 +62,7 @@ pub(super) fn check(
     Ok(Some(all.join("; ")))
 }
 
-/// Light of the twin, and what a device's may be off by at any place.
+/// Light of the CPU reference, and its tolerance at any place.
 fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -> (Vec<f64>, f64) {
     let azimuths = even(quality.azimuths, scene.field.cell_m());
     let cols = scene.field.cols();
@@ -72,7 +72,7 @@ fn wanted(scene: &Scene, places: &[usize], quality: &Quality, line_shift: u32) -
     })
 }
 
-/// What `light` makes of sweeps along azimuths, and of what they may err by.
+/// Light from sweeps along azimuths, and its tolerance.
 pub(super) fn lit<T>(
     scene: &Scene,
     mut azimuths: Vec<Azimuth>,
@@ -97,15 +97,16 @@ pub(super) fn lit<T>(
     let all = || field.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
     let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
-    // A lattice's slope is 6 ε of itself off, which turns an angle by half of that at most.
+    // A lattice's slope has an error of 6 ε of itself, which changes an angle by at most half of
+    // that.
     let slope = twin_fused_slope(low.abs().max(high.abs()), step) + 3.0 * EPSILON;
     let [x, y] = field.cell_m();
     let error = ShadeError::new(slope, high - low, x.min(y), azimuths.len());
     light(&swept, &error)
 }
 
-/// Suns and key lights of a scene, each for irradiance or radiance 1 on white ground, beside the same sweeps; nothing where there
-/// are none, or where they are not swept as the sky is.
+/// Suns and key lights of a scene, each with irradiance or radiance 1 on white ground, by the same
+/// sweeps; none where there are none or where they are not swept like the sky.
 fn check_aimed(
     scene: &Scene,
     places: &[usize],
@@ -147,15 +148,15 @@ fn check_aimed(
         }
         bound = bound.max(most);
     }
-    let (error, bound) = judge("a sun at one place is", &found, &all, bound, quality)?;
+    let (error, bound) = judge("a sun at one place", &found, &all, bound, quality)?;
     Ok(Some(format!(
-        "suns and key lights {} off the same sweeps' (RMSE; bound {})",
+        "sun and key light error {} against the CPU reference (RMSE; bound {})",
         percent(error),
         percent(bound)
     )))
 }
 
-/// Those that a light is seen in, and what it is there.
+/// Azimuths that contain a light, and its shape there.
 fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shape)> {
     let own = |pass: &&Pass| pass.name() == "sun_shade" && pass.part == light;
     let passes: Vec<&Pass> = plan.passes.iter().filter(own).collect();
@@ -165,7 +166,8 @@ fn azimuths_of(plan: &Plan, light: &str) -> Option<(Vec<Azimuth>, Shape)> {
     Some((azimuths, [Shape::Disc, Shape::Point, Shape::Patch][shape as usize]))
 }
 
-/// A sun's light of the twin at each place, none where a point sun may be hidden or not, and what a device's may be off by.
+/// A sun's light of the CPU reference at each place, none where a point sun may be visible or not;
+/// and its tolerance.
 fn aimed(
     scene: &Scene,
     azimuths: Vec<Azimuth>,
@@ -195,10 +197,13 @@ fn aimed(
     })
 }
 
-/// A scene's ground, white, under nothing.
+/// A scene's ground, white, without lights.
 pub(super) fn white(scene: &Scene) -> Scene {
-    let white =
-        Surface { albedo: Albedo::Constant([1.0; 3]), border: scene.surface.border, phong: None };
+    let white = Surface {
+        albedo: Albedo::Constant([1.0; 3]),
+        border: scene.surface.border,
+        specular: None,
+    };
     Scene { field: scene.field.clone(), surface: white, lights: Lights::default() }
 }
 
@@ -213,7 +218,7 @@ fn judge(
     let scale = rms(want.iter().copied()).max(f64::MIN_POSITIVE);
     let off: Vec<f64> = found.iter().zip(want).map(|(a, b)| (a - b) / scale).collect();
     for one in &off {
-        within(what, "the twin's", one.abs(), bound / scale, quality)?;
+        within(what, "the CPU reference", one.abs(), bound / scale, quality)?;
     }
     Ok((rms(off.into_iter()), bound / scale))
 }
@@ -224,8 +229,8 @@ mod tests {
     use ridgelight::scene::Fuse;
     use ridgelight::scene::fractal;
 
-    /// What broken passes would give is refused: light a thousandth dim, of another fuse, of lines twice as far apart,
-    /// of an azimuth more, of a neighbour, and NaN.
+    /// Wrong light is refused: 0.1 % too dark, of another fuse, of lines twice as far apart, of one
+    /// more azimuth, of a neighbour, and NaN.
     #[test]
     fn wrong_skies_are_refused() {
         let field = fractal(48, 1).unwrap();
@@ -237,7 +242,7 @@ mod tests {
         let (right, bound) = wanted(&scene, &places, &quality, shift);
         println!("bound {bound:e}");
         assert!(bound < 1e-3, "{bound}");
-        assert!(judge("a sky is", &right, &right, bound, &quality).is_ok());
+        assert!(judge("the sky", &right, &right, bound, &quality).is_ok());
         let of = |quality: &Quality, shift| wanted(&scene, &places, quality, shift).0;
         let mut turned = right.clone();
         turned.rotate_left(1);
@@ -252,11 +257,12 @@ mod tests {
             ("NaN", holed),
         ];
         for (name, light) in wrong {
-            assert!(judge("a sky is", &light, &right, bound, &quality).is_err(), "{name} passes");
+            assert!(judge("the sky", &light, &right, bound, &quality).is_err(), "{name} passes");
         }
     }
 
-    /// The same of a sun 2° wide: a tenth dim, 5° beside it, half a degree above it, of a neighbour, NaN.
+    /// The same of a sun 2° wide: 10 % too dark, 5° aside, half a degree above, of a neighbour,
+    /// NaN.
     #[test]
     fn wrong_suns_are_refused() {
         let field = fractal(48, 1).unwrap();
@@ -276,7 +282,7 @@ mod tests {
         };
         let (right, bound) = of(1.0, 0.4);
         println!("bound {bound:e}");
-        let refused = |light: &[f64]| judge("a sun is", light, &right, bound, &quality).is_err();
+        let refused = |light: &[f64]| judge("a sun", light, &right, bound, &quality).is_err();
         assert!(!refused(&right) && bound < 0.01, "{bound}");
         let mut turned = right.clone();
         turned.rotate_left(1);

@@ -1,4 +1,4 @@
-//! A truth of our own, as dense as a budget of time lets it be.
+//! A computed ground truth, as dense as the time budget allows.
 
 use std::time::Instant;
 
@@ -7,26 +7,27 @@ use ridgelight::{Error, Result};
 use ridgelight_trade::auto::{Probes, apart};
 
 use super::super::rig::Rig;
-use super::Truth;
+use super::GroundTruth;
 use crate::terminal::percent;
 
-/// Share of the budget that drawing the truth may take, and probing it.
+/// Shares of the budget for computing the ground truth, and for probing it.
 const DRAWING: f64 = 0.4;
 const PROBING: f64 = 0.1;
-/// Counts of the truth, before they are halved until they fit: azimuths, slices of a sun, a key light or a
-/// ball, elevations.
+/// Largest counts, halved until they fit: azimuths, slices of a sun, key light or sphere light,
+/// elevations.
 const MOST: [u32; 3] = [512, 64, 4096];
-/// How often they may be: brute force in few azimuths is no truth, and favours settings of as many.
+/// Largest number of halvings. Brute force with few azimuths is no ground truth and favours
+/// settings with as many.
 const BRUTE_HALVINGS: u32 = 1;
 const HALVINGS: u32 = 3;
-/// Probes at least, for which the bound's normal approximation is good.
+/// Fewest probes for the normal approximation of the bound.
 const FEWEST_PROBES: usize = 64;
-/// The same probes for the same scene and number.
+/// Makes probes reproducible.
 const SEED: u64 = 0;
-impl Truth {
-    /// Our own: the suns and key lights, the balls of light, then all else; all but balls by brute force where
-    /// that fits into their share of the budget, else by the densest sweep, balls in as many slices as fit.
-    /// Light adds up.
+impl GroundTruth {
+    /// Adds up separate frames: suns and key lights, sphere lights, then the rest. Each is brute
+    /// force where that fits into its share of the budget, else the densest sweep. Sphere lights
+    /// use as many slices as fit.
     pub fn draw(rig: &mut Rig) -> Result<Self> {
         let scene = rig.scene;
         let all = &scene.lights;
@@ -42,9 +43,12 @@ impl Truth {
             let (suns, keys) = (all.suns.clone(), all.keys.clone());
             parts.push((name, under(Lights { suns, keys, ..Lights::default() })));
         }
-        if !all.spheres.is_empty() {
-            let spheres = all.spheres.clone();
-            parts.push(("balls", under(Lights { spheres, ..Lights::default() })));
+        if !all.sphere_lights.is_empty() {
+            let spheres = all.sphere_lights.clone();
+            parts.push((
+                "sphere lights",
+                under(Lights { sphere_lights: spheres, ..Lights::default() }),
+            ));
         }
         if has_sky {
             let (sky, environment) = (all.sky, all.environment.clone());
@@ -56,7 +60,7 @@ impl Truth {
         for (i, (name, part)) in parts.iter().enumerate() {
             let begun = Instant::now();
             let seconds = if i < last { 0.5 * share } else { share };
-            let [quality, half] = match part.lights.spheres.is_empty() {
+            let [quality, half] = match part.lights.sphere_lights.is_empty() {
                 true => affordable(rig, part, seconds)?,
                 false => affordable_slices(rig, part, seconds)?,
             };
@@ -66,7 +70,7 @@ impl Truth {
             share -= begun.elapsed().as_secs_f64();
         }
         let field = &scene.field;
-        let mut truth = Self {
+        let mut ground_truth = Self {
             planes: whole,
             cols: field.cols(),
             rows: field.rows(),
@@ -75,31 +79,31 @@ impl Truth {
             own_error: None,
             noise: 0.0,
         };
-        let steps = truth.distance(&halved)?.rmse;
-        let unsure = apart(&truth.planes, &halved, truth.cols);
+        let steps = ground_truth.distance(&halved)?.rmse;
+        let unsure = apart(&ground_truth.planes, &halved, ground_truth.cols);
         let probes = probes(scene, &unsure, rig.share(PROBING))?;
-        let off = probes.error(&truth.planes, None, Probes::ONE_LOOK);
-        truth.own_error = Some(steps.max(off.at_most));
-        truth.quality_of = format!(
-            "half its counts are {} (RMSE) off it, which bounds its own error where that at least \
-             halves as counts double; by {} samples, most of them where the two differ, it is {} off \
-             the oracle in f64, {}; the larger of the two is taken",
+        let off = probes.error(&ground_truth.planes, None, Probes::ONE_BOUND);
+        ground_truth.own_error = Some(steps.max(off.at_most));
+        ground_truth.quality_of = format!(
+            "with half its counts it changes by {} (RMSE), which bounds its own error where \
+                doubling the counts at least halves it; at {} probes, most of them where the two \
+                differ, its error against the f64 oracle is {}, {}; the larger of the two is used",
             percent(steps),
             probes.len(),
             percent(off.error),
             if probes.is_whole() {
-                "all that there are".to_owned()
+                "at every grid point".to_owned()
             } else {
                 let confidence = 100.0 * Probes::CONFIDENCE;
                 format!("with {confidence:.0} % confidence at most {}", percent(off.at_most))
             }
         );
-        Ok(truth)
+        Ok(ground_truth)
     }
 }
 
-/// As many samples with their exact light as fit into a time, the fewest at least; half of them by how far
-/// two pictures lie apart at each.
+/// Exact light at as many grid points as fit into a time, at least the fewest; half of them are
+/// drawn in proportion to the difference of two frames.
 fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
     let begun = Instant::now();
     let few = Probes::of(scene, FEWEST_PROBES, SEED, unsure)?;
@@ -109,14 +113,14 @@ fn probes(scene: &Scene, unsure: &[f64], most_s: f64) -> Result<Probes> {
     if few.is_whole() || fit <= few.len() { Ok(few) } else { Probes::of(scene, fit, SEED, unsure) }
 }
 
-/// All counts of the truth, halved so many times.
+/// All counts, halved so many times.
 fn counts(quality: &Quality, halvings: u32) -> Quality {
     let [azimuths, sun_azimuths, table_elevations] = MOST.map(|m| m >> halvings);
     Quality { azimuths, sun_azimuths, table_elevations, ..*quality }
 }
 
-/// Settings for the truth, and the same with half the counts, that can be drawn in so many seconds;
-/// the least there are, where none can.
+/// Settings, and the same with half the counts, that take at most so many seconds; the smallest
+/// where none do.
 fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
     let dense = Quality {
         method: Method::Sweep,
@@ -124,9 +128,9 @@ fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]
         fuse: Fuse::Aimed,
         ..Quality::default()
     };
-    let brute = Quality { method: Method::Brute, ..dense };
+    let brute = Quality { method: Method::BruteForce, ..dense };
     for (quality, most) in [(brute, BRUTE_HALVINGS), (dense, HALVINGS)] {
-        // A device that cannot do this at all says so here.
+        // Refused by devices that cannot do this at all.
         if rig.plan(scene, &counts(&quality, most)).is_err() {
             continue;
         }
@@ -142,7 +146,7 @@ fn affordable(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]
     Ok([HALVINGS, HALVINGS + 1].map(|h| counts(&dense, h)))
 }
 
-/// The same for balls of light alone, none of which is dropped anywhere.
+/// The same for sphere lights alone, with none culled.
 fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Quality; 2]> {
     let all = Quality { light_cutoff: 0.0, ..Quality::default() };
     let two = |halvings: u32| [halvings, halvings + 1].map(|h| counts(&all, h));
@@ -157,7 +161,7 @@ fn affordable_slices(rig: &mut Rig, scene: &Scene, seconds: f64) -> Result<[Qual
     Ok((0..HALVINGS).map(two).find(fits).unwrap_or_else(|| two(HALVINGS)))
 }
 
-/// Adds planes to a sum that may have none, one or three.
+/// Adds planes to a sum of none, one or three.
 fn add(sum: &mut Vec<Vec<f32>>, planes: Vec<Vec<f32>>) {
     if sum.is_empty() {
         *sum = planes;
@@ -172,13 +176,13 @@ fn add(sum: &mut Vec<Vec<f32>>, planes: Vec<Vec<f32>>) {
     }
 }
 
-/// What a plan makes of settings of the truth.
+/// The settings that a plan uses.
 fn used(rig: &Rig, scene: &Scene, quality: &Quality) -> Result<String> {
-    const TOLD: [&str; 6] =
+    const NAMES: [&str; 6] =
         ["method", "lines", "fuse", "azimuths", "sun_azimuths", "table_elevations"];
     let all = rig.plan(scene, quality)?.settings;
-    let told = all.iter().filter(|(name, _)| TOLD.contains(&name.as_str()));
-    Ok(told.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
+    let stated = all.iter().filter(|(name, _)| NAMES.contains(&name.as_str()));
+    Ok(stated.map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", "))
 }
 
 #[cfg(test)]
@@ -186,7 +190,7 @@ mod tests {
     use super::*;
     use ridgelight::scene::{HeightField, Surface};
 
-    /// No time is 64 probes, much is all there are.
+    /// Without time there are 64 probes, with enough time all grid points.
     #[test]
     fn probes_fit_their_time() {
         let of = |side: usize, most_s: f64| {

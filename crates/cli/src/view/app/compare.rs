@@ -1,4 +1,5 @@
-//! The light between that without shadows and the reference: two more frames, and how far ours is from the truth.
+//! The picture between that without shadows and the reference: two more frames, and the error
+//! against the reference.
 
 use std::time::{Duration, Instant};
 
@@ -11,42 +12,42 @@ use super::super::state::State;
 use super::drawing::replan;
 use crate::render;
 
-/// Paths begin anew when nothing has changed for so long.
+/// Paths restart when nothing has changed for so long.
 const REST: Duration = Duration::from_millis(250);
 
-/// Rows that one dispatch traces: the least that frames wait for.
+/// Rows that one dispatch traces, which limits how long a frame waits.
 const BAND_ROWS: u32 = 8;
 
-/// Of a frame, spent on paths.
+/// Share of a frame for paths.
 const BUDGET_MS: f64 = 12.0;
 
-/// Batches after which the reference is good enough: 4096 paths.
+/// Batches after which the reference is complete: 4096 paths.
 const MOST_BATCHES: u32 = 64;
 
-/// A sample of the best reference.
+/// Paths per texel of the complete reference.
 pub(super) const MOST_PATHS: u32 = MOST_BATCHES * REFERENCE_BATCH;
 
-/// Two pictures beside ours.
+/// The two pictures beside the main one.
 pub struct Compare {
     off: Option<Frame>,
     is_off_stale: bool,
     truth: Option<Truth>,
-    is_truth_stale: bool,
+    is_reference_stale: bool,
     /// When the scene changed last.
     changed: Instant,
-    /// How far ours is, once it has been asked for.
+    /// The measured error, once requested.
     error: Option<String>,
 }
 
-/// Light paths, a few more every frame.
+/// The path-traced reference, refined in every frame.
 struct Truth {
     frame: Frame,
-    /// The first pass that traces, and the next.
+    /// The first tracing pass, and the next.
     first_band: usize,
     next: usize,
     /// Bands of a frame.
     bands: usize,
-    /// Whole ones.
+    /// Complete batches.
     batches: u32,
 }
 
@@ -56,7 +57,7 @@ impl Compare {
             off: None,
             is_off_stale: true,
             truth: None,
-            is_truth_stale: true,
+            is_reference_stale: true,
             changed: Instant::now(),
             error: None,
         }
@@ -64,17 +65,17 @@ impl Compare {
 
     /// After a change of light or field.
     pub fn scene_changed(&mut self) {
-        (self.is_off_stale, self.is_truth_stale) = (true, true);
+        (self.is_off_stale, self.is_reference_stale) = (true, true);
         self.changed = Instant::now();
         self.error = None;
     }
 
-    /// Makes the frames that are to be shown.
+    /// Makes the frames to show.
     pub fn prepare(&mut self, screen: &mut Screen, state: &State, limits: &Limits) -> Result<()> {
         if self.is_off_stale {
             replan(screen, &mut self.off, state.plan_off(limits)?, &state.scene)?;
         }
-        if self.is_truth_stale && !state.is_moving() && self.changed.elapsed() > REST {
+        if self.is_reference_stale && !state.is_moving() && self.changed.elapsed() > REST {
             if let Some(old) = self.truth.take() {
                 screen.end(old.frame)?;
             }
@@ -86,12 +87,12 @@ impl Compare {
             let contents: Vec<&[f32]> = contents.iter().map(Vec::as_slice).collect();
             let frame = screen.frame(plan, &contents)?;
             self.truth = Some(Truth { frame, first_band, next: 0, bands: 1, batches: 0 });
-            self.is_truth_stale = false;
+            self.is_reference_stale = false;
         }
         Ok(())
     }
 
-    /// The frames, without shadows and the reference, and which of their passes run next.
+    /// The frames, without shadows and the reference, and the passes that they run next.
     pub fn frames(&mut self) -> [Option<(&mut Frame, Vec<usize>)>; 2] {
         let is_off_stale = self.is_off_stale;
         let off = self.off.as_mut().map(|frame| {
@@ -105,7 +106,7 @@ impl Compare {
         [off, truth]
     }
 
-    /// What [`frames`](Self::frames) said has been recorded; times of earlier passes of paths.
+    /// [`frames`](Self::frames) has been recorded; takes times of earlier path passes.
     pub fn drawn(&mut self, times: &[Timing]) {
         self.is_off_stale = false;
         let Some(truth) = &mut self.truth else { return };
@@ -126,19 +127,19 @@ impl Compare {
     /// Whether paths are still to be traced.
     pub fn is_busy(&self, state: &State) -> bool {
         let has_all = self.truth.as_ref().is_some_and(|t| t.batches >= MOST_BATCHES);
-        !state.is_moving() && (self.is_truth_stale || !has_all)
+        !state.is_moving() && (self.is_reference_stale || !has_all)
     }
 
-    /// Paths a sample, of the scene as it is.
+    /// Paths per texel of the current scene.
     pub fn paths(&self) -> u32 {
-        let fresh = self.truth.as_ref().filter(|_| !self.is_truth_stale);
+        let fresh = self.truth.as_ref().filter(|_| !self.is_reference_stale);
         fresh.map_or(0, |truth| truth.batches * REFERENCE_BATCH)
     }
 
-    /// Below each of the three pictures.
+    /// Labels below the three pictures.
     pub fn labels(&self) -> [String; 3] {
         let reference = match self.paths() {
-            _ if self.is_truth_stale => "reference: waits".to_owned(),
+            _ if self.is_reference_stale => "reference: waits".to_owned(),
             paths => format!("reference: {paths} paths"),
         };
         ["no shadows".to_owned(), "ours".to_owned(), reference]
@@ -149,12 +150,13 @@ impl Compare {
         self.error.iter().cloned().collect()
     }
 
-    /// Finds how far ours is from the reference so far.
+    /// Measures the error against the reference so far.
     pub fn find_error(&mut self, screen: &mut Screen, lit: &Frame, state: &State) -> Result<()> {
-        let Some(truth) = self.truth.as_ref().filter(|t| !self.is_truth_stale && t.batches >= 2)
+        let Some(truth) =
+            self.truth.as_ref().filter(|t| !self.is_reference_stale && t.batches >= 2)
         else {
             let found = format!("{} paths", self.paths());
-            let expected = format!("{} or more: a moment later", 2 * REFERENCE_BATCH);
+            let expected = format!("{} or more: wait a moment", 2 * REFERENCE_BATCH);
             return Err(Error::setting("reference", found, expected));
         };
         screen.wait()?;
@@ -167,10 +169,11 @@ impl Compare {
             .filter(|i| !is_void(i))
             .map(|i| [0, 1, 2].map(|c| [ours[i][c], light[i][c], spread[i][c]].map(f64::from)))
             .collect();
-        let unmet = plan::unmet_error(&state.scene, state.quality.bounces.count, self.paths());
-        let found = distance(&samples, f64::from(truth.batches), unmet);
+        let unsampled =
+            plan::unsampled_light_error(&state.scene, state.quality.bounces.count, self.paths());
+        let found = distance(&samples, f64::from(truth.batches), unsampled);
         let [rmse, error] = found.map(|share| 100.0 * share);
-        self.error = Some(format!("ours is {rmse:.3} % RMSE +- {error:.3} % off the reference"));
+        self.error = Some(format!("RMSE {rmse:.3} % +- {error:.3} % against the reference"));
         Ok(())
     }
 
@@ -181,7 +184,7 @@ impl Compare {
 }
 
 impl Truth {
-    /// Behind the last pass of this frame.
+    /// After the last pass of this frame.
     fn end(&self) -> usize {
         let all = self.frame.plan().passes.len();
         match self.next {
@@ -192,16 +195,19 @@ impl Truth {
     }
 }
 
-/// Root of the mean squared difference, over the mean of the reference, and its standard error; of the channels of
-/// samples, each a light, its reference and the standard error of that, which is of so many batches.
+/// Root of the mean squared difference over the mean of the reference, and its standard error.
+/// Takes the channels of texels: each a light, its reference and the standard error of that, which
+/// is from so many batches.
 ///
-/// With d = light - truth + noise of deviation s, d² - s² has the mean (light - truth)² and the variance 4 (light -
-/// truth)² s² + 2 s⁴, and 2 s⁴ / (B - 1) more as s² itself is found from B batches. Channels of a sample come of the same
-/// paths and waver together: their sums stand for d² and s². Noise of different samples is independent. With k = 1 / (B -
-/// 1), s² as found squares to s⁴ (1 + 2 k), and d² - s² times it has the mean (light - truth)² s² - 2 k s⁴ (normal noise).
-/// The root's error is that of its square over twice it, or the square's own root where that is less than its error; what
-/// light no path has met, R, G, B, can change the root by its own root mean square.
-fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unmet: [f64; 3]) -> [f64; 2] {
+/// With d = light - reference + noise of deviation s, d² - s² has the mean (light - reference)² and
+/// the variance 4 (light - reference)² s² + 2 s⁴, and 2 s⁴ / (B - 1) more because s² itself is
+/// estimated from B batches. Channels of a texel share paths and are correlated: their sums stand
+/// for d² and s². Noise of different texels is independent. With k = 1 / (B - 1), the estimated s²
+/// squares to s⁴ (1 + 2 k), and d² - s² times it has the mean (light - reference)² s² - 2 k s⁴
+/// (normal noise). The root's error is that of its square over twice it, or the square's own root
+/// where that is less than its error. Unsampled light, R, G, B, can change the root by its own root
+/// mean square.
+fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unsampled: [f64; 3]) -> [f64; 2] {
     let count = 3.0 * samples.len().max(1) as f64;
     let (mut square, mut mean, mut crossed, mut fourth) = (0.0, 0.0, 0.0, 0.0);
     let own = 1.0 / (batches - 1.0);
@@ -217,8 +223,8 @@ fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unmet: [f64; 3]) -> [f64; 2
     let error = (crossed.max(0.0) + fourth).sqrt() / count;
     let root = square.max(0.0).sqrt();
     let error = if square > error { error / (2.0 * root) } else { error.sqrt() };
-    let unmet = (unmet.iter().map(|u| u * u).sum::<f64>() / 3.0).sqrt();
-    let error = error.hypot(unmet);
+    let unsampled = (unsampled.iter().map(|u| u * u).sum::<f64>() / 3.0).sqrt();
+    let error = error.hypot(unsampled);
     match mean > 0.0 {
         true => [root / mean, error / mean],
         false => [if root > 0.0 { f64::INFINITY } else { 0.0 }, 0.0],
@@ -229,7 +235,7 @@ fn distance(samples: &[[[f64; 3]; 3]], batches: f64, unmet: [f64; 3]) -> [f64; 2
 mod tests {
     use super::*;
 
-    /// Of variance 1: a sum of twelve even numbers.
+    /// Of variance 1: a sum of twelve uniform numbers.
     fn noises() -> impl FnMut() -> f64 {
         let mut state = 1_u64;
         move || {
@@ -241,11 +247,11 @@ mod tests {
         }
     }
 
-    /// Without noise it is the RMSE, and light that was not met is all of its error. With noise of ± 0.5, which squares to
-    /// what is taken off, a light that is 0.2 off stays so: to within four of its standard errors, which is then
-    /// 0.5² · √(2 + 4 · 0.04 / 0.25) / √n / (2 · 0.2).
+    /// Without noise it is the RMSE, and its error is unsampled light alone. With noise of ± 0.5,
+    /// whose square is subtracted, an error of 0.2 is found to within four of its standard errors,
+    /// which is then 0.5² · √(2 + 4 · 0.04 / 0.25) / √n / (2 · 0.2).
     #[test]
-    fn noise_of_the_reference_is_no_distance() {
+    fn noise_of_the_reference_is_subtracted() {
         let exact = [[[1.5, 1.0, 0.0]; 3], [[2.5, 3.0, 0.0]; 3]];
         let [rmse, error] = distance(&exact, 2.0, [0.0; 3]);
         assert!((rmse - 0.25).abs() < 1e-12 && error == 0.0);
@@ -260,21 +266,22 @@ mod tests {
         let known = 0.25 * (2.0 + 4.0 * 0.04 / 0.25_f64).sqrt() / 200.0 / 0.4;
         assert!((error / known - 1.0).abs() < 0.1, "{error}, {known}");
         assert!((rmse - 0.2).abs() < 4.0 * error, "{rmse} +- {error}");
-        // Without the spread, the noise counts.
+        // Without the deviation, the noise counts.
         let silent: Vec<_> = samples.iter().map(|s| s.map(|[l, r, _]| [l, r, 0.0])).collect();
         assert!(distance(&silent, f64::INFINITY, [0.0; 3])[0] > 0.5);
     }
 
-    /// Gray light of two batches, each of deviation √½, so that their mean has s = ½ and half their difference is what is
-    /// found of it. The square 0.2² of a whole picture then wavers by √((4 · 0.04 s² + 2 s⁴ + 2 s⁴ / 1) / n), and so does
-    /// that of many pictures: to 15 %, three times 1 / √(2 · 400) = 3.5 % and the skew of s⁴. Channels taken for
-    /// independent, and s² for known, would say √(0.165 / 3 / 0.29) = 0.44 of it.
+    /// Grey light of two batches, each of deviation √½, so that their mean has s = ½, estimated by
+    /// half their difference. The square 0.2² of a whole picture then has a standard error of √((4
+    /// · 0.04 s² + 2 s⁴ + 2 s⁴ / 1) / n), and so does that of many pictures: to 15 %, three times 1
+    /// / √(2 · 400) = 3.5 % and the skew of s⁴. Independent channels and a known s² would give
+    /// √(0.165 / 3 / 0.29) = 0.44 of it.
     #[test]
-    fn channels_waver_together_and_so_does_the_spread() {
+    fn correlated_channels_widen_the_standard_error() {
         let mut noise = noises();
         let count = 400;
         let known = ((4.0 * 0.04 * 0.25 + 4.0 * 0.0625) / f64::from(count)).sqrt();
-        let (mut squares, mut told) = (Vec::new(), 0.0);
+        let (mut squares, mut stated) = (Vec::new(), 0.0);
         for _ in 0..400 {
             let mut sample = || {
                 let [a, b] = [0; 2].map(|_| 1.0 + 0.5_f64.sqrt() * noise());
@@ -285,12 +292,12 @@ mod tests {
             let mean = samples.iter().map(|s| s[0][1]).sum::<f64>() / f64::from(count);
             let [root, error] = [root * mean, error * mean];
             let of_square = if root * root > known { error * 2.0 * root } else { error * error };
-            told += of_square.powi(2) / 400.0;
+            stated += of_square.powi(2) / 400.0;
             let raw = samples.iter().map(|s| (1.2 - s[0][1]).powi(2) - s[0][2].powi(2));
             squares.push(raw.sum::<f64>() / f64::from(count));
         }
-        let wavers = (squares.iter().map(|s| (s - 0.04).powi(2)).sum::<f64>() / 400.0).sqrt();
-        assert!((wavers / known - 1.0).abs() < 0.15, "{wavers}, {known}");
-        assert!((told.sqrt() / known - 1.0).abs() < 0.15, "{}, {known}", told.sqrt());
+        let spread = (squares.iter().map(|s| (s - 0.04).powi(2)).sum::<f64>() / 400.0).sqrt();
+        assert!((spread / known - 1.0).abs() < 0.15, "{spread}, {known}");
+        assert!((stated.sqrt() / known - 1.0).abs() < 0.15, "{}, {known}", stated.sqrt());
     }
 }

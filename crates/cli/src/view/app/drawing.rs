@@ -11,16 +11,16 @@ use ridgelight_viewer::{Pane, PaneTimes, Panel, Screen, Shot, Sight};
 use super::super::panel::{self, Drawn};
 use super::super::state::{Light, State, Wish};
 use super::compare::Compare;
-use super::{App, Shown};
+use super::{App, OpenWindow};
 
-/// A window's title is not told more often.
+/// Shortest interval between updates of the window's title.
 const TITLE_FRAMES: u64 = 16;
 
 /// Between pictures side by side, pixels.
 const GAP: u32 = 2;
 
 impl App<'_> {
-    /// Does what a key asked for; false ends.
+    /// Does what a key requested; false ends.
     pub(super) fn grant(&mut self, wish: Wish, before: Light) -> Result<bool> {
         match wish {
             Wish::Nothing => {}
@@ -45,9 +45,11 @@ impl App<'_> {
 
     fn find_error(&mut self) {
         self.due = self.due.max(1);
-        let Some(Shown { screen, lit: Some(lit), compare, .. }) = &mut self.shown else { return };
+        let Some(OpenWindow { screen, lit: Some(lit), compare, .. }) = &mut self.shown else {
+            return;
+        };
         let Some(compare) = compare else {
-            self.state.message = Some("C shows the reference first".into());
+            self.state.message = Some("press C first to show the reference".into());
             return;
         };
         if let Err(why) = compare.find_error(screen, lit, &self.state) {
@@ -55,7 +57,8 @@ impl App<'_> {
         }
     }
 
-    /// Draws a frame; its pixels where they are kept, none where the window has no area or is not ready.
+    /// Draws a frame. Returns its pixels if they are kept; none where the window has no area or is
+    /// not ready.
     pub(super) fn draw(&mut self, keeps: bool) -> Result<Option<Vec<[u8; 4]>>> {
         let Some(shown) = &mut self.shown else { return Ok(None) };
         let Some(size) = shown.screen.size(shown.inner)? else {
@@ -84,7 +87,7 @@ impl App<'_> {
         };
         let Some((pixels, is_taken)) = drawn else {
             edited.into_iter().for_each(|at| self.state.give_back_edited(at));
-            return Ok(self.stay_blank("it takes no pictures"));
+            return Ok(self.stay_blank("it accepts no frames"));
         };
         self.blank = None;
         self.count();
@@ -94,10 +97,11 @@ impl App<'_> {
         Ok(Some(pixels))
     }
 
-    /// Devices refuse what plans did not foresee: back to what could be drawn, all of it anew, once.
+    /// Handles a refusal that the plan did not predict: returns to the last light that could be
+    /// drawn and recomputes it, once.
     fn fall_back(&mut self, why: Error) -> Result<()> {
         let Some(shown) = &mut self.shown else { return Err(why) };
-        // Of what stands beside nothing counts as drawn either.
+        // The comparison pictures restart too.
         let freed = shown.compare.take().map_or(Ok(()), |old| old.end(&mut shown.screen));
         let (Some(good), Ok(())) = (shown.good.take(), freed) else { return Err(why) };
         self.state.go_back(good, why);
@@ -106,7 +110,7 @@ impl App<'_> {
         Ok(())
     }
 
-    /// No picture, for a reason.
+    /// Shows no picture, for a reason.
     fn stay_blank<T>(&mut self, why: &'static str) -> Option<T> {
         let since = self.blank.map_or_else(Instant::now, |(since, _)| since);
         self.blank = Some((since, why));
@@ -118,7 +122,7 @@ impl App<'_> {
         self.frames += 1;
         self.due = self.due.saturating_sub(1);
         let since = self.last.replace(now).map(|last| (now - last).as_secs_f64() * 1e3);
-        // Between frames of a picture that stands still nothing is measured.
+        // Frames of a still picture are not timed.
         if self.state.is_moving() || self.steps.is_some() {
             self.spent.extend(since);
         } else {
@@ -145,7 +149,7 @@ fn has_colour(plan: &Plan) -> bool {
     matches!(radiance, Some(Kind::Image { format: Format::Rgba32Float, .. }))
 }
 
-/// Columns where the pictures of a window begin, and the size of each: three side by side, or one.
+/// Columns where the window's pictures begin, and the size of each: three side by side, or one.
 pub(super) fn places([width, height]: [u32; 2], is_split: bool) -> (Vec<u32>, [u32; 2]) {
     match width.saturating_sub(2 * GAP) / 3 {
         pane if is_split && pane > 0 => {
@@ -155,7 +159,7 @@ pub(super) fn places([width, height]: [u32; 2], is_split: bool) -> (Vec<u32>, [u
     }
 }
 
-/// Goes over to a plan, in the same images where they fit; whether all of it must run.
+/// Switches to a plan, reusing images where they fit. Returns whether all of it must run.
 pub(super) fn replan(
     screen: &mut Screen,
     place: &mut Option<Frame>,
@@ -183,15 +187,15 @@ pub(super) fn replan(
     Ok(true)
 }
 
-impl Shown {
-    /// Goes over to the light as it is wanted.
+impl OpenWindow {
+    /// Switches to the requested light.
     fn light(&mut self, state: &State) -> Result<()> {
         let plan = state.plan(&self.limits)?;
         self.is_stale |= replan(&mut self.screen, &mut self.lit, plan, &state.scene)?;
         Ok(())
     }
 
-    /// Makes what stands beside ours, or frees it.
+    /// Makes or frees the comparison pictures.
     fn show_beside(&mut self, state: &State) -> Result<()> {
         if !state.is_split {
             return self.compare.take().map_or(Ok(()), |old| old.end(&mut self.screen));
@@ -200,7 +204,7 @@ impl Shown {
         compare.prepare(&mut self.screen, state, &self.limits)
     }
 
-    /// Pixels, where they are kept, and whether the window took them; none where it was not ready.
+    /// Pixels if they are kept, and whether the window accepted them; none where it was not ready.
     fn draw(
         &mut self,
         state: &State,
@@ -217,7 +221,7 @@ impl Shown {
         let scale = if self.window.scale_factor() >= 1.5 { 2 } else { 1 };
         let letters = panel::letters(size[0], scale);
         let text = panel::draw(&state.lines(lit.plan(), &self.figures, letters), scale);
-        // Where there is place for one picture alone it is ours.
+        // If only one picture fits, it is the main one.
         let mut compare = self.compare.as_mut().filter(|_| lefts.len() > 1);
         let labels = compare.as_ref().map(|c| c.labels()).filter(|_| text.size[0] > 0);
         let drawn = panels(state, text, (&lefts, pane_size), labels.as_ref(), scale);
@@ -239,7 +243,7 @@ impl Shown {
         let new = if self.is_stale { Some(whole) } else { edited };
         let heights = new.map(|at| (field.heights_m(), at));
 
-        // In the order that they stand in: each with its heights and its passes.
+        // From left to right: each with its heights and its passes.
         let [off, truth] = compare.as_mut().map_or([None, None], |c| c.frames());
         let mut frames = Vec::new();
         frames.extend(off.map(|(frame, passes)| {
@@ -271,15 +275,15 @@ impl Shown {
             compare.drawn(done.timings.get(2).map_or(&[], |times| times.light.as_slice()));
         }
         self.last_edit = edit.or(self.last_edit);
-        self.told(std::mem::take(&mut done.timings[at_ours]));
+        self.stated(std::mem::take(&mut done.timings[at_ours]));
         if std::mem::take(&mut self.is_stale) && !state.is_moving() {
             self.good = Some(state.light());
         }
         Ok(Some((done.pixels.unwrap_or_default(), done.is_taken)))
     }
 
-    /// Times of an earlier frame, whose passes say whether they were those of an edit.
-    fn told(&mut self, times: PaneTimes) {
+    /// Times of an earlier frame, whose passes tell whether it was an edit.
+    fn stated(&mut self, times: PaneTimes) {
         let PaneTimes { light, drawing } = times;
         if light.iter().any(|t| t.label.starts_with("dirty_mark")) {
             let ms = light.iter().map(|t| t.ns).sum::<f64>() / 1e6;
@@ -293,7 +297,7 @@ impl Shown {
     }
 }
 
-/// What stands over the pictures, and where: marks, labels, and the text.
+/// What is drawn over the pictures, and where: marks, labels, and the text.
 fn panels(
     state: &State,
     text: Drawn,

@@ -1,4 +1,4 @@
-//! Pictures and scenes as files.
+//! Saves pictures and scenes to files.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,8 @@ use crate::args::Cli;
 use crate::{render, setup};
 
 impl App<'_> {
-    /// The lit field, a pixel a sample, or what the camera sees, into a file or one of a name that is free.
+    /// Saves the lit field, one pixel per texel, or the camera's picture, to a file or to a free
+    /// name.
     pub(super) fn save_picture(&mut self, path: Option<&Path>) -> Result<()> {
         let path = path.map_or_else(|| self.free_name("png"), Path::to_owned);
         let Some(shown) = &mut self.shown else { return Ok(()) };
@@ -38,7 +39,7 @@ impl App<'_> {
         self.say(saved, &path)
     }
 
-    /// What `render --scene` takes, and beside it the heights where they are not those that were read.
+    /// Saves a scene for `render --scene`, and its heights if they have changed.
     pub(super) fn save_scene(&mut self, path: Option<&Path>) -> Result<()> {
         let path = path.map_or_else(|| self.free_name("json"), Path::to_owned);
         let Some(shown) = &self.shown else { return Ok(()) };
@@ -51,7 +52,7 @@ impl App<'_> {
         self.say(saved.and_then(|()| files::write_json(&path, &scene)), &path)
     }
 
-    /// The window's pixels.
+    /// Saves the window's pixels.
     pub(super) fn save_pixels(&mut self, path: &Path, pixels: &[[u8; 4]]) -> Result<()> {
         let [width, height] = self.size();
         let steps = Tone::default().steps();
@@ -61,7 +62,8 @@ impl App<'_> {
         files::write_png(path, rows, cols, &light, None, Tone::default(), &[])
     }
 
-    /// That a file was written, or why not: on the screen, and on standard output. With a script it ends there.
+    /// Reports a saved file or an error, on the screen and on standard output. With a script an
+    /// error ends the run.
     fn say(&mut self, saved: Result<()>, path: &Path) -> Result<()> {
         let line = match saved {
             Ok(()) => format!("saved {}", path.display()),
@@ -76,7 +78,7 @@ impl App<'_> {
         Ok(())
     }
 
-    /// In this folder, by the field's name.
+    /// A free name in this folder, after the field's.
     fn free_name(&self, extension: &str) -> PathBuf {
         let stem = self.args.input.path.file_stem().unwrap_or_default().to_string_lossy();
         let name = |n: u32| PathBuf::from(format!("{stem}-view-{n}.{extension}"));

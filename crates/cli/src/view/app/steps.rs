@@ -1,4 +1,4 @@
-//! A turn of the loop: frames that are due, and the steps of a script.
+//! One iteration of the loop: due frames and steps of a script.
 
 use std::time::{Duration, Instant};
 
@@ -9,11 +9,11 @@ use winit::dpi::PhysicalSize;
 use super::super::script::Step;
 use super::compare::MOST_PATHS;
 use super::drawing::places;
-use super::{App, Shown};
+use super::{App, OpenWindow};
 
-/// How long a window of a script may show nothing.
+/// How long a script's window may show nothing.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How long a script waits for the size it asked for: window managers of busy machines take seconds.
+/// How long a script waits for a requested size: window managers of busy machines take seconds.
 const RESIZE_PATIENCE: Duration = Duration::from_secs(120);
 
 impl App<'_> {
@@ -104,7 +104,7 @@ impl App<'_> {
         Ok(true)
     }
 
-    /// Whether the window shows something, or has not failed to for long.
+    /// Refuses a window that has shown nothing for too long.
     fn check_shown(&self, step: &str) -> Result<()> {
         let Some((_, why)) = self.blank.filter(|(since, _)| since.elapsed() > PATIENCE) else {
             return Ok(());
@@ -113,24 +113,24 @@ impl App<'_> {
         Err(Error::Device { doing: format!("--script: {step}"), reason })
     }
 
-    /// Whether so many paths a sample will ever have been traced.
+    /// Whether so many paths per texel can be reached.
     fn check_paths(&self, count: u32) -> Result<()> {
         let width = self.shown.as_ref().map_or(0, |shown| shown.size[0]);
         let (found, expected) = if count > MOST_PATHS {
             (format!("{count}"), format!("{MOST_PATHS} or less"))
         } else if !self.state.is_split {
-            ("no reference beside the light".to_owned(), "key c before".to_owned())
+            ("no reference".to_owned(), "key c first".to_owned())
         } else if self.state.is_moving() {
-            ("a field that moves".to_owned(), "key w or key g before, which stops it".to_owned())
+            ("a moving field".to_owned(), "key w or key g first, which stops it".to_owned())
         } else if width > 0 && places([width, 1], true).0.len() < 3 {
-            (format!("a window {width} pixels wide"), "place for three pictures".to_owned())
+            (format!("a window {width} pixels wide"), "room for three pictures".to_owned())
         } else {
             return Ok(());
         };
         Err(Error::setting("--script: paths", found, expected))
     }
 
-    /// Asks for a size until pictures have it.
+    /// Requests a size until the pictures have it.
     fn resize(&mut self, wanted: [u32; 2], left: Duration) -> Result<Option<Step>> {
         let Some(shown) = &self.shown else { return Ok(None) };
         if shown.size == wanted {
@@ -149,9 +149,11 @@ impl App<'_> {
         Ok(Some(Step::Resizing(wanted, until)))
     }
 
-    /// What stands over the picture, a line a line.
+    /// The text over the picture.
     fn text(&self) -> String {
-        let Some(Shown { lit: Some(lit), figures, .. }) = &self.shown else { return String::new() };
+        let Some(OpenWindow { lit: Some(lit), figures, .. }) = &self.shown else {
+            return String::new();
+        };
         let lines = self.state.lines(lit.plan(), figures, usize::MAX);
         lines.iter().map(|line| format!("{line}\n")).collect()
     }
@@ -172,7 +174,7 @@ impl App<'_> {
     }
 }
 
-/// Memory of this process, where the system tells it as Linux does.
+/// Memory of this process, as Linux reports it.
 fn resident_kib() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -1,4 +1,4 @@
-//! What stands over the picture: figures, settings, and the keys.
+//! The text over the picture: figures, settings, and keys.
 
 use ridgelight::gpu::Timing;
 use ridgelight::plan::{Plan, Rectangle};
@@ -8,7 +8,7 @@ use super::{State, Text, Tool};
 use crate::idle;
 use crate::view::brush::Action;
 
-/// The keys, as they are listed on the screen and in docs/viewer.md.
+/// The keys, as listed on the screen and in docs/viewer.md.
 const KEYS: [&str; 21] = [
     "V                 from above, from a camera",
     "arrows, drag      move the map, turn the camera",
@@ -16,35 +16,35 @@ const KEYS: [&str; 21] = [
     "+ - or wheel      nearer, farther     Home    all of it",
     "Shift+arrows      the sun (there is one from then on); right drag",
     "E D               brighter, darker",
-    "C                 without shadows | ours | reference, which gathers paths",
-    "R                 how far ours is from the reference, with C",
+    "C                 without shadows | ours | path-traced reference",
+    "R                 error against the reference, with C",
     "M  B              method, bounces",
     "Tab Shift+Tab     all settings: the next, the one before",
     ", .               less, more of it (azimuths at first)",
-    "1                 drag looks: as above",
+    "1                 drag moves the view, as above",
     "2 3 4             drag raises, lowers, erodes",
-    "5                 click places a light or takes one; drag moves it",
+    "5                 click places or selects a light; drag moves it",
     "[ ] ; '           size and strength of brush or light",
-    "T  X  PgUp PgDn   the light's colour; delete it; up, down; O one in the middle",
-    "Z Y               undo, do again",
+    "T  X  PgUp PgDn   the light's colour; delete it; up, down; O adds one",
+    "Z Y               undo, redo",
     "W G               waves, a ridge that travels: on and off",
     "P                 save the picture, as `render` does",
     "S                 save the scene, for `render --scene`",
     "H    Q Esc        this list, the figures, nothing; end",
 ];
 
-/// What was measured.
+/// Measured values.
 #[derive(Default)]
 pub struct Figures {
-    /// Passes of the last frame that was lit as a whole.
+    /// Passes of the last complete frame.
     pub light: Vec<Timing>,
-    /// Of what draws it.
+    /// Memory of the drawing passes.
     pub drawing: Vec<Timing>,
     /// The last edit, and milliseconds of its passes.
     pub edit: Option<(Rectangle, f64)>,
     /// Milliseconds from frame to frame.
     pub frame_ms: Option<f64>,
-    /// What the comparison has come to.
+    /// Result of the comparison.
     pub compared: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ impl Figures {
 }
 
 impl State {
-    /// What stands over the picture, in lines of so many letters; nothing where no text is wanted.
+    /// The text over the picture, in lines of so many letters; none where it is hidden.
     pub fn lines(&self, plan: &Plan, figures: &Figures, letters: usize) -> Vec<String> {
         if self.text == Text::Nothing {
             return Vec::new();
@@ -111,8 +111,9 @@ impl State {
         let work = match self.tool {
             Tool::Look => return None,
             Tool::Lights => {
-                let count = self.scene.lights.spheres.len();
-                let chosen = self.chosen_ball().map_or("none".into(), |n| (n + 1).to_string());
+                let count = self.scene.lights.sphere_lights.len();
+                let chosen =
+                    self.chosen_sphere_light().map_or("none".into(), |n| (n + 1).to_string());
                 return Some(format!("lights: {count}, chosen {chosen}"));
             }
             Tool::Brush(Action::Raise) => "raise",
@@ -122,11 +123,11 @@ impl State {
         let [done, undone] = self.strokes.count();
         let (radius, strength) = (self.brush.radius_m, self.brush.strength);
         Some(format!(
-            "{work}: radius {radius:.4} m, strength {strength:.3}, undo {done}, again {undone}"
+            "{work}: radius {radius:.4} m, strength {strength:.3}, undo {done}, redo {undone}"
         ))
     }
 
-    /// All settings, the chosen one marked, and why it changes nothing where it does not.
+    /// All settings with the chosen one marked, and why it changes nothing if so.
     fn setting_lines(&self, plan: &Plan) -> Vec<String> {
         let mut lines = Vec::new();
         for (name, word, is_chosen) in self.settings.list(&self.asked) {
@@ -142,7 +143,7 @@ impl State {
     }
 }
 
-/// A line in pieces of at most so many letters, parted at spaces where there are any.
+/// Breaks a line after at most so many letters, at spaces where possible.
 fn wrapped(line: &str, letters: usize) -> Vec<String> {
     let letters = letters.max(16);
     let mut rest: Vec<char> = line.chars().collect();
@@ -157,7 +158,7 @@ fn wrapped(line: &str, letters: usize) -> Vec<String> {
     pieces
 }
 
-/// Times of passes of one name together, in the order of the first of each.
+/// Times summed by pass name, in order of first appearance.
 fn by_pass<'a>(times: impl Iterator<Item = &'a Timing>) -> Vec<(&'a str, f64)> {
     let mut all: Vec<(&str, f64)> = Vec::new();
     for time in times {
@@ -174,7 +175,7 @@ fn by_pass<'a>(times: impl Iterator<Item = &'a Timing>) -> Vec<(&'a str, f64)> {
 mod tests {
     use super::*;
 
-    /// As they stand on the screen, in order.
+    /// In the order on the screen.
     #[test]
     fn the_viewers_page_lists_the_keys() {
         let page = include_str!("../../../../../docs/viewer.md");

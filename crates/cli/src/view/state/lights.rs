@@ -1,4 +1,4 @@
-//! The first sun, and balls of light: turned, placed, dragged, coloured, deleted.
+//! The first sun, and sphere lights: turn, place, drag, colour, delete.
 
 use ridgelight::scene::{SphereLight, Sun};
 
@@ -6,7 +6,7 @@ use super::viewpoint::height;
 use super::{State, Wish, hundredths};
 use crate::args::sun;
 
-/// What a ball's colour goes through; its brightest channel stays.
+/// Colours that a sphere light cycles through; its brightest channel stays.
 const COLOURS: [[f32; 3]; 6] = [
     [1.0, 1.0, 1.0],
     [1.0, 0.6, 0.3],
@@ -16,16 +16,16 @@ const COLOURS: [[f32; 3]; 6] = [
     [0.8, 0.4, 1.0],
 ];
 
-/// Radiance of a new ball, whose radius is a thirtieth of the field's shorter side and whose middle stands three radii
-/// above the ground: 8/9 of white below it.
+/// Radiance of a new sphere light. Its radius is a thirtieth of the field's shorter side and its
+/// centre is three radii above the ground: 8/9 of white below it.
 const RADIANCE: f32 = 8.0;
 const SHARE: f64 = 1.0 / 30.0;
 
-/// A ball is taken hold of from so far, pixels, however small it is.
+/// Distance at which a click takes hold of a sphere light, pixels, however small it is.
 const GRIP: f64 = 8.0;
 
 impl State {
-    /// Turns the first sun, degrees; makes one where there is none.
+    /// Turns the first sun by degrees; adds one where there is none.
     pub(super) fn turn_sun(&mut self, clockwise: f64, up: f64) -> Wish {
         let lights = &mut self.scene.lights;
         let words = match lights.suns.first() {
@@ -51,101 +51,108 @@ impl State {
         Wish::Light
     }
 
-    /// The default of a scene without lights goes with the first light that is written out.
+    /// The first explicit light replaces the default of a scene without lights.
     fn ask_for_sky(&mut self) {
         if let Some([r, g, b]) = self.scene.lights.sky {
             self.asked.set("sky", vec![format!("{r},{g},{b}")]);
         }
     }
 
-    /// After any change of the balls.
-    fn ask_for_balls(&mut self) -> Wish {
-        let words = |ball: &SphereLight| {
-            let ([x, y, z], [r, g, b]) = (ball.position_m, ball.radiance);
-            format!("{x},{y},{z},{},{r},{g},{b}", ball.radius_m)
+    /// After any change of the sphere lights.
+    fn ask_for_lights(&mut self) -> Wish {
+        let words = |sphere_light: &SphereLight| {
+            let ([x, y, z], [r, g, b]) = (sphere_light.position_m, sphere_light.radiance);
+            format!("{x},{y},{z},{},{r},{g},{b}", sphere_light.radius_m)
         };
         self.ask_for_sky();
-        self.asked.set("light", self.scene.lights.spheres.iter().map(words).collect());
+        self.asked.set("sphere_light", self.scene.lights.sphere_lights.iter().map(words).collect());
         Wish::Light
     }
 
-    /// The ball that is chosen, where there are any.
-    pub(super) fn chosen_ball(&self) -> Option<usize> {
-        self.ball.filter(|n| *n < self.scene.lights.spheres.len())
+    /// The chosen sphere light, if any.
+    pub(super) fn chosen_sphere_light(&self) -> Option<usize> {
+        self.sphere_light.filter(|n| *n < self.scene.lights.sphere_lights.len())
     }
 
-    /// A new ball above the ground at a pixel.
-    pub(super) fn place_ball(&mut self, size: [u32; 2], at: [f64; 2]) -> Wish {
-        let Some([x, y, ground]) = self.sight.ground(&self.scene.field, size, at) else {
-            return self.say("no ground there for a light to stand on");
+    /// Adds a sphere light above the ground at a pixel.
+    pub(super) fn place_light(&mut self, size: [u32; 2], at: [f64; 2]) -> Wish {
+        let Some([x, y, ground]) = self.viewpoint.ground(&self.scene.field, size, at) else {
+            return self.say("no ground there to place a light on");
         };
         let radius_m = SHARE * self.side_m();
         let position_m = [x, y, ground + 3.0 * radius_m];
         let radiance = [RADIANCE; 3];
-        self.scene.lights.spheres.push(SphereLight { position_m, radius_m, radiance });
-        self.ball = Some(self.scene.lights.spheres.len() - 1);
-        self.ask_for_balls()
+        self.scene.lights.sphere_lights.push(SphereLight { position_m, radius_m, radiance });
+        self.sphere_light = Some(self.scene.lights.sphere_lights.len() - 1);
+        self.ask_for_lights()
     }
 
-    /// Takes hold of the ball at a pixel, or makes one there.
-    pub(super) fn take_ball(&mut self, size: [u32; 2], at: [f64; 2]) -> Wish {
-        let off = |ball: &SphereLight| {
-            let seen = self.sight.pixel(&self.scene.field, size, ball.position_m, ball.radius_m);
+    /// Takes hold of the sphere light at a pixel, or adds one there.
+    pub(super) fn take_light(&mut self, size: [u32; 2], at: [f64; 2]) -> Wish {
+        let off = |sphere_light: &SphereLight| {
+            let seen = self.viewpoint.pixel(
+                &self.scene.field,
+                size,
+                sphere_light.position_m,
+                sphere_light.radius_m,
+            );
             let ([x, y], radius) = seen?;
             let off = (x - at[0]).hypot(y - at[1]);
             (off <= radius.max(GRIP)).then_some(off)
         };
-        let balls = self.scene.lights.spheres.iter().enumerate();
-        let near = balls.filter_map(|(n, ball)| Some((n, off(ball)?)));
+        let sphere_lights = self.scene.lights.sphere_lights.iter().enumerate();
+        let near = sphere_lights.filter_map(|(n, sphere_light)| Some((n, off(sphere_light)?)));
         match near.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((n, _)) => {
-                self.ball = Some(n);
+                self.sphere_light = Some(n);
                 Wish::Show
             }
-            None => self.place_ball(size, at),
+            None => self.place_light(size, at),
         }
     }
 
-    /// Moves the chosen ball so far over the ground as the pixel goes; as high above it as before.
-    pub(super) fn drag_ball(&mut self, size: [u32; 2], from: [f64; 2], to: [f64; 2]) -> Wish {
-        let ground = |at| self.sight.ground(&self.scene.field, size, at);
-        let (Some(n), Some(from), Some(to)) = (self.chosen_ball(), ground(from), ground(to)) else {
+    /// Moves the chosen sphere light with the pixel, at the same height above ground.
+    pub(super) fn drag_light(&mut self, size: [u32; 2], from: [f64; 2], to: [f64; 2]) -> Wish {
+        let ground = |at| self.viewpoint.ground(&self.scene.field, size, at);
+        let (Some(n), Some(from), Some(to)) =
+            (self.chosen_sphere_light(), ground(from), ground(to))
+        else {
             return Wish::Nothing;
         };
-        let [x, y, z] = self.scene.lights.spheres[n].position_m;
+        let [x, y, z] = self.scene.lights.sphere_lights[n].position_m;
         let moved = [x + to[0] - from[0], y + to[1] - from[1]];
         let heights = self.on_ground(moved).zip(self.on_ground([x, y]));
         let rise = heights.map_or(0.0, |(new, old)| new - old);
-        self.scene.lights.spheres[n].position_m = [moved[0], moved[1], z + rise];
-        self.ask_for_balls()
+        self.scene.lights.sphere_lights[n].position_m = [moved[0], moved[1], z + rise];
+        self.ask_for_lights()
     }
 
-    /// What a key does to the chosen ball.
-    pub(super) fn change_ball(&mut self, key: &str) -> Wish {
-        let Some(n) = self.chosen_ball() else {
-            return self.say("no light is chosen: 5, then click one, or O for a new one");
+    /// Changes the chosen sphere light by a key.
+    pub(super) fn change_light(&mut self, key: &str) -> Wish {
+        let Some(n) = self.chosen_sphere_light() else {
+            return self.say("no light is chosen: press 5 and click one, or press O for a new one");
         };
-        let balls = &mut self.scene.lights.spheres;
-        let ball = &mut balls[n];
-        let most = ball.radiance.iter().copied().fold(0.0, f32::max);
+        let sphere_lights = &mut self.scene.lights.sphere_lights;
+        let sphere_light = &mut sphere_lights[n];
+        let most = sphere_light.radiance.iter().copied().fold(0.0, f32::max);
         match key {
             "t" => {
-                let is = |c: &[f32; 3]| c.map(|v| v * most) == ball.radiance;
+                let is = |c: &[f32; 3]| c.map(|v| v * most) == sphere_light.radiance;
                 let next = COLOURS.iter().position(is).map_or(0, |i| (i + 1) % COLOURS.len());
-                ball.radiance = COLOURS[next].map(|v| v * most);
+                sphere_light.radiance = COLOURS[next].map(|v| v * most);
             }
-            "[" => ball.radius_m *= 0.8,
-            "]" => ball.radius_m *= 1.25,
-            ";" => ball.radiance = ball.radiance.map(|v| v * 0.8),
-            "'" => ball.radiance = ball.radiance.map(|v| v * 1.25),
-            "pageup" => ball.position_m[2] += ball.radius_m,
-            "pagedown" => ball.position_m[2] -= ball.radius_m,
+            "[" => sphere_light.radius_m *= 0.8,
+            "]" => sphere_light.radius_m *= 1.25,
+            ";" => sphere_light.radiance = sphere_light.radiance.map(|v| v * 0.8),
+            "'" => sphere_light.radiance = sphere_light.radiance.map(|v| v * 1.25),
+            "pageup" => sphere_light.position_m[2] += sphere_light.radius_m,
+            "pagedown" => sphere_light.position_m[2] -= sphere_light.radius_m,
             _ => {
-                balls.remove(n);
-                self.ball = balls.len().checked_sub(1);
+                sphere_lights.remove(n);
+                self.sphere_light = sphere_lights.len().checked_sub(1);
             }
         }
-        self.ask_for_balls()
+        self.ask_for_lights()
     }
 
     /// Absolute height of the ground at a place; none beyond it.
@@ -163,7 +170,7 @@ impl State {
     }
 }
 
-/// Compass azimuth and elevation, degrees, less the rounding of radians.
+/// Compass azimuth and elevation, degrees, without the rounding of radians.
 pub fn compass(sun: &Sun) -> (f64, f64) {
     let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
     ((90.0 - degrees(sun.azimuth_rad)).rem_euclid(360.0), degrees(sun.elevation_rad))

@@ -1,4 +1,4 @@
-//! Brushes at work, and what marks them and the lights on the picture.
+//! Brush strokes, and marks of the brush and the lights on the picture.
 
 use ridgelight::plan::Rectangle;
 
@@ -8,7 +8,7 @@ use crate::view::brush::{Action, together};
 /// Dots around a brush.
 const RING: u32 = 24;
 
-/// A square on the picture: its middle, half its side and its colour.
+/// A square on the picture: its centre, half its side and its colour.
 pub struct Mark {
     pub at: [f64; 2],
     pub half: u32,
@@ -22,9 +22,9 @@ impl State {
         self.message = None;
         self.cursor = at;
         if self.is_moving() {
-            return self.say("W or G stops what moves; then the brush changes what stays");
+            return self.say("press W or G to stop the movement before you use a brush");
         }
-        let Some([x, y, _]) = self.sight.ground(&self.scene.field, size, at) else {
+        let Some([x, y, _]) = self.viewpoint.ground(&self.scene.field, size, at) else {
             return Wish::Show;
         };
         self.strokes.begin(&self.scene.field);
@@ -32,9 +32,9 @@ impl State {
         self.dab(action, [x, y])
     }
 
-    /// Dabs a quarter of the radius apart, on to a pixel.
+    /// Dabs a quarter of the radius apart, up to a pixel.
     pub(super) fn draw_stroke(&mut self, action: Action, to: [f64; 2], size: [u32; 2]) -> Wish {
-        let ground = self.sight.ground(&self.scene.field, size, to);
+        let ground = self.viewpoint.ground(&self.scene.field, size, to);
         let (Some([x, y, _]), true) = (ground, self.strokes.is_begun()) else { return Wish::Show };
         let from = self.stroke_m;
         let length = (x - from[0]).hypot(y - from[1]);
@@ -64,23 +64,23 @@ impl State {
         Wish::Heights
     }
 
-    /// The last stroke, back or again.
+    /// Undoes or redoes a stroke.
     pub(super) fn undo(&mut self, is_back: bool) -> Wish {
         if self.is_moving() {
-            return self.say("W or G stops what moves; then strokes are undone");
+            return self.say("press W or G to stop the movement before you undo");
         }
         self.strokes.end(&self.scene.field);
         let field = &mut self.scene.field;
         let done = if is_back { self.strokes.undo(field) } else { self.strokes.redo(field) };
         match done {
             Ok(Some(at)) => self.edit(at),
-            Ok(None) => self.say(if is_back { "nothing to undo" } else { "nothing to do again" }),
+            Ok(None) => self.say(if is_back { "nothing to undo" } else { "nothing to redo" }),
             Err(why) => self.say(&why.to_string()),
         }
     }
 
-    /// The least radius of a brush and the most, m. Half a cell: a stroke has not more dabs than eight a cell that it
-    /// crosses.
+    /// Least and largest radius of a brush, m. At half a cell a stroke has at most eight dabs per
+    /// cell that it crosses.
     pub(super) fn brush_radii_m(&self) -> [f64; 2] {
         let field = &self.scene.field;
         let [x, y] = field.cell_m();
@@ -105,34 +105,40 @@ impl State {
         Wish::Show
     }
 
-    /// Where heights have changed since this was last asked.
+    /// Where heights have changed since the last call.
     pub fn take_edited(&mut self) -> Option<Rectangle> {
         self.edited.take()
     }
 
-    /// What was taken could not be drawn.
+    /// The taken rectangle could not be drawn.
     pub fn give_back_edited(&mut self, at: Rectangle) {
         self.edit(at);
     }
 
-    /// What marks the tool at hand in a picture of a size.
+    /// Marks of the active tool in a picture of a size.
     pub fn marks(&self, size: [u32; 2]) -> Vec<Mark> {
         let field = &self.scene.field;
         match self.tool {
             Tool::Look => Vec::new(),
             Tool::Lights => {
-                let balls = self.scene.lights.spheres.iter().enumerate();
-                let mark = |(n, ball): (usize, &ridgelight::scene::SphereLight)| {
-                    let (at, _) = self.sight.pixel(field, size, ball.position_m, ball.radius_m)?;
-                    let most = ball.radiance.iter().copied().fold(1e-30, f32::max);
-                    let [r, g, b] = ball.radiance.map(|v| (255.0 * (v / most).sqrt()) as u8);
-                    let is_chosen = self.chosen_ball() == Some(n);
+                let sphere_lights = self.scene.lights.sphere_lights.iter().enumerate();
+                let mark = |(n, sphere_light): (usize, &ridgelight::scene::SphereLight)| {
+                    let (at, _) = self.viewpoint.pixel(
+                        field,
+                        size,
+                        sphere_light.position_m,
+                        sphere_light.radius_m,
+                    )?;
+                    let most = sphere_light.radiance.iter().copied().fold(1e-30, f32::max);
+                    let [r, g, b] =
+                        sphere_light.radiance.map(|v| (255.0 * (v / most).sqrt()) as u8);
+                    let is_chosen = self.chosen_sphere_light() == Some(n);
                     Some(Mark { at, half: 3, colour: [r, g, b, 255], is_chosen })
                 };
-                balls.filter_map(mark).collect()
+                sphere_lights.filter_map(mark).collect()
             }
             Tool::Brush(_) => {
-                let Some([x, y, z]) = self.sight.ground(field, size, self.cursor) else {
+                let Some([x, y, z]) = self.viewpoint.ground(field, size, self.cursor) else {
                     return Vec::new();
                 };
                 let dot = |n: u32| {
@@ -140,7 +146,7 @@ impl State {
                         (std::f64::consts::TAU * f64::from(n) / f64::from(RING)).sin_cos();
                     let [x, y] = [x + self.brush.radius_m * cos, y + self.brush.radius_m * sin];
                     let at = self.on_ground([x, y]).unwrap_or(z);
-                    let (at, _) = self.sight.pixel(field, size, [x, y, at], 1.0)?;
+                    let (at, _) = self.viewpoint.pixel(field, size, [x, y, at], 1.0)?;
                     Some(Mark { at, half: 1, colour: [255, 220, 80, 255], is_chosen: false })
                 };
                 (0..RING).filter_map(dot).collect()

@@ -1,4 +1,4 @@
-//! Settings by keys: those of the command line, by their words, refused in its sentences.
+//! Settings by keys: the command line's settings, values and errors.
 
 use clap::{Args as _, FromArgMatches as _};
 use ridgelight::Result;
@@ -8,9 +8,9 @@ use crate::args::{QualityArgs, SETTINGS};
 use crate::scene_file::Request;
 use crate::setup;
 
-/// A setting and the words that it may be.
+/// A setting and its values.
 struct Setting {
-    /// As the parser calls it.
+    /// The parser's id.
     id: String,
     default: String,
     values: Values,
@@ -24,7 +24,7 @@ enum Values {
     Counted,
 }
 
-/// Numbers whose steps are factors of two.
+/// Numbers in factors of two.
 const DOUBLED: [&str; 7] = [
     "azimuths",
     "sun_azimuths",
@@ -41,7 +41,7 @@ pub struct Settings {
     chosen: usize,
 }
 
-/// A setting that would not do.
+/// A refused setting.
 pub struct Refused(pub String);
 
 impl Settings {
@@ -65,7 +65,7 @@ impl Settings {
         Self { all, chosen }
     }
 
-    /// Goes on to another.
+    /// Moves to another.
     pub fn choose(&mut self, ahead: bool) {
         let count = self.all.len();
         self.chosen = (self.chosen + if ahead { 1 } else { count - 1 }) % count;
@@ -76,7 +76,7 @@ impl Settings {
         &self.all[self.chosen].id
     }
 
-    /// Names and words, and whether it is the chosen one.
+    /// Names and values, and whether each is the chosen one.
     pub fn list<'a>(
         &'a self,
         asked: &'a Request,
@@ -85,10 +85,10 @@ impl Settings {
         all.map(move |(n, s)| (s.id.as_str(), s.word(asked), n == self.chosen))
     }
 
-    /// Gives a setting its next word, or the one before.
+    /// Gives a setting its next or previous value.
     ///
     /// # Errors
-    /// What the command line would say of it.
+    /// The command line's error.
     pub fn turn(
         &self,
         id: &str,
@@ -105,7 +105,7 @@ impl Settings {
         Ok(quality)
     }
 
-    /// As the command line reads the words.
+    /// Parses the values like the command line.
     fn quality(&self, asked: &Request) -> std::result::Result<Quality, Refused> {
         let flag = |s: &Setting| format!("--{}={}", s.id.replace('_', "-"), s.word(asked));
         let words = std::iter::once("settings".to_owned()).chain(self.all.iter().map(flag));
@@ -121,7 +121,7 @@ impl Settings {
     }
 }
 
-/// As the command line says it.
+/// The command line's spelling.
 pub fn said<T>(result: Result<T>) -> std::result::Result<T, Refused> {
     result.map_err(|error| Refused(setup::in_flags(error).to_string()))
 }
@@ -156,10 +156,10 @@ impl Setting {
 mod tests {
     use super::*;
 
-    /// All that the command line has; each can be turned either way from its default, or is refused in words that name
-    /// its flag.
+    /// Every setting of the command line can be changed either way from its default, or is refused
+    /// with its flag's name.
     #[test]
-    fn every_setting_turns() {
+    fn every_setting_changes() {
         let settings = Settings::new();
         assert_eq!(settings.all.len(), SETTINGS.len() + 1);
         for setting in &settings.all {
@@ -184,7 +184,7 @@ mod tests {
             assert!(settings.turn("method", true, &mut asked).is_ok());
             seen.extend(asked.first("method").map(str::to_owned));
         }
-        assert_eq!(seen, ["sweep", "pyramid", "brute", "auto"]);
+        assert_eq!(seen, ["sweep", "pyramid", "brute-force", "auto"]);
         for _ in 0..4 {
             assert!(settings.turn("azimuths", true, &mut asked).is_ok());
         }

@@ -1,4 +1,4 @@
-//! What of the field is seen: from above or by a camera, and where a pixel meets the ground.
+//! The viewpoint: from above or by a camera, and where a pixel meets the ground.
 
 use glam::DVec3;
 use ridgelight::Result;
@@ -7,16 +7,16 @@ use ridgelight::scene::{Camera, HeightField, Lens, Scene};
 
 use super::hundredths;
 
-/// Angle between the lower and the upper edge of what a camera sees, degrees.
+/// Vertical field of view of the camera, degrees.
 pub const FOV_DEG: f64 = 40.0;
 
-/// Cells of the mesh along a side, at most: larger fields are drawn through fewer samples.
+/// Most cells of the mesh along a side: larger fields skip grid points.
 const MOST_CELLS: u32 = 1024;
 
-/// Steps along a ray to the ground, at most.
+/// Most steps along a ray to the ground.
 const MOST_STEPS: f64 = 4096.0;
 
-/// What of a map is seen.
+/// A section of the map.
 #[derive(Clone, Copy)]
 struct Place {
     /// Column and row in the middle of the picture.
@@ -24,17 +24,17 @@ struct Place {
     samples_per_pixel: f64,
 }
 
-/// Where a field is seen from.
+/// Where a field is viewed from.
 #[derive(Clone, Copy, Default)]
-pub struct Sight {
+pub struct Viewpoint {
     /// None: all of the field.
     place: Option<Place>,
     /// None: from straight above.
     pub camera: Option<Camera>,
 }
 
-impl Sight {
-    /// What is seen in a picture of a size, from above.
+impl Viewpoint {
+    /// The visible section in a picture of a size.
     pub fn map(&self, field: &HeightField, size: [u32; 2], swaps: bool, has_colour: bool) -> Map {
         let Place { samples_per_pixel, .. } = self.place(field, size);
         Map {
@@ -48,7 +48,8 @@ impl Sight {
         }
     }
 
-    /// Column and row at the map's upper left corner; whole pixels, so that samples of one side look alike.
+    /// Column and row at the map's upper left corner; whole pixels, so that all texels have the
+    /// same size.
     fn corner(&self, field: &HeightField, size: [u32; 2]) -> [f64; 2] {
         let Place { middle, samples_per_pixel } = self.place(field, size);
         std::array::from_fn(|i| {
@@ -61,7 +62,7 @@ impl Sight {
         self.place.unwrap_or_else(|| {
             let field = [field.cols(), field.rows()].map(|n| n as f64);
             let needed = (field[0] / f64::from(size[0])).max(field[1] / f64::from(size[1]));
-            // Whole pixels a sample where there are as many.
+            // Whole pixels per texel where there are enough.
             let samples_per_pixel =
                 if needed <= 1.0 { 1.0 / (1.0 / needed).floor() } else { needed };
             Place { middle: field.map(|n| n / 2.0), samples_per_pixel }
@@ -78,7 +79,7 @@ impl Sight {
         self.place = Some(place);
     }
 
-    /// Nearer by a factor; what is at a pixel of a map stays there.
+    /// Zooms by a factor around a pixel of a map.
     pub fn near(&mut self, field: &HeightField, size: [u32; 2], factor: f64, at: [f64; 2]) {
         if let Some(camera) = &mut self.camera {
             camera.distance_m = (camera.distance_m / factor).clamp(1e-6, 1e12);
@@ -94,7 +95,7 @@ impl Sight {
         self.place = Some(place);
     }
 
-    /// What a camera sees, where there is one.
+    /// The camera's view, if there is a camera.
     pub fn view(
         &self,
         scene: &Scene,
@@ -111,7 +112,7 @@ impl Sight {
         let longest = field.rows().max(field.cols()) as u32;
         ViewOptions {
             size,
-            // Processors pay for each.
+            // Software rasterisers pay for each.
             samples: if limits.is_cpu { 1 } else { 4 },
             mesh_step: longest.div_ceil(MOST_CELLS).min(1024),
             ..ViewOptions::default()
@@ -126,7 +127,8 @@ impl Sight {
         }
     }
 
-    /// From the south, all of the field in the picture. The field has two rows and two columns.
+    /// From the south, with all of the field in the picture. The field has two rows and two
+    /// columns.
     pub fn begin_camera(&mut self, field: &HeightField, size: [u32; 2]) {
         let aspect = aspect(size);
         let lens = Lens::Perspective { fov_rad: FOV_DEG.to_radians() };
@@ -134,7 +136,7 @@ impl Sight {
         self.camera = Some(Camera::around(field, None, angles, lens, aspect));
     }
 
-    /// Moves what is seen by pixels.
+    /// Moves the view by pixels.
     pub fn pan(&mut self, field: &HeightField, size: [u32; 2], pixels: [f64; 2]) {
         let Some(camera) = &mut self.camera else { return self.shift(field, size, pixels) };
         let [right, up, _] = camera.axes();
@@ -145,7 +147,7 @@ impl Sight {
         }
     }
 
-    /// Turns the camera by pixels; moves the map where there is none.
+    /// Turns the camera by pixels, or moves the map where there is none.
     pub fn turn(&mut self, field: &HeightField, size: [u32; 2], pixels: [f64; 2]) {
         let Some(camera) = &mut self.camera else { return self.shift(field, size, pixels) };
         let per_pixel = 180.0 / f64::from(size[1].max(1));
@@ -156,12 +158,12 @@ impl Sight {
         camera.elevation_rad = hundredths(elevation).clamp(1.0, 90.0).to_radians();
     }
 
-    /// The place of the ground, absolute, that is seen at a pixel; none where none is.
+    /// The ground under a pixel, absolute; none where there is none.
     pub fn ground(&self, field: &HeightField, size: [u32; 2], at: [f64; 2]) -> Option<[f64; 3]> {
         let Some(camera) = &self.camera else {
             let (corner, Place { samples_per_pixel, .. }) =
                 (self.corner(field, size), self.place(field, size));
-            // A sample is in the middle of its pixels.
+            // A texel is centred in its pixels.
             let [col, row] = std::array::from_fn(|i| corner[i] + at[i] * samples_per_pixel - 0.5);
             return height(field, [col, row]).map(|z| place(field, [col, row], z));
         };
@@ -172,7 +174,7 @@ impl Sight {
         met(field, camera.eye_m(), right * x + up * y - back)
     }
 
-    /// The pixel where a place is seen, and the pixels of a length there; none behind the eye.
+    /// The pixel of a place, and the size of a length there in pixels; none behind the eye.
     pub fn pixel(
         &self,
         field: &HeightField,
@@ -202,16 +204,16 @@ fn aspect(size: [u32; 2]) -> f64 {
     f64::from(size[0]) / f64::from(size[1].max(1))
 }
 
-/// Of half the angle between the lower and the upper edge.
+/// Half the vertical field of view.
 fn tan(camera: &Camera) -> f64 {
     match camera.lens {
         Lens::Perspective { fov_rad } => (fov_rad / 2.0).tan(),
-        // No lens of a window.
+        // The window uses perspective only.
         Lens::Orthographic { .. } => 0.0,
     }
 }
 
-/// Absolute, of a column and a row.
+/// Absolute position of a column and a row.
 fn place(field: &HeightField, [col, row]: [f64; 2], z: f64) -> [f64; 3] {
     let [cell_x, cell_y] = field.cell_m();
     [col * cell_x, ((field.rows() - 1) as f64 - row) * cell_y, z]
@@ -236,7 +238,7 @@ pub fn height(field: &HeightField, [col, row]: [f64; 2]) -> Option<f64> {
 /// Where a ray first goes below the ground.
 fn met(field: &HeightField, eye: DVec3, towards: DVec3) -> Option<[f64; 3]> {
     let [cell_x, cell_y] = field.cell_m();
-    // Columns and rows in the place of metres.
+    // Columns and rows instead of metres.
     let last_row = (field.rows() - 1) as f64;
     let from = [eye.x / cell_x, last_row - eye.y / cell_y];
     let way = [towards.x / cell_x, -towards.y / cell_y];
@@ -263,7 +265,7 @@ fn met(field: &HeightField, eye: DVec3, towards: DVec3) -> Option<[f64; 3]> {
         let at = [from[0] + t * way[0], from[1] + t * way[1]];
         height(field, at).map(|z| (eye.z + t * towards.z - z, at, z))
     };
-    // Half a cell a step.
+    // Half a cell per step.
     let steps = ((end - begin) * speed * 2.0).ceil().clamp(1.0, MOST_STEPS);
     let step = (end - begin) / steps;
     let t = |n: f64| begin + n * step;
@@ -292,26 +294,26 @@ mod tests {
         HeightField::new(30, 40, &heights, [2.0, 3.0], None).unwrap()
     }
 
-    /// A place on the ground is seen at some pixel, and there is that place: where nothing hides it. From above to
-    /// roundings, by a camera to half the march step's share that bisection leaves, 2^-24 of it.
+    /// A visible place on the ground maps to a pixel and back: from above to rounding, by a camera
+    /// to the share of half a march step that bisection leaves, 2^-24 of it.
     #[test]
     fn a_pixel_and_its_ground_are_each_others() {
         let field = hill();
         let size = [300, 200];
-        let mut sight = Sight::default();
+        let mut viewpoint = Viewpoint::default();
         for with_camera in [false, true] {
             if with_camera {
-                sight.begin_camera(&field, size);
+                viewpoint.begin_camera(&field, size);
             }
             for at in [[20.0, 15.0], [3.25, 28.5], [38.0, 20.75], [20.0, 20.0]] {
                 let want = place(&field, at, height(&field, at).unwrap());
-                let (pixel, length) = sight.pixel(&field, size, want, 2.0).unwrap();
+                let (pixel, length) = viewpoint.pixel(&field, size, want, 2.0).unwrap();
                 assert!(length > 0.0);
-                let got = sight.ground(&field, size, pixel).unwrap();
+                let got = viewpoint.ground(&field, size, pixel).unwrap();
                 let off = (DVec3::from(got) - DVec3::from(want)).length();
                 assert!(off < 1e-5, "{with_camera} {at:?}: {got:?}, {want:?}");
             }
-            assert!(sight.ground(&field, size, [-500.0, 100.0]).is_none());
+            assert!(viewpoint.ground(&field, size, [-500.0, 100.0]).is_none());
         }
     }
 }

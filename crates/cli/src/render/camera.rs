@@ -1,7 +1,7 @@
-//! `render --camera`: the field from a place, instead of its map.
+//! `render --camera`: a camera view of the field instead of its map.
 
 use ridgelight::gpu::{DeviceReport, Seen, Timing};
-use ridgelight::plan::{Limits, Plan, View, ViewOptions, surface_error_m};
+use ridgelight::plan::{Limits, Plan, View, ViewOptions, mesh_error_m};
 use ridgelight::scene::Tone;
 use ridgelight::scene::{Camera, HeightField, Lens, Scene};
 use ridgelight::{Error, Result};
@@ -11,8 +11,8 @@ use ridgelight_io::{Channels, Layer as FileLayer};
 use crate::args::{CameraArgs, Layer, RenderArgs};
 use crate::setup;
 
-/// From where, and how.
-pub struct Shot {
+/// A camera and the options of its view.
+pub struct CameraView {
     pub camera: Camera,
     pub options: ViewOptions,
 }
@@ -27,14 +27,14 @@ pub fn check_layers(args: &RenderArgs) -> Result<()> {
         Some(_) if !args.layers.iter().all(is_depth) => Err(Error::setting(
             "--layers",
             "layers of the map with --camera",
-            "depth alone, or a run without --camera",
+            "depth only, or no --camera",
         )),
         _ => Ok(()),
     }
 }
 
-/// What is asked for, checked as far as it can be without a device.
-pub fn asked(args: &CameraArgs, scene: &Scene) -> Result<Option<Shot>> {
+/// The requested camera, checked as far as possible without a device.
+pub fn requested(args: &CameraArgs, scene: &Scene) -> Result<Option<CameraView>> {
     let Some(at) = args.camera else { return Ok(None) };
     let field = &scene.field;
     let options = ViewOptions {
@@ -63,10 +63,10 @@ pub fn asked(args: &CameraArgs, scene: &Scene) -> Result<Option<Shot>> {
         }
     }
     camera.check()?;
-    Ok(Some(Shot { camera, options }))
+    Ok(Some(CameraView { camera, options }))
 }
 
-/// Height of the sample nearest to a place.
+/// Height of the grid point nearest to a place.
 fn nearest_m(field: &HeightField, [east_m, north_m]: [f64; 2]) -> f64 {
     let [cell_x, cell_y] = field.cell_m();
     let nearest = |v: f64, count: usize| (v.round().max(0.0) as usize).min(count - 1);
@@ -75,23 +75,23 @@ fn nearest_m(field: &HeightField, [east_m, north_m]: [f64; 2]) -> f64 {
     field.base_m() + f64::from(field.heights_m()[row * field.cols() + col])
 }
 
-impl Shot {
-    /// What is recorded.
+impl CameraView {
+    /// The view to record.
     pub fn view(&self, scene: &Scene, lit: &Plan, limits: &Limits) -> Result<View> {
         View::new(scene, lit, &self.camera, &self.options, limits)
     }
 
-    /// What was used, for the file's metadata.
-    pub fn told(&self, view: &View, field: &HeightField) -> Vec<(String, String)> {
+    /// The settings used, for the file's metadata.
+    pub fn settings(&self, view: &View, field: &HeightField) -> Vec<(String, String)> {
         let mut all = view.settings.clone();
         if self.options.mesh_step > 1 {
-            let error = surface_error_m(field, self.options.mesh_step);
+            let error = mesh_error_m(field, self.options.mesh_step);
             all.push(("mesh_error_m".to_owned(), error.to_string()));
         }
         all
     }
 
-    /// A line for the user.
+    /// The report for the terminal.
     pub fn say(
         &self,
         args: &RenderArgs,
@@ -101,12 +101,16 @@ impl Shot {
     ) {
         let ms: f64 = times.iter().map(|t| t.ns).sum::<f64>() / 1e6;
         let [width, height] = self.options.size;
-        crate::say!("{}: {width} × {height}, {ms:.1} ms on {}", args.output.display(), report.name);
+        let name = args.output.display();
+        crate::say!(
+            "Wrote {name} ({width}x{height}) in {ms:.1} ms of GPU time on {}.",
+            report.name
+        );
         let step = self.options.mesh_step;
         if step > 1 {
-            let error = surface_error_m(field, step);
+            let error = mesh_error_m(field, step);
             crate::say!(
-                "every {step}th sample of the ground: heights are off by at most {error:.3}"
+                "The mesh uses every {step}th grid point: heights differ by at most {error:.3} m."
             );
         }
     }
@@ -115,11 +119,11 @@ impl Shot {
 /// Writes the picture.
 pub fn write(
     args: &RenderArgs,
-    shot: &Shot,
+    camera_view: &CameraView,
     seen: &Seen,
     metadata: &[(String, String)],
 ) -> Result<()> {
-    let [cols, rows] = shot.options.size.map(|n| n as usize);
+    let [cols, rows] = camera_view.options.size.map(|n| n as usize);
     if setup::extension(&args.output) != "exr" {
         let tone = Tone { exposure: args.exposure };
         return files::write_png(&args.output, rows, cols, &seen.radiance, None, tone, metadata);

@@ -1,4 +1,4 @@
-//! Settings chosen for an error or a time.
+//! Chooses settings for an error or a time.
 
 use std::cell::RefCell;
 use std::time::{Duration, Instant};
@@ -16,26 +16,23 @@ use crate::reference;
 use crate::setup;
 use crate::terminal::{digits, percent};
 
-/// Draws of each setting after one that compiles: the middle one counts. Fewer, once they take so long.
+/// Draws of each setting after one that compiles; the median counts. Slow settings get fewer.
 const DRAWS: usize = 3;
 const TIMING: Duration = Duration::from_secs(2);
-/// Of a first draw that takes so long compiling is little, and it counts itself.
+/// A first draw this long is mostly work, not compilation, and counts itself.
 const LONG: Duration = Duration::from_secs(10);
 
-/// What is asked for, if anything.
+/// The requested goal, if any.
 pub fn goal(args: &AutoArgs) -> Result<Option<Goal>> {
-    let positive = |flag: &str, value: Option<f64>| match value {
-        Some(x) if !(x.is_finite() && x > 0.0) => {
-            Err(Error::setting(flag, x.to_string(), "a number above 0"))
-        }
-        other => Ok(other),
-    };
-    let error = positive("--max-error", args.max_error)?.map(Goal::MaxError);
-    let cost = positive("--time-budget", args.time_budget)?.map(|ms| Goal::MaxCost(ms * 1e6));
+    for (flag, value) in [("--max-error", args.max_error), ("--time-budget", args.time_budget)] {
+        value.map_or(Ok(()), |x| super::check_positive(flag, x))?;
+    }
+    let error = args.max_error.map(Goal::MaxError);
+    let cost = args.time_budget.map(|ms| Goal::MaxCost(ms * 1e6));
     Ok(error.or(cost))
 }
 
-/// Says that a seed without a goal changes nothing.
+/// Notes that a seed without a goal changes nothing.
 pub fn say_idle(args: &AutoArgs, quiet: bool) {
     let has_goal = args.max_error.is_some() || args.time_budget.is_some();
     if let Some(seed) = args.seed.filter(|_| !has_goal && !quiet) {
@@ -57,13 +54,13 @@ pub fn choose(
     let gpu = RefCell::new(gpu);
     let mut trace = |samples: &[usize], batches: u32, seed: u32| {
         let paths = batches * plan::REFERENCE_BATCH;
-        bar.set_message(format!("tracing {paths} paths from each of {} samples", samples.len()));
+        bar.set_message(format!("tracing {paths} paths from each of {} probes", samples.len()));
         trace(&mut gpu.borrow_mut(), limits, (scene, bounces), samples, (batches, seed))
     };
     let bounced = (bounces > 0).then_some(Bounced { count: bounces, trace: &mut trace });
     let mut chosen = auto::choose(scene, goal, probes, bounced, |quality| {
         drawn += 1;
-        bar.set_message(format!("choosing settings, {drawn}: {}", auto::flags(quality, scene)));
+        bar.set_message(format!("choosing settings, {drawn}: {}", flags(quality, scene)));
         let quality = Quality { hull, ..*quality };
         draw(&mut gpu.borrow_mut(), limits, (scene, wanted), &quality, &contents)
     })?;
@@ -91,7 +88,7 @@ fn draw(
     Ok(Drawn { planes, passes: times.into_iter().map(|t| (t.label, t.ns)).collect() })
 }
 
-/// Times of the middle one of some draws.
+/// Times of the median of some draws.
 fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timing>> {
     let begun = Instant::now();
     let mut runs = vec![gpu.draw(frame)?];
@@ -114,7 +111,7 @@ fn timed(gpu: &Headless, frame: &mut ridgelight::gpu::Frame) -> Result<Vec<Timin
     })
 }
 
-/// Bounced light of some samples by so many batches of paths of a seed.
+/// Indirect light at some texels by so many batches of paths of a seed.
 fn trace(
     gpu: &mut Headless,
     limits: &Limits,
@@ -145,17 +142,26 @@ fn trace(
     Ok(both.map(|(m, e)| Traced { mean: light(m), standard_error: light(e) }).collect())
 }
 
-/// For metadata and --json.
-pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(String, String)> {
+/// The settings of a trial as flags.
+fn flags(quality: &Quality, scene: &Scene) -> String {
+    setup::flags_in(&auto::flags(quality, scene))
+}
+
+/// Metadata for files and --json.
+pub fn metadata(
+    (goal, seed): (Goal, u32),
+    chosen: &Chosen,
+    scene: &Scene,
+) -> Vec<(String, String)> {
     let asked = match goal {
         Goal::MaxError(most) => ("max_error", most.to_string()),
         Goal::MaxCost(ns) => ("time_budget_ms", (ns / 1e6).to_string()),
     };
     let tried = chosen.trials.iter().map(|t| {
-        let holds = if goal.is_reached(t) { "holds" } else { "does not hold" };
+        let holds = if goal.is_reached(t) { "reached" } else { "missed" };
         let Measured { error, at_most } = t.measured;
         let error = format!("{} (at most {})", percent(error), percent(at_most));
-        format!("{}: {error}, {:.3} ms, {holds}", auto::flags(&t.quality, scene), t.ns / 1e6)
+        format!("{}: {error}, {:.3} ms, {holds}", flags(&t.quality, scene), t.ns / 1e6)
     });
     let measured = &chosen.trial.measured;
     let confidence = chosen.confidence.map_or_else(|| "none".to_owned(), |c| c.to_string());
@@ -175,22 +181,21 @@ pub fn told((goal, seed): (Goal, u32), chosen: &Chosen, scene: &Scene) -> Vec<(S
     .to_vec()
 }
 
-/// For people: what was chosen and its error; then, where settings were drawn that do not reach the
-/// goal, that it went on from them.
+/// The choice and its error in words; then how many slower or faster settings missed the goal.
 pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
     let Chosen { trial, expected, probes, paths, confidence, trials } = chosen;
     let by_paths = match paths {
         0 => String::new(),
-        _ => format!(", {paths} light paths each"),
+        _ => format!(", {paths} paths each"),
     };
     let confidence = confidence.map_or_else(
-        || "without a confidence".to_owned(),
+        || "without a confidence level".to_owned(),
         |c| format!("with {:.0} % confidence", 100.0 * c),
     );
     let mut all = vec![format!(
-        "{}: guessed {} (give or take a factor of {}, one standard deviation), measured {}, at most {} {confidence} \
-         ({probes} probes{by_paths}); {} settings tried",
-        auto::flags(&trial.quality, scene),
+        "{}: expected error {} (one standard deviation: a factor of {}), measured {}, at most {} \
+            {confidence} ({probes} probes{by_paths}); {} settings tried",
+        flags(&trial.quality, scene),
         percent(expected.error),
         digits(expected.factor),
         percent(trial.measured.error),
@@ -200,13 +205,13 @@ pub fn sentences(goal: Goal, chosen: &Chosen, scene: &Scene) -> Vec<String> {
     let missed: Vec<_> = trials.iter().filter(|t| !goal.is_reached(t)).collect();
     if let Some(last) = missed.last() {
         let (went, by) = match goal {
-            Goal::MaxError(_) => ("dearer", format!("at most {}", percent(last.measured.at_most))),
-            Goal::MaxCost(_) => ("cheaper", format!("{} ms", digits(last.ns / 1e6))),
+            Goal::MaxError(_) => ("slower", format!("at most {}", percent(last.measured.at_most))),
+            Goal::MaxCost(_) => ("faster", format!("{} ms", digits(last.ns / 1e6))),
         };
         all.push(format!(
-            "went {went}: {} of them did not hold, the last {} ({by})",
+            "chose {went} settings because {} missed the goal, the last {} ({by})",
             missed.len(),
-            auto::flags(&last.quality, scene)
+            flags(&last.quality, scene)
         ));
     }
     all
