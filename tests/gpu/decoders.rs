@@ -155,7 +155,7 @@ fn baked(folder: &Path, number: usize, border: &str, wanted: &[Decoder]) -> serd
         .output()
         .expect("the binary");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let sheet = std::fs::read(folder.join("bake.json")).expect("a sheet");
+    let sheet = std::fs::read(folder.join("manifest.json")).expect("a manifest");
     serde_json::from_slice(&sheet).expect("JSON")
 }
 

@@ -80,7 +80,7 @@ fn baked(folder: &Path, number: usize) -> serde_json::Value {
         .output()
         .expect("the binary");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let sheet = std::fs::read(folder.join("out/bake.json")).expect("a sheet");
+    let sheet = std::fs::read(folder.join("out/manifest.json")).expect("a manifest");
     serde_json::from_slice(&sheet).expect("JSON")
 }
 
