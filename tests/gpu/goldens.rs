@@ -13,7 +13,7 @@ use ridgelight::scene::{
     Albedo, Border, Environment, Fuse, HeightField, Lines, Quality, Scene, Sun,
 };
 use ridgelight_cpu::tolerance::{
-    ShadeError, twin_angle, twin_fused_slope, twin_resolved, two_devices,
+    ShadeError, device_angle, device_fused_slope, device_resolved, two_devices,
 };
 use ridgelight_testing as golden;
 
@@ -60,7 +60,7 @@ fn shade_error(scene: &Scene, plan: &Plan, count: usize) -> ShadeError {
     let heights = || scene.field.heights_m().iter().map(|h| f64::from(*h));
     let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
     let step_m = plan.azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
-    let slope_error = twin_fused_slope(low.abs().max(high.abs()), step_m);
+    let slope_error = device_fused_slope(low.abs().max(high.abs()), step_m);
     ShadeError::new(slope_error, high - low, CELL_M[0].min(CELL_M[1]), count)
 }
 
@@ -96,7 +96,7 @@ fn goldens_of_sky_and_sun() {
     let sun = 0.5 * 3.0 * shade_error(&scene, &plan, 8).sun(sun_weights(&plan));
     // At most the whole sky, and the sun from straight above.
     let brightest = 0.5 * (1.0 + 3.0 / std::f64::consts::PI);
-    let tolerance = two_devices(sky + sun + twin_resolved(brightest, 2));
+    let tolerance = two_devices(sky + sun + device_resolved(brightest, 2));
     check(&device, "sky_and_sun.exr", &pixels, tolerance);
 }
 
@@ -118,7 +118,7 @@ fn goldens_of_an_environment() {
     let inputs = [scene.field.heights_m(), input.as_slice()];
     let (plan, pixels) = draw(&mut device, &scene, &quality, &inputs);
     let error = shade_error(&scene, &plan, 16).whole_environment(2.0, [24.0, 12.0, 64.0]);
-    let tolerance = two_devices(error + twin_resolved(2.0, 1));
+    let tolerance = two_devices(error + device_resolved(2.0, 1));
     check(&device, "environment.exr", &pixels, tolerance);
 }
 
@@ -134,6 +134,6 @@ fn goldens_of_horizons() {
     let largest = scene.field.heights_m().iter().fold(0.0_f64, |m, h| m.max(f64::from(h.abs())));
     let step_m = plan.azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
     let pixels = device.draw(plan, &[scene.field.heights_m()]).remove(0);
-    let tolerance = two_devices(twin_angle(0.0, twin_fused_slope(largest, step_m)));
+    let tolerance = two_devices(device_angle(0.0, device_fused_slope(largest, step_m)));
     check(&device, "horizons.npy", &pixels, tolerance);
 }

@@ -85,7 +85,7 @@ fn what_is_seen_is_what_rises() {
                         assert!(off <= 1e-12, "{azimuth:?} {row} {col}: {walked:?} {want}");
                         assert!(!is_own || off >= -1e-12, "{azimuth:?}: {walked:?} {want}");
                         let longest = rows.max(cols) as u32;
-                        assert!(walked.turns < longest && walked.stretches <= longest + 1);
+                        assert!(walked.turns < longest && walked.visible_intervals <= longest + 1);
                     }
                 });
             }

@@ -7,13 +7,13 @@ use ridgelight::plan::pyramid::Pyramid;
 use ridgelight::plan::{Nodes, Pass};
 use ridgelight::scene::{Fuse, Levels};
 use ridgelight_cpu::bounce_gather::BounceGather;
-use ridgelight_cpu::bounce_march::stretches_along;
+use ridgelight_cpu::bounce_march::visible_intervals_along;
 use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::oracle::Oracle;
 use ridgelight_cpu::pyramid_march::Stored;
-use ridgelight_cpu::shared::bounced::{radiance, thrown};
+use ridgelight_cpu::shared::bounced::{light_and_weight, radiance};
 use ridgelight_cpu::tolerance::{
-    Gathered, Land, Slices, ThrownError, march_error, twin_level, twin_spline, walk_error,
+    Gathered, Land, Slices, BounceError, march_error, device_level, device_spline, walk_error,
 };
 use ridgelight_cpu::{shade_expand as expand_twin, shade_reduce as reduce_twin};
 
@@ -86,9 +86,9 @@ pub(super) fn bounce_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let (places, brightest) = (places(run, nodes), brightest(&exit));
     let cell_m = run.scene.field.cell_m();
     let of = |i: usize| {
-        let all = stretches_along(&oracle, &exit, azimuths, places[i]);
+        let all = visible_intervals_along(&oracle, &exit, azimuths, places[i]);
         let error = |along: &_, cast: &_| march_error(cell_m, along, cast);
-        (radiance(&all), ThrownError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
+        (radiance(&all), BounceError::of(&all, error, &run.slices(places[i], 1.0, brightest)).light)
     };
     each(&got, of, [0, across])
 }
@@ -102,7 +102,7 @@ pub(super) fn shade_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = colours(&run.floats(pass, "shade_levels").expect("written"));
     let table = run.words(pass, "shade_table").expect("written");
     let want = reduce_twin::shade_reduce(&exit, &shade, number, &texels);
-    let tolerance = twin_level(brightest(&exit));
+    let tolerance = device_level(brightest(&exit));
     let at = [number as usize, level.size[0] as usize];
     let mut pairs = paired(&texels[level.first as usize..], &want, tolerance, at);
     pairs.extend(told(&level, number, &table));
@@ -120,7 +120,7 @@ pub(super) fn shade_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         1 => stack.iter().map(|v| [(*v).into(); 3]).collect(),
         _ => colours(&stack),
     };
-    let tolerance = twin_spline(brightest(&texels));
+    let tolerance = device_spline(brightest(&texels));
     let of = |number: u32| {
         let want = expand_twin::shade_expand(&shade, &texels, number);
         let layer = &stack[(number as usize - 1) * samples..];
@@ -175,7 +175,7 @@ pub(super) fn bounce_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let of = |i: usize| {
         let all = twin.casts_along(places[i]);
         let slices = run.slices(places[i], 1.0, brightest);
-        let off = ThrownError::of(&all, |_, cast| gathered.error(cast), &slices);
+        let off = BounceError::of(&all, |_, cast| gathered.error(cast), &slices);
         (radiance(&all), off.light)
     };
     each(&got, of, [0, across])
@@ -219,10 +219,10 @@ pub(super) fn bounce_walk(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     });
     let of = |i: usize| {
         let slices = run.slices(places[i], wedge, brightest);
-        let off = ThrownError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
+        let off = BounceError::of(&walked[i], |_, cast| walk_error(wedge, cast), &slices);
         match is_last {
             true => (radiance(&walked[i]), off.light),
-            false => (thrown(&walked[i]).0, off.sum),
+            false => (light_and_weight(&walked[i]).0, off.sum),
         }
     };
     let mut pairs = each(&got, of, [range.len(), across]);

@@ -9,11 +9,11 @@ use ridgelight_cpu::bounce_gather::BounceGather;
 use ridgelight_cpu::pyramid_march::Stored;
 use ridgelight_cpu::shared::bounced::Cast;
 use ridgelight_cpu::shared::field::{field_slope, normal_of};
-use ridgelight_cpu::specular_exit::{mirrored, thrown};
+use ridgelight_cpu::specular_exit::{exit_series, mirrored};
 use ridgelight_cpu::specular_gather::{Series, SpecularGather};
 use ridgelight_cpu::tolerance::{
-    CastError, EPSILON, Gathered, ThrownError, stored_f16, twin_arriving, twin_level,
-    twin_sh_gloss, twin_specular_exit, twin_specular_visibility,
+    CastError, EPSILON, Gathered, BounceError, stored_f16, device_arriving, device_level,
+    device_sh_specular, device_specular_exit, device_specular_visibility,
 };
 use ridgelight_cpu::{specular_visibility as seen_twin, vector_reduce as reduce_twin};
 
@@ -90,7 +90,7 @@ pub(super) fn specular_visibility(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             pairs.extend((0..3).map(|c| Pair {
                 got: got[k][c],
                 want: want[k][c],
-                tolerance: twin_specular_visibility(order) * summed[c],
+                tolerance: device_specular_visibility(order) * summed[c],
                 at: [k, i / cols, i % cols],
             }));
         }
@@ -122,7 +122,7 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let got = colours(&run.floats(pass, "gloss_bounced").expect("written"));
         for (i, got) in got.iter().enumerate() {
             let own = mirrored(&arriving[i], normals[i], run.lobe(i));
-            let off = f64::from(run.lobe(i).scale) * twin_sh_gloss(order, error);
+            let off = f64::from(run.lobe(i).scale) * device_sh_specular(order, error);
             let tolerance = off * magnitude(&arriving[i]) + 2.0 * EPSILON * run.gloss[i][0];
             pairs.extend([0, 1, 2].map(|c| {
                 let want = run.gloss[i][c] + own[c];
@@ -154,10 +154,10 @@ pub(super) fn specular_exit(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let got = run.all_series(pass, "exit_vectors", order);
     for (i, got) in got.iter().enumerate() {
         let phong = run.lobe(i);
-        let want = thrown(&arriving[i], normals[i], phong, diffuse[i]);
+        let want = exit_series(&arriving[i], normals[i], phong, diffuse[i]);
         let bright = diffuse[i].iter().fold(0.0, |m: f64, v| v.max(m));
         let of_lobe =
-            f64::from(phong.scale) * twin_specular_exit(order, error) * magnitude(&arriving[i]);
+            f64::from(phong.scale) * device_specular_exit(order, error) * magnitude(&arriving[i]);
         let sum = of_lobe + 4.0 * EPSILON * 4.0 * bright;
         let tolerance = |want: f64| sum + if halves == 1 { stored_f16(want) } else { 0.0 };
         pairs.extend(paired((got, &want), tolerance, [i / cols, i % cols]));
@@ -175,7 +175,7 @@ pub(super) fn vector_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let is_half = run.is_half(pass, "vector_levels");
     let want = reduce_twin::vector_reduce(&exit, &shade, number, &texels);
     let largest = exit.iter().flatten().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
-    let tolerance = |want: f64| twin_level(largest) + if is_half { stored_f16(want) } else { 0.0 };
+    let tolerance = |want: f64| device_level(largest) + if is_half { stored_f16(want) } else { 0.0 };
     let across = level.size[0] as usize;
     let own = texels[level.first as usize..].iter().zip(&want).enumerate();
     own.flat_map(|(i, (got, want))| paired((got, want), tolerance, [i / across, i % across]))
@@ -253,8 +253,8 @@ pub(super) fn specular_gather(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let all = twin.casts_along(at);
         let want = twin.of(&all);
         let slices = run.slices(at, 1.0, bright);
-        let of_series = twin_arriving(&all, |cast| gathered.error(cast), order, &slices);
-        let off = ThrownError::of(&all, |_, cast| error(cast), &slices).light;
+        let of_series = device_arriving(&all, |cast| gathered.error(cast), order, &slices);
+        let off = BounceError::of(&all, |_, cast| error(cast), &slices).light;
         pairs.extend(paired((series, &want.series), |_| of_series, at));
         pairs.extend([0, 1, 2].map(|c| Pair {
             got: got[c],

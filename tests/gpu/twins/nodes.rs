@@ -12,9 +12,9 @@ use ridgelight_cpu::bounce_walk::walked_along;
 use ridgelight_cpu::cache_gather::{
     Cast, RING_ENDS, cache_gather as gather_twin, cast_of, cast_part,
 };
-use ridgelight_cpu::shared::bounced::thrown;
+use ridgelight_cpu::shared::bounced::light_and_weight;
 use ridgelight_cpu::shared::sweep::March;
-use ridgelight_cpu::tolerance::{EPSILON, Slices, ThrownError, twin_bounce_shade, walk_error};
+use ridgelight_cpu::tolerance::{EPSILON, Slices, BounceError, device_bounce_shade, walk_error};
 
 use super::bounce::{brightest, colours};
 use super::{Pair, Run, constant, pushed};
@@ -53,8 +53,8 @@ pub(super) fn casts(run: &mut Run, pass: &Pass, azimuths: Range<usize>) -> Vec<P
             {
                 let at = [azimuth, *row, *col];
                 let along = walked_along(swept, &exit, *col as i32, *row as i32).0;
-                let want = thrown(&along).0;
-                let walked = ThrownError::of(&along, |_, cast| walk_error(wedge, cast), slices).sum;
+                let want = light_and_weight(&along).0;
+                let walked = BounceError::of(&along, |_, cast| walk_error(wedge, cast), slices).sum;
                 let off = walked[0] + 2.0 * cast_part(wedge);
                 let got = gather_twin(set, &exit64);
                 pairs.push(Pair { got: got[0], want: want[0], tolerance: off, at });
@@ -135,7 +135,7 @@ pub(super) fn bounce_shade(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         run.floats(pass, "sky_share").expect("bound").into_iter().map(f64::from).collect();
     let got = colours(&run.floats(pass, "bounce_sum").expect("written"));
     let (heights, [cols, _]) = (run.heights(), run.size());
-    let relative = twin_bounce_shade(&run.sample_error());
+    let relative = device_bounce_shade(&run.sample_error());
     let mut pairs = Vec::new();
     for (i, got) in got.iter().enumerate() {
         let place = [i % cols, i / cols].map(|n| n as i32);

@@ -7,7 +7,7 @@ use ridgelight_cpu::lattice::Lattice;
 use ridgelight_cpu::pyramid_march::{Stored, pyramid_march as march_twin};
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::March;
-use ridgelight_cpu::tolerance::{twin_level, twin_pyramid_slope, twin_spline};
+use ridgelight_cpu::tolerance::{device_level, device_pyramid_slope, device_spline};
 use ridgelight_cpu::{height_expand as expand_twin, height_reduce as reduce_twin};
 
 use super::sweep::marched;
@@ -27,7 +27,7 @@ pub(super) fn height_reduce(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = run.floats(pass, "height_levels").expect("written");
     let table = run.words(pass, "level_table").expect("written");
     let want = reduce_twin::height_reduce(&run.heights(), &pyramid, number, &texels);
-    let tolerance = twin_level(run.relief()[0]);
+    let tolerance = device_level(run.relief()[0]);
     let [cols, _] = level.size.map(|n| n as usize);
     let made = texels[level.first as usize..].iter().zip(&want).enumerate();
     let mut pairs: Vec<Pair> = made
@@ -58,7 +58,7 @@ pub(super) fn height_expand(run: &mut Run, pass: &Pass) -> Vec<Pair> {
     let texels = run.floats(pass, "height_levels").expect("written");
     let stack = run.floats(pass, "height_stack").expect("written");
     let levels = LevelTexels { pyramid: &pyramid, texels: &texels };
-    let tolerance = twin_spline(run.relief()[0]);
+    let tolerance = device_spline(run.relief()[0]);
     let [cols, rows] = run.size();
     let mut pairs = Vec::new();
     for number in 1..=pyramid.levels() {
@@ -98,7 +98,7 @@ pub(super) fn pyramid_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             let word = words[(azimuth.layer as usize * height + row) * width + col];
             left.slopes[texel] = f32::from_bits(word);
             let want = f64::from(twin.slopes[texel]);
-            let tolerance = twin_pyramid_slope(want, largest, relief, azimuth.step_m.into());
+            let tolerance = device_pyramid_slope(want, largest, relief, azimuth.step_m.into());
             let got = left.slopes[texel].into();
             pairs.push(Pair { got, want, tolerance, at: [k, row, col] });
         }

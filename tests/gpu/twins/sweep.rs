@@ -15,8 +15,8 @@ use ridgelight_cpu::shared::sweep::{LOWEST_MET, March, on_field};
 use ridgelight_cpu::surface_sweep as surface_twin;
 use ridgelight_cpu::sweep_fuse::fused_horizon;
 use ridgelight_cpu::tolerance::{
-    EPSILON, twin_angle, twin_distance, twin_fused_slope, twin_march_slope, twin_slope,
-    twin_slope_f16, twin_slope_packed, twin_surface_slope,
+    EPSILON, device_angle, device_distance, device_fused_slope, device_march_slope, device_slope,
+    device_slope_f16, device_slope_packed, device_surface_slope,
 };
 
 use super::{Pair, Run, constant, fuse_of, pushed};
@@ -144,7 +144,7 @@ fn lines_of(
             pairs.push(match (slope(got as i32), slope(want.into())) {
                 // Rounded heights may choose another occluder, if it stands as high.
                 (Some(got), Some(want)) if options.packed.is_some() => {
-                    Pair { got, want, tolerance: twin_slope_packed(largest, step_m), at }
+                    Pair { got, want, tolerance: device_slope_packed(largest, step_m), at }
                 }
                 _ => Pair { got: got.into(), want: want.into(), tolerance: 0.0, at },
             });
@@ -158,9 +158,9 @@ fn lines_of(
             left.slopes[texel] = got;
             let want = f64::from(twin.slopes[texel]);
             let tolerance = match (options.packed, options.slopes_f16) {
-                (Some(_), _) => twin_slope_packed(largest, step_m),
-                (None, true) => twin_slope_f16(want),
-                (None, false) => twin_slope(want),
+                (Some(_), _) => device_slope_packed(largest, step_m),
+                (None, true) => device_slope_f16(want),
+                (None, false) => device_slope(want),
             };
             pairs.push(Pair { got: got.into(), want, tolerance, at });
         }
@@ -263,7 +263,7 @@ pub(super) fn surface_sweep(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let warm_up = run.warm_up(azimuth.marches_rows());
         surface_twin::surface_sweep(run.heights(), azimuth, warm_up, twin);
         let vector = [azimuth.vector_march, azimuth.vector_lane];
-        twin_surface_slope(run.relief()[0], azimuth.step_m.into(), vector)
+        device_surface_slope(run.relief()[0], azimuth.step_m.into(), vector)
     })
 }
 
@@ -275,7 +275,7 @@ pub(super) fn horizon_march(run: &mut Run, pass: &Pass) -> Vec<Pair> {
         let warm_up = run.warm_up(azimuth.marches_rows());
         let options = MarchOptions { all_crossings: constant(pass, "all_crossings") == 1, warm_up };
         march_twin::horizon_march(run.heights(), azimuth, options, twin);
-        twin_march_slope(run.relief()[1], azimuth.step_m.into())
+        device_march_slope(run.relief()[1], azimuth.step_m.into())
     })
 }
 
@@ -294,7 +294,7 @@ pub(super) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
             // What is only read has no error.
             let slope_error = match fuse {
                 None | Some(Fuse::Nearest) => 0.0,
-                _ => twin_fused_slope(largest, azimuth.step_m.into()),
+                _ => device_fused_slope(largest, azimuth.step_m.into()),
             };
             for i in 0..rows * cols {
                 let (row, col) = (i / cols, i % cols);
@@ -302,11 +302,11 @@ pub(super) fn sweep_fuse(run: &mut Run, pass: &Pass) -> Vec<Pair> {
                 let slope = want.found.slope;
                 let place = (layer + k) * rows * cols + i;
                 let at = [k, row, col];
-                let tolerance = twin_angle(slope.into(), slope_error);
+                let tolerance = device_angle(slope.into(), slope_error);
                 pairs.push(Pair { got: angles[place].into(), want: want.angle_rad, tolerance, at });
                 let Some(distances) = &distances else { continue };
                 let (got, want_m) = (f64::from(distances[place]), f64::from(want.distance_m));
-                let pair = Pair { got, want: want_m, tolerance: twin_distance(want_m), at };
+                let pair = Pair { got, want: want_m, tolerance: device_distance(want_m), at };
                 let on_edge = swept.heights.border != Border::Open
                     && f64::from(slope).abs() <= slope_error
                     && (got == 0.0 || want_m == 0.0);

@@ -22,7 +22,7 @@ use ridgelight::basis::triangles::Triangles;
 use ridgelight::scene::{Border, Curvature, HeightField, VisiblePoint, VisiblePoints};
 use ways::Ways;
 
-pub use ridgelight::scene::{Fans, MAX_TURN_RAD, bent_direction_within, bent_direction};
+pub use ridgelight::scene::{Fans, MAX_TURN_RAD, bent_direction, bent_direction_within};
 
 /// Inputs of the bending: the flat field and its visible points.
 pub struct Draped<'a> {

@@ -64,7 +64,7 @@ pub fn possible_within(
     }
     let elevation = e.z.atan2(e.x.hypot(e.y));
     let mut seen = Vec::new();
-    oracle.stretches(row, col, e.y.atan2(e.x), &mut seen);
+    oracle.visible_intervals(row, col, e.y.atan2(e.x), &mut seen);
     let free = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
     let beyond = |elevation: f64| match oracle.border() {
         Border::Plane | Border::Periodic if elevation <= 0.0 => VisiblePoint::Ground,
@@ -77,22 +77,22 @@ pub fn possible_within(
         }
     };
     // The exact answer first.
-    match seen.iter().find(|stretch| elevation < stretch.high_rad) {
-        Some(stretch) => add(met(oracle, stretch, stretch.distance_m(elevation), [0.0; 2])),
+    match seen.iter().find(|interval| elevation < interval.high_rad) {
+        Some(interval) => add(met(oracle, interval, interval.distance_m(elevation), [0.0; 2])),
         None => add(beyond(elevation)),
     }
     // Upper end of the interval below, where this one begins.
     let mut below = 0.0_f64;
-    for stretch in &seen {
-        let above = elevation_rad(stretch);
-        let ends = [stretch.low_rad - below, stretch.high_rad + above];
+    for interval in &seen {
+        let above = elevation_rad(interval);
+        let ends = [interval.low_rad - below, interval.high_rad + above];
         let off = below.max(above);
         below = above;
         if off == 0.0 || elevation < ends[0] || elevation > ends[1] {
             continue;
         }
         let [near, far] = [elevation - off, elevation + off]
-            .map(|e| stretch.distance_m(e.clamp(stretch.low_rad, stretch.high_rad)));
+            .map(|e| interval.distance_m(e.clamp(interval.low_rad, interval.high_rad)));
         let [cell_x, cell_y] = oracle.field().cell_m();
         // Steps of a quarter of a cell skip no grid point.
         let steps = (4.0 * (far - near).abs() / cell_x.min(cell_y)).ceil().clamp(1.0, 1e5) as usize;
@@ -100,7 +100,7 @@ pub fn possible_within(
             let distance = near + (far - near) * step as f64 / steps as f64;
             for (down, right) in (0..9).map(|i| (i / 3 - 1, i % 3 - 1)) {
                 let off = of_way * (1.0 + distance / cell_x.min(cell_y));
-                add(met(oracle, stretch, distance, [down, right].map(|n| f64::from(n) * off)));
+                add(met(oracle, interval, distance, [down, right].map(|n| f64::from(n) * off)));
             }
         }
     }
@@ -112,11 +112,16 @@ pub fn possible_within(
 }
 
 /// The grid point nearest to a position on a visible interval, offset by `off` rows and columns.
-fn met(oracle: &Oracle, stretch: &VisibleInterval, distance_m: f64, off: [f64; 2]) -> VisiblePoint {
+fn met(
+    oracle: &Oracle,
+    interval: &VisibleInterval,
+    distance_m: f64,
+    off: [f64; 2],
+) -> VisiblePoint {
     let (rows, cols) = (oracle.field().rows(), oracle.field().cols());
-    let [_, second, third] = stretch.corner_weights(distance_m);
-    let [[row, col], ..] = oracle.corners(stretch.triangle);
-    let is_lower = !stretch.triangle.is_multiple_of(2);
+    let [_, second, third] = interval.corner_weights(distance_m);
+    let [[row, col], ..] = oracle.corners(interval.triangle);
+    let is_lower = !interval.triangle.is_multiple_of(2);
     let [down, right] = if is_lower { [second + third, third] } else { [third, second + third] };
     let nearest = |first: usize, along: f64, off: f64, count: usize| {
         let place = (first as f64 + along.clamp(0.0, 1.0) + off + 0.5).floor() as i64;

@@ -61,7 +61,7 @@ impl March {
 /// Progress along a slice.
 struct Seen {
     slice: Slice,
-    /// Contribution of Legendre coefficients to the bands of a [`Receiver::Lobe`].
+    /// Contribution of Legendre coefficients to the bands of a [`Receiver::CosineLobe`].
     bands: Option<[f64; 4]>,
     top: f64,
     casts: Vec<Cast>,

@@ -19,14 +19,14 @@ pub fn bounce_march(
     row: usize,
     col: usize,
 ) -> [f64; 3] {
-    radiance(&stretches_along(oracle, exit, azimuths, [row, col]))
+    radiance(&visible_intervals_along(oracle, exit, azimuths, [row, col]))
 }
 
 /// Its visible intervals, azimuth by azimuth.
 ///
 /// # Panics
 /// As [`bounce_march`].
-pub fn stretches_along(
+pub fn visible_intervals_along(
     oracle: &Oracle,
     exit: &[[f64; 3]],
     azimuths: u32,
@@ -41,24 +41,25 @@ pub fn stretches_along(
         let slice = receiver.slice(azimuth_rad);
         let whole = slice.light(-FRAC_PI_2, FRAC_PI_2);
         oracle.nearly_seen(row, col, azimuth_rad, NEARLY_RAD, &mut seen);
-        let casts = seen.iter().filter(|stretch| stretch.high_rad > slice.low - NEARLY_RAD);
-        let cast = |stretch: &crate::profile::VisibleInterval| {
-            let from = oracle.corners(stretch.triangle).map(|[r, c]| exit[r * field.cols() + c]);
-            let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
-            let [rise_m, steepest] = land_around(oracle, stretch.triangle, [row, col]);
+        let casts = seen.iter().filter(|interval| interval.high_rad > slice.low - NEARLY_RAD);
+        let cast = |interval: &crate::profile::VisibleInterval| {
+            let from = oracle.corners(interval.triangle).map(|[r, c]| exit[r * field.cols() + c]);
+            let shares = interval.corner_weights(mean_distance_m(&slice, interval));
+            let [rise_m, steepest] = land_around(oracle, interval.triangle, [row, col]);
             let of = |c: usize| from.map(|corner| corner[c]);
-            let [low_rad, high_rad] = [stretch.low_rad, stretch.high_rad].map(|w| w.max(slice.low));
+            let [low_rad, high_rad] =
+                [interval.low_rad, interval.high_rad].map(|w| w.max(slice.low));
             Cast {
                 low_rad,
                 high_rad,
-                weight: slice.light(stretch.low_rad, stretch.high_rad).max(0.0),
+                weight: slice.light(interval.low_rad, interval.high_rad).max(0.0),
                 facing: slice.at(high_rad) * high_rad.cos(),
                 radiance: [0, 1, 2].map(|c| of(c).iter().zip(shares).map(|(l, s)| l * s).sum()),
                 spread: [0, 1, 2].map(|c| {
                     of(c).iter().fold(f64::MIN, |m, l| m.max(*l))
                         - of(c).iter().fold(f64::MAX, |m, l| m.min(*l))
                 }),
-                distance: stretch.end_m(),
+                distance: interval.end_m(),
                 rise_m,
                 steepest,
             }

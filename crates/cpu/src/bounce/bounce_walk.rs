@@ -6,7 +6,7 @@
 //! it hides everything between; where the far end rises above it, the points between are visited.
 
 use crate::lattice::Lattice;
-use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
+use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::{field_slope, normal_of};
 use crate::shared::fuse::{nearest_texel, split_crossing, surface_on_line};
 use crate::shared::gather::{Swept, elevation_moments};
@@ -24,7 +24,7 @@ pub struct Walked {
     /// Points of the hull tree visited.
     pub turns: u32,
     /// Visible intervals.
-    pub stretches: u32,
+    pub visible_intervals: u32,
 }
 
 impl Walked {
@@ -40,10 +40,11 @@ impl Walked {
 /// Outside the field, or where `exit` is not one colour per grid point.
 pub fn bounce_walk(swept: &Swept, exit: &[[f32; 3]], col: i32, row: i32) -> Walked {
     let (all, turns) = walked_along(swept, exit, col, row);
-    let (light, whole) = thrown(&all);
+    let (light, whole) = light_and_weight(&all);
     let is_seen = |cast: &&Cast| cast.high_rad > cast.low_rad;
-    let stretches = all.iter().map(|along| along.casts.iter().filter(is_seen).count() as u32).sum();
-    Walked { light: DVec3::from_array(light), whole, turns, stretches }
+    let visible_intervals =
+        all.iter().map(|along| along.casts.iter().filter(is_seen).count() as u32).sum();
+    Walked { light: DVec3::from_array(light), whole, turns, visible_intervals }
 }
 
 /// Its visible intervals, azimuth by azimuth, distances in march steps; and the count of points visited.

@@ -6,20 +6,20 @@ use std::f64::consts::PI;
 
 use crate::light_matrix::light_matrix;
 use crate::sphere_sh_shade::BEYOND;
-use crate::tolerance::{ARC_TANGENT, BallSeen, EPSILON, ShadeError};
+use crate::tolerance::{ARC_TANGENT, EPSILON, ShadeError, SphereGeometry};
 use ridgelight::basis::bands;
 use ridgelight::basis::light::receiver;
 use ridgelight::scene::{Quality, Receiver, Wedges};
 
 /// Contributions of visibility and sphere coefficients to the light, for a quality.
 #[derive(Clone, Debug)]
-pub struct SoftBall {
+pub struct SphereShError {
     quality: Quality,
     /// `[coefficient of the sphere][row of the receiver][coefficient of visibility]`, magnitudes.
     shares: Vec<Vec<Vec<f64>>>,
 }
 
-impl SoftBall {
+impl SphereShError {
     /// Of a quality.
     pub fn new(quality: &Quality) -> Self {
         let count = quality.light_order().pow(2);
@@ -39,11 +39,17 @@ impl SoftBall {
     /// beyond; the azimuths' ends by an arc tangent and 24 ε, at which the series jumps by √((2l+1)/4π) · √2 at most,
     /// at both. One of the sphere as `coefficient` gives it. Products sum as many terms as there are, each of four
     /// factors, whose polynomials of the normal are 2 at most and change by 6 a radian.
-    pub fn twin(&self, ball: &BallSeen, slope_error: f64, normal: DVec3, seen: &[f64]) -> f64 {
+    pub fn tolerance(
+        &self,
+        sphere: &SphereGeometry,
+        slope_error: f64,
+        normal: DVec3,
+        seen: &[f64],
+    ) -> f64 {
         let order = self.quality.sh_order as usize;
         let beyond = if self.quality.wedges == Wedges::Table { 0 } else { BEYOND };
         let count = self.quality.sun_azimuths as usize + beyond;
-        let error = ShadeError::new(slope_error, ball.relief_m, ball.cell_m, count);
+        let error = ShadeError::new(slope_error, sphere.relief_m, sphere.cell_m, count);
         let end = 2.0 * (ARC_TANGENT + 24.0 * EPSILON);
         let of_seen: Vec<f64> = bands(order)
             .map(|(l, _)| {
@@ -56,7 +62,7 @@ impl SoftBall {
         let terms = self.shares.iter().flatten().flatten().filter(|share| **share > 1e-9).count();
         let mut sum = 0.0;
         for ((l, _), rows) in bands(self.quality.light_order()).zip(&self.shares) {
-            let [light, off] = coefficient(ball, l);
+            let [light, off] = coefficient(sphere, l);
             for (row, shares) in rows.iter().enumerate() {
                 let polynomial = all[first + row].abs() + 6.0 * error.normal();
                 let turned = 6.0 * error.normal() + (8.0 + terms as f64) * EPSILON * polynomial;
@@ -74,11 +80,11 @@ impl SoftBall {
 /// The largest magnitude of a coefficient of band l of a sphere, and its error.
 ///
 /// A cap of half-angle a has 2π √((2l+1)/4π) sin²a P_l'(cos a)/(l(l+1)) about its axis, P_l' ≤ l(l+1)/2. Its sine
-/// errs by δ = 6 ε + 4 ε (1 + H/d) of itself (as [`BallSeen::twin`] has the place), its cosine by
+/// errs by δ = 6 ε + 4 ε (1 + H/d) of itself (as [`SphereGeometry::tolerance`] has the place), its cosine by
 /// min(sin² δ/cos, √(2 δ)), by which P_l' moves (l-1)(l+2)/4 of its largest, or band 0 by its own; recurrences by
 /// 40 ε. Turned to an axis that errs by the place it changes by l of itself, whose harmonics err by 30 ε.
-fn coefficient(ball: &BallSeen, l: usize) -> [f64; 2] {
-    let BallSeen { distance_m: d, radius_m: r, largest_m, .. } = *ball;
+fn coefficient(sphere: &SphereGeometry, l: usize) -> [f64; 2] {
+    let SphereGeometry { distance_m: d, radius_m: r, largest_m, .. } = *sphere;
     let band = 2.0 * PI * ((2 * l + 1) as f64 / (4.0 * PI)).sqrt();
     let place = 4.0 * EPSILON * (1.0 + largest_m / d.max(1e-3 * r));
     let (sin, of_sin) = ((r / d).min(1.0), 6.0 * EPSILON + place);
@@ -95,21 +101,26 @@ fn coefficient(ball: &BallSeen, l: usize) -> [f64; 2] {
     [largest, largest * relative]
 }
 
-/// Slope of the surface's horizon up to a ball, against its twin: as [`BallSeen::twin`] has it, and an end that
+/// Slope of the surface's horizon up to a sphere light, against its CPU reference: as [`SphereGeometry::tolerance`] has it, and an end that
 /// errs by 16 ε, and by what a difference of distance and radius leaves of its own, of itself, across which it
 /// changes by two slopes of R / c at most.
-pub fn twin_surface_within(ball: &BallSeen) -> f64 {
-    let BallSeen { distance_m: d, radius_m: r, largest_m, .. } = *ball;
+pub fn device_surface_within(sphere: &SphereGeometry) -> f64 {
+    let SphereGeometry { distance_m: d, radius_m: r, largest_m, .. } = *sphere;
     let left = 4.0 * EPSILON * (d + largest_m) / (d - r).abs().max(1e-30);
-    (108.0 * EPSILON + 2.0 * (16.0 * EPSILON + left).min(1.0)) * ball.relief_m / ball.cell_m
+    (108.0 * EPSILON + 2.0 * (16.0 * EPSILON + left).min(1.0)) * sphere.relief_m / sphere.cell_m
 }
 
 /// The same of a pyramid's, whose march errs by `pyramid` from given levels: a direction, places and an end as of
 /// the surface; and the end in samples of k an octave by k times 3 ulp of a logarithm of 16 at most and 2⁻²¹, across
 /// each of which a spline of angles changes by π at most.
-pub fn twin_pyramid_within(ball: &BallSeen, pyramid: f64, slope: f64, level_step: u32) -> f64 {
+pub fn device_pyramid_within(
+    sphere: &SphereGeometry,
+    pyramid: f64,
+    slope: f64,
+    level_step: u32,
+) -> f64 {
     let end = f64::from(level_step) * (3.0 * 16.0 * EPSILON + 2.0_f64.powi(-21)) * PI;
-    let slopes = pyramid + twin_surface_within(ball);
+    let slopes = pyramid + device_surface_within(sphere);
     let steepest = slope.abs() + slopes;
     slopes + end * (1.0 + steepest * steepest)
 }

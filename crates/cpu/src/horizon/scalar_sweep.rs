@@ -255,7 +255,7 @@ mod tests {
                 // Axes, diagonals, and places between.
                 let samples = check(field, TAU * f64::from(k) / 16.0 + f64::from(k % 3) * 0.1);
                 let cells = ((field.rows() - 1) * (field.cols() - 1)) as f64;
-                // Lines a cell apart, steps a cell long: a sample a cell, but for the rim.
+                // Lines a cell apart, steps a cell long: a grid point a cell, but for the rim.
                 let rim = 2.0 * (field.rows() + field.cols()) as f64;
                 assert!((samples as f64 - cells).abs() < rim, "{samples} of {cells}");
             }

@@ -26,7 +26,7 @@ use crate::oracle::Oracle;
 use crate::profile::VisibleInterval;
 use crate::sphere::sphere_on;
 use glam::DVec3;
-use ridgelight::scene::{Albedo, Border, HeightField, Lights, Specular, Scene, SphereLight};
+use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Specular, SphereLight};
 use ridgelight::{Error, Result};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -246,19 +246,19 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
     let mut seen = Vec::new();
     for k in 0..azimuths {
         let azimuth = TAU * (k as f64 + 0.5) / azimuths as f64;
-        oracle.stretches(here[0], here[1], azimuth, &mut seen);
+        oracle.visible_intervals(here[0], here[1], azimuth, &mut seen);
         let met = seen.last().map_or(-FRAC_PI_2, |last| last.high_rad);
         let horizon = if oracle.border() == Border::Open { met } else { met.max(0.0) };
         for (i, receiver) in receivers.iter().enumerate() {
             let slice = receiver.slice(azimuth);
             all[i].sky += slice.light(horizon, FRAC_PI_2);
             totals[i] += slice.light(-FRAC_PI_2, FRAC_PI_2);
-            for stretch in &seen {
-                let weight = slice.light(stretch.low_rad, stretch.high_rad);
+            for interval in &seen {
+                let weight = slice.light(interval.low_rad, interval.high_rad);
                 if weight > 0.0 {
-                    let shares = stretch.corner_weights(mean_distance_m(&slice, stretch));
+                    let shares = interval.corner_weights(mean_distance_m(&slice, interval));
                     for (j, share) in shares.into_iter().enumerate().filter(|(_, s)| *s > 0.0) {
-                        let corner = 3 * stretch.triangle + j;
+                        let corner = 3 * interval.triangle + j;
                         if dense[i][corner] == 0.0 {
                             all[i].corners.push(corner as u32);
                         }
@@ -279,11 +279,11 @@ fn gather(oracle: &Oracle, here: [usize; 2], receivers: &[Receiver], azimuths: u
 
 /// Distance on a visible interval of its mean radiance, which is linear in the distance: the average by Gauss' rule
 /// of two points over the elevations above the slice's plane.
-pub(crate) fn mean_distance_m(slice: &Slice, stretch: &VisibleInterval) -> f64 {
-    let (low, high) = (stretch.low_rad.max(slice.low), stretch.high_rad);
+pub(crate) fn mean_distance_m(slice: &Slice, interval: &VisibleInterval) -> f64 {
+    let (low, high) = (interval.low_rad.max(slice.low), interval.high_rad);
     let (middle, off) = (0.5 * (low + high), 0.5 * (high - low) / 3_f64.sqrt());
     let [(near, f), (far, g)] =
-        [middle - off, middle + off].map(|w| (stretch.distance_m(w), w.cos() * slice.at(w)));
+        [middle - off, middle + off].map(|w| (interval.distance_m(w), w.cos() * slice.at(w)));
     if f + g > 0.0 { (f * near + g * far) / (f + g) } else { 0.5 * (near + far) }
 }
 

@@ -22,7 +22,7 @@ pub const ENVIRONMENT_STRIPS: usize = 512;
 pub struct Receiver {
     /// Unit normal, upwards.
     pub normal: DVec3,
-    /// Unit direction r and exponent n of a lobe, in place of the cosine.
+    /// Unit direction r and exponent n of the Phong specular, in place of the cosine.
     pub lobe: Option<(DVec3, f64)>,
 }
 

@@ -64,16 +64,16 @@ impl<'a> Lit<'a> {
         let environment = self.columns.as_ref().map(|c| c.light(oracle, row, col));
         let suns = lights.suns.iter().map(|s| light::sun_of(oracle, row, col, s, self.strips));
         let keys = lights.keys.iter().map(|k| key::key_of(oracle, row, col, k, self.key_strips(k)));
-        let balls = lights.sphere_lights.iter().map(|ball| {
-            let share = sphere_of(oracle, row, col, ball, self.strips);
-            ball.radiance.map(|c| f64::from(c) * share)
+        let spheres = lights.sphere_lights.iter().map(|sphere| {
+            let share = sphere_of(oracle, row, col, sphere, self.strips);
+            sphere.radiance.map(|c| f64::from(c) * share)
         });
         let albedo = match &self.scene.surface.albedo {
             Albedo::Constant(c) => *c,
             Albedo::Map(map) => map[row * self.scene.field.cols() + col],
         };
         let mut all = [0.0; 3];
-        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(balls) {
+        for light in sky.into_iter().chain(environment).chain(suns).chain(keys).chain(spheres) {
             (0..3).for_each(|c| all[c] += light[c] * f64::from(albedo[c]));
         }
         all

@@ -20,7 +20,7 @@ use crate::tolerance::near::{Near, Near3, all, any, dot, minus, plus, product};
 use environment::Environment;
 use place::Place;
 use ridgelight::plan::{REFERENCE_BATCH, max_path_light, reference_inputs};
-use ridgelight::scene::{Albedo, Specular, Scene};
+use ridgelight::scene::{Albedo, Scene, Specular};
 pub use traced::Traced;
 
 const BITS: u32 = REFERENCE_BATCH.ilog2();
@@ -47,7 +47,7 @@ pub struct Tracer<'a> {
     /// Bounds on radiance from outside the surface: sky and environment; and all sphere lights, which a ray adds on
     /// its way wherever it ends.
     far: [f64; 3],
-    balls: [f64; 3],
+    spheres: [f64; 3],
 }
 
 fn given<const N: usize>(of: [f32; N]) -> [Near; N] {
@@ -100,10 +100,12 @@ impl<'a> Tracer<'a> {
         let sky = lights.sky.unwrap_or_default();
         let texels = lights.environment.iter().flat_map(|e| e.texels());
         let brightest = texels.fold([0.0_f32; 3], |m, t| [0, 1, 2].map(|c| m[c].max(t[c])));
-        let balls = |c: usize| lights.sphere_lights.iter().map(|ball| f64::from(ball.radiance[c])).sum();
+        let spheres = |c: usize| {
+            lights.sphere_lights.iter().map(|sphere| f64::from(sphere.radiance[c])).sum()
+        };
         Self {
             far: [0, 1, 2].map(|c| f64::from(sky[c]) + f64::from(brightest[c])),
-            balls: [0, 1, 2].map(balls),
+            spheres: [0, 1, 2].map(spheres),
             ground: Ground::of(field, surface.border),
             lights: four(inputs.next().expect("lights")),
             environment,
@@ -129,7 +131,7 @@ impl<'a> Tracer<'a> {
     /// the far field or ground.
     fn most_seen(&self, left: u32) -> [f64; 3] {
         let later = left.checked_sub(1).map_or([0.0; 3], |l| self.most[l as usize]);
-        [0, 1, 2].map(|c| self.balls[c] + self.far[c].max(later[c]))
+        [0, 1, 2].map(|c| self.spheres[c] + self.far[c].max(later[c]))
     }
 
     /// Suns, key lights, sphere lights.
@@ -267,10 +269,10 @@ impl<'a> Tracer<'a> {
             }
             let [suns, keys, _] = self.counts();
             for i in (suns + keys).max(lights.start as usize)..lights.end as usize {
-                let ball = given(self.lights[2 * i]);
-                let to = minus([ball[0], ball[1], ball[2]], centre);
+                let sphere = given(self.lights[2 * i]);
+                let to = minus([sphere[0], sphere[1], sphere[2]], centre);
                 let ahead = dot(to, e);
-                let inside = ball[3] * ball[3] - dot(to, to);
+                let inside = sphere[3] * sphere[3] - dot(to, to);
                 let exit_m = ahead + (ahead * ahead + inside).max(Near::ZERO).sqrt();
                 let is_before = any([Some(what != What::Hit), (exit_m * ray.scale).at_most(met.t)]);
                 let in_view = all([Near::ZERO.at_most(inside), is_before]);

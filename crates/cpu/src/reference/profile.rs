@@ -21,7 +21,7 @@ pub struct VisibleInterval {
     pub high_rad: f64,
     /// Which triangle: see [`Oracle::corners`].
     pub triangle: usize,
-    /// The piece's height above the sample is `rise_m` + `slope`·distance.
+    /// The piece's height above the grid point is `rise_m` + `slope`·distance.
     pub rise_m: f64,
     /// Tangent of the piece's own inclination.
     pub slope: f64,
@@ -79,7 +79,7 @@ impl Oracle<'_> {
     ///
     /// # Panics
     /// When `row` or `col` lies outside the field.
-    pub fn stretches(
+    pub fn visible_intervals(
         &self,
         row: usize,
         col: usize,
@@ -153,11 +153,11 @@ impl Oracle<'_> {
     /// When `row` or `col` lies outside the field.
     pub fn slope_within(&self, row: usize, col: usize, azimuth_rad: f64, within_m: f64) -> f64 {
         let mut seen = Vec::new();
-        self.stretches(row, col, azimuth_rad, &mut seen);
-        let slope = |stretch: &VisibleInterval| {
-            let [near, far] = stretch.span_m;
+        self.visible_intervals(row, col, azimuth_rad, &mut seen);
+        let slope = |interval: &VisibleInterval| {
+            let [near, far] = interval.span_m;
             let end = if near == 0.0 { far } else { far.min(within_m) };
-            (near == 0.0 || near < within_m).then(|| stretch.slope + stretch.rise_m / end)
+            (near == 0.0 || near < within_m).then(|| interval.slope + interval.rise_m / end)
         };
         seen.iter().filter_map(slope).fold(f64::NEG_INFINITY, f64::max)
     }

@@ -52,7 +52,7 @@ pub fn sphere_on(
             continue;
         }
         let disc = Disc { along: away * offset.cos(), up, radius: squared.sqrt() };
-        oracle.stretches(row, col, azimuth, &mut seen);
+        oracle.visible_intervals(row, col, azimuth, &mut seen);
         let visible = disc.visible(&seen);
         for (receiver, sum) in receivers.iter().zip(&mut sums) {
             let slice = receiver.slice(azimuth);
@@ -107,15 +107,15 @@ impl Disc {
             (-FRAC_PI_2, FRAC_PI_2)
         };
         let mut visible = Vec::new();
-        for stretch in seen {
-            let mut cuts = vec![stretch.low_rad, stretch.high_rad, low, high];
-            cuts.extend(self.crossings(stretch));
+        for interval in seen {
+            let mut cuts = vec![interval.low_rad, interval.high_rad, low, high];
+            cuts.extend(self.crossings(interval));
             cuts.sort_unstable_by(f64::total_cmp);
             for ends in cuts.windows(2) {
                 let middle = 0.5 * (ends[0] + ends[1]);
                 let within = |a: f64, b: f64| a < middle && middle < b;
-                let hit_m = stretch.distance_m(middle) / middle.cos();
-                if within(stretch.low_rad, stretch.high_rad)
+                let hit_m = interval.distance_m(middle) / middle.cos();
+                if within(interval.low_rad, interval.high_rad)
                     && within(low, high)
                     && self.met_m(middle) < hit_m
                 {
@@ -140,8 +140,8 @@ impl Disc {
     }
 
     /// Elevations at which the circle crosses the line of an interval, rise + slope·D.
-    fn crossings(&self, stretch: &VisibleInterval) -> impl Iterator<Item = f64> {
-        let VisibleInterval { rise_m, slope, .. } = *stretch;
+    fn crossings(&self, interval: &VisibleInterval) -> impl Iterator<Item = f64> {
+        let VisibleInterval { rise_m, slope, .. } = *interval;
         // (D - along)² + (rise + slope D - up)² = radius².
         let (a, below) = (1.0 + slope * slope, self.up - rise_m);
         let b = self.along + slope * below;

@@ -6,11 +6,13 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use crate::env_rotation::env_rotation;
-use crate::light_matrix::{add_sky, gloss_matrix, is_fitted, light_matrix, row_weights, series};
+use crate::light_matrix::{add_sky, is_fitted, light_matrix, row_weights, series, specular_matrix};
 use crate::sh_shade::{gloss_on, light_on};
 use crate::sh_visibility::{Series, seen_above};
 use crate::sh_wedges::sh_wedges;
-use crate::tolerance::{ShadeError, twin_light_matrix, twin_sh_gloss, twin_sh_shade, twin_turn};
+use crate::tolerance::{
+    ShadeError, device_light_matrix, device_sh_shade, device_sh_specular, device_turn,
+};
 use ridgelight::basis::bands;
 use ridgelight::basis::harmonics::evaluate;
 use ridgelight::basis::light::receiver;
@@ -76,12 +78,12 @@ impl Harmonics {
 
     fn of(
         environment: Option<&Environment>,
-        gloss: Option<[f32; 3]>,
+        specular: Option<[f32; 3]>,
         border: Border,
         quality: &Quality,
     ) -> Self {
         let order = quality.sh_order as usize;
-        let light_order = if gloss.is_some() { order } else { quality.light_order() };
+        let light_order = if specular.is_some() { order } else { quality.light_order() };
         let (height, fitted) =
             (environment.map_or(1, Environment::height), is_fitted(quality, border));
         let rows = match environment {
@@ -91,11 +93,11 @@ impl Harmonics {
         };
         let turns = environment.map_or(Vec::new(), |e| env_rotation(e, rows, light_order));
         let mut light = series(&turns, height, light_order, fitted);
-        let matrix = match gloss {
+        let matrix = match specular {
             None => light_matrix(quality, &light),
             Some(sky) => {
                 add_sky(&mut light, sky);
-                gloss_matrix(quality, &light)
+                specular_matrix(quality, &light)
             }
         };
         let turned = |environment: &Environment| -> Vec<Vec<DVec3>> {
@@ -103,14 +105,15 @@ impl Harmonics {
             let of_row = |row: usize| {
                 let texels = environment.texels()[row * width..].iter().take(width);
                 let sum: DVec3 = texels.map(|l| DVec3::from_array(l.map(f64::from))).sum();
-                vec![twin_turn(width) * sum / width as f64; 2 * light_order - 1]
+                vec![device_turn(width) * sum / width as f64; 2 * light_order - 1]
             };
             (0..rows).map(of_row).collect()
         };
         let turned = environment.map_or(Vec::new(), turned);
-        let summed = matrix_magnitudes(quality, border, height, &turns, gloss);
-        let turned = matrix_magnitudes(quality, border, height, &turned, gloss.map(|_| [0.0; 3]));
-        let rounded = twin_light_matrix(height);
+        let summed = matrix_magnitudes(quality, border, height, &turns, specular);
+        let turned =
+            matrix_magnitudes(quality, border, height, &turned, specular.map(|_| [0.0; 3]));
+        let rounded = device_light_matrix(height);
         let entry = |(s, t): (&DVec3, &DVec3)| rounded * *s + *t;
         let row = |(s, t): (&Vec<DVec3>, &Vec<DVec3>)| s.iter().zip(t).map(entry).collect();
         let series = Series { order, wedges: quality.wedges, receiver: quality.receiver };
@@ -145,7 +148,7 @@ impl Harmonics {
                 summed += entry.abs() * value;
             }
         }
-        let tolerance = off + twin_sh_shade(self.series.order, error.normal()) * summed;
+        let tolerance = off + device_sh_shade(self.series.order, error.normal()) * summed;
         let light = light_on(normal, &seen.values, &self.matrix);
         [light.max(DVec3::ZERO), tolerance]
     }
@@ -170,20 +173,20 @@ impl Harmonics {
                 summed += kept[l] * entry.abs() * value;
             }
         }
-        let tolerance = off + twin_sh_gloss(order, error.normal()) * summed;
+        let tolerance = off + device_sh_specular(order, error.normal()) * summed;
         let light = gloss_on(normal, phong, &seen.values, &self.matrix);
         [light.max(DVec3::ZERO), f64::from(phong.scale) * tolerance]
     }
 }
 
 /// Entries of the light's matrix, from sums of an environment's rows (none: no environment), with the magnitudes of
-/// all summed products. `gloss`: for incident light of the Phong specular, including a sky.
+/// all summed products. `specular`: for incident light of the Phong specular, including a sky.
 pub fn matrix_magnitudes(
     quality: &Quality,
     border: Border,
     height: usize,
     turns: &[Vec<DVec3>],
-    gloss: Option<[f32; 3]>,
+    specular: Option<[f32; 3]>,
 ) -> Vec<Vec<DVec3>> {
     let order = quality.sh_order as usize;
     let light_order = turns.first().map_or(order, |row| row.len().div_ceil(2));
@@ -193,15 +196,15 @@ pub fn matrix_magnitudes(
     for (i, ((_, m), weights)) in bands(light_order).zip(weights).enumerate() {
         let turn = (light_order - 1).wrapping_add_signed(m);
         let mut sum = [weights.iter().zip(turns).map(|(w, t)| w.abs() * t[turn].abs()).sum()];
-        if let Some(sky) = gloss.filter(|_| i == 0) {
+        if let Some(sky) = specular.filter(|_| i == 0) {
             add_sky(&mut sum, sky);
         }
         // Light with 1 in this coefficient alone.
         let mut unit = vec![DVec3::ZERO; light_order * light_order];
         unit[i] = DVec3::ONE;
-        let shares = match gloss {
+        let shares = match specular {
             None => light_matrix(quality, &unit),
-            Some(_) => gloss_matrix(quality, &unit),
+            Some(_) => specular_matrix(quality, &unit),
         };
         all.resize(shares.len(), vec![DVec3::ZERO; shares[0].len()]);
         for (row, shares) in all.iter_mut().zip(&shares) {

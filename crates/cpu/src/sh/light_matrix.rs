@@ -72,7 +72,7 @@ pub fn light_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
 ///
 /// # Panics
 /// When the series is not of the quality's order.
-pub fn gloss_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
+pub fn specular_matrix(quality: &Quality, series: &[DVec3]) -> Vec<Vec<DVec3>> {
     matrix(quality, series, |triples, _, light| product::light_matrix(triples, light))
 }
 

@@ -66,7 +66,7 @@ pub fn light_on(normal: DVec3, seen: &[f64], matrix: &[Vec<DVec3>]) -> DVec3 {
 }
 
 /// What a lobe on a surface of this normal mirrors straight upwards; `matrix` is
-/// [`crate::light_matrix::gloss_matrix`]'s.
+/// [`crate::light_matrix::specular_matrix`]'s.
 ///
 /// # Panics
 /// A matrix of no order.

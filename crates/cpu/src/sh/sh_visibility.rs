@@ -71,7 +71,7 @@ pub fn seen_along(series: Series, rays: &[[f64; 3]]) -> Vec<f64> {
     }
 }
 
-/// `visibility` of all azimuths: [`seen_at`] for every sample, row-major.
+/// `visibility` of all azimuths: [`seen_at`] for every grid point, row-major.
 pub fn sh_visibility(swept: &Swept, series: Series) -> Vec<Vec<f64>> {
     swept.per_sample(|col, row| seen_at(swept, series, col, row))
 }

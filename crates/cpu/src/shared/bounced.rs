@@ -42,7 +42,7 @@ pub struct Cast {
 }
 
 /// Radiance times weight, and the weight of whole hemispheres.
-pub fn thrown(all: &[Along]) -> ([f64; 3], f64) {
+pub fn light_and_weight(all: &[Along]) -> ([f64; 3], f64) {
     let casts = all.iter().flat_map(|along| &along.casts);
     let sum = casts
         .fold([0.0; 3], |sum, cast| [0, 1, 2].map(|c| sum[c] + cast.weight * cast.radiance[c]));
@@ -51,6 +51,6 @@ pub fn thrown(all: &[Along]) -> ([f64; 3], f64) {
 
 /// Exit radiance for albedo 1. Weights of a whole hemisphere sum to 1: uniform incident radiance is preserved.
 pub fn radiance(all: &[Along]) -> [f64; 3] {
-    let (sum, whole) = thrown(all);
+    let (sum, whole) = light_and_weight(all);
     sum.map(|s| s.max(0.0) / whole)
 }

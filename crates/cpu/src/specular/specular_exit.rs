@@ -30,7 +30,12 @@ pub fn mirrored(arriving: &Series, normal: DVec3, phong: PhongSpecular) -> [f64;
 ///
 /// # Panics
 /// A series of no order.
-pub fn thrown(arriving: &Series, normal: DVec3, phong: PhongSpecular, diffuse: [f64; 3]) -> Series {
+pub fn exit_series(
+    arriving: &Series,
+    normal: DVec3,
+    phong: PhongSpecular,
+    diffuse: [f64; 3],
+) -> Series {
     let channels = [0, 1, 2].map(|c| {
         let mut turned = half_turn(&smoothed(arriving, phong, c), normal);
         turned[0] += (4.0 * PI).sqrt() * diffuse[c];

@@ -14,10 +14,10 @@ pub fn way(to_m: f64) -> f64 {
     16.0 * EPSILON * to_m
 }
 
-/// By how much `bent_directions` may be off in how far a ray stays over the surface around a sample, m.
+/// By how much `bent_directions` may be off in how far a ray stays over the surface around a grid point, m.
 ///
-/// A cell's climb errs by 4 ε of itself (direction, pace, quotient), its product and sum by 3 ε more; the sample's rise and its
-/// difference by 3 ε. With g the relief around the sample and n cells of the way: the place beside it errs by 7 ε of n and ε of
+/// A cell's climb errs by 4 ε of itself (direction, pace, quotient), its product and sum by 3 ε more; the grid point's rise and its
+/// difference by 3 ε. With g the relief around the grid point and n cells of the way: the place beside it errs by 7 ε of n and ε of
 /// its own, across which the surface rises by 2 g a cell, and so does where a kink is taken to be; products and sums round 12 ε g.
 pub fn over(way: &Way, rise_m: f64) -> f64 {
     EPSILON * (8.0 * way.climb_m + 4.0 * rise_m.abs() + 48.0 * way.relief_m * (1.0 + way.cells))
@@ -31,7 +31,7 @@ pub fn over(way: &Way, rise_m: f64) -> f64 {
 /// with 3 roundings times a series of 8 ε: 14 ε g; the vertical part a sum of v/2 (1 + g), 16 ε of it. The way's own error
 /// moves the first by r δ g, the second by r δ (1 + g): in the plan an error of [`way`] over the direction's own share p of the
 /// plan, squares and quotient 9 ε more. The direction itself errs by 2 ε. The sum is of a length of the
-/// least stretch times the chord of a right angle over its arc, 0.9, or more, over which the error is spread; normalising
+/// least scale times the chord of a right angle over its arc, 0.9, or more, over which the error is spread; normalising
 /// rounds by 8 ε.
 pub fn bent(e: DVec3, Way { away_m, to_m, .. }: Way, own_m: f64, curvature: Curvature) -> f64 {
     let r = (DVec2::from_array(curvature.per_m) * e.truncate()).length();

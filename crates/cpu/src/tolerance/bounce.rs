@@ -1,8 +1,8 @@
 //! Tolerances of indirect light against its CPU references: per grid point, from the CPU reference's own visible
 //! intervals.
 
-use super::{ARC_TANGENT, EPSILON, twin_level, twin_spline};
-use crate::shared::bounced::{Along, Cast, NEARLY_RAD, thrown};
+use super::{ARC_TANGENT, EPSILON, device_level, device_spline};
+use crate::shared::bounced::{Along, Cast, NEARLY_RAD, light_and_weight};
 use crate::shared::field::field_slope;
 use crate::shared::sweep::{Heights, wrapped};
 use ridgelight::scene::{Border, HeightField, Receiver};
@@ -51,7 +51,7 @@ impl Land {
 
     /// Error of a grid point's normal, radians.
     ///
-    /// A component of the gradient has differences of neighbours, at most 2 of the steepest around the sample, each
+    /// A component of the gradient has differences of neighbours, at most 2 of the steepest around the grid point, each
     /// rounded, weighted exactly and summed twice, over a quotient's 5 ε: 8 ε; two of them √2 of that, which turn a
     /// normal that leans by the gradient itself by less. `inversesqrt` and products 8 ε.
     ///
@@ -105,17 +105,17 @@ pub struct Slices {
 
 /// Error of the indirect light at a grid point.
 #[derive(Clone, Copy, Debug)]
-pub struct ThrownError {
+pub struct BounceError {
     /// Radiance times weight, R, G, B.
     pub sum: [f64; 3],
     /// Exit radiance for albedo 1.
     pub light: [f64; 3],
 }
 
-impl ThrownError {
-    /// From all that a twin has seen, each cast with what an engine errs by there.
+impl BounceError {
+    /// From all that a CPU reference has seen, each cast with what an engine errs by there.
     ///
-    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that is off by
+    /// With F the weight of all below an elevation a slice throws Σ (F(ω_i) - F(ω_i-1)) L_i. An end ω_i that has an error of
     /// δ moves (F' + 2 δ) δ from L_i to L_i+1 (nothing beyond the last): differences of neighbours count, not the light
     /// itself. What is hidden by less than δ may be seen instead of either: it is among the casts, without weight, up
     /// to [`NEARLY_RAD`]; beyond, it may be as bright as any. The first end is the own plane, where F' is 0 and F
@@ -123,7 +123,7 @@ impl ThrownError {
     /// piece a mean is taken errs by what its ends err by, in shares of the piece: mean weight times (2 δ + 16 ε),
     /// times the spread. Sums round once a cast.
     pub fn of(all: &[Along], error: impl Fn(&Along, &Cast) -> CastError, of: &Slices) -> Self {
-        let (sum, whole) = thrown(all);
+        let (sum, whole) = light_and_weight(all);
         let normal = of.normal * of.wedge;
         let mut off = [0.0; 3];
         for along in all {
@@ -169,7 +169,7 @@ impl ThrownError {
     }
 }
 
-/// What `bounce_march` errs by where a stretch ends.
+/// What `bounce_march` errs by where a visible interval ends.
 ///
 /// A direction is turned by 40 ε: a quotient of 5 ε and its difference from a half, times π, as halves of turns, and
 /// sines of 6e-8. Its components err by 23 ε besides: products and three quotients. A crossing t cells away stands
@@ -201,9 +201,9 @@ pub fn march_error(cell_m: [f64; 2], along: &Along, cast: &Cast) -> CastError {
     }
 }
 
-/// What `bounce_walk` errs by where a stretch ends, given what the device's own sweep has met.
+/// What `bounce_walk` errs by where a visible interval ends, given what the device's own sweep has met.
 ///
-/// Rises are sums and products that are not fused, as the twin's. A slope is their quotient by a product: 6 ε and the
+/// Rises are sums and products that are not fused, as the CPU reference's. A slope is their quotient by a product: 6 ε and the
 /// twin's own 2 ε. Moments: half an arc tangent and 5 ε, and 4 ε, each times its part of the wedge, which errs
 /// by its cosine, sine and width of f32.
 pub fn walk_error(wedge_rad: f64, cast: &Cast) -> CastError {
@@ -225,9 +225,9 @@ pub struct Gathered {
     pub land: Land,
     /// World length of a march step, at least.
     pub step_m: f64,
-    /// Levels are there at every sample.
+    /// Levels are there at every grid point.
     pub is_stack: bool,
-    /// Levels, too, are the twins', not the device's.
+    /// Levels, too, are the CPU references', not the device's.
     pub own_levels: bool,
     /// The exact cosine, or three bands of it.
     pub receiver: Receiver,
@@ -241,28 +241,29 @@ impl Gathered {
     /// What it errs by where a cast ends.
     ///
     /// A direction errs as in [`march_error`], by 65 ε of the way, and the land with it, by twice that of the steepest
-    /// slope. The ends of a rise: a spline ([`twin_spline`]) each, or between two samples of a stack 3 ε; of levels that
-    /// are the twins' a [`twin_level`] an octave, and the stack's own spline. Product and quotient turn an angle by
+    /// slope. The ends of a rise: a spline ([`device_spline`]) each, or between two samples of a stack 3 ε; of levels that
+    /// are the CPU references' a [`device_level`] an octave, and the stack's own spline. Product and quotient turn an angle by
     /// 3 ε, an arc tangent; a spline's weights are positive and sum to 1, 12 ε, its sine and cosine 4 ε. Steps are
     /// those of the nearest sample that a spline looks at.
     ///
     /// Weights as [`march_error`]'s. Three bands: four polynomials of an end, 8 ε of √2 each, times weights of
-    /// at most 1. Radiance: a spline, an octave's levels where they are the twins', and its place: two samples farther,
+    /// at most 1. Radiance: a spline, an octave's levels where they are the CPU references', and its place: two lookups farther,
     /// 4 times as far at most, but no more than 16 texels of its level, as offsets of 4 octaves at most have it.
     pub fn error(&self, cast: &Cast) -> CastError {
         let Land { largest_m, relief_m, steepest, .. } = self.land;
         let octaves = 1.0 + cast.distance.log2().max(0.0);
         let levels = if self.own_levels { octaves } else { 0.0 };
         let of_stack =
-            if self.own_levels { twin_spline(largest_m) } else { 3.0 * EPSILON * largest_m };
-        let end = if self.is_stack { of_stack } else { twin_spline(largest_m) };
-        let rise = 2.0 * (end + levels * twin_level(largest_m)) / (cast.distance * self.step_m);
+            if self.own_levels { device_spline(largest_m) } else { 3.0 * EPSILON * largest_m };
+        let end = if self.is_stack { of_stack } else { device_spline(largest_m) };
+        let rise = 2.0 * (end + levels * device_level(largest_m)) / (cast.distance * self.step_m);
         let steep = (relief_m / self.step_m).min(1.0);
         let angle = rise + 130.0 * EPSILON * steepest + ARC_TANGENT * steep + 19.0 * EPSILON;
         let width = cast.high_rad - cast.low_rad;
         let texels = (4.0 * cast.distance).min(20.0);
         let places = 130.0 * EPSILON * texels * self.spread;
-        let radiance = twin_spline(self.brightest) + levels * twin_level(self.brightest) + places;
+        let radiance =
+            device_spline(self.brightest) + levels * device_level(self.brightest) + places;
         let (end, weight) = match self.receiver {
             Receiver::Plane => (0.0, EPSILON * (2.0 + 24.0 * width)),
             Receiver::CosineLobe => (4.0 * 2.0_f64.sqrt() * 8.0 * EPSILON, 4.0 * EPSILON * width),

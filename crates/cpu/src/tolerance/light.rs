@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
-use super::{ARC_TANGENT, EPSILON, twin_table, twin_wedge_row};
+use super::{ARC_TANGENT, EPSILON, device_table, device_wedge_row};
 use crate::env_tables::EnvTables;
 use crate::sh_shade::OFF_PLANE;
 use ridgelight::basis::MAX_ORDER;
@@ -66,14 +66,14 @@ impl ShadeError {
     /// themselves and by their rows, over moments of at most π/2, over π.
     pub fn whole_environment(&self, brightest: f64, [columns, rows, nodes]: [f64; 3]) -> f64 {
         let wedge = std::f64::consts::TAU / self.count;
-        let row = twin_wedge_row(brightest, wedge, columns / self.count + 2.0);
+        let row = device_wedge_row(brightest, wedge, columns / self.count + 2.0);
         let largest = brightest * wedge;
-        let table = twin_table(rows * largest, largest, rows + nodes) + 0.5 * row;
+        let table = device_table(rows * largest, largest, rows + nodes) + 0.5 * row;
         self.environment(brightest) + 3.0_f64.sqrt() * self.count * table
     }
 
-    /// What an azimuth's wedge of an environment gives a sample of this normal above a slope, from tables made on the device, of
-    /// which each moment is off by `table`.
+    /// What an azimuth's wedge of an environment gives a grid point of this normal above a slope, from tables made on the device, of
+    /// which each moment has an error of `table`.
     ///
     /// Each component of the normal times its moment. The place in a table errs as in [`environment`](Self::environment), across
     /// which a moment changes by no more a node than from any node to the next there; the normal's turn moves it by the moments' length; a
@@ -150,7 +150,7 @@ impl ShadeError {
 
     /// What `sh_shade` counts a node for, relative to that.
     ///
-    /// Off each other's planes a sample and a node are off by two gradients' errors and two of the rise's 3
+    /// Off each other's planes a grid point and a node have an error of two gradients' errors and two of the rise's 3
     /// roundings, a quarter of a gradient's each at most, over their distance; of 1 / (1 + x²) the relative
     /// change is below dx, x in units of [`OFF_PLANE`]. Hats, squares and quotients err by 30 ε. Weights are
     /// divided by their sum, which errs as they do.
@@ -171,7 +171,7 @@ impl ShadeError {
 
 /// Geometry of a sphere light relative to a grid point, and its field.
 #[derive(Clone, Copy, Debug)]
-pub struct BallSeen {
+pub struct SphereGeometry {
     /// Distance from the grid point to the sphere's centre.
     pub distance_m: f64,
     /// The same in the plane.
@@ -188,15 +188,15 @@ pub struct BallSeen {
     pub is_cut: bool,
 }
 
-impl BallSeen {
+impl SphereGeometry {
     /// For a grid point, by its index in the field's heights.
     ///
     /// # Panics
     /// Outside the field.
-    pub fn of(field: &HeightField, ball: &SphereLight, sample: usize) -> Self {
+    pub fn of(field: &HeightField, sphere: &SphereLight, sample: usize) -> Self {
         let (cols, heights) = (field.cols(), field.heights_m());
         let [cell_x, cell_y] = field.cell_m();
-        let [x, y, z] = ball.position_m;
+        let [x, y, z] = sphere.position_m;
         let east = x - (sample % cols) as f64 * cell_x;
         let north = y - (field.rows() - 1 - sample / cols) as f64 * cell_y;
         let over = z - field.base_m();
@@ -206,11 +206,11 @@ impl BallSeen {
         Self {
             distance_m: east.hypot(north).hypot(up),
             away_m: east.hypot(north),
-            radius_m: ball.radius_m,
+            radius_m: sphere.radius_m,
             largest_m: low.abs().max(high.abs()).max(over.abs()),
             relief_m: high - low,
             cell_m: cell_x.min(cell_y),
-            is_cut: over - ball.radius_m < high,
+            is_cut: over - sphere.radius_m < high,
         }
     }
 
@@ -218,13 +218,13 @@ impl BallSeen {
     ///
     /// A slope errs as a march's at its first crossing, 38 ε R / c, and by places further on: a direction
     /// turned by 24 ε and a position that errs by 8 ε of the distance, across which the surface rises by
-    /// R / c: 70 ε R / c together. The ball's middle errs by 4 ε of the distance and ε of its height, as an
+    /// R / c: 70 ε R / c together. The sphere's centre errs by 4 ε of the distance and ε of its height, as an
     /// angle 4 ε (1 + H/d); the ends of its disc by 2 (d/t)² of that, t the tangent's length, but never by
     /// more than √(8 ε), what is left of a tangent that is nothing; directions, arc tangents and sums by
     /// 40 ε and [`ARC_TANGENT`]. The circle's half chord on a piece of surface has a square that errs by
     /// 16 ε r²: 4 √ε r where they just touch, seen from d - r or from within. Slices' weights sum to
     /// π asin(r / away) at most, or to 2 π; two ends a slice, a normal that turns both its parts, over π.
-    pub fn twin(&self) -> f64 {
+    pub fn tolerance(&self) -> f64 {
         let Self { distance_m: d, away_m, radius_m: r, .. } = *self;
         let steepness = self.relief_m / self.cell_m;
         let place = 4.0 * EPSILON * (1.0 + self.largest_m / d.max(1e-3 * r));
@@ -243,7 +243,7 @@ impl BallSeen {
 mod tests {
     use super::*;
 
-    /// Tables of 257 nodes whose moments rise by 1 a node, looked up by a slope that is off by 3 nodes: off by 3 of every
+    /// Tables of 257 nodes whose moments rise by 1 a node, looked up by a slope that has an error of 3 nodes: in error by 3 of every
     /// moment, along a normal of one component.
     #[test]
     fn a_place_that_is_off_by_nodes_is_off_by_all_of_them() {

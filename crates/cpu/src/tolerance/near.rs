@@ -112,7 +112,7 @@ impl Near {
         Self::rounded(root, (high - root).max(root - low), ROOT)
     }
 
-    /// The built-in power of a positive number: 2 to the power of the product with its binary logarithm, which is off by 3 ulp,
+    /// The built-in power of a positive number: 2 to the power of the product with its binary logarithm, which has an error of 3 ulp,
     /// or 2^-21 from a half to two, and changes by no more than where the number is least.
     #[must_use]
     pub fn powf(self, power: Self) -> Self {
@@ -181,7 +181,7 @@ impl Neg for Near {
 }
 
 /// The angle from the direction of x to that of (x, y), -π .. π, by `arc_tangent` of a quotient put into its quadrant: a place
-/// r away that is off by d is turned by asin(d / r) at most; π and a difference from it round.
+/// r away that has an error of d is turned by asin(d / r) at most; π and a difference from it round.
 pub fn angle(y: Near, x: Near) -> Near {
     let (r, d) = (x.v.hypot(y.v), x.off + y.off);
     let turned = if r > d { d / (r - d) } else { std::f64::consts::PI };
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(any([Some(false), None]), None);
     }
 
-    /// A quarter to the power of 2 that is off by a hundredth: between 0.24² and 0.26² lies all of it, 0.0051 apart from the
+    /// A quarter to the power of 2 that has an error of a hundredth: between 0.24² and 0.26² lies all of it, 0.0051 apart from the
     /// middle, and the bound is no more than a few hundredths above; of what may be nothing it is none.
     #[test]
     fn a_power_is_off_by_what_its_base_is() {

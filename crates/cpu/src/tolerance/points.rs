@@ -26,21 +26,21 @@ pub fn seen_elevation(land: &Land) -> f64 {
 /// Error of the elevation at which a ray meets the upper end of a visible interval, radians.
 ///
 /// At a crossing d away a ray and the surface are compared: t · rise errs by 8 ε of itself, which there is the rise of one of
-/// the triangle's corners over the sample, r at most; the surface by three differences, two products and two sums of at most
+/// the triangle's corners over the grid point, r at most; the surface by three differences, two products and two sums of at most
 /// r, 8 ε r, and along either axis by its place, 10 ε t, and by the direction's, 12 ε t, times the triangle's relief g a cell c,
-/// with t c at most d. A slope is off by (16 r / d + 44 g / c) ε, turned into an angle where it is flattest; the direction
+/// with t c at most d. A slope has an error of (16 r / d + 44 g / c) ε, turned into an angle where it is flattest; the direction
 /// itself by 12 ε upwards.
-pub fn crossing_elevation(oracle: &Oracle, stretch: &VisibleInterval, own_m: f64) -> f64 {
+pub fn crossing_elevation(oracle: &Oracle, interval: &VisibleInterval, own_m: f64) -> f64 {
     let field = oracle.field();
     let [x, y] = field.cell_m();
     let corners = oracle
-        .corners(stretch.triangle)
+        .corners(interval.triangle)
         .map(|[row, col]| f64::from(field.heights_m()[row * field.cols() + col]) - own_m);
     let rise = corners.iter().fold(0.0_f64, |m, h| m.max(h.abs()));
     let high = corners.iter().fold(f64::MIN, |m, h| m.max(*h));
     let relief = high - corners.iter().fold(f64::MAX, |m, h| m.min(*h));
-    let slope = stretch.high_rad.tan();
-    let off = EPSILON * (16.0 * rise / stretch.end_m() + 44.0 * relief / x.min(y));
+    let slope = interval.high_rad.tan();
+    let off = EPSILON * (16.0 * rise / interval.end_m() + 44.0 * relief / x.min(y));
     (slope + off).atan() - (slope - off).atan() + 12.0 * EPSILON
 }
 
@@ -51,7 +51,7 @@ pub fn facet_elevation(finer: &Land) -> f64 {
     seen_elevation(finer) + 12.0 * EPSILON * finer.relief_m / finer.cell_m
 }
 
-/// What one look-up of `scatter_gather` errs by against its twin, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may
+/// What one look-up of `scatter_gather` errs by against its CPU reference, R, G, B; the lobe's exponent is `n`, 1 or more; the normal may
 /// be turned by `normal` radians.
 ///
 /// A cosine errs by the normal's turn and 6 ε (three products, two sums, the direction's roundings). What a direction lies
@@ -85,7 +85,7 @@ pub fn ellipse_moment(directions: usize) -> f64 {
     EPSILON * 2.0 * (directions as f64 + 8.0)
 }
 
-/// [`ellipse_reach`] of where the search starts: of a mean that is off by m, and a radius r = 2 √v by 2 m / r.
+/// [`ellipse_reach`] of where the search starts: of a mean that has an error of m, and a radius r = 2 √v by 2 m / r.
 pub fn ellipse_start(ellipse: &Ellipse, directions: usize) -> f64 {
     let m = ellipse_moment(directions);
     let of = |inverse: f64| 2.0 * inverse * (m + 2.0 * m * inverse);

@@ -11,7 +11,7 @@ use ridgelight_cpu::height_reduce::height_levels;
 use ridgelight_cpu::pyramid_march::{PyramidMarch, Stored};
 use ridgelight_cpu::shared::levels::LevelTexels;
 use ridgelight_cpu::shared::sweep::{Heights, LOWEST_MET, March};
-use ridgelight_cpu::tolerance::twin_pyramid_angle;
+use ridgelight_cpu::tolerance::device_pyramid_angle;
 
 use super::{largest, relief};
 
@@ -57,7 +57,7 @@ impl<'a> CpuReference<'a> {
         let angle = if slope <= LOWEST_MET { -FRAC_PI_2 } else { f64::from(slope).atan() };
         let elevation = if border == Border::Open { angle } else { angle.max(0.0) };
         let step = f64::from(azimuth.step_m);
-        let error = twin_pyramid_angle(self.largest_m, self.relief_m, step);
+        let error = device_pyramid_angle(self.largest_m, self.relief_m, step);
         (elevation, error)
     }
 }

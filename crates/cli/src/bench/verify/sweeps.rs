@@ -14,7 +14,7 @@ use ridgelight_cpu::shared::gather::Swept;
 use ridgelight_cpu::shared::sweep::Heights;
 use ridgelight_cpu::sky_shade::sky_at;
 use ridgelight_cpu::sun_shade::sun_at;
-use ridgelight_cpu::tolerance::{EPSILON, ShadeError, twin_fused_slope};
+use ridgelight_cpu::tolerance::{EPSILON, ShadeError, device_fused_slope};
 
 use super::{environments, percent, rms, within};
 
@@ -99,7 +99,7 @@ pub(super) fn lit<T>(
     let step = azimuths.iter().map(|a| f64::from(a.step_m)).fold(f64::MAX, f64::min);
     // A lattice's slope has an error of 6 ε of itself, which changes an angle by at most half of
     // that.
-    let slope = twin_fused_slope(low.abs().max(high.abs()), step) + 3.0 * EPSILON;
+    let slope = device_fused_slope(low.abs().max(high.abs()), step) + 3.0 * EPSILON;
     let [x, y] = field.cell_m();
     let error = ShadeError::new(slope, high - low, x.min(y), azimuths.len());
     light(&swept, &error)

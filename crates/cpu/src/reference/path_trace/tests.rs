@@ -15,8 +15,8 @@ fn scene(albedo: [f32; 3], lights: Lights) -> Scene {
 /// · 1; or the sky behind it: 1 + 0.2.
 #[test]
 fn a_ray_sees_the_ball_that_it_leaves_and_what_is_behind_it() {
-    let ball = SphereLight { position_m: [1.0, 1.0, 0.0], radius_m: 9.0, radiance: [1.0; 3] };
-    let lights = Lights { sky: Some([0.2; 3]), sphere_lights: vec![ball], ..Lights::default() };
+    let sphere = SphereLight { position_m: [1.0, 1.0, 0.0], radius_m: 9.0, radiance: [1.0; 3] };
+    let lights = Lights { sky: Some([0.2; 3]), sphere_lights: vec![sphere], ..Lights::default() };
     let scene = scene([0.3; 3], lights);
     let tracer = Tracer::of(&scene, vec![[0.0; 3]; 9], (1, 0), true);
     assert!(tracer.most_seen(1)[1] >= 1.3, "{:?}", tracer.most_seen(1));

@@ -2,36 +2,36 @@
 
 use std::f64::consts::PI;
 
-use super::{CastError, EPSILON, Slices, twin_sh_gloss};
+use super::{CastError, EPSILON, Slices, device_sh_specular};
 use crate::shared::bounced::{Along, Cast};
 
 /// A coefficient of `specular_visibility`, of the magnitudes of all products that it sums: one rounding each and one a sum.
-pub fn twin_specular_visibility(order: usize) -> f64 {
+pub fn device_specular_visibility(order: usize) -> f64 {
     ((order * order) as f64 + 1.0) * EPSILON
 }
 
-/// A coefficient that `sun_specular` adds of a sun of irradiance 1 that faces the sample by `facing`, the cosine: the part
-/// that is seen errs as in [`twin_sun_specular`](super::twin_sun_specular), Y_lm, 1 at most, by 100 ε, their products by 3 ε.
-pub fn twin_sun_arriving(normal_error: f64, facing: f64) -> f64 {
+/// A coefficient that `sun_specular` adds of a sun of irradiance 1 that faces the grid point by `facing`, the cosine: the part
+/// that is seen errs as in [`device_sun_specular`](super::device_sun_specular), Y_lm, 1 at most, by 100 ε, their products by 3 ε.
+pub fn device_sun_arriving(normal_error: f64, facing: f64) -> f64 {
     ((normal_error + 6.0 * EPSILON) / facing.max(1e-30)).min(1.0) + 104.0 * EPSILON
 }
 
 /// A coefficient of `specular_exit`, of the magnitudes of all coefficients that arrive, smoothed.
 ///
-/// At each of n (2n - 1) directions the sum errs as in [`twin_sh_gloss`]. Weights times |Y_lm| sum to √4π at most, the
+/// At each of n (2n - 1) directions the sum errs as in [`device_sh_specular`]. Weights times |Y_lm| sum to √4π at most, the
 /// product of the norms of 1 and of Y_lm, rounded once, and sums of them err by one rounding a direction.
-pub fn twin_specular_exit(order: usize, normal_error: f64) -> f64 {
+pub fn device_specular_exit(order: usize, normal_error: f64) -> f64 {
     let directions = (order * (2 * order - 1)) as f64;
-    (4.0 * PI).sqrt() * (twin_sh_gloss(order, normal_error) + (directions + 4.0) * EPSILON)
+    (4.0 * PI).sqrt() * (device_sh_specular(order, normal_error) + (directions + 4.0) * EPSILON)
 }
 
-/// A coefficient of what arrives by `specular_gather`, from all that a twin has seen, each cast with what it errs by there, of
+/// A coefficient of what arrives by `specular_gather`, from all that a CPU reference has seen, each cast with what it errs by there, of
 /// surface whose radiance by direction has coefficients that sum to `of.brightest` at most, by magnitude.
 ///
 /// An end ends what one place throws and begins what the next does: twice its error times `brightest`, with Y_lm 1 at
 /// most; the first is the own plane, which turns with the normal. Radiance errs by itself, changes by n a radian of
 /// direction, and its series sum with 100 ε; slices are polynomials whose coefficients sum to 15, 100 ε an end.
-pub fn twin_arriving(
+pub fn device_arriving(
     all: &[Along],
     error: impl Fn(&Cast) -> CastError,
     order: usize,
