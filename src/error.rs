@@ -1,22 +1,22 @@
 use std::path::{Path, PathBuf};
 
-/// Everything that can go wrong, each as one sentence for the person who has to act on it.
+/// All errors. Each displays as one sentence: what is wrong, where, and what was expected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A file that does not hold what it should: where in it, what was there, what belongs there.
+    /// Wrong content of a file.
     #[error("{}: {place}: found {found}, expected {expected}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// The place inside the file: "header", "row 3, column 7", "tag 33550".
         place: String,
-        /// What is there.
+        /// The content found.
         found: String,
-        /// What belongs there.
+        /// The content expected.
         expected: String,
     },
-    /// A file that could not be read or written at all.
+    /// A file that could not be read or written.
     #[error("{}: {source}", path.display())]
     Io {
         /// The file.
@@ -27,35 +27,35 @@ pub enum Error {
     /// A setting or an argument out of its range.
     #[error("{name}: found {found}, expected {expected}")]
     Setting {
-        /// The setting as its user wrote it: "--azimuths", "cell_m".
+        /// The setting, as "azimuths" or "cell_m". Other parts of a message name settings in backticks, as "`lines exact`".
         name: String,
         /// The value given.
         found: String,
-        /// The range or the kind of value that is accepted.
+        /// The accepted range or kind.
         expected: String,
     },
-    /// A scene that this device, or this memory budget, cannot hold.
+    /// A scene that exceeds the device or the memory budget.
     #[error("{what}: needs {needs}, the limit is {limit}")]
     Limit {
-        /// What asks for it.
+        /// What exceeds the limit.
         what: String,
         /// How much it needs.
         needs: String,
-        /// How much there is.
+        /// The limit.
         limit: String,
     },
-    /// Vulkan, or the driver behind it, said no.
+    /// An error of Vulkan or the driver.
     #[error("{doing}: {reason}")]
     Device {
-        /// What was being done.
+        /// The operation that failed.
         doing: String,
-        /// What the driver, the loader or the device lacks or answered.
+        /// The answer of the driver or loader, or what the device lacks.
         reason: String,
     },
 }
 
 impl Error {
-    /// A [`Error::File`] from its four parts.
+    /// An [`Error::File`].
     pub fn file(
         path: &Path,
         place: impl Into<String>,
@@ -70,12 +70,12 @@ impl Error {
         }
     }
 
-    /// A [`Error::Io`] for `path`.
+    /// An [`Error::Io`] for `path`.
     pub fn io(path: &Path, source: std::io::Error) -> Self {
         Error::Io { path: path.to_owned(), source }
     }
 
-    /// A [`Error::Setting`] from its three parts.
+    /// An [`Error::Setting`].
     pub fn setting(
         name: impl Into<String>,
         found: impl Into<String>,

@@ -1,5 +1,4 @@
-//! From slices along azimuths to spherical harmonics: blending, turning and summing in one (NS09 §6,
-//! appendix).
+//! From slices along azimuths to spherical harmonics: blending, rotation and summation in one step (NS09 §6, appendix).
 //!
 //! A wedge lies between two azimuths Δφ apart; across it the slices are blended with weights β_i(φ/Δφ),
 //! and the result is projected. Every Y_lm is a product, so the projection of the sum over all wedges is
@@ -17,7 +16,7 @@ use super::{bands, check_order};
 pub enum Blend {
     /// Between two azimuths, (1 - t, t).
     Linear,
-    /// Cubic B-spline over four: smoother, and blurred by more than a wedge.
+    /// Cubic B-spline over four: smoother, with a blur of more than a wedge.
     BSpline,
 }
 
@@ -34,7 +33,7 @@ impl Blend {
         }
     }
 
-    /// Which of the four take part.
+    /// The contributing ones of the four.
     fn taking_part(self) -> std::ops::Range<usize> {
         match self {
             Blend::Linear => 1..3,
@@ -79,7 +78,7 @@ fn wedge(order: usize, blend: Blend, start_rad: f64, width_rad: f64) -> [Vec<f64
 /// Blend matrix of a wedge from azimuth 0 to `width_rad`, (0..2π]: n² rows; columns are the NLP
 /// coefficients of the two (linear) or four (B-spline) azimuths in turn (NS09 eq. 20, appendix A).
 ///
-/// 16 × 8 and 16 × 16 at order 4. For [`super::harmonics::rotate_z`] by each wedge's azimuth, then a sum.
+/// 16 × 8 and 16 × 16 at order 4. Rotate by each wedge's azimuth with [`super::harmonics::rotate_z`], then sum.
 pub fn blend_matrix(order: usize, blend: Blend, width_rad: f64) -> Vec<Vec<f64>> {
     let moments = wedge(order, blend, 0.0, width_rad);
     let elevations = from_nlp(order);
@@ -101,11 +100,10 @@ fn place(order: usize, m: isize) -> usize {
 
 /// Weights `[k][m + n - 1]` of azimuths φ_k = 2πk/count, all around: count wedges, the last back to φ_0.
 ///
-/// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided
-/// by the width as often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). So all around, a blend does
-/// nothing but damp each m, what was seen and what was aliased alike: by 6 % at m = 3 with B-splines over
-/// 32 azimuths. Without a blend every azimuth stands for itself: exact for slices that turn slower than
-/// count - |m|, and nearer to the truth wherever horizons are smooth.
+/// The bump of a B-spline of degree d is the box of one wedge, convolved d times with itself and divided by the width as
+/// often: its Fourier transform is Δφ sinc(mΔφ/2)^(d+1). Over the full circle a blend therefore only damps each m, signal
+/// and alias alike: by 6 % at m = 3 with B-splines over 32 azimuths. Without a blend every azimuth has weight only at
+/// itself: exact for slices with frequencies below count - |m|, and with a smaller error wherever horizons are smooth.
 pub fn circle(order: usize, blend: Option<Blend>, count: usize) -> Vec<Vec<f64>> {
     let width = TAU / count as f64;
     let power = match blend {
@@ -128,9 +126,8 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
-/// Weights `[k][m + n - 1]` of azimuths φ_k = start + k · width/(count - 1): count - 1 wedges, nothing
-/// beyond the two ends (NS09 §6, partial swaths). A B-spline takes the end's slice again where it would
-/// reach beyond.
+/// Weights `[k][m + n - 1]` of azimuths φ_k = start + k · width/(count - 1): count - 1 wedges, nothing beyond the two ends
+/// (NS09 §6, partial swaths). Where a B-spline would reach beyond, it repeats the slice of the end.
 ///
 /// # Panics
 /// When `count` is below 2.
@@ -160,7 +157,7 @@ pub fn swath(
 /// Spherical harmonics of slices along azimuths, each with its weights: n² coefficients.
 ///
 /// # Panics
-/// When there are not as many slices as weights, or their sizes are not those of `order`.
+/// If the numbers of slices and weights differ, or their sizes are not those of `order`.
 pub fn assemble(order: usize, weights: &[Vec<f64>], slices: &[Vec<f64>]) -> Vec<f64> {
     assert_eq!(weights.len(), slices.len(), "weights and slices");
     bands(order)
@@ -171,8 +168,8 @@ pub fn assemble(order: usize, weights: &[Vec<f64>], slices: &[Vec<f64>]) -> Vec<
         .collect()
 }
 
-/// [`assemble`] from NLP coefficients: they are weighted and summed first, n (2n-1) products an azimuth,
-/// and taken to slices once.
+/// [`assemble`] from NLP coefficients: weighted and summed first, n (2n-1) products per azimuth, and converted to slices
+/// once.
 ///
 /// # Panics
 /// As [`assemble`].

@@ -1,5 +1,4 @@
-//! GLSL text made from the basis' constants: products of series that both change from place to place, the
-//! numbers of a slice, and sums of slices.
+//! Generated GLSL: products of two varying series, the numbers of a slice, and sums of slices.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_1_PI;
@@ -10,21 +9,21 @@ use super::product::{orders, triples};
 use super::slice::{Above, Slices, from_nlp, parts};
 use super::{MAX_ORDER, bands, index};
 
-/// What is known of the second factor of a [`glsl_product`].
+/// The second factor of a [`glsl_product`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
     /// Any series.
     Any,
-    /// A zonal function about an axis of azimuth 0, even in azimuth: only m ≥ 0 is read. Half of the
-    /// products go: what is even and what is odd in azimuth no longer mix.
+    /// A zonal function about an axis of azimuth 0, even in azimuth: only m ≥ 0 is read. Half of the products vanish, as even
+    /// and odd parts in azimuth do not mix.
     Aligned,
 }
 
 /// `void sh_product(in float a[n²], in float b[n²], out float c[r²])`: the product of two series of
 /// `order`, its bands below `receiver` only, `name` in place of `sh_product`.
 ///
-/// The product with b is a symmetric matrix whose entries are sums over b. Each entry is made once, used in
-/// two rows, and dropped. Straight-line code, no branches.
+/// The product with b is a symmetric matrix whose entries are sums over b. Each entry is computed once and used in two
+/// rows. The code has no branches.
 ///
 /// # Panics
 /// When `receiver` is above `order`.
@@ -76,8 +75,8 @@ pub fn glsl_slice(name: &str, order: usize) -> String {
     text + "}\n"
 }
 
-/// `void name(in float sin_, in float cos2, out float nlp[n])`: NLP coefficients of what lies above an
-/// elevation of sine `sin_` and squared cosine `cos2` (NS09 eq. 11).
+/// `void name(in float sin_, in float cos2, out float nlp[n])`: NLP coefficients of visibility above an elevation of sine
+/// `sin_` and squared cosine `cos2` (NS09 eq. 11).
 pub fn glsl_visibility_nlp(name: &str, order: usize) -> String {
     let mut text =
         format!("void {name}(in float sin_, in float cos2, out float nlp[{order}])\n{{\n");
@@ -109,7 +108,7 @@ fn above(part: &Above) -> String {
     }
 }
 
-/// A polynomial in `sin_`; coefficients that are rounding's are none.
+/// A polynomial in `sin_`; coefficients that are rounding errors are omitted.
 fn horner(polynomial: &[f64]) -> String {
     let mut text = String::new();
     for c in polynomial.iter().rev() {
@@ -128,10 +127,10 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// `shaders_glsl/sh/seen.glsl`: adds what is seen along one azimuth to the array `series`, of one sample or
-/// four at a time, for every order that `ORDER` may be.
+/// `shaders_glsl/sh/seen.glsl`: adds the visibility along one azimuth to the array `series`, of one texel or four at a
+/// time, for every value of `ORDER`.
 ///
-/// `add_slices` has the exact slices, `add_nlps` what n NLP coefficients keep of them ([`from_nlp`]).
+/// `add_slices` uses the exact slices, `add_nlps` n NLP coefficients ([`from_nlp`]).
 pub fn glsl_seen() -> String {
     let mut text = String::from(
         "// Made by basis::glsl::glsl_seen, and held to it by a test.\n//\n\
@@ -165,7 +164,7 @@ pub fn glsl_seen() -> String {
     text + "}\n"
 }
 
-/// `shaders_glsl/shared/harmonics.glsl`: Y_lm of four directions, for every order that `ORDER` may be.
+/// `shaders_glsl/shared/harmonics.glsl`: Y_lm of four directions, for every value of `ORDER`.
 pub fn glsl_harmonics() -> String {
     let mut text = String::from(
         "// Made by basis::glsl::glsl_harmonics, and held to it by a test.\n//\n\

@@ -1,5 +1,4 @@
-//! Real orthonormal spherical harmonics: values, rotation about the vertical, zonal functions turned to
-//! any axis.
+//! Real orthonormal spherical harmonics: values, rotation about the vertical, zonal functions about any axis.
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
@@ -9,7 +8,7 @@ use super::{bands, index};
 
 /// Y_lm of every coefficient at a unit direction.
 ///
-/// sinᵐθ cos mφ and sinᵐθ sin mφ are the parts of (x + iy)ᵐ: nothing is undefined at the poles.
+/// sinᵐθ cos mφ and sinᵐθ sin mφ are the parts of (x + iy)ᵐ, which is defined at the poles.
 pub fn evaluate(order: usize, direction: DVec3) -> Vec<f64> {
     let DVec3 { x, y, z } = direction;
     let mut powers = vec![(1.0, 0.0)];
@@ -30,18 +29,18 @@ pub fn evaluate(order: usize, direction: DVec3) -> Vec<f64> {
         .collect()
 }
 
-/// Σ of coefficients times Y at a unit direction: the function that they stand for.
+/// The value of a series at a unit direction: Σ of coefficients times Y.
 ///
 /// # Panics
-/// When `coefficients` are not n² for an order n.
+/// If the number of `coefficients` is not a square.
 pub fn reconstruct(coefficients: &[f64], direction: DVec3) -> f64 {
     let values = evaluate(order_of(coefficients), direction);
     coefficients.iter().zip(values).map(|(c, y)| c * y).sum()
 }
 
-/// Directions and weights by which the product of two functions of an order is integrated exactly: Gauss' n points in
-/// z times 2n - 1 even azimuths, n (2n - 1) in all.
-pub fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
+/// Directions and weights that integrate the product of two functions of an order exactly: Gauss' n points in z times
+/// 2n - 1 even azimuths, n (2n - 1) in all.
+pub(crate) fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
     let turns = 2 * order - 1;
     let step = TAU / turns as f64;
     let rows = super::quadrature::rule(order).into_iter();
@@ -55,10 +54,10 @@ pub fn product_rule(order: usize) -> Vec<(DVec3, f64)> {
     .collect()
 }
 
-/// The same function turned by half a turn about a unit axis: what it was at 2 (a·o) a - o it is at o.
+/// The function rotated by half a turn about a unit axis: its value at o is the old one at 2 (a·o) a - o.
 ///
 /// # Panics
-/// When `coefficients` are not n² for an order n.
+/// If the number of `coefficients` is not a square.
 pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
     let order = order_of(coefficients);
     let mut out = vec![0.0; coefficients.len()];
@@ -69,10 +68,10 @@ pub fn half_turn(coefficients: &[f64], axis: DVec3) -> Vec<f64> {
     out
 }
 
-/// The same function turned counter-clockwise about z: f'(φ) = f(φ - angle).
+/// The function rotated counter-clockwise about z: f'(φ) = f(φ - angle).
 ///
 /// # Panics
-/// When `coefficients` are not n² for an order n.
+/// If the number of `coefficients` is not a square.
 pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
     bands(order_of(coefficients))
         .map(|(l, m)| {
@@ -83,11 +82,11 @@ pub fn rotate_z(coefficients: &[f64], angle_rad: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A zonal function about z (n coefficients of Y_l0), about a unit axis instead: z_l √(4π/(2l+1)) Y_lm
-/// (Sloan, Luna & Snyder 2005).
+/// A zonal function about z (n coefficients of Y_l0) rotated to a unit axis: z_l √(4π/(2l+1)) Y_lm (Sloan, Luna & Snyder
+/// 2005).
 ///
 /// # Panics
-/// When there are none, or more than [`super::MAX_ORDER`].
+/// If there are none, or more than [`super::MAX_ORDER`].
 pub fn turned(zonal: &[f64], axis: DVec3) -> Vec<f64> {
     let values = evaluate(zonal.len(), axis);
     bands(zonal.len())
@@ -96,7 +95,7 @@ pub fn turned(zonal: &[f64], axis: DVec3) -> Vec<f64> {
         .collect()
 }
 
-/// n of n² coefficients.
+/// The order n of n² coefficients.
 pub(super) fn order_of(coefficients: &[f64]) -> usize {
     let order = coefficients.len().isqrt();
     assert_eq!(order * order, coefficients.len(), "coefficients: not a square number of them");

@@ -53,7 +53,7 @@ pub fn nlp(order: usize, z: f64) -> Vec<f64> {
 /// q = √((2l+1)/2 · (l-m)!/(l+m)!) dᵐP_l/dzᵐ, so that ∫ Θ_lm² dz = 1 on [-1, 1].
 ///
 /// # Panics
-/// For any other l and m.
+/// If l and m are out of range.
 pub fn associated(l: usize, m: usize) -> &'static [f64] {
     static ALL: LazyLock<Vec<Vec<Polynomial>>> = LazyLock::new(|| {
         (0..MAX_ORDER).map(|l| (0..=l).map(|m| associated_of(l, m)).collect()).collect()
@@ -71,7 +71,7 @@ fn associated_of(l: usize, m: usize) -> Polynomial {
     q.iter().map(|c| scale * c).collect()
 }
 
-/// What makes v̂_l from sin σ, for 1 ≤ l < `order`: v̂_l(σ) = cos²σ · D_l(sin σ); v̂_0 = (1 + sin σ)/√2.
+/// D_l in v̂_l(σ) = cos²σ · D_l(sin σ), for 1 ≤ l < `order`; v̂_0 = (1 + sin σ)/√2.
 ///
 /// By Legendre's equation ((1 - z²) P_l')' = -l(l+1) P_l, so ∫ from -1 to s of P̂_l is
 /// -(1 - s²) √((2l+1)/2)/(l(l+1)) P_l'(s). These are NS09's coefficients after eq. 13, for any order.
@@ -86,12 +86,12 @@ pub fn occlusion_polynomials(order: usize) -> Vec<Polynomial> {
         .collect()
 }
 
-/// NLP coefficients of what lies below elevation σ: v̂_l(σ) = ∫ from -1 to sin σ of P̂_l dz (NS09 eq. 10).
+/// NLP coefficients of the part below elevation σ: v̂_l(σ) = ∫ from -1 to sin σ of P̂_l dz (NS09 eq. 10).
 ///
-/// Takes sin σ and cos σ ≥ 0, σ in [-π/2..π/2]. What lies above is v̂(π/2) - v̂(σ), v̂(π/2) = (√2, 0, …).
+/// Takes sin σ and cos σ ≥ 0, σ in [-π/2..π/2]. The part above is v̂(π/2) - v̂(σ), v̂(π/2) = (√2, 0, …).
 pub fn occlusion(order: usize, sin: f64, cos: f64) -> Vec<f64> {
     let squared = cos * cos;
-    // 1 + sin σ, without the loss of its digits near the nadir.
+    // 1 + sin σ without cancellation near the nadir.
     let below = if sin < 0.0 { squared / (1.0 - sin) } else { 1.0 + sin };
     let first = below * std::f64::consts::FRAC_1_SQRT_2;
     let rest = occlusion_polynomials(order);

@@ -1,19 +1,19 @@
-//! Light as a series, and as the matrix that turns what is seen into exit radiance.
+//! Light as a series, and as the matrix that maps visibility to exit radiance.
 //!
 //! Exit radiance of a diffuse surface of normal N and albedo 1 is 1/π ∫ L V max(N·e, 0) de. Two receivers:
 //!
-//! - [`plane`]: V also ends at the surface's own plane, so that N·e stands there without its maximum: three
-//!   numbers of band 1, exact. L of order n - 1 times N·e is a series of order n, so V of order n leaves
-//!   nothing out: the only approximation is L's. Nothing rings that L does not.
-//! - [`lobe`]: V ends at the horizon alone and the maximum is a series of three bands (NS09 §7), so V does
-//!   not depend on the normal. V, L and the lobe are all cut off; L has order n.
+//! - [`plane`]: V also ends at the surface's own plane, so N·e needs no maximum: three numbers of band 1, exact. L of order
+//!   n - 1 times N·e is a series of order n, so V of order n truncates nothing: the only approximation is L's. It rings only
+//!   where L does.
+//! - [`lobe`]: V ends at the horizon only and the maximum is a series of three bands (NS09 §7), so V does not depend on the
+//!   normal. V, L and the cosine lobe are all truncated; L has order n.
 //!
-//! V first, then the matrix: n² products an azimuth and 9 n² (27 n² of a lobe) a sample. Light summed over
-//! azimuths without V would take 9 n(n+1)/2 an azimuth: 90 against 16 at order 4.
+//! V first, then the matrix: n² products per azimuth and 9 n² (27 n² for [`lobe`]) per texel. Light summed over azimuths
+//! without V would take 9 n(n+1)/2 per azimuth: 90 against 16 at order 4.
 //!
-//! A Phong lobe beside the diffuse reflection is one more: [`gloss`] of what arrives, V times L.
+//! Phong specular uses [`specular`] of the arriving light, V times L.
 //!
-//! All are linear in L: one matrix of constants takes its series to the light's matrix.
+//! All are linear in L: one constant matrix maps its series to the light's matrix.
 
 use std::f64::consts::PI;
 
@@ -25,22 +25,22 @@ use super::product::{Triple, light_matrix};
 use super::quadrature::integral;
 use super::{bands, check_order, index, zonal};
 
-/// Bands of the lobe that are kept: of the rest, odd ones are 0 and band 4 is 4 % of band 0.
+/// Bands of the clamped cosine that are kept: of the rest, odd ones are 0 and band 4 is 4 % of band 0.
 const LOBE_BANDS: usize = 3;
 
-/// What light below ground counts for in a fit.
+/// Weight of light below ground in a fit.
 ///
-/// With none the fit's condition is that of ∫ over the upper hemisphere of Y Y': 250 at order 3, 1.5e5 at
-/// 5, and f32 loses as many digits. With 1e-4 it is 1e4 at most; under a real sky's light up to order 4
-/// none of its error changes by a tenth.
+/// Without it, the condition of the fit is that of ∫ over the upper hemisphere of Y Y': 250 at order 3, 1.5e5 at 5, and f32
+/// loses as many digits. With 1e-4 it is at most 1e4; under a real sky's light up to order 4 the error changes by less than
+/// a tenth.
 const BELOW: f64 = 1e-4;
 
-/// Takes integrals ∫ L Y over the upper hemisphere to the series that fits L there best, by least squares:
-/// n² × n², `[coefficient][integral]`.
+/// Maps integrals ∫ L Y over the upper hemisphere to the series that fits L there best, by least squares: n² × n²,
+/// `[coefficient][integral]`.
 ///
-/// Where nothing is seen below horizontal, light there is free: it is asked to be the mean of the upper
-/// hemisphere's, with the weight 1e-4. A series of all the sphere spends itself on the step at the
-/// horizon; this one follows what can be seen. A constant stays that constant. Blocks of one m each.
+/// Below horizontal nothing is visible, so light there is free: it is fitted to the mean of the upper hemisphere with the
+/// weight 1e-4. A series over the whole sphere would spend its order on the step at the horizon; this one fits the visible
+/// half. Constants stay exact. Each m is a block of its own.
 pub fn fit_above_ground(order: usize) -> Vec<Vec<f64>> {
     check_order(order);
     let mut fit = vec![vec![0.0; order * order]; order * order];
@@ -55,7 +55,7 @@ pub fn fit_above_ground(order: usize) -> Vec<Vec<f64>> {
         let gram = |a, b| product(0.0, 1.0, a, b) + BELOW * product(-1.0, 0.0, a, b);
         let inverse =
             inverted((0..count).map(|a| (0..count).map(|b| gram(a, b)).collect()).collect());
-        // The mean is that of Y_00's integral, (1/2π) √4π of it, √4π times Y_00: 2 in all.
+        // The mean from Y_00's integral: (1/2π) √4π of it, √4π times Y_00; 2 in all.
         let mean = |a: usize| if m == 0 { 2.0 * BELOW * product(-1.0, 0.0, a, 0) } else { 0.0 };
         for (a, row) in inverse.iter().enumerate() {
             let of_mean: f64 = row.iter().enumerate().map(|(i, v)| v * mean(i)).sum();
@@ -85,13 +85,13 @@ fn inverted(mut a: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     a
 }
 
-/// What a light makes of V for [`plane`]: `[row][k]`, rows N_y, N_z and N_x, n² columns. Exit radiance is
-/// Σ N_row M_row,k V_k, of V above the horizon and the surface's own plane.
+/// The matrix of a light for [`plane`]: `[row][k]`, rows N_y, N_z and N_x, n² columns. Exit radiance is Σ N_row M_row,k
+/// V_k, with V above the horizon and the surface's own plane.
 ///
 /// `light` has order n - 1, `triples` are of order n, 2 or more.
 ///
 /// # Panics
-/// When `triples` are of another order than the light's next.
+/// If the order of `triples` is not that of the light plus 1.
 pub fn plane(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
     assert_eq!(light.len(), (order - 1) * (order - 1), "a light of order {}", order - 1);
     // N·e = √(4π/3) (N_y Y_1-1 + N_z Y_10 + N_x Y_11).
@@ -104,11 +104,11 @@ pub fn plane(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// What a light makes of V for [`lobe`]: `[row][k]`, 9 rows (4 at order 2), n² columns. Exit radiance is
-/// Σ R_row M_row,k V_k with R the [`receiver`]'s, of V above the horizon.
+/// The matrix of a light for the cosine lobe: `[row][k]`, 9 rows (4 at order 2), n² columns. Exit radiance is Σ R_row
+/// M_row,k V_k with R of [`receiver`] and V above the horizon.
 ///
 /// # Panics
-/// When `light` is not of the `triples`' order.
+/// If `light` does not have the order of the `triples`.
 pub fn lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
     assert_eq!(light.len(), order * order, "a light of order {order}");
     let kept = order.min(LOBE_BANDS);
@@ -117,30 +117,30 @@ pub fn lobe(triples: &[Triple], order: usize, light: &[f64]) -> Vec<Vec<f64>> {
     bands(kept)
         .zip(matrix)
         .map(|((l, m), row)| {
-            // Turned to N, band l has coefficients √(4π/(2l+1)) Y_lm(N); Y's own factors go here.
+            // Rotated to N, band l has coefficients √(4π/(2l+1)) Y_lm(N); Y's own factors are included here.
             let scale = cosine[l] * (4.0 * PI / (2 * l + 1) as f64).sqrt() * factor(l, m) / PI;
             row.iter().map(|v| v * scale).collect()
         })
         .collect()
 }
 
-/// What a Phong lobe of unit integral about a direction r makes of light that arrives as a series: Σ r_l Y_lm(r)
-/// U_lm, as turned to r band l of a zonal function has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the
-/// lobe's own bands: [`zonal::phong_bands`]).
+/// Reflection of arriving light, given as a series, by a Phong lobe of unit integral about a direction r: Σ r_l Y_lm(r)
+/// U_lm, as band l of a zonal function rotated to r has coefficients √(4π/(2l+1)) Y_lm(r) (NS09 §7, with the exact bands of
+/// the lobe: [`zonal::phong_bands`]).
 ///
-/// Where U is the product of V and L ([`light_matrix`] times V), V, L and the lobe are all cut off, and the
-/// product needs bands of V that are not there: the sharper the lobe, the more is missed.
+/// If U is the product of V and L ([`light_matrix`] times V), then V, L and the lobe are all truncated, and the product
+/// lacks bands of V: sharper lobes lose more.
 ///
 /// # Panics
-/// When `arriving` is not of an order.
-pub fn gloss(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
+/// If the number of coefficients in `arriving` is not a square.
+pub fn specular(arriving: &[f64], direction: DVec3, exponent: f64) -> f64 {
     let order = arriving.len().isqrt();
     let kept = zonal::phong_bands(order, exponent);
     let all = bands(order).zip(evaluate(order, direction)).zip(arriving);
     all.map(|(((l, _), y), u)| kept[l] * y * u).sum()
 }
 
-/// What stands before the polynomial of [`receiver`] in Y_lm.
+/// The factor of the polynomial of [`receiver`] in Y_lm.
 fn factor(l: usize, m: isize) -> f64 {
     let root = |a: f64| (a / PI).sqrt();
     match (l, m) {
@@ -152,8 +152,8 @@ fn factor(l: usize, m: isize) -> f64 {
     }
 }
 
-/// Polynomials of a unit normal that Y_lm are, but for their factors: 1; y, z, x; xy, yz, 3z² - 1, xz,
-/// x² - y². The rows of [`lobe`] in order; the second to fourth are those of [`plane`].
+/// The polynomials of a unit normal in Y_lm without their factors: 1; y, z, x; xy, yz, 3z² - 1, xz, x² - y². They are the
+/// rows of [`lobe`] in order; the second to fourth are those of [`plane`].
 pub fn receiver([x, y, z]: [f64; 3]) -> [f64; 9] {
     [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
 }

@@ -1,4 +1,4 @@
-//! Legendre polynomials and spherical harmonics in f64, from which tables and constants are filled.
+//! Legendre polynomials and spherical harmonics in f64. Tables and constants are computed from them.
 //!
 //! A function of direction is a product of a function of elevation and one of azimuth, and so is its
 //! basis: Y_lm(θ, φ) = Θ_l|m|(cos θ) Φ_m(φ), each factor orthonormal in its own variable.
@@ -7,13 +7,12 @@
 //!   polynomials (NLP): [`legendre`].
 //! - Φ_0 = 1/√2π, Φ_m = cos mφ/√π, Φ_-m = sin mφ/√π: [`azimuth`].
 //!
-//! What is seen along one azimuth is a [slice](mod@slice) of n(n+1)/2 numbers ∫ f Θ_lm dz, or the n
-//! numbers of the NLP, and spherical harmonics are sums of slices times weights of Φ:
-//! [`azimuth::assemble`].
+//! Visibility along one azimuth is a [slice](mod@slice) of n(n+1)/2 numbers ∫ f Θ_lm dz, or the n numbers of the NLP.
+//! Spherical harmonics are sums of slices times weights of Φ: [`azimuth::assemble`].
 //!
-//! Order n means bands l < n, n² coefficients at [`index`]; n is 1 to [`MAX_ORDER`] everywhere, and
-//! functions panic on any other. A zonal function about the z axis is its n coefficients of Y_l0.
-//! Directions have z up; elevation ω = π/2 - θ, so z = sin ω. No sign of Condon and Shortley.
+//! Order n means bands l < n: n² coefficients at [`index`]. n is 1 to [`MAX_ORDER`]; functions panic on any other. A zonal
+//! function about the z axis is its n coefficients of Y_l0. Directions have z up; elevation ω = π/2 - θ, so z = sin ω. No
+//! Condon-Shortley phase.
 
 pub mod azimuth;
 pub mod glsl;
@@ -29,10 +28,10 @@ pub mod wedge;
 pub mod window;
 pub mod zonal;
 
-/// The highest order offered: bands 0 to 5, 36 coefficients.
+/// The highest supported order: bands 0 to 5, 36 coefficients.
 pub const MAX_ORDER: usize = 6;
 
-/// Place of Y_lm among the coefficients: l(l+1) + m, for -l ≤ m ≤ l.
+/// Index of Y_lm among the coefficients: l(l+1) + m, for -l ≤ m ≤ l.
 pub fn index(l: usize, m: isize) -> usize {
     (l * (l + 1)).wrapping_add_signed(m)
 }

@@ -1,7 +1,7 @@
 //! Products of two series: Γ_ijk = ∫ Y_i Y_j Y_k.
 //!
-//! A product of order n kept to order n is (a b)_k = Σ Γ_ijk a_i b_j, and light L seen through V by a
-//! receiver H is Σ Γ_ijk L_i V_j H_k.
+//! A product truncated to its order n is (a b)_k = Σ Γ_ijk a_i b_j; a receiver H gets Σ Γ_ijk L_i V_j H_k from light L
+//! with visibility V.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use super::{bands, check_order};
 /// One coefficient that is not 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triple {
-    /// Which three, ascending; the value is that of every order of them.
+    /// The three indices, ascending; the value holds for every order of them.
     pub places: [usize; 3],
     /// Γ.
     pub value: f64,
@@ -21,9 +21,9 @@ pub struct Triple {
 
 /// Every Γ_ijk of an order that is not 0, i ≤ j ≤ k, by places.
 ///
-/// In elevation Gauss' rule: where azimuths leave a value, |m| sums to an even number and the integrand
-/// is a polynomial of degree 15 at most. In azimuth 32 even points, exact below 32 turns. What is not 0
-/// is above 1e-3.
+/// Elevation uses Gauss' rule: where the azimuth integral is not 0, |m| sums to an even number and the integrand is a
+/// polynomial of degree 15 at most. Azimuth uses 32 even points, exact below frequency 32. Values that are not 0 exceed
+/// 1e-3.
 pub fn triples(order: usize) -> Vec<Triple> {
     check_order(order);
     let elevations: Vec<(f64, Vec<f64>)> = points(-1.0, 1.0)
@@ -62,7 +62,7 @@ pub fn triples(order: usize) -> Vec<Triple> {
     triples
 }
 
-/// Every order of three places once: 6, 3 or 1 of them.
+/// Every permutation of three indices once: 6, 3 or 1 of them.
 pub fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
     let mut all = vec![[i, j, k], [i, k, j], [j, i, k], [j, k, i], [k, i, j], [k, j, i]];
     all.sort_unstable();
@@ -70,10 +70,10 @@ pub fn orders([i, j, k]: [usize; 3]) -> Vec<[usize; 3]> {
     all
 }
 
-/// The product of two series, kept to their order.
+/// The product of two series, truncated to their order.
 ///
 /// # Panics
-/// When `triples` are of a higher order than `a` or `b`.
+/// If `triples` have a higher order than `a` or `b`.
 pub fn product(triples: &[Triple], a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; a.len()];
     for triple in triples {
@@ -84,15 +84,15 @@ pub fn product(triples: &[Triple], a: &[f64], b: &[f64]) -> Vec<f64> {
     out
 }
 
-/// M_jk = Σ_i Γ_ijk L_i: what a light makes of visibility, `[row][column]`, symmetric.
+/// M_jk = Σ_i Γ_ijk L_i: the matrix of a light, `[row][column]`, symmetric.
 ///
-/// M V is light times visibility; the first rows are its first bands, 9 coefficients all that a diffuse
-/// receiver takes at order 4. M is the same at every place, so a shader needs no Γ: at order 4, 144
-/// products a colour where visibility is known, and 9 a colour at each receiver. The generated product
-/// ([`super::glsl`]) costs some 300 and 16 a colour, all at each receiver.
+/// M V is light times visibility. Its first rows are its first bands: a diffuse receiver needs 9 coefficients at order 4.
+/// M is the same at every texel, so a shader needs no Γ: at order 4, 144 products per colour where visibility is known,
+/// and 9 per colour at each receiver. The generated product ([`super::glsl`]) costs some 300 and 16 per colour, all at each
+/// receiver.
 ///
 /// # Panics
-/// When `triples` are of a higher order than `light`.
+/// If `triples` have a higher order than `light`.
 pub fn light_matrix(triples: &[Triple], light: &[f64]) -> Vec<Vec<f64>> {
     let mut matrix = vec![vec![0.0; light.len()]; light.len()];
     for triple in triples {

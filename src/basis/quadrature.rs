@@ -1,4 +1,4 @@
-//! Gauss' rule on an interval, for integrands without a closed form worth writing.
+//! Gauss' rule on an interval, for integrands without a simple closed form.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -9,11 +9,10 @@ pub const POINTS: usize = 32;
 /// Nodes and weights on [-1, 1], ascending.
 static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| rule(POINTS));
 
-/// Places and weights on `low` to `high` of 32 points: exact for polynomials of degree 63.
+/// Nodes and weights of 32 points on `low` to `high`: exact for polynomials of degree 63.
 ///
-/// For e^{iat} over a length h the rule errs by less than (a h/4)^64 / 64! of h, a bound on its Taylor
-/// terms that it does not reach: below 1e-19 up to a h = 50. Everything of order 6 here turns by 5
-/// azimuthal turns at most, 10 π, or by 12 elevations of half a turn.
+/// For e^{iat} over a length h the error is below (a h/4)^64 / 64! of h, a loose bound on the Taylor terms: below 1e-19 up
+/// to a h = 50. At order 6 the integrands have at most 5 azimuthal periods, 10 π, or 12 half periods in elevation.
 pub fn points(low: f64, high: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     RULE.iter().map(move |(x, w)| (middle + half * x, half * w))
@@ -24,7 +23,7 @@ pub fn integral(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     points(low, high).map(|(x, w)| w * f(x)).sum()
 }
 
-/// Gauss' rule of so many points on [-1, 1], exact for polynomials of degree 2 `count` - 1, ascending: the roots of
+/// Gauss' rule of `count` points on [-1, 1], exact for polynomials of degree 2 `count` - 1, ascending: the roots of
 /// P_n by Newton's method from Tricomi's guess cos(π(i + 3/4)/(n + 1/2)), and the weights 2/((1 - x²) P'(x)²).
 pub(super) fn rule(count: usize) -> Vec<(f64, f64)> {
     let n = count as f64;
@@ -32,7 +31,7 @@ pub(super) fn rule(count: usize) -> Vec<(f64, f64)> {
     for (i, node) in rule.iter_mut().enumerate() {
         let mut x = -(PI * (i as f64 + 0.75) / (n + 0.5)).cos();
         let mut slope = 0.0;
-        // Converges quadratically from 1e-4: four turns reach rounding, the rest do no harm.
+        // Converges quadratically from 1e-4: four iterations reach rounding, the rest change nothing.
         for _ in 0..8 {
             let (value, before) = last_two(count, x);
             slope = n * (before - x * value) / (1.0 - x * x);

@@ -1,6 +1,6 @@
-//! Chance that a seed tells, the same on every machine.
+//! Random numbers determined by a seed, the same on every machine.
 
-/// What [`mixed`] is told of numbers that follow each other lies this far apart: 2⁶⁴ over the golden ratio, odd.
+/// Distance of consecutive states for [`mixed`]: 2⁶⁴ over the golden ratio, odd.
 pub const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Mixes all bits of a state: the finaliser of SplitMix64 (Steele, Lea & Flood 2014).
@@ -23,8 +23,8 @@ mod tests {
     #[test]
     fn words_are_those_of_splitmix64() {
         let words = [1, 2, 3].map(|k| mixed(STEP.wrapping_mul(k)));
-        let told = [0xE220_A839_7B1D_CDAF, 0x6E78_9E6A_A1B9_65F4, 0x06C4_5D18_8009_454F];
-        assert_eq!(words, told);
+        let expected = [0xE220_A839_7B1D_CDAF, 0x6E78_9E6A_A1B9_65F4, 0x06C4_5D18_8009_454F];
+        assert_eq!(words, expected);
         assert_eq!([unit(0), unit(1 << 63), unit(u64::MAX)], [0.0, 0.5, 1.0 - f64::EPSILON / 2.0]);
     }
 }

@@ -1,8 +1,7 @@
-//! What is seen along one azimuth: a function of elevation as its integrals with every Θ_lm.
+//! A function of elevation along one azimuth, as its integrals with every Θ_lm.
 //!
-//! A slice holds ∫ f Θ_lm dz at [`slice_index`], m ≥ 0. NS09 keeps n NLP coefficients instead, which for
-//! odd m leave out part of f, as sinᵐθ is no polynomial in z there; from visibility above a horizon
-//! slices follow in closed form, without that loss.
+//! A slice holds ∫ f Θ_lm dz at [`slice_index`], m ≥ 0. NS09 keeps n NLP coefficients instead, which lose part of f for odd
+//! m, as sinᵐθ is not a polynomial in z there. Slices of visibility above a horizon have a closed form without that loss.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,7 +9,7 @@ use super::check_order;
 use super::legendre::{Polynomial, associated, nlp, product, value};
 use super::quadrature::integral;
 
-/// Place of (l, m), 0 ≤ m ≤ l, in a slice: l(l+1)/2 + m.
+/// Index of (l, m), 0 ≤ m ≤ l, in a slice: l(l+1)/2 + m.
 pub fn slice_index(l: usize, m: usize) -> usize {
     l * (l + 1) / 2 + m
 }
@@ -92,14 +91,14 @@ impl Slices {
         &self.parts
     }
 
-    /// The slice of what is 1 above `elevation_rad`, [-π/2..π/2], and 0 below.
+    /// The slice of a step: 1 above `elevation_rad`, [-π/2..π/2], and 0 below.
     pub fn above(&self, elevation_rad: f64) -> Vec<f64> {
         let mut slice = vec![0.0; self.parts.len()];
         self.above_into(elevation_rad, &mut slice);
         slice
     }
 
-    /// [`above`](Self::above) into the first numbers of `slice`; what is beyond stays.
+    /// Writes [`above`](Self::above) to the first numbers of `slice`; the rest stays.
     pub fn above_into(&self, elevation_rad: f64, slice: &mut [f64]) {
         let (sin, cos) = elevation_rad.sin_cos();
         for (number, part) in slice.iter_mut().zip(&self.parts) {
@@ -107,7 +106,7 @@ impl Slices {
         }
     }
 
-    /// The slice of what is 1 between two elevations; all 0 where `high_rad` is not above `low_rad`.
+    /// The slice of a function that is 1 between two elevations; all 0 unless `high_rad` is above `low_rad`.
     pub fn between(&self, low_rad: f64, high_rad: f64) -> Vec<f64> {
         if high_rad <= low_rad {
             return vec![0.0; self.parts.len()];
@@ -117,7 +116,7 @@ impl Slices {
     }
 }
 
-/// ∫ P̂_c Θ_lm dz: `[slice_index][c]`, which takes NLP coefficients to a slice.
+/// ∫ P̂_c Θ_lm dz: `[slice_index][c]`, the map from NLP coefficients to a slice.
 ///
 /// 0 where l + m + c is odd; the unit matrix at m = 0.
 pub fn from_nlp(order: usize) -> Vec<Vec<f64>> {
@@ -140,7 +139,7 @@ pub fn from_nlp(order: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The slice of a function of elevation from its values at z, smooth in θ.
+/// The slice of a function of elevation, smooth in θ, from its values at z.
 pub fn project(order: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     parts(order)
         .map(|(l, m)| {

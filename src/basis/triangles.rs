@@ -1,13 +1,13 @@
-//! Points of the unit sphere as a net of triangles: their convex hull, whose faces are the spherical Delaunay
-//! triangulation, as no other point lies in a face's circumcircle.
+//! Triangulation of points on the unit sphere: their convex hull, whose faces are the spherical Delaunay triangulation, as
+//! no other point lies in a face's circumcircle.
 //!
-//! Made once, in f64, by adding one point after the other and looking at all faces for each: N² steps.
+//! Computed once, in f64, by inserting one point after the other and testing all faces for each: N² steps.
 
 use glam::DVec3;
 
-/// How far above a face's plane, on a sphere of radius 1, a point must stand to see it: far above the roundings of
-/// its distance, 4 · 2⁻⁵³, far below the height of a cap that any point could lie alone on, so that four points on
-/// one circle become two triangles, whichever.
+/// Height above a face's plane, on a unit sphere, from which a point sees the face: far above the rounding of its distance,
+/// 4 · 2⁻⁵³, and far below the height of the cap of any isolated point. Four points on one circle become two triangles,
+/// either pair.
 const LEAST_ABOVE: f64 = 1e-13;
 
 /// A triangulation of directions.
@@ -17,11 +17,11 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// Of unit vectors; `None` where fewer than four, or where they do not form a hull with all of them on it: two
-    /// alike, all on one circle.
+    /// The triangulation of unit vectors. `None` for fewer than four, or if not all of them lie on their hull: two equal
+    /// points, or all on one circle.
     ///
-    /// Where the points do not surround the centre, as those of a hemisphere, the faces below it are left out: what
-    /// they cover has no point to tell of it.
+    /// If the points do not surround the centre, as on a hemisphere, the faces below it are omitted, as no point represents
+    /// them.
     pub fn of(points: &[DVec3]) -> Option<Self> {
         let first = tetrahedron(points)?;
         let centre = first.iter().map(|i| points[*i]).sum::<DVec3>() / 4.0;
@@ -39,7 +39,7 @@ impl Triangles {
             }
             let edges: Vec<[usize; 2]> = seen.iter().flat_map(|face| edges(*face)).collect();
             faces = kept;
-            // Edges of one seen face alone are the rim of what is seen.
+            // Edges of only one visible face form the rim.
             let rim = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
             faces.extend(rim.map(|[a, b]| [*a, *b, i]));
         }
@@ -51,8 +51,8 @@ impl Triangles {
         Some(Self { corners: outside.map(|face| face.map(|i| i as u32)).collect() })
     }
 
-    /// Those alone whose middles are not below a height, of the points that they were made of: without the lid over a cap
-    /// that has no points.
+    /// Keeps the triangles whose centres are not below a height; `points` are those of construction. Removes the lid over a cap
+    /// without points.
     pub fn above(mut self, points: &[DVec3], lowest_z: f64) -> Self {
         self.corners.retain(|face| {
             let sum: DVec3 = face.iter().map(|i| points[*i as usize]).sum();
@@ -61,21 +61,21 @@ impl Triangles {
         self
     }
 
-    /// Positions in the list of points, counter-clockwise seen from outside.
+    /// Indices of points, counter-clockwise seen from outside.
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners
     }
 
-    /// Solid angle of each triangle over `points`, sr: those that it was made of, or the same moved a little. Negative
-    /// where the net has folded over.
+    /// Solid angle of each triangle over `points`, sr: those of construction, or the same after a small move. Negative where
+    /// triangles have flipped.
     ///
     /// # Panics
-    /// When there are fewer points than it was made of.
+    /// If there are fewer points than at construction.
     pub fn areas_sr(&self, points: &[DVec3]) -> Vec<f64> {
         self.corners.iter().map(|face| area_sr(face.map(|i| points[i as usize]))).collect()
     }
 
-    /// A third of the solid angle of the triangles around each point, sr: what it stands for among the others.
+    /// A third of the solid angle of the triangles around each point, sr: the share of the sphere that it represents.
     ///
     /// # Panics
     /// As [`areas_sr`](Self::areas_sr).
@@ -87,8 +87,8 @@ impl Triangles {
         fans
     }
 
-    /// The corners of the triangle that a direction lies in, and their shares, which sum to 1: those of the flat
-    /// triangle where the direction meets it. `None` where no triangle covers it.
+    /// The corners of the triangle that contains a direction, with barycentric weights in the flat triangle at the direction's
+    /// intersection; they sum to 1. `None` where no triangle covers it.
     ///
     /// # Panics
     /// As [`areas_sr`](Self::areas_sr).
@@ -102,7 +102,7 @@ impl Triangles {
         };
         let inside = |face: &&[u32; 3]| {
             let [a, b, c] = face.map(|i| points[i as usize]);
-            // On an edge, either side will do.
+            // On an edge, either triangle is correct.
             let least = -LEAST_ABOVE;
             direction.dot(a.cross(b)) >= least
                 && direction.dot(b.cross(c)) >= least
@@ -115,7 +115,7 @@ impl Triangles {
     }
 }
 
-/// Four points that span a body: two far apart, one far from their line, one far from their plane.
+/// Four points that span a tetrahedron: two far apart, one far from their line, one far from their plane.
 fn tetrahedron(points: &[DVec3]) -> Option<[usize; 4]> {
     let farthest = |of: &dyn Fn(DVec3) -> f64| {
         (0..points.len()).max_by(|a, b| of(points[*a]).total_cmp(&of(points[*b])))
@@ -130,7 +130,7 @@ fn tetrahedron(points: &[DVec3]) -> Option<[usize; 4]> {
     (spans && normal.length() > LEAST_ABOVE).then_some([0, i, j, k])
 }
 
-/// How far a place stands over a face's plane.
+/// Height of a point above a face's plane.
 fn above(points: &[DVec3], face: [usize; 3], place: DVec3) -> f64 {
     let [a, b, c] = face.map(|i| points[i]);
     let normal = (b - a).cross(c - a);
@@ -147,7 +147,7 @@ fn edges([a, b, c]: [usize; 3]) -> [[usize; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-/// Of a spherical triangle, below 0 clockwise (Van Oosterom & Strackee 1983).
+/// Solid angle of a spherical triangle, sr; negative if clockwise (Van Oosterom & Strackee 1983).
 pub fn area_sr([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }

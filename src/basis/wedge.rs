@@ -1,5 +1,5 @@
-//! Spherical harmonics of one visible wedge, and their table (Snyder & Nowrouzezahrai 2008, as the thesis
-//! tells it in §4.2.1, §4.3.1 and §5.1).
+//! Spherical harmonics of one visible wedge, and their table (Snyder & Nowrouzezahrai 2008, as described in the thesis,
+//! §4.2.1, §4.3.1 and §5.1).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,8 +8,8 @@ use super::bands;
 use super::quadrature::points;
 use super::slice::{Slices, slice_index};
 
-/// Y_lm of what lies in azimuths 0 to `width_rad` above a horizon that rises linearly, as an angle, from
-/// `horizon_rad[0]` to `horizon_rad[1]`; each in [-π/2..π/2], down to the nadir (thesis eq. 4.17, 4.18).
+/// Y_lm of the part of azimuths 0 to `width_rad` above a horizon that rises linearly, as an angle, from `horizon_rad[0]` to
+/// `horizon_rad[1]`; each in [-π/2..π/2] (thesis eq. 4.17, 4.18).
 pub fn wedge(slices: &Slices, horizon_rad: [f64; 2], width_rad: f64) -> Vec<f64> {
     let order = slices.order();
     let [first, last] = horizon_rad;
@@ -25,10 +25,10 @@ pub fn wedge(slices: &Slices, horizon_rad: [f64; 2], width_rad: f64) -> Vec<f64>
     sums
 }
 
-/// [`wedge`] at a square of horizons, looked up between them.
+/// [`wedge`] on a square grid of horizons, with bilinear interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WedgeTable {
-    /// Horizons of either side, evenly from `lowest_rad` to the zenith: 2 or more.
+    /// Horizons along either side, evenly from `lowest_rad` to the zenith: 2 or more.
     pub side: usize,
     /// The lowest horizon: 0 for the sky, -π/2 for local lights.
     pub lowest_rad: f64,
@@ -54,7 +54,7 @@ impl WedgeTable {
         Self { side, lowest_rad, width_rad, texels }
     }
 
-    /// Between the four nearest texels, bilinearly; horizons outside the table are taken to its edge.
+    /// Interpolates the four nearest texels bilinearly; horizons outside the table are clamped to its edge.
     pub fn look_up(&self, horizon_rad: [f64; 2]) -> Vec<f64> {
         let last = self.side - 1;
         let [(row, u), (col, v)] = horizon_rad.map(|horizon| {
@@ -72,7 +72,7 @@ impl WedgeTable {
             .collect()
     }
 
-    /// How far [`look_up`](Self::look_up) may be from [`wedge`] in a coefficient of band `l`.
+    /// Bound on the error of [`look_up`](Self::look_up) against [`wedge`] in a coefficient of band `l`.
     ///
     /// With spacing h, linear interpolation of each of the two horizons errs by h²/8 of the second
     /// derivative. The wedge is ∫ Φ_m G((1-t) ω_a + t ω_b) dφ with G' = -Θ_lm cos ω, so that derivative

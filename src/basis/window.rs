@@ -1,6 +1,6 @@
-//! Windows: one factor a band, against the ringing of truncated series.
+//! SH windows: one factor per band, against the ringing of truncated series.
 //!
-//! A truncated series of light that is nowhere negative may be. Milder windows ring more, others blur more.
+//! A truncated series of non-negative light may be negative. Milder windows ring more, stronger ones blur more.
 
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -25,8 +25,8 @@ fn window(order: usize, width: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..order).map(|l| l as f64 / width).map(|x| if x < 1.0 { f(x) } else { 0.0 }).collect()
 }
 
-/// The window after which no series of light is negative anywhere, whatever the light: factors of the
-/// sharpest lobe of these bands that is nowhere negative.
+/// The window after which no series of non-negative light is negative anywhere: the factors of the sharpest non-negative
+/// lobe of these bands.
 ///
 /// Factors are those of a convolution with a zonal lobe K(z), and light convolved with K ≥ 0 stays above
 /// 0. Of all such polynomials of degree d = n - 1 the one here keeps the most of band 1, the largest mean
@@ -50,14 +50,14 @@ pub fn nonnegative(order: usize) -> Vec<f64> {
     (0..order).map(|l| band(l) / band(0)).collect()
 }
 
-/// The largest root of a polynomial whose roots are real and at most 1: from 1 Newton's method comes
-/// down on it without passing it.
+/// The largest root of a polynomial whose roots are real and at most 1: Newton's method from 1 approaches it without
+/// passing it.
 fn last_root(polynomial: &[f64]) -> f64 {
     let slope = derivative(polynomial);
     (0..64).fold(1.0, |x, _| x - value(polynomial, x) / value(&slope, x))
 }
 
-/// A polynomial over (z - root).
+/// A polynomial divided by (z - root).
 fn without_root(polynomial: &[f64], root: f64) -> Polynomial {
     let mut rest = vec![0.0; polynomial.len() - 1];
     let mut carried = 0.0;
@@ -68,16 +68,15 @@ fn without_root(polynomial: &[f64], root: f64) -> Polynomial {
     rest
 }
 
-/// The mildest window between none and [`nonnegative`] that leaves this series nowhere negative.
+/// The mildest window, between none and [`nonnegative`], that makes this series non-negative.
 ///
-/// Factors 1 - t + t κ_l. At a direction where the series f is negative and its window's f_κ not, t has
-/// to reach -f/(f_κ - f); the largest of these is sought over the sphere, as Sloan (Deringing Spherical
-/// Harmonics, 2017) seeks the mildest of another family. The whole of [`nonnegative`], t = 1, where f_κ
-/// is negative too: that is no series of light. Several colours share the smallest factors, or hues
-/// shift.
+/// Factors 1 - t + t κ_l. At a direction where the series f is negative and its windowed f_κ is not, t must reach
+/// -f/(f_κ - f); the result is the largest such t over the sphere, as Sloan (Deringing Spherical Harmonics, 2017) finds the
+/// mildest of another family. t = 1, the whole of [`nonnegative`], if f_κ is negative too: then f is not a series of light.
+/// Several colours share the smallest factors; otherwise hues shift.
 ///
 /// # Panics
-/// When `coefficients` are not n² for an order n.
+/// If the number of `coefficients` is not a square.
 pub fn mildest(coefficients: &[f64]) -> Vec<f64> {
     let whole = nonnegative(order_of(coefficients));
     let windowed = apply(&whole, coefficients);
@@ -135,7 +134,7 @@ fn climb(f: impl Fn([f64; 2]) -> f64, start: (f64, [f64; 2]), step: f64) -> f64 
 /// Coefficients times the factors of their bands.
 ///
 /// # Panics
-/// When there are fewer factors than bands.
+/// If there are fewer factors than bands.
 pub fn apply(factors: &[f64], coefficients: &[f64]) -> Vec<f64> {
     bands(order_of(coefficients)).zip(coefficients).map(|((l, _), c)| factors[l] * c).collect()
 }

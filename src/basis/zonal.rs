@@ -1,5 +1,4 @@
-//! Zonal functions about z, as their n coefficients of Y_l0 = P̂_l/√2π: lights that are discs, and lobes of
-//! reflection.
+//! Zonal functions about z, as their n coefficients of Y_l0 = P̂_l/√2π: discs of light and reflection lobes.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -35,14 +34,12 @@ fn cap_of(order: usize, sin_squared: f64, cos: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A ball of radiance 1 and this radius, seen from a place this far from its centre, about the direction
-/// to the centre.
+/// A sphere light of radiance 1 and this radius at this distance of its centre, about the direction to the centre.
 ///
-/// Outside a [`cap`] with sin a = radius/distance. Inside, where that has no angle, and on the surface's
-/// inner side, light comes from every direction: the whole sphere. At the surface itself the cap is a
-/// half-space, so the light doubles where the surface is crossed, as it does in truth. Coefficients fall
-/// off as distance⁻²; at any distance that f64 holds they are finite.
-pub fn ball(order: usize, radius: f64, distance: f64) -> Vec<f64> {
+/// Outside, a [`cap`] with sin a = radius/distance. Inside, and on the inner side of its surface, light comes from every
+/// direction: the whole sphere. At the surface the cap is a half-space, so the light doubles across the surface, as it
+/// physically does. Coefficients fall off as distance⁻² and are finite at any f64 distance.
+pub fn sphere(order: usize, radius: f64, distance: f64) -> Vec<f64> {
     if distance < radius {
         return cap_of(order, 0.0, -1.0);
     }
@@ -50,9 +47,9 @@ pub fn ball(order: usize, radius: f64, distance: f64) -> Vec<f64> {
     cap_of(order, sin * sin, ((1.0 - sin) * (1.0 + sin)).sqrt())
 }
 
-/// Half of the azimuths in which a ball is seen, radians: its radius and the distance to its centre in
-/// the plane. `None` where it stands above, below or around the place: all azimuths.
-pub fn ball_half_azimuth(radius: f64, distance_in_plane: f64) -> Option<f64> {
+/// Half the azimuthal extent of a sphere light, radians, from its radius and the horizontal distance of its centre. `None`
+/// if it is above, below or around the point: all azimuths.
+pub fn sphere_half_azimuth(radius: f64, distance_in_plane: f64) -> Option<f64> {
     (distance_in_plane > radius).then(|| (radius / distance_in_plane).asin())
 }
 
@@ -61,19 +58,19 @@ pub fn sky(order: usize) -> Vec<f64> {
     cap(order, FRAC_PI_2)
 }
 
-/// max(cos θ, 0), of integral π: exit radiance of a diffuse surface divides by π once (NS09 §7). π times
-/// the lobe of exponent 1; odd bands from 3 on are 0.
+/// max(cos θ, 0), of integral π; exit radiance of a diffuse surface divides by π once (NS09 §7). It is π times the Phong
+/// lobe of exponent 1; odd bands from 3 on are 0.
 pub fn clamped_cosine(order: usize) -> Vec<f64> {
     phong(order, 1.0).iter().map(|c| PI * c).collect()
 }
 
-/// Phong's lobe (S+1)/2π max(cos θ, 0)^S of unit integral and exponent S ≥ 0, exactly: [`phong_bands`] of √((2l+1)/4π).
+/// The Phong lobe (S+1)/2π max(cos θ, 0)^S of unit integral and exponent S ≥ 0, exact: [`phong_bands`] of √((2l+1)/4π).
 pub fn phong(order: usize, exponent: f64) -> Vec<f64> {
     let kept = phong_bands(order, exponent);
     kept.iter().enumerate().map(|(l, r)| r * whole_band(l)).collect()
 }
 
-/// What Phong's lobe of unit integral keeps of each band that it is convolved with.
+/// Factor of each band in a convolution with the Phong lobe of unit integral.
 ///
 /// r_l = (S+1) ∫ from 0 to 1 of zˢ P_l dz: r_0 = 1, r_1 = (S+1)/(S+2) and r_l = r_{l-2} (S+2-l)/(S+l+1).
 pub fn phong_bands(order: usize, exponent: f64) -> Vec<f64> {
@@ -89,8 +86,8 @@ pub fn phong_bands(order: usize, exponent: f64) -> Vec<f64> {
 
 /// The paper's Phong lobe: band l keeps e^(-l²/2S) (NS09 §7, Ramamoorthi & Hanrahan 2002), S > 0.
 ///
-/// Times √((2l+1)/4π), which the paper leaves out, for a lobe of unit integral. Tends to [`phong`] for
-/// large S, which keeps e^(-l(l+1)/2S) there: off by l/(2S) of band l.
+/// Times √((2l+1)/4π), which the paper omits, for a lobe of unit integral. Approaches [`phong`] for large S, which keeps
+/// e^(-l(l+1)/2S): a relative error of l/(2S) in band l.
 pub fn phong_gaussian(order: usize, exponent: f64) -> Vec<f64> {
     check_order(order);
     (0..order).map(|l| (-((l * l) as f64) / (2.0 * exponent)).exp() * whole_band(l)).collect()

@@ -1,13 +1,13 @@
 use crate::graph::shaders::Specialised;
 use crate::graph::{Format, Kind, Owner, Pass, Resource, ResourceId};
 
-/// Collects a plan.
+/// Collects the resources and passes of a plan.
 pub(crate) struct Builder {
     pub(crate) resources: Vec<Resource>,
     pub(crate) passes: Vec<Pass>,
     /// Contents of the buffer "constants".
     pub(crate) constants: Vec<f32>,
-    /// Of an edit; none until [`edits`](Self::edits).
+    /// Passes of an edit; `None` before [`begin_edits`](Self::begin_edits).
     pub(crate) edit_passes: Option<Vec<Pass>>,
 }
 
@@ -16,7 +16,7 @@ impl Builder {
         Self { resources: Vec::new(), passes: Vec::new(), constants: Vec::new(), edit_passes: None }
     }
 
-    /// From here on, passes are those of an edit.
+    /// Passes added from here on are those of an edit.
     pub(crate) fn begin_edits(&mut self) {
         self.edit_passes = Some(Vec::new());
     }
@@ -46,7 +46,7 @@ impl Builder {
         ResourceId(self.resources.len() - 1)
     }
 
-    /// Adds a dispatch of a shader with its constants; `bound` names its bindings, all others are unused.
+    /// Adds a dispatch of a shader with its constants. `bound` names the bound resources; other bindings are unused.
     #[expect(clippy::too_many_arguments, reason = "a pass is all of this")]
     pub(crate) fn pass<P: bytemuck::Pod>(
         &mut self,
@@ -98,7 +98,7 @@ impl Builder {
         passes.last_mut().expect("pushed above")
     }
 
-    /// Adds texels to the buffer that the host fills with constants; where they begin.
+    /// Appends texels to the buffer "constants", which the host fills; returns the buffer and the first texel.
     pub(crate) fn constants(&mut self, more: &[f32]) -> (ResourceId, usize) {
         let first = self.constants.len() / 4;
         self.constants.extend(more);

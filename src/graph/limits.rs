@@ -1,30 +1,30 @@
 use crate::{Error, Result};
 
-/// What a plan may count on: a device's limits and the memory that it may take.
+/// Limits of a device, and the memory budget of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest side of a 2D image.
     pub image_side: u32,
-    /// Most layers of an image.
+    /// Largest number of image layers.
     pub image_layers: u32,
     /// Largest range of a storage buffer, bytes.
     pub buffer_bytes: u64,
     /// Largest single allocation, bytes.
     pub allocation_bytes: u64,
-    /// Most workgroups of a dispatch along any axis.
+    /// Largest number of workgroups of a dispatch along any axis.
     pub groups: u32,
     /// Largest texel buffer, texels.
     pub texels: u32,
     /// Shared memory of a workgroup, bytes.
     pub shared_bytes: u32,
-    /// Whether the device is a processor: narrow groups, hulls in private memory.
+    /// Whether the device is a CPU: narrow workgroups, hulls in private memory.
     pub is_cpu: bool,
-    /// Memory that all images and buffers of a plan may take together, bytes.
+    /// Memory budget of all images and buffers of a plan, bytes.
     pub memory_budget: u64,
 }
 
 impl Limits {
-    /// Lavapipe as Debian 12 has it (Mesa 22.3.6), with 2 GiB to spend: for plans without a device.
+    /// Lavapipe in Debian 12 (Mesa 22.3.6) with a budget of 2 GiB: for plans without a device.
     pub fn lavapipe() -> Self {
         Self {
             image_side: 16384,
@@ -39,8 +39,7 @@ impl Limits {
         }
     }
 
-    /// No device's: beyond what any field asks for. What cannot be planned for these, in either
-    /// kind of device and within the budget, can be planned for none.
+    /// Beyond any real device. A scene that fails here with both kinds of device, within the budget, fails on every device.
     pub fn boundless(is_cpu: bool, memory_budget: u64) -> Self {
         Self {
             image_side: 1 << 20,
@@ -55,10 +54,10 @@ impl Limits {
         }
     }
 
-    /// Columns and rows of a field that the device has images for.
+    /// Columns and rows of a field that fits the device's images.
     ///
     /// # Errors
-    /// A field that no image can hold, or whose heights alone are beyond the budget.
+    /// A field larger than an image, or whose heights alone exceed the budget.
     pub fn check_size(&self, rows: usize, cols: usize) -> Result<[u32; 2]> {
         let longest = cols.max(rows);
         let beyond = |needs: String, limit: String| {
@@ -70,14 +69,14 @@ impl Limits {
         }
         let bytes = (4 * rows as u64).saturating_mul(cols as u64);
         if bytes > self.memory_budget {
-            let limit = format!("{} of --memory-budget", bytes_text(self.memory_budget));
+            let limit = format!("{} of `memory_budget`", bytes_text(self.memory_budget));
             return beyond(format!("{} for its heights", bytes_text(bytes)), limit);
         }
         Ok([cols as u32, rows as u32])
     }
 }
 
-/// Bytes as people read them.
+/// Bytes with a readable unit.
 pub(crate) fn bytes_text(bytes: u64) -> String {
     match bytes {
         0..10_240 => format!("{bytes} bytes"),

@@ -1,4 +1,4 @@
-//! What plans are made of: shaders, resources, passes, limits.
+//! Building blocks of plans: shaders, resources, passes, limits.
 
 mod builder;
 mod limits;

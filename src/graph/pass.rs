@@ -10,33 +10,32 @@ pub struct ResourceId(pub usize);
 /// One dispatch.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// What runs; its name is the pass's.
+    /// The shader; its name is also the pass's.
     pub shader: &'static Shader,
-    /// Which of several: "sky 0..16", "sun 1"; empty where there is one.
+    /// The part, where several passes share a shader: "sky 0..16", "sun 1"; else empty.
     pub part: String,
-    /// Why it is in the plan.
+    /// Why the plan contains it.
     pub why: String,
     /// Workgroups.
     pub groups: [u32; 3],
-    /// Words of the shader's specialisation constants, in their order.
+    /// One word for each specialisation constant of the shader, in order.
     pub constants: Vec<u32>,
     /// Push constants.
     pub push: Vec<u8>,
-    /// What each of the shader's bindings is, in their order; none where its constants leave the
-    /// binding unused.
+    /// The resource of each binding of the shader, in order; `None` where its constants leave the binding unused.
     pub bindings: Vec<Option<ResourceId>>,
-    /// Which of [`Plan::azimuths`](crate::plan::Plan::azimuths) it reads; none where it does not bind them.
+    /// The range of [`Plan::azimuths`](crate::plan::Plan::azimuths) that it reads; empty where it binds none.
     pub azimuths: Range<u32>,
-    /// Bytes that it must at least read and write.
+    /// Minimal bytes read and written.
     pub bytes: u64,
-    /// Samples (or texels) it works on, for rates.
+    /// Texels processed, for rates.
     pub samples: u64,
-    /// What of it an edit asks for, where it is told the edited rectangle.
+    /// The part that an edit needs, where the push constants hold the edited rectangle.
     pub reach: Option<Reach>,
-    /// The buffer, bound too, and the byte in it that has its workgroups when it runs; `groups` are
-    /// then the most.
+    /// For an indirect dispatch, the buffer (also bound) and the byte offset of its workgroups; `groups` is then an upper
+    /// bound.
     pub indirect: Option<(ResourceId, u64)>,
-    /// Whether a barrier between compute and compute stands before it.
+    /// Whether a compute-to-compute barrier precedes it.
     pub barrier_before: bool,
 }
 
@@ -55,13 +54,13 @@ impl Pass {
         }
     }
 
-    /// The word of a specialisation constant by its name in lower case; none where the shader has no such constant.
+    /// The word of a specialisation constant by its name in lower case; `None` if the shader has no such constant.
     pub fn constant(&self, name: &str) -> Option<u32> {
         let place = self.shader.constants.iter().position(|c| c.name == name)?;
         self.constants.get(place).copied()
     }
 
-    /// Resources that its shader may write.
+    /// Resources that its shader writes.
     pub fn writes(&self) -> impl Iterator<Item = ResourceId> + '_ {
         self.select(true)
     }
@@ -77,8 +76,8 @@ impl Pass {
     }
 }
 
-/// Sets [`Pass::barrier_before`] where a pass touches what an earlier one wrote, or writes what an
-/// earlier one touched, with no barrier between them yet.
+/// Sets [`Pass::barrier_before`] where a pass reads or writes what an earlier one wrote, or writes what an earlier one
+/// read, without a barrier in between.
 pub(crate) fn place_barriers(passes: &mut [Pass]) {
     let mut read: Vec<ResourceId> = Vec::new();
     let mut written: Vec<ResourceId> = Vec::new();
@@ -97,9 +96,9 @@ pub(crate) fn place_barriers(passes: &mut [Pass]) {
     }
 }
 
-/// Every pair of passes (earlier, later) with a hazard and no barrier between: none in a right plan.
+/// Every pair of passes (earlier, later) with a hazard and no barrier in between: empty for a correct plan.
 ///
-/// Written apart from the placement of barriers, as a check of it: each pair is looked at alone.
+/// Written independently of the placement of barriers, as its check: it tests each pair alone.
 pub fn missing_barriers(passes: &[Pass]) -> Vec<(usize, usize)> {
     let mut missing = Vec::new();
     for later in 0..passes.len() {

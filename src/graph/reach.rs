@@ -1,25 +1,25 @@
-//! What part of a pass an edited rectangle asks for.
+//! The part of a pass that an edited rectangle needs.
 
 use super::Pass;
 
-/// One lane cell in the units of `Azimuth::shear`.
+/// One cell across the march, in the units of `Azimuth::shear`.
 pub const CELL: i32 = 1 << 15;
 
-/// A field seen along one of its axes: lanes side by side, steps along the march.
+/// A field along one of its axes: lanes side by side, steps along the march.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
-    /// Whether marches run along rows' direction (from row to row); else from column to column.
+    /// Whether marches go from row to row; else from column to column.
     pub marches_rows: bool,
-    /// Samples across the march.
+    /// Texels across the march.
     pub lanes: u32,
-    /// Samples along it.
+    /// Texels along the march.
     pub steps: u32,
-    /// Steps marched before the first that is kept: whole periods of a periodic field.
+    /// Steps before the first stored one: whole periods of a periodic field.
     pub warm_up: u32,
 }
 
 impl Axis {
-    /// Samples of the field.
+    /// Texels of the field.
     pub fn samples(self) -> u64 {
         u64::from(self.lanes) * u64::from(self.steps)
     }
@@ -29,13 +29,13 @@ impl Axis {
         if self.marches_rows { [self.lanes, self.steps] } else { [self.steps, self.lanes] }
     }
 
-    /// For labels.
+    /// Name in labels.
     pub fn name(self) -> &'static str {
         if self.marches_rows { "rows" } else { "cols" }
     }
 }
 
-/// A rectangle of a field's samples.
+/// A rectangle of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
     /// The first column.
@@ -49,12 +49,12 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// All samples of a field of `cols` × `rows`.
+    /// The whole field of `cols` × `rows`.
     pub(crate) fn whole([cols, rows]: [u32; 2]) -> Self {
         Self { col: 0, row: 0, cols, rows }
     }
 
-    /// As shaders are told it: first column and row, last column and row.
+    /// The words that shaders read: first column and row, last column and row.
     pub(crate) fn words(self) -> [i32; 4] {
         let Self { col, row, cols, rows } = self;
         [col, row, col + cols - 1, row + rows - 1].map(|v| v as i32)
@@ -70,16 +70,15 @@ impl Rectangle {
     }
 }
 
-/// What part of a pass an edited rectangle asks for. The pass is told the rectangle in the last four
-/// words of its push constants: its first column and row, its last column and row.
+/// The part of a pass that an edited rectangle needs. The last four words of its push constants hold the rectangle:
+/// first column and row, last column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// All its workgroups.
     Whole,
-    /// Those with samples of the rectangle, 8 × 8 times four lanes each.
+    /// Workgroups with texels of the rectangle, 8 × 8 times four lanes each.
     Quads(Axis),
-    /// Those with lines, 32 each and 2^line_shift / 32768 cells apart, that some sample which sees the
-    /// rectangle may look along.
+    /// Workgroups with lines, 32 each and 2^line_shift / 32768 cells apart, that a texel which sees the rectangle may use.
     Lines(Axis, u32),
 }
 
@@ -89,7 +88,7 @@ const QUADS_SIDE: u32 = 8;
 const GROUP_LINES: u64 = 32;
 
 impl Pass {
-    /// Workgroups and push constants of the pass where only `rectangle` has been edited.
+    /// Workgroups and push constants after an edit of `rectangle` only.
     pub(crate) fn for_edit(&self, rectangle: Rectangle) -> ([u32; 3], Vec<u8>) {
         let mut push = self.push.clone();
         let Some(reach) = self.reach else { return (self.groups, push) };
@@ -105,8 +104,8 @@ impl Pass {
             }
             Reach::Lines(axis, line_shift) => {
                 let [_, lanes, marches] = rectangle.along(axis).map(u64::from);
-                // A line's distance and a lane to each side, and what the steepest shear brings in;
-                // the first group begins at a multiple of its lines.
+                // Adds the line spacing, a lane on each side and the steepest shear; the first group begins at a multiple of its
+                // lines.
                 let cells = (lanes + 1 + marches - 1) * CELL as u64;
                 let lines = (cells >> line_shift) + 3;
                 [x.min(lines.div_ceil(GROUP_LINES) as u32 + 1), y, z]

@@ -15,18 +15,18 @@ pub enum Format {
     Rg32Uint,
     /// Four u32: four lines' f32 bits.
     Rgba32Uint,
-    /// One f16: heights in a caller's buffer.
+    /// One f16: heights in a buffer of the caller.
     R16Float,
-    /// One u16, 0 to 1: heights in a caller's buffer.
+    /// One u16, 0 to 1: heights in a buffer of the caller.
     R16Unorm,
-    /// Four u8, 0 to 1: colours in a caller's buffer.
+    /// Four u8, 0 to 1: colours in a buffer of the caller.
     Rgba8Unorm,
-    /// The same, sRGB-encoded but for the last.
+    /// As `Rgba8Unorm`, with the first three channels sRGB-encoded.
     Rgba8Srgb,
 }
 
 impl Format {
-    /// Bytes a texel.
+    /// Bytes per texel.
     pub fn bytes(self) -> u64 {
         match self {
             Format::R16Float | Format::R16Unorm => 2,
@@ -42,7 +42,7 @@ impl Format {
         matches!(self, Format::R32Uint | Format::Rg32Uint | Format::Rgba32Uint)
     }
 
-    /// SPIR-V's name; of sRGB, which it has none for, Vulkan's in its manner.
+    /// Name in SPIR-V; sRGB, which SPIR-V lacks, is named in the same style.
     pub fn spirv(self) -> &'static str {
         match self {
             Format::R32Float => "R32f",
@@ -59,12 +59,12 @@ impl Format {
     }
 }
 
-/// What a resource is.
+/// Kind of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A 2D image; `layered` where shaders see an array, even of one layer.
+    /// A 2D image.
     Image {
-        /// Texels.
+        /// Texel format.
         format: Format,
         /// Columns.
         width: u32,
@@ -72,10 +72,10 @@ pub enum Kind {
         height: u32,
         /// Layers.
         layers: u32,
-        /// Seen as an array.
+        /// Whether shaders bind it as an array, even with one layer.
         layered: bool,
     },
-    /// A buffer of words; with four f32 a texel where `texels`.
+    /// A buffer of words, or of texels of four f32.
     Buffer {
         /// Size.
         bytes: u64,
@@ -84,33 +84,33 @@ pub enum Kind {
     },
 }
 
-/// Whose a resource is.
+/// Owner of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// Made and kept by the renderer.
+    /// Created by the renderer.
     Internal,
-    /// Handed in with each frame, left as it came.
+    /// Handed in by the caller with each frame; not written.
     Input,
-    /// Handed in with each frame as a buffer of texels, left as it came: copied to an image that the renderer
-    /// makes ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)).
+    /// Handed in by the caller with each frame as a buffer of texels; not written. The renderer copies it to an image of its
+    /// own ([`Plan::take_buffer`](crate::plan::Plan::take_buffer)).
     InputBuffer,
-    /// Handed in with each frame, written.
+    /// Handed in by the caller with each frame; written.
     Output,
 }
 
 /// An image or a buffer of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Resource {
-    /// By content: "lane_heights_cols".
+    /// Named by content: "lane_heights_cols".
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
-    /// Whose it is.
+    /// Its owner.
     pub owner: Owner,
 }
 
 impl Resource {
-    /// An image's.
+    /// The format of an image.
     pub fn format(&self) -> Option<Format> {
         match self.kind {
             Kind::Image { format, .. } => Some(format),
@@ -118,14 +118,14 @@ impl Resource {
         }
     }
 
-    /// Whether a caller's input may hold its texels in fewer bits than the plan says: [`Format::vk_read`].
+    /// Whether the caller's input may have a narrower format than the plan states: [`Format::vk_read`].
     pub(crate) fn may_be_narrow(&self) -> bool {
         let is_input = matches!(self.owner, Owner::Input | Owner::InputBuffer);
         let name = self.name.as_str();
         is_input && matches!(name, "heights" | "environment" | "albedo" | "light_colours")
     }
 
-    /// Bytes it takes on the device.
+    /// Bytes on the device.
     pub fn bytes(&self) -> u64 {
         match self.kind {
             Kind::Image { format, width, height, layers, .. } => {
@@ -135,7 +135,7 @@ impl Resource {
         }
     }
 
-    /// Whether a shader's binding of this kind can be this resource.
+    /// Whether a binding of this kind can take this resource.
     pub fn fits(&self, binding: BindingKind) -> bool {
         match (self.kind, binding) {
             (Kind::Buffer { texels, .. }, BindingKind::StorageBuffer) => !texels,

@@ -1,22 +1,22 @@
-//! The compiled shaders, what each binds and what it is specialised by, as `build.rs` found by reflection.
+//! The compiled shaders with their bindings and specialisation constants, reflected by `build.rs`.
 
-/// How a shader uses a binding.
+/// Kind of a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     /// A buffer of structs or words.
     StorageBuffer,
-    /// A buffer of texels, fetched from.
+    /// A uniform texel buffer.
     TexelBuffer,
-    /// An image that is fetched from.
+    /// An image read by texel fetch.
     SampledImage {
         /// Unsigned integers, else floats.
         uint: bool,
         /// Has layers.
         layered: bool,
     },
-    /// An image that is stored to, perhaps loaded from.
+    /// A storage image, written and perhaps read.
     StorageImage {
-        /// SPIR-V's name of the format; `Unknown` takes any.
+        /// Name of the format in SPIR-V; `Unknown` takes any.
         format: &'static str,
         /// Unsigned integers, else floats.
         uint: bool,
@@ -32,7 +32,7 @@ pub struct Binding {
     pub binding: u32,
     /// The variable's name.
     pub name: &'static str,
-    /// What it is.
+    /// Its kind.
     pub kind: BindingKind,
     /// Whether the shader may write it.
     pub written: bool,
@@ -50,7 +50,7 @@ pub struct Constant {
 /// One compiled shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
-    /// Its file's name without the extension: also the pass's.
+    /// File name without extension; also the name of the pass.
     pub name: &'static str,
     /// Size of its push constants.
     pub push_bytes: u32,
@@ -62,8 +62,8 @@ pub struct Shader {
     pub words: &'static [u32],
 }
 
-/// A shader and a word for each of its specialisation constants, in their order. Made only from the struct of that
-/// shader, so that no constant is addressed by number.
+/// A shader and a word for each of its specialisation constants, in order. Made only from the struct of that shader, so no
+/// constant is addressed by number.
 #[derive(Clone, Debug)]
 pub(crate) struct Specialised {
     pub shader: &'static Shader,
@@ -74,7 +74,7 @@ pub(crate) struct Specialised {
 static WORDS: [u32; WORD_COUNT] =
     words_of(include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")));
 
-#[allow(long_running_const_eval, reason = "a turn for each word of SPIR-V")]
+#[allow(long_running_const_eval, reason = "one iteration for each word of SPIR-V")]
 const fn words_of(bytes: &[u8]) -> [u32; WORD_COUNT] {
     let (all, _) = bytes.as_chunks();
     let mut words = [0; WORD_COUNT];

@@ -5,36 +5,36 @@ use crate::passes::spheres::Spheres;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::circle;
 use crate::scene::{
-    Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Quality, Scene, Sun,
+    Albedo, Basis, Border, Environment, KeyLight, Lights, Quality, Scene, Specular, Sun,
 };
 use crate::{Error, Result};
 
-/// The lights that give any light.
+/// The lights that are not dark.
 pub(super) struct ActiveLights<'a> {
     pub sky: Option<[f32; 3]>,
     pub environment: Option<&'a Environment>,
     /// With their positions in the scene.
     pub suns: Vec<(usize, &'a Sun)>,
-    /// The same.
+    /// With their positions in the scene.
     pub keys: Vec<(usize, &'a KeyLight)>,
-    pub spheres: Spheres<'a>,
-    /// The surface's lobe, where it reflects anything.
-    pub gloss: Option<&'a Lobe>,
-    /// Whether what a uniform sky would give is wanted as an image.
+    pub sphere_lights: Spheres<'a>,
+    /// The surface's Phong specular, where its scale is above 0.
+    pub specular: Option<&'a Specular>,
+    /// Whether the sky-view factor is requested as an image.
     has_sky_view: bool,
-    /// Whether every colour is grey: one channel does.
+    /// Whether every colour is grey, so one channel is enough.
     pub is_grey: bool,
-    /// Where colours are the caller's, on the device, so that those of the scene count for nothing: the texels of the
-    /// first sun and of the first key light. The sky's is the first of all.
+    /// With colours on the device: the texels of the first sun and of the first key light. The sky's is texel 0. The scene's
+    /// colours then do not count.
     texels: Option<[usize; 2]>,
 }
 
 /// A light's colour.
 #[derive(Clone, Copy)]
 pub(super) enum Colour {
-    /// The scene's.
+    /// From the scene.
     Known([f32; 3]),
-    /// A texel of the caller's, by its column.
+    /// From a texel of the caller's, by its column.
     Texel(u32),
 }
 
@@ -59,10 +59,10 @@ impl<'a> ActiveLights<'a> {
             && environment.is_none()
             && lights.suns.is_empty()
             && lights.keys.is_empty()
-            && lights.spheres.is_empty()
+            && lights.sphere_lights.is_empty()
             && !wanted.sky_view
         {
-            let expected = "at least one of sky, environment, sun, key light and local light";
+            let expected = "at least one of sky, environment, sun, key light and sphere light";
             return Err(Error::setting("lights", "none", expected));
         }
         if lights.sky.is_some() && sky.is_none() {
@@ -75,15 +75,15 @@ impl<'a> ActiveLights<'a> {
         for (i, _) in suns.iter().filter(|(_, s)| s.is_point() && s.diameter_rad > 0.0) {
             notes.push(format!("sun {} is lit as a point: it is less than 0.01° wide", i + 1));
         }
-        let (balls, dark): (Vec<_>, Vec<_>) =
-            lights.spheres.iter().enumerate().partition(|(_, s)| lit(&s.radiance));
+        let (lit_spheres, dark): (Vec<_>, Vec<_>) =
+            lights.sphere_lights.iter().enumerate().partition(|(_, s)| lit(&s.radiance));
         for (i, _) in dark {
             notes.push(format!("light {} dropped: its radiance is 0", i + 1));
         }
-        let spheres = Spheres::of(field, balls, quality.light_cutoff, notes)?;
-        let gloss = surface.phong.as_ref().filter(|lobe| lobe.largest().scale > 0.0);
-        if surface.phong.is_some() && gloss.is_none() {
-            notes.push("lobe dropped: its scale is 0".into());
+        let sphere_lights = Spheres::of(field, lit_spheres, quality.light_cutoff, notes)?;
+        let specular = surface.specular.as_ref().filter(|specular| specular.largest().scale > 0.0);
+        if surface.specular.is_some() && specular.is_none() {
+            notes.push("specular dropped: its scale is 0".into());
         }
         let grey = |c: &[f32; 3]| c[0] == c[1] && c[1] == c[2];
         let is_grey = environment.is_none()
@@ -91,7 +91,7 @@ impl<'a> ActiveLights<'a> {
             && sky.is_none_or(|c| grey(&c))
             && suns.iter().all(|(_, s)| grey(&s.irradiance))
             && keys.iter().all(|(_, k)| grey(&k.radiance))
-            && spheres.shining.iter().all(|(_, s)| grey(&s.radiance))
+            && sphere_lights.shining.iter().all(|(_, s)| grey(&s.radiance))
             && matches!(&surface.albedo, Albedo::Constant(c) if grey(c));
         let has_sky_view = wanted.sky_view;
         if has_texels {
@@ -99,42 +99,52 @@ impl<'a> ActiveLights<'a> {
         }
         let first_sun = usize::from(lights.sky.is_some());
         let texels = has_texels.then_some([first_sun, first_sun + lights.suns.len()]);
-        Ok(Self { sky, environment, suns, keys, spheres, gloss, has_sky_view, is_grey, texels })
+        Ok(Self {
+            sky,
+            environment,
+            suns,
+            keys,
+            sphere_lights,
+            specular,
+            has_sky_view,
+            is_grey,
+            texels,
+        })
     }
 
-    /// Whether colours may be the caller's: each is the factor of a sum of one light's. Those of balls are summed up with
-    /// their sums, those of lobes with series.
+    /// Checks that colours can be on the device: each must be the factor of one light's sum. Sums of sphere lights and
+    /// specular series contain their colours.
     fn check_texels(Scene { surface, lights, .. }: &Scene) -> Result<()> {
-        let found = if !lights.spheres.is_empty() {
-            "a ball of light"
-        } else if surface.phong.is_some() {
-            "a lobe"
+        let found = if !lights.sphere_lights.is_empty() {
+            "a sphere light"
+        } else if surface.specular.is_some() {
+            "specular"
         } else if Self::texels_of(lights) == 0 {
             "nothing that has one"
         } else {
             return Ok(());
         };
-        let expected = "a sky, suns and key lights, on ground without a lobe";
+        let expected = "a sky, suns and key lights, on ground without specular";
         Err(Error::setting("picture: colours_on_device", found, expected))
     }
 
-    /// Colours of the caller's: the sky's, where there is one, then those of all suns, then those of all key lights.
+    /// Number of the caller's colours: the sky's, if any, then those of all suns, then those of all key lights.
     pub fn texels_of(lights: &Lights) -> usize {
         usize::from(lights.sky.is_some()) + lights.suns.len() + lights.keys.len()
     }
 
-    /// The sky's.
+    /// Colour of the sky.
     pub fn sky_colour(&self) -> Option<Colour> {
         self.sky.map(|sky| self.texels.map_or(Colour::Known(sky), |_| Colour::Texel(0)))
     }
 
-    /// Whether nothing shines: the picture is black.
+    /// Whether no light is active, so the picture is black.
     pub fn is_dark(&self) -> bool {
         let has_sky = self.sky.is_some() || self.environment.is_some();
-        !has_sky && self.aimed().next().is_none() && self.spheres.shining.is_empty()
+        !has_sky && self.aimed().next().is_none() && self.sphere_lights.shining.is_empty()
     }
 
-    /// The key lights that any sample may see.
+    /// The key lights that can be visible.
     fn keys(
         scene: &'a Scene,
         has_texels: bool,
@@ -156,12 +166,12 @@ impl<'a> ActiveLights<'a> {
         keys
     }
 
-    /// Whether some light is from all around, and a lobe reflects it.
-    pub fn has_gloss_around(&self) -> bool {
-        self.gloss.is_some() && (self.sky.is_some() || self.environment.is_some())
+    /// Whether specular reflects light from all directions.
+    pub fn has_specular_around(&self) -> bool {
+        self.specular.is_some() && (self.sky.is_some() || self.environment.is_some())
     }
 
-    /// Suns, then key lights: each is lit through azimuths of its own.
+    /// Suns, then key lights: each uses azimuths of its own.
     pub fn aimed(&self) -> impl Iterator<Item = Aimed> {
         let colour = |known, i: usize, of: usize| match self.texels {
             Some(firsts) => Colour::Texel((firsts[of] + i) as u32),
@@ -180,8 +190,8 @@ impl<'a> ActiveLights<'a> {
         suns.chain(keys)
     }
 
-    /// Azimuths to sweep: the circle's where a sky or an environment needs it, then those of each light
-    /// that is [aimed](Self::aimed).
+    /// Azimuths to sweep: the circle's if a sky or an environment needs it, then those of each light that is
+    /// [aimed](Self::aimed).
     pub fn lists(
         &self,
         need_circle: bool,
@@ -216,8 +226,8 @@ impl<'a> ActiveLights<'a> {
         Ok(lists)
     }
 
-    /// Radiance of the sky, mean over channels; where the sky's view is wanted beside an environment, of a sky
-    /// as bright as that.
+    /// Radiance of the sky, mean over channels. If the sky-view factor is requested beside an environment, that of a sky as
+    /// bright as the environment.
     fn sky_beside(&self, environment: &Environment) -> f64 {
         let mean = |c: &[f32; 3]| c.iter().map(|v| f64::from(*v)).sum::<f64>() / 3.0;
         match self.sky {
@@ -231,11 +241,11 @@ impl<'a> ActiveLights<'a> {
     }
 }
 
-/// A light that covers a part of the sky.
+/// A light that covers part of the sky.
 pub(super) struct Aimed {
-    /// As in labels and layers: "sun1" is the scene's first.
+    /// Name in labels and layers: "sun1" is the scene's first sun.
     pub name: String,
-    /// What part.
+    /// Its shape.
     pub shape: Shape,
     /// Irradiance of a sun, radiance of a key light.
     pub colour: Colour,

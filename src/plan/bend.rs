@@ -1,4 +1,4 @@
-//! Visible points on a curved base, between those on the flat one and what is made of them.
+//! Visible points on a curved base surface, computed from those on the flat one.
 
 use super::visible_points::texels;
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
@@ -7,24 +7,24 @@ use crate::passes::{bent_directions, fan_weights};
 use crate::scene::{Border, Curvature, Directions, Fans, HeightField};
 use crate::{Error, Result};
 
-/// Looks that one dispatch bends, about: tenths of a second on a slow device.
-const BAND_LOOKS: u64 = 1 << 23;
+/// Approximate number of rays that one dispatch bends: tenths of a second on a slow device.
+const BAND_RAYS: u64 = 1 << 23;
 
-/// What passes on curved bases share.
+/// Resources shared by passes on a curved base.
 pub(super) struct Bends {
     /// Directions, then fans.
     buffer: ResourceId,
     texels: [usize; 2],
     count: u32,
-    /// Directions of each sample in its own frame, and what they meet.
+    /// Directions of each texel in its own frame, with their visible points.
     pub bent: ResourceId,
 }
 
 impl Bends {
-    /// The directions' net as the device reads it, and the image that they come to stand in.
+    /// Uploads the triangulation of the directions and creates the image of bent directions.
     ///
     /// # Errors
-    /// Directions that span no net; more of them than an image has layers.
+    /// Directions without a triangulation; more of them than an image has layers.
     pub fn make(
         builder: &mut Builder,
         size: [u32; 2],
@@ -49,7 +49,7 @@ impl Bends {
         Ok(Self { buffer, texels: [first, first_fan], count, bent })
     }
 
-    /// The passes that fill [`bent`](Self::bent); `points` and `ground` are the flat field's.
+    /// Records the passes that fill [`bent`](Self::bent); `points` and `ground` are those of the flat field.
     pub fn record(
         &self,
         builder: &mut Builder,
@@ -72,7 +72,7 @@ impl Bends {
         }
     }
 
-    /// The passes that weigh them, and their image.
+    /// Records the passes that weigh the directions; returns their image.
     pub fn weigh(&self, builder: &mut Builder, field: &HeightField) -> ResourceId {
         let extent = [field.cols() as u32, field.rows() as u32, self.count];
         let weights = builder.image("fan_weights", Owner::Internal, Format::R32Float, extent, true);
@@ -86,14 +86,14 @@ impl Bends {
 
     fn bands(&self, field: &HeightField) -> impl Iterator<Item = std::ops::Range<u32>> + use<> {
         let samples = (field.rows() * field.cols()) as u64;
-        let each = (BAND_LOOKS / samples).clamp(1, self.count.into());
+        let each = (BAND_RAYS / samples).clamp(1, self.count.into());
         let count = self.count;
         (0..count).step_by(each as usize).map(move |first| first..count.min(first + each as u32))
     }
 }
 
-/// Of each direction where its triangles begin, how many they are, and their solid angle; then of all in turn the two other
-/// corners.
+/// For each direction: the first of its triangles, their number and their solid angle; then the two other corners of all
+/// triangles in turn.
 fn fan_texels(fans: &Fans, first_pair: usize) -> Vec<f32> {
     let mut next = first_pair;
     let mut texels = Vec::new();

@@ -1,25 +1,25 @@
 use std::ops::Range;
 
 use super::Plan;
-use crate::graph::{Pass, ResourceId};
+use crate::graph::{Pass, Rectangle, ResourceId};
 use crate::passes::azimuths::Azimuth;
+use crate::{Error, Result};
 
 impl Plan {
-    /// Passes that must run after a frame of `before`, by position, for the same outputs as if all
-    /// ran: those that differ from `before`'s or read what has changed since, and what follows from
-    /// them. `changed` are inputs with new contents. All passes where the plans differ in more than
-    /// what a pass is told: in their images and buffers, or in which passes there are.
+    /// Passes, by position, that must run after a frame of `before` for the same outputs as if all ran: those that differ
+    /// from `before`'s or read changed data, and those that follow from them. `changed` are inputs with new contents.
+    /// Returns all passes if the plans differ in their images, buffers or list of passes.
     ///
-    /// With [`Picture::keeps_horizons`](super::Picture::keeps_horizons) a change of light alone needs
-    /// no sweep, but for another environment's plan, whose azimuths are drawn to it; a change of heights
-    /// alone never needs an environment's tables.
+    /// With [`Picture::keeps_horizons`](super::Picture::keeps_horizons), a change of light alone needs no sweep, except for
+    /// another environment, whose azimuths differ. A change of heights alone never needs an environment's tables.
     pub fn passes_after(&self, before: &Plan, changed: &[ResourceId]) -> Vec<usize> {
         let count = self.passes.len();
         if self.resources != before.resources || !self.has_passes_of(before) {
             return (0..count).collect();
         }
-        let told = (self.constants != before.constants).then(|| self.find("constants")).flatten();
-        let is_new = |id: ResourceId| changed.contains(&id) || told == Some(id);
+        let constants =
+            (self.constants != before.constants).then(|| self.find("constants")).flatten();
+        let is_new = |id: ResourceId| changed.contains(&id) || constants == Some(id);
         let mut runs: Vec<bool> = (0..count)
             .map(|i| {
                 let (pass, old) = (&self.passes[i], &before.passes[i]);
@@ -33,19 +33,46 @@ impl Plan {
         (0..count).filter(|i| runs[*i]).collect()
     }
 
+    /// Checks that the plan has passes for edits, and that `rectangle` lies in its field.
+    ///
+    /// # Errors
+    /// A plan without edit passes; a rectangle that is empty or beyond the field.
+    pub fn check_edit(&self, rectangle: Rectangle) -> Result<()> {
+        if self.edit_passes.is_empty() {
+            return Err(Error::setting(
+                "an edit",
+                "a plan without passes for edits",
+                "Picture::keeps_horizons, a sweep along lines with fuse own, aimed-nearest or \
+                 aimed, and a border of plane or open",
+            ));
+        }
+        let Rectangle { col, row, cols, rows } = rectangle;
+        let fits = |first: u32, count: u32, all: u32| {
+            count > 0 && first.checked_add(count).is_some_and(|end| end <= all)
+        };
+        if !(fits(col, cols, self.size[0]) && fits(row, rows, self.size[1])) {
+            return Err(Error::setting(
+                "an edit",
+                format!("{cols} × {rows} samples from column {col}, row {row}"),
+                format!("1 or more within {} × {}", self.size[0], self.size[1]),
+            ));
+        }
+        Ok(())
+    }
+
     fn azimuths_of(&self, pass: &Pass) -> Option<&[Azimuth]> {
         let Range { start, end } = pass.azimuths;
         self.azimuths.get(start as usize..end as usize)
     }
 
-    /// Adds to the passes that run those that must because of them.
+    /// Adds the passes that must run because of those that run.
     pub(crate) fn add_followers(&self, runs: &mut [bool]) {
         while let Some(next) = (0..runs.len()).find(|i| !runs[*i] && self.follows(*i, runs)) {
             runs[next] = true;
         }
     }
 
-    /// Whether the same shaders with the same constants are bound to the same resources.
+    /// Whether both plans bind the same resources to the same shaders with the same constants.
     pub(crate) fn has_passes_of(&self, before: &Plan) -> bool {
         let same = |(a, b): (&Pass, &Pass)| {
             a.name() == b.name() && a.constants == b.constants && a.bindings == b.bindings
@@ -59,12 +86,12 @@ impl Plan {
         let pass = &self.passes[i];
         let writes = |p: usize, id: ResourceId| self.passes[p].writes().any(|w| w == id);
         let touched = (0..runs.len()).filter(|p| runs[*p]);
-        // What it reads is made anew, or what it has a share in is.
-        let remade = |id: ResourceId| touched.clone().any(|p| writes(p, id));
-        if pass.reads().any(remade) || pass.writes().any(remade) {
+        // It reads recomputed data, or contributes to a recomputed sum.
+        let is_recomputed = |id: ResourceId| touched.clone().any(|p| writes(p, id));
+        if pass.reads().any(is_recomputed) || pass.writes().any(is_recomputed) {
             return true;
         }
-        // One that runs reads what it made, and something has overwritten that since.
+        // A pass that runs reads its output, which a later pass overwrote.
         pass.writes().any(|id| {
             touched.clone().any(|p| {
                 let reads = self.passes[p].reads().any(|r| r == id);
@@ -115,14 +142,14 @@ mod tests {
     }
 
     #[test]
-    fn nothing_new_needs_nothing() {
+    fn an_unchanged_plan_needs_no_passes() {
         let plan = plan(&scene(), true);
         assert!(plan.passes_after(&plan, &[]).is_empty());
     }
 
-    /// A turned environment is other constants, and no other push constant.
+    /// Rotating an environment changes constants and no push constants.
     #[test]
-    fn a_turned_environment_needs_its_harmonics_anew() {
+    fn rotating_an_environment_recomputes_its_harmonics() {
         let mut scene = scene();
         let quality = Quality { azimuths: 16, basis: Basis::Sh, ..Quality::default() };
         let wanted = Picture { keeps_horizons: true, ..Picture::default() };
@@ -136,10 +163,10 @@ mod tests {
         assert_eq!(needed, ["env_rotation", "light_matrix", "sh_shade", "light_resolve"]);
     }
 
-    /// What is seen is kept: new light of any kind needs no horizons of the circle, whose lattice is one, used
-    /// in turn; a new field needs everything but the light's own.
+    /// Visibility is kept: new light of any kind needs no horizons of the circle, whose single lattice is reused. A new field
+    /// needs everything except the light's own data.
     #[test]
-    fn harmonics_keep_what_is_seen() {
+    fn harmonics_keep_visibility() {
         let wanted = Picture { keeps_horizons: true, ..Picture::default() };
         for (method, subsample) in [(Method::Sweep, 1), (Method::Sweep, 2), (Method::Pyramid, 4)] {
             let quality =
@@ -174,7 +201,7 @@ mod tests {
         let before = plan(&scene, true);
         scene.lights.suns[0].irradiance = [9.0; 3];
         let after = plan(&scene, true);
-        // The picture adds up from its first light on.
+        // The picture is a sum that begins with its first light.
         assert_eq!(names(&after, &after.passes_after(&before, &[])), ["light_resolve"]);
         let environment = after.find("environment").unwrap();
         let needed = after.passes_after(&after, &[environment]);
@@ -202,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn lattices_used_in_turn_must_be_swept_again() {
+    fn reused_lattices_are_swept_again() {
         let before = plan(&scene(), false);
         let environment = before.find("environment").unwrap();
         let needed = names(&before, &before.passes_after(&before, &[environment]));
@@ -219,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_field_makes_its_pyramid_anew() {
+    fn a_new_field_recomputes_its_pyramid() {
         let quality = Quality { method: Method::Pyramid, azimuths: 16, ..Quality::default() };
         let wanted = Picture { keeps_horizons: true, ..Picture::default() };
         let mut scene = scene();

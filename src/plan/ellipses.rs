@@ -4,25 +4,25 @@ use super::visible_points::{check_field, images, one_image, record, texels};
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::ellipse_fit as pass;
-use crate::scene::{Border, Changed, Curvature, Directions, HeightField};
+use crate::scene::{Border, Curvature, Directions, HeightField, OcclusionChange};
 use crate::{Error, Result};
 
-/// Directions that one dispatch looks at, about, in some dozens of steps with sixteen ellipses each: tenths of a second on
-/// a slow device.
-const BAND_LOOKS: u64 = 1 << 26;
+/// Approximate number of directions that one dispatch reads, in some dozens of steps with sixteen ellipses each: tenths
+/// of a second on a slow device.
+const BAND_RAYS: u64 = 1 << 26;
 
-/// Passes that find of each sample the ellipse that holds the directions in which it sees the sky
-/// (`Ellipse`): six numbers for a shadow test (Heidrich et al. 2000, §4).
+/// Passes that fit an ellipse to the visible sky directions of each texel (`Ellipse`): six numbers for a shadow test
+/// (Heidrich et al. 2000, §4).
 ///
-/// Input: "heights". Outputs: "ellipse_axes", centre (east, north) and axis of length 1 (east, north); "ellipse_radii", one
-/// over the radius along the axis and across it, the lit less the shadowed directions within, and the search's last step, 0
-/// of the whole disc and of nothing.
+/// Input: "heights". Outputs: "ellipse_axes", centre (east, north) and unit axis (east, north); "ellipse_radii", one over
+/// the radius along the axis and across it, the lit minus the shadowed directions inside, and the last step of the
+/// search, 0 for a full or an empty disc.
 ///
-/// Of `directions` those above horizontal count, as one each: `lowest_z` 0 spends none below.
+/// Only `directions` above horizontal count, all equally; `lowest_z` 0 wastes none below.
 ///
 /// # Errors
-/// A field too large for 16 bits a coordinate; no direction above horizontal; more of what samples see than one image
-/// holds; beyond the limits.
+/// A field too large for 16 bits per coordinate; no direction above horizontal; more visible points than one image
+/// holds; a scene beyond the limits.
 pub fn ellipses(
     field: &HeightField,
     border: Border,
@@ -35,15 +35,15 @@ pub fn ellipses(
     begun.finish(("ellipses of visible sky", None), Vec::new(), limits)
 }
 
-/// The ellipses of [`ellipses`] five times: of the flat base, and of ones that are bent towards east and then towards north by the
-/// two curvatures, both above 0, outwards and inwards (Heidrich et al. 2000, §5): hollows can be bent less before what is seen
-/// changes. Between them ellipses change linearly:
-/// `CurvedEllipses`.
+/// The ellipses of [`ellipses`] five times: on the flat base, and on bases bent towards east and then north by the two
+/// curvatures, both above 0, outwards and inwards (Heidrich et al. 2000, §5). Hollows allow less curvature before
+/// visibility changes. Between them ellipses change linearly: `CurvedEllipses`.
 ///
 /// Input: "heights". Outputs: "ellipse_axes.k" and "ellipse_radii.k" of k = 0 to 4: flat, east +, east -, north +, north -.
 ///
 /// # Errors
-/// As [`ellipses`]; curvatures that are not above 0, or that [`Curvature::check`] refuses; directions that span no net.
+/// As [`ellipses`]; curvatures that are not above 0 or that [`Curvature::check`] rejects; directions without a
+/// triangulation.
 pub fn curved_ellipses(
     field: &HeightField,
     border: Border,
@@ -58,7 +58,7 @@ pub fn curved_ellipses(
     let four = [[outwards, 0.0], [-inwards, 0.0], [0.0, outwards], [0.0, -inwards]];
     let four = four.map(|per_m| Curvature { per_m });
     let changed = four.iter().map(|curvature| curvature.check(field, border));
-    let changed = changed.collect::<Result<Vec<Changed>>>()?;
+    let changed = changed.collect::<Result<Vec<OcclusionChange>>>()?;
     let mut begun = Begun::new(field, border, directions, limits)?;
     let bends = Bends::make(&mut begun.builder, begun.size, directions, limits)?;
     let outputs: Vec<[ResourceId; 2]> = (0..5)
@@ -77,7 +77,7 @@ pub fn curved_ellipses(
     begun.finish((method, Some([outwards, inwards])), notes.collect(), limits)
 }
 
-/// A plan whose visible points are found.
+/// A plan that has its visible points.
 struct Begun<'a> {
     field: &'a HeightField,
     border: Border,
@@ -121,14 +121,14 @@ impl<'a> Begun<'a> {
         self.builder.image(name, Owner::Output, Format::Rgba32Float, extent, false)
     }
 
-    /// One ellipse a sample, of directions as they are or on a curved base.
+    /// Fits one ellipse per texel, for directions as they are or on a curved base.
     fn fit(&mut self, (bent, base): (Option<ResourceId>, &str), [axes, radii]: [ResourceId; 2]) {
         let mut bound = vec![("ellipse_axes", axes), ("ellipse_radii", radii)];
         match bent {
             Some(bent) => bound.push(("bent", bent)),
             None => bound.extend([("visible_points", self.points), ("directions", self.buffer)]),
         }
-        let band = BAND_LOOKS / (u64::from(self.size[0]) * self.directions.count() as u64);
+        let band = BAND_RAYS / (u64::from(self.size[0]) * self.directions.count() as u64);
         let band = (band as u32 / 8 * 8).clamp(8, self.size[1].next_multiple_of(8));
         for row in (0..self.size[1]).step_by(band as usize) {
             let rows = row..self.size[1].min(row + band);

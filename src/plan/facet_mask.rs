@@ -8,16 +8,15 @@ use crate::passes::facet_mask::DIRECTIONS_A_WORD;
 use crate::scene::{Border, Directions, HeightField};
 use crate::{Error, Result};
 
-/// Rays that one dispatch follows, about, as of visible points.
+/// Approximate number of rays per dispatch, as for visible points.
 const BAND_RAYS: u64 = 1 << 24;
 
-/// Passes that find which of a field's flat triangles, two a cell, are seen from each direction:
-/// `Facets`.
+/// Passes that find which flat triangles of a field, two per cell, are visible from each direction: `Facets`.
 ///
-/// Input: "heights". Output: "facet_mask", one u32 a cell for every fifteen directions.
+/// Input: "heights". Output: "facet_mask", one u32 per cell for every fifteen directions.
 ///
 /// # Errors
-/// A field of unknown heights or without cells; directions whose words one image does not hold; beyond the limits.
+/// A field of unknown heights or without cells; more directions than one image holds; a scene beyond the limits.
 pub fn facet_mask(
     field: &HeightField,
     border: Border,
@@ -41,7 +40,7 @@ pub fn facet_mask(
     let bytes = layer_bytes * u64::from(layers);
     if layers > limits.image_layers || bytes > limits.allocation_bytes {
         return Err(Error::Limit {
-            what: format!("triangles seen from {count} directions"),
+            what: format!("visible triangles from {count} directions"),
             needs: format!("one image of {layers} layers, {}", bytes_text(bytes)),
             limit: format!(
                 "{} layers and {} in one allocation; fewer directions or a smaller field fit",
@@ -62,7 +61,7 @@ pub fn facet_mask(
         pass::plan(&mut builder, (field, border), &blocks, (band, texels), [buffer, image]);
     }
     let settings = [
-        ("method", "triangles seen".to_owned()),
+        ("method", "visible triangles".to_owned()),
         ("border", format!("{border:?}").to_lowercase()),
         ("directions", count.to_string()),
         ("facet_mask", bytes_text(bytes)),

@@ -1,4 +1,4 @@
-//! What was collected, as a plan: barriers are placed, limits are checked.
+//! Finishes a plan: places barriers, checks limits.
 
 use super::Plan;
 use crate::graph::Limits;
@@ -7,10 +7,10 @@ use crate::passes::azimuths::Azimuth;
 use crate::{Error, Result};
 
 impl Plan {
-    /// What was collected as a plan, with its barriers; `notes` and `settings` are its own.
+    /// Makes a plan from the collected resources and passes.
     ///
     /// # Errors
-    /// More memory than the budget or the device has.
+    /// A plan that exceeds the memory budget or the limits of the device.
     pub(super) fn finish(
         builder: Builder,
         size: [u32; 2],
@@ -51,7 +51,7 @@ impl Plan {
             return Err(Error::Limit {
                 what: "images and buffers of this picture".into(),
                 needs: bytes_text(plan.bytes()),
-                limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
+                limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
             });
         }
         plan.resources.iter().try_for_each(|resource| check_resource(resource, limits))?;
@@ -60,7 +60,7 @@ impl Plan {
     }
 }
 
-/// Whether the device can make a resource.
+/// Checks that the device can create a resource.
 fn check_resource(resource: &Resource, limits: &Limits) -> Result<()> {
     let beyond = |needs: String, limit: String| {
         let limit = format!("{limit} on this device");
@@ -91,7 +91,7 @@ fn check_resource(resource: &Resource, limits: &Limits) -> Result<()> {
     Ok(())
 }
 
-/// Whether the device can dispatch a pass.
+/// Checks that the device can dispatch a pass.
 fn check_groups(pass: &Pass, limits: &Limits) -> Result<()> {
     match pass.groups.into_iter().find(|groups| *groups > limits.groups) {
         Some(groups) => Err(Error::Limit {

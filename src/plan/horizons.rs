@@ -8,9 +8,9 @@ use crate::passes::sweeping::{circle, part, prepare, settings};
 use crate::scene::{Border, HeightField, Quality};
 use crate::{Error, Result, passes};
 
-/// Passes that write the horizons of `count` azimuths from number `first` on, of the quality's
-/// circle: output "horizon_angles" (f32 elevation, radians, one layer an azimuth, in the order of
-/// [`Plan::layer_azimuths`]) and, where asked, "horizon_distances" (metres, 0 where nothing is met).
+/// Passes that write the horizons of `count` azimuths of the quality's circle, from number `first` on. Outputs:
+/// "horizon_angles" (f32 elevation, radians, one layer per azimuth in the order of [`Plan::layer_azimuths`]) and, if
+/// requested, "horizon_distances" (metres, 0 without an occluder).
 ///
 /// # Errors
 /// As [`picture`](super::picture()).
@@ -29,7 +29,7 @@ pub fn horizons(
     if distances && matches!(&sweep, Sweep::Lines(l) if !l.writes_occluders || l.slope_format > 0) {
         return Err(Error::setting(
             "distances to the horizon",
-            format!("--fuse {}", quality.fuse.name()),
+            format!("`fuse {}`", quality.fuse.name()),
             "a fuse that knows its occluders: own, aimed-nearest, aimed or aimed-around",
         ));
     }

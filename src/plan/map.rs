@@ -3,15 +3,14 @@ use crate::graph::{Builder, Format, Limits, Owner};
 use crate::passes::map_draw::Map;
 use crate::{Result, passes};
 
-/// The pass that draws a [`Map`].
+/// The pass of a [`Map`].
 ///
-/// Inputs, in order: "radiance", "tone_steps" ([`Tone::steps`](crate::scene::Tone)), "voids" where there are
-/// any: 0 where there is ground, 1 where there is none. Output: "picture", the four bytes of each pixel as one word,
-/// the first lowest, the last 255. Without voids and from samples inside the field they are the codes of
-/// `write_png`.
+/// Inputs, in order: "radiance"; "tone_steps" ([`Tone::steps`](crate::scene::Tone)); "voids" if there are any: 0 on
+/// ground, 1 in a void. Output: "picture", the four bytes of each pixel as one word, the first byte lowest, the last 255.
+/// Without voids, and from texels inside the field, it has the codes of `write_png`.
 ///
 /// # Errors
-/// What is out of range, or a picture beyond the limits.
+/// A value out of range, or a picture beyond the limits.
 pub fn map(map: &Map, limits: &Limits) -> Result<Plan> {
     map.check()?;
     let mut builder = Builder::new();

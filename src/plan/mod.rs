@@ -1,15 +1,15 @@
-//! Scene and quality to passes: pure, without a Vulkan call. What is decided here is all that is
-//! ever recorded; [`Plan`] prints it.
+//! Plans: from scene and quality to passes, without a Vulkan call. A renderer records exactly what the plan states.
+//! [`Plan`] prints it.
 //!
-//! | function | what its passes make |
+//! | function | result of its passes |
 //! |---|---|
-//! | [`picture()`] | exit radiance of every sample, and a layer for each light and bounce where asked ([`Picture`]) |
-//! | [`horizons()`] | elevations of the horizon of every sample along every azimuth |
-//! | [`reference()`] | the same light by paths, slowly, with its standard error |
-//! | [`map()`] | a lit field as a screen shows it, from above |
-//! | [`View::new`] | what a camera sees of a lit field; not compute passes: [`ViewRenderer`](crate::gpu::ViewRenderer)'s |
+//! | [`picture()`] | exit radiance of every texel; optionally a layer for each light and bounce ([`Picture`]) |
+//! | [`horizons()`] | horizon elevations of every texel along every azimuth |
+//! | [`reference()`] | the path-traced reference, slowly, with its standard error |
+//! | [`map()`] | the lit field from above, tone mapped |
+//! | [`View::new`] | a camera view of the lit field; graphics passes of [`ViewRenderer`](crate::gpu::ViewRenderer) |
 //!
-//! Each takes [`Limits`], of a device ([`gpu::limits`](crate::gpu::limits)) or of none:
+//! Each takes [`Limits`], of a device ([`gpu::limits`](crate::gpu::limits)) or fixed ones:
 //!
 //! ```
 //! use ridgelight::plan::{self, Limits, Picture};
@@ -29,15 +29,14 @@
 //! # Ok::<(), ridgelight::Error>(())
 //! ```
 //!
-//! A scene that has changed is a new plan: [`Plan::passes_after`] says which passes a frame needs then, and
-//! [`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan) goes over to it where images and passes are the same.
-//! A rectangle of heights that has changed needs [`Plan::edit_passes`] alone.
+//! After a change of the scene, make a new plan. [`Plan::passes_after`] lists the passes that a frame then needs, and
+//! [`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan) switches to it if images and passes are the same.
+//! After an edit of a rectangle of heights, [`Plan::edit_passes`] suffice.
 
 mod active_lights;
 mod bend;
 mod change;
 mod choice;
-mod edit;
 mod ellipses;
 mod facet_mask;
 mod finish;
@@ -51,7 +50,7 @@ mod view;
 mod visible_points;
 
 #[doc(hidden)]
-pub use choice::most_light;
+pub use choice::max_path_light;
 pub use ellipses::{curved_ellipses, ellipses};
 pub use facet_mask::facet_mask;
 pub use horizons::horizons;
@@ -59,10 +58,10 @@ pub use map::map;
 pub use picture::{Picture, picture, picture_inputs};
 pub use reference::{
     REFERENCE_BATCH, listed_places, reference, reference_at, reference_in_bands, reference_inputs,
-    unmet_bounced_error, unmet_error,
+    unsampled_bounce_error, unsampled_light_error,
 };
 pub use scatter::{scatter, scatter_inputs, scatter_views, views_at_once};
-pub use view::{View, ViewOptions, ViewPass, ViewResource, surface_error_m};
+pub use view::{View, ViewOptions, ViewPass, ViewResource, mesh_error_m};
 pub use visible_points::visible_points;
 
 pub use crate::graph::{
@@ -80,7 +79,7 @@ pub use crate::passes::{pyramid, sweep};
 
 use crate::{Error, Result};
 
-/// The passes that light one scene, in order, and everything that they touch.
+/// The passes of one scene, in order, with all their resources.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Columns and rows of the field.
@@ -89,29 +88,29 @@ pub struct Plan {
     pub resources: Vec<Resource>,
     /// Dispatches, in order.
     pub passes: Vec<Pass>,
-    /// Dispatches, in order, that follow an edit of a rectangle of heights, with the barriers among
-    /// them; none where edits need all passes ([`Picture::keeps_horizons`]).
+    /// Dispatches, in order, after an edit of a rectangle of heights, with their barriers. Empty where edits need all passes
+    /// ([`Picture::keeps_horizons`]).
     pub edit_passes: Vec<Pass>,
     /// Contents of the buffer "azimuths".
     pub azimuths: Vec<Azimuth>,
-    /// Contents of the buffer "constants", four f32 a texel; none without spherical harmonics.
+    /// Contents of the buffer "constants", four f32 per texel; empty without spherical harmonics.
     pub constants: Vec<f32>,
-    /// For horizons: which azimuth k of the circle each layer of the outputs is.
+    /// For horizons: the azimuth number k of the circle for each layer of the outputs.
     pub layer_azimuths: Vec<u32>,
-    /// What was left out or changed, and why.
+    /// Notes on what the planner dropped or changed, and why.
     pub notes: Vec<String>,
-    /// The settings really used, as (name, value).
+    /// The effective settings, as (name, value).
     pub settings: Vec<(String, String)>,
 }
 
 impl Plan {
-    /// Bytes of all images and buffers that a renderer makes.
+    /// Bytes of all images and buffers that the renderer creates.
     pub fn internal_bytes(&self) -> u64 {
         let is_own = |r: &&Resource| matches!(r.owner, Owner::Internal | Owner::InputBuffer);
         self.resources.iter().filter(is_own).map(Resource::bytes).sum()
     }
 
-    /// Bytes of everything, inputs and outputs too: what counts against the memory budget.
+    /// Bytes of all resources, including inputs and outputs: the part of the memory budget that the plan uses.
     pub fn bytes(&self) -> u64 {
         self.resources.iter().map(Resource::bytes).sum()
     }
@@ -126,12 +125,12 @@ impl Plan {
         self.resources.iter().position(|r| r.name == name).map(ResourceId)
     }
 
-    /// The images, and buffers of texels, that a caller hands in, in the order of the inputs.
+    /// Images and texel buffers that the caller hands in, in order.
     pub fn inputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
         self.owned(|owner| matches!(owner, Owner::Input | Owner::InputBuffer))
     }
 
-    /// The images that a caller has written to, in the order of the outputs.
+    /// Images that are written for the caller, in order.
     pub fn outputs(&self) -> impl Iterator<Item = (ResourceId, &Resource)> {
         self.owned(|owner| owner == Owner::Output)
     }
@@ -141,15 +140,15 @@ impl Plan {
         all.filter(move |(_, r)| is(r.owner)).map(|(i, r)| (ResourceId(i), r))
     }
 
-    /// Has an input come in a buffer of the caller's instead of an image: rows of `texels`, the input's own
-    /// format or another that holds as many channels (one: [`Format::R32Float`], [`Format::R16Float`],
-    /// [`Format::R16Unorm`]; four: [`Format::Rgba32Float`], [`Format::Rgba16Float`], [`Format::Rgba8Unorm`],
-    /// [`Format::Rgba8Srgb`]). Shaders fetch from images: each recording begins with one copy from the buffer to
-    /// an image that the renderer makes, of `texels`; it counts among [`internal_bytes`](Self::internal_bytes).
+    /// Takes an input from a buffer of the caller instead of an image: rows of `texels`, in the input's own format or another
+    /// with as many channels (one: [`Format::R32Float`], [`Format::R16Float`], [`Format::R16Unorm`]; four:
+    /// [`Format::Rgba32Float`], [`Format::Rgba16Float`], [`Format::Rgba8Unorm`], [`Format::Rgba8Srgb`]). Shaders fetch from
+    /// images, so each recording begins with a copy to an image of the renderer in the format `texels`, which
+    /// [`internal_bytes`](Self::internal_bytes) includes.
     ///
     /// # Errors
-    /// An input that the plan does not have, of words, or of several layers; or texels of another kind: of a
-    /// [`reference`](crate::plan::reference()) any but its own.
+    /// An unknown input, or one of words or of several layers; texels of another kind. A
+    /// [`reference`](crate::plan::reference()) accepts only its own formats.
     pub fn take_buffer(&mut self, input: &str, texels: Format) -> Result<()> {
         let names: Vec<_> = self.inputs().map(|(_, r)| r.name.clone()).collect();
         let is_traced = self.find("environment_cdf").is_some() || self.find("batch_mean").is_some();

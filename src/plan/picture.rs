@@ -1,10 +1,10 @@
 mod drawing;
-mod gloss;
 mod images;
+mod specular;
 
 use super::Plan;
 use super::active_lights::ActiveLights;
-use super::reference::lobe_texels;
+use super::reference::specular_texels;
 use crate::graph::{Builder, Limits};
 use crate::passes;
 use crate::passes::azimuths;
@@ -19,53 +19,50 @@ use crate::passes::sphere_sh::SphereSh;
 use crate::passes::sweep::Sweep;
 use crate::passes::sweeping::{Lists, prepare, settings};
 use crate::scene::{
-    Albedo, Basis, Border, Bounces, Environment, LightBasis, Lobe, Quality, Scene, Wedges,
+    Albedo, Basis, Border, Bounces, Environment, LightBasis, Quality, Scene, Specular, Wedges,
 };
 use crate::{Error, Result};
 use drawing::Drawing;
 use images::{Harmonics, Images, Tables};
 
-/// What a picture should hold.
+/// Requested outputs of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
-    /// Besides the whole, an image for each light and each bounce.
+    /// Also an image for each light and each bounce.
     pub light_layers: bool,
-    /// Besides, what a sky of radiance 1 gives to albedo 1: the sky-view factor of a tilted
-    /// receiver, [0..1].
+    /// Also the sky-view factor of the tilted surface, [0..1]: exit radiance under a sky of radiance 1 at albedo 1.
     pub sky_view: bool,
-    /// Every batch's sweep keeps a lattice of its own, so that a frame whose light alone has changed
-    /// needs no sweep ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once, of suns'
-    /// alone where an environment is by spherical harmonics: these keep what is seen instead.
+    /// Each batch of azimuths keeps its own lattice, so a frame with new light only needs no sweep
+    /// ([`Plan::passes_after`]). Memory: the lattices of all azimuths at once; with an environment in spherical harmonics
+    /// only the suns' lattices, as the harmonics keep the visibility.
     ///
-    /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat,
-    /// then also take edits ([`Plan::edit_passes`]), but not with an environment by spherical harmonics or
-    /// with balls of light. Memory: a quarter of a byte a sample.
+    /// Sweeps along lines, with fuse own, aimed-nearest or aimed and a border that does not repeat, then also accept edits
+    /// ([`Plan::edit_passes`]), but not with an environment in spherical harmonics or with sphere lights. Memory: a quarter
+    /// of a byte per texel.
     pub keeps_horizons: bool,
-    /// The heights will stay those of the scene: what these cannot show is left out.
+    /// The heights will not change: the planner may drop what they do not need.
     pub still: bool,
-    /// Nothing stands in the way of light but the ground that a sample lies on, and none is thrown on: what all the
-    /// other passes are for. Balls of light are hidden all the same.
+    /// Only the texel's own ground occludes light, and there are no bounces. Sphere lights keep their shadows.
     pub unshadowed: bool,
-    /// Radiances of the sky and of key lights and irradiances of suns are the caller's, on the device: an input
-    /// "light_colours", one row of texels, the sky's where the scene has one, then each sun's, then each key light's;
-    /// linear RGB, 0 or more. Those of the scene then count for nothing but, the sky's beside an environment, for where
-    /// azimuths lie. Not with balls of light or a lobe, whose sums hold the colours.
+    /// Radiances of the sky and of key lights and irradiances of suns come from the caller, on the device: an input
+    /// "light_colours", one row of texels: the sky's if the scene has one, then each sun's, then each key light's; linear
+    /// RGB, 0 or more. The scene's colours then do not count, except that the sky's beside an environment affects the
+    /// azimuths. Not with sphere lights or specular, whose sums contain the colours.
     pub colours_on_device: bool,
 }
 
-/// Passes that light a scene: [`Picture`] says what is wanted besides the whole.
+/// Passes that light a scene. [`Picture`] requests outputs besides the radiance.
 ///
-/// Inputs, in order: "heights", "environment", "albedo" and "phong" where the scene has them, "light_colours" where
-/// wanted. Outputs:
-/// "radiance", then where asked one "direct.*" image a light, "direct.glossy" (what a lobe reflects of them
-/// all, and they without it), "sky_view", one "indirect.*" image a bounce, and "glossy" (what a lobe reflects of all
-/// bounces, and they without it). All are images of one channel where every colour is grey, else of four.
+/// Inputs, in order: "heights"; "environment", "albedo" and "phong" if the scene has them; "light_colours" if requested.
+/// Outputs, in order: "radiance"; if requested one "direct.*" image per light; "direct.glossy" (specular of all lights,
+/// which the others then exclude); "sky_view"; one "indirect.*" image per bounce; and "glossy" (specular of all bounces,
+/// which the others then exclude). Images have one channel if every colour is grey, else four.
 ///
-/// A lobe is seen from straight above. It reflects sky and environment by harmonics, whose order limits it as
-/// it does the light, and suns by the lobe towards their middle and the part of them that is seen.
+/// Specular is viewed from straight above. Sky and environment use harmonics, whose order limits the lobe as it limits
+/// the light. Suns use the lobe towards their centre and their visible part.
 ///
 /// # Errors
-/// Settings or lights out of range, nothing that shines, or a scene beyond the limits.
+/// Settings or lights out of range; no light; a scene beyond the limits.
 pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Picture) -> Result<Plan> {
     let Scene { field, surface, lights } = scene;
     quality.check()?;
@@ -73,9 +70,9 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     surface.check(field.rows() * field.cols())?;
     let size = limits.check_size(field.rows(), field.cols())?;
     let mut notes = Vec::new();
-    let shining = ActiveLights::of(scene, quality, wanted, &mut notes)?;
+    let active = ActiveLights::of(scene, quality, wanted, &mut notes)?;
     let quality = &if wanted.unshadowed { without_bounces(quality) } else { *quality };
-    let quality = &gloss::quality(quality, &shining, &mut notes)?;
+    let quality = &specular::quality(quality, &active, &mut notes)?;
     let mut sweep = Sweep::choose(field, surface.border, quality, limits, false, &mut notes)?;
     let quality = &bounces::settled(quality, surface, &sweep, &mut notes);
     let is_walked = quality.bounces.walk_over(surface);
@@ -94,28 +91,28 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         sweep = Sweep::Crossings;
     }
     if matches!(sweep, Sweep::Surface { .. })
-        && let Some(aimed) = shining.aimed().next()
+        && let Some(aimed) = active.aimed().next()
     {
-        let (flag, light) = match aimed.shape {
-            Shape::Patch => ("--key", "a key light"),
-            Shape::Disc | Shape::Point => ("--sun", "a sun"),
+        let (setting, light) = match aimed.shape {
+            Shape::Patch => ("`keys`", "a key light"),
+            Shape::Disc | Shape::Point => ("`suns`", "a sun"),
         };
         return Err(Error::setting(
-            format!("--lines exact with {flag}"),
+            format!("`lines exact` with {setting}"),
             format!("{light}, whose azimuths are no grid vectors"),
-            "--method brute, which is exact in every azimuth",
+            "`method brute-force`, which is exact in every azimuth",
         ));
     }
-    if shining.is_grey {
+    if active.is_grey {
         notes.push("one channel: every colour is grey".into());
     }
     let mut builder = Builder::new();
     let bounces =
-        if shining.is_dark() { 0 } else { bounces::worth_drawing(scene, quality, &mut notes) };
-    // Sub-sampled bounces are lit by what samples see of the sky; walks find that themselves.
+        if active.is_dark() { 0 } else { bounces::needed_bounces(scene, quality, &mut notes) };
+    // Sub-sampled bounces need the visibility of the sky; walks find it themselves.
     let need_share = bounces > 0 && quality.subsample > 1 && !is_walked;
-    let images = Images::make(&mut builder, scene, &shining, (wanted, need_share));
-    let mut lists = shining.lists(
+    let images = Images::make(&mut builder, scene, &active, (wanted, need_share));
+    let mut lists = active.lists(
         images.need_circle(),
         quality,
         &sweep,
@@ -123,40 +120,40 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         &mut notes,
     )?;
     if is_walked && bounces > 0 {
-        // Behind those of the lights.
+        // After those of the lights.
         lists.push(azimuths::even(quality.bounces.azimuths, field.cell_m()));
     }
     let (mut tables, mut harmonics) = (None, None);
-    let has_gloss = shining.has_gloss_around();
-    if has_gloss || shining.environment.is_some() && quality.basis == Basis::Sh {
-        shining.environment.map_or(Ok(()), Environment::check_series)?;
+    let has_specular = active.has_specular_around();
+    if has_specular || active.environment.is_some() && quality.basis == Basis::Sh {
+        active.environment.map_or(Ok(()), Environment::check_series)?;
         if quality.wedges == Wedges::Table && matches!(sweep, Sweep::Surface { .. }) {
             return Err(Error::setting(
-                "--wedges table with --lines exact",
+                "`wedges table` with `lines exact`",
                 "wedges of uneven widths",
-                "--method brute, which is exact in every azimuth",
+                "`method brute-force`, which is exact in every azimuth",
             ));
         }
-        let (lit, settings) = ((shining.environment, surface.border), (quality, has_gloss));
+        let (lit, settings) = ((active.environment, surface.border), (quality, has_specular));
         harmonics = Some(Harmonics::make(&mut builder, size, lit, settings, &lists[0]));
-    } else if let Some(environment) = shining.environment {
+    } else if let Some(environment) = active.environment {
         let lit = (environment, surface.border);
         tables = Some(Tables::make(&mut builder, lit, quality));
     }
-    if shining.environment.is_none() && shining.sky.is_some() {
+    if active.environment.is_none() && active.sky.is_some() {
         notes.push("no environment: no table".into());
     }
     let keeps = wanted.keeps_horizons;
     let is_editable = sweep.editable(surface.border).is_some()
         && harmonics.is_none()
         && images.sphere_sum.is_none()
-        && images.gloss_sum.is_none()
+        && images.specular_sum.is_none()
         && bounces == 0;
     let takes_edits = keeps && !wanted.still && is_editable;
     let edits = takes_edits.then(|| Edits::make(&mut builder, size));
-    // What is seen as harmonics is kept itself, and a sky's sum: no light of theirs needs the lattices.
+    // Harmonics keep the visibility and a sky keeps its sum, so neither needs its lattices.
     let kept_from = keeps.then_some(usize::from(harmonics.is_some()));
-    let nodes = marched_nodes(&sweep, harmonics.as_ref(), &shining, wanted);
+    let nodes = marched_nodes(&sweep, harmonics.as_ref(), &active, wanted);
     let held = (limits, kept_from, nodes);
     let shared = (bounces, images.sky_sum);
     let at_nodes = BounceNodes::make(&mut builder, size, quality, shared, limits, &mut notes);
@@ -171,11 +168,11 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         (Some(sweeping), lists)
     };
     let levels = sweeping.as_ref().and_then(|s| s.levels);
-    let of_light = (shining.is_grey, wanted.light_layers);
+    let of_light = (active.is_grey, wanted.light_layers);
     let bouncing = (bounces > 0).then(|| {
-        let gloss = shining.gloss.is_some().then_some(&mut notes);
+        let specular = active.specular.is_some().then_some(&mut notes);
         let found = (bounces, at_nodes, levels);
-        Bouncing::make(&mut builder, scene, quality, found, of_light, gloss)
+        Bouncing::make(&mut builder, scene, quality, found, of_light, specular)
     });
     let sweep = sweeping.as_ref().map(|s| &s.sweep);
     let soft = (quality.light_basis == LightBasis::Sh && images.sphere_sum.is_some()).then(|| {
@@ -184,7 +181,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     if let Some(soft) = &soft {
         passes::sphere_sh_shade::check(surface.border, field, soft)?;
     }
-    let mut used = used(quality, sweep, surface.border, &shining, &images, soft.as_ref());
+    let mut used = used(quality, sweep, surface.border, &active, &images, soft.as_ref());
     used.push(("bounces".into(), bouncing.as_ref().map_or(0, Bouncing::count).to_string()));
     if bouncing.is_some() {
         used.push(("bounce_cutoff".into(), quality.bounces.cutoff.to_string()));
@@ -195,7 +192,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
     let mut drawing = Drawing {
         builder,
         scene,
-        shining,
+        active,
         images,
         tables,
         harmonics,
@@ -205,7 +202,7 @@ pub fn picture(scene: &Scene, quality: &Quality, limits: &Limits, wanted: Pictur
         soft,
         edited: None,
         is_begun: false,
-        gloss_is_begun: false,
+        specular_is_begun: false,
     };
     drawing.fill_tables(quality);
     drawing.light(&lists, quality)?;
@@ -220,8 +217,8 @@ fn without_bounces(quality: &Quality) -> Quality {
     Quality { bounces: Bounces { count: 0, ..quality.bounces }, ..*quality }
 }
 
-/// Texels of the inputs of a [`picture`](picture()) that a scene holds, in its plan's order: "heights"; "environment" and
-/// "albedo", opaque, where the scene has them; "phong", exponent and scale, where that is a map.
+/// Texels of the inputs of a [`picture`](picture()) that the scene holds, in the order of its plan: "heights";
+/// "environment" and "albedo", opaque, if the scene has them; "phong", exponent and scale, if it is a map.
 pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque =
         |texels: &[[f32; 3]]| texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect();
@@ -232,34 +229,35 @@ pub fn picture_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     if let Albedo::Map(map) = &scene.surface.albedo {
         all.push(opaque(map));
     }
-    if let Some(Lobe::Map(map)) = scene.surface.phong.as_ref().filter(|l| l.largest().scale > 0.0) {
-        all.push(lobe_texels(map));
+    if let Some(Specular::Map(map)) =
+        scene.surface.specular.as_ref().filter(|l| l.largest().scale > 0.0)
+    {
+        all.push(specular_texels(map));
     }
     all
 }
 
-/// Where methods that march from every sample do: at the nodes alone, where nothing else is lit through
-/// their horizons.
+/// The nodes at which marching methods run: only the sub-sampled ones if nothing else uses their horizons.
 fn marched_nodes(
     sweep: &Sweep,
     harmonics: Option<&Harmonics>,
-    shining: &ActiveLights<'_>,
+    active: &ActiveLights<'_>,
     wanted: Picture,
 ) -> Nodes {
     let is_marched = matches!(sweep, Sweep::March { .. } | Sweep::Pyramid(_));
-    let is_alone = shining.sky.is_none() && shining.aimed().next().is_none() && !wanted.sky_view;
-    // A table is looked up by horizons of all samples.
+    let is_alone = active.sky.is_none() && active.aimed().next().is_none() && !wanted.sky_view;
+    // A wedge table needs the horizons of all texels.
     let nodes = harmonics.filter(|h| h.wedge_table.is_none() && is_marched && is_alone);
     let nodes = nodes.map(|h| h.sh().nodes);
     nodes.unwrap_or(Nodes { stride: 1 })
 }
 
-/// The settings really used.
+/// The effective settings.
 fn used(
     quality: &Quality,
     sweep: Option<&Sweep>,
     border: Border,
-    shining: &ActiveLights<'_>,
+    active: &ActiveLights<'_>,
     images: &Images,
     soft: Option<&SphereSh>,
 ) -> Vec<(String, String)> {
@@ -268,7 +266,7 @@ fn used(
         used.push(("azimuths".into(), quality.azimuths.to_string()));
     }
     let mut add = |name: &str, value: &str| used.push((name.into(), value.into()));
-    let is_around = shining.environment.is_some() || shining.has_gloss_around();
+    let is_around = active.environment.is_some() || active.has_specular_around();
     match quality.basis {
         Basis::Sh if is_around => {
             add("basis", "sh");
@@ -287,11 +285,11 @@ fn used(
         }
         _ => {}
     }
-    let has_balls = !shining.spheres.shining.is_empty();
-    if has_balls || shining.aimed().any(|light| light.shape != Shape::Point) {
+    let has_spheres = !active.sphere_lights.shining.is_empty();
+    if has_spheres || active.aimed().any(|light| light.shape != Shape::Point) {
         used.push(("sun_azimuths".into(), quality.sun_azimuths.to_string()));
     }
-    if has_balls {
+    if has_spheres {
         used.push(("light_cutoff".into(), quality.light_cutoff.to_string()));
         used.push(("light_basis".into(), quality.light_basis.name().into()));
     }

@@ -4,7 +4,7 @@ use super::Plan;
 use crate::graph::bytes_text;
 use crate::graph::{Kind, Owner};
 
-/// A table of passes, a table of resources, and what was left out.
+/// A table of passes, a table of resources, and the notes.
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "field {} × {}", self.size[0], self.size[1])?;

@@ -1,45 +1,44 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::Plan;
-use super::choice::{choice_density, environment_cdf, most_light};
+use super::choice::{choice_density, environment_cdf, max_path_light};
 use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::path_trace::{self, BATCH_PATHS};
-use crate::scene::{Albedo, Border, KeyLight, Lights, Lobe, Phong, Scene};
+use crate::scene::{Albedo, Border, KeyLight, Lights, PhongSpecular, Scene, Specular};
 use crate::{Error, Result};
 
-/// Paths a sample of one batch of a [`reference`](reference()).
+/// Paths per texel in one batch of a [`reference`](reference()).
 pub const REFERENCE_BATCH: u32 = BATCH_PATHS;
 
-/// Light that has been reflected more often is not counted: [0..64].
+/// Largest number of bounces: [0..64].
 const MOST_BOUNCES: u32 = 64;
 
-/// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every sample: what
-/// `cpu::bounce` defines, with all bounces up to `bounces`; and where there is a lobe it
-/// reflects at every place that a path meets, about the mirror direction of where the path came from.
+/// Passes that trace one batch of [`REFERENCE_BATCH`] light paths from every texel, as `cpu::bounce` defines them, with
+/// all bounces up to `bounces`. Phong specular reflects at every vertex, about the mirror direction of the incoming path.
 ///
-/// Inputs: those of [`reference_inputs`]. Outputs: "radiance", the mean of all batches so far, and
-/// "standard_error", that of the mean, infinite after the first batch; four channels each, the fourth of the
-/// error being the rays that were traced. Running the whole plan begins anew; running its passes
-/// `path_trace` alone, one for each band of rows, adds a batch; under many lights several, in order, each a
-/// part of one. The same seed gives the same bits on the
-/// same device. Buffer "lost_rays" counts rays that were given up: 0 in a right result.
+/// Inputs: those of [`reference_inputs`]. Outputs, four channels each: "radiance", the mean of all batches so far, and
+/// "standard_error", that of the mean, infinite after the first batch; its fourth channel counts the traced rays.
 ///
-/// A batch's paths are one randomised net, batches are independent: the standard error is from the
-/// spread between batches. It knows nothing of light that no path has met: see [`unmet_error`].
+/// Running the whole plan starts again. Running only its passes `path_trace`, one per band of rows, adds a batch; with
+/// many lights several passes, in order, each add a part of one. The same seed gives the same bits on the same device.
+/// Buffer "lost_rays" counts lost rays: 0 in a correct result.
+///
+/// The paths of a batch are one randomised net. Batches are independent: the standard error follows from the spread
+/// between them. It does not include unsampled light: see [`unsampled_light_error`].
 ///
 /// # Errors
-/// Bounces, surface or lights out of range, nothing that shines, or a scene beyond the limits.
+/// Bounces, surface or lights out of range; no light; a scene beyond the limits.
 pub fn reference(scene: &Scene, bounces: u32, seed: u32, limits: &Limits) -> Result<Plan> {
     let rows = band_rows(scene.field.cols() as u32, bounces);
     traced(scene, (bounces, seed), None, rows, limits)
 }
 
-/// The same with a dispatch for every `band_rows` rows, 1 or more: for hosts that draw frames between them. Other bands,
-/// the same bits.
+/// As [`reference`](reference()), with one dispatch per `band_rows` rows, 1 or more, for hosts that render frames in
+/// between. The bits do not depend on the bands.
 ///
 /// # Errors
-/// As there; bands of no rows.
+/// As [`reference`](reference()); 0 rows.
 pub fn reference_in_bands(
     scene: &Scene,
     bounces: u32,
@@ -53,13 +52,13 @@ pub fn reference_in_bands(
     traced(scene, (bounces, seed), None, band_rows, limits)
 }
 
-/// The same from so many samples alone, and of their bounced light alone: what has been reflected at least once
-/// before it reaches them.
+/// As [`reference`](reference()), for a list of texels and their indirect light only: light that has been reflected at
+/// least once before it reaches them.
 ///
-/// Inputs: those of [`reference_inputs`], then the texels of [`listed_places`]. The outputs have that list's size.
+/// Inputs: those of [`reference_inputs`], then the texels of [`listed_places`]. The outputs have the size of that list.
 ///
 /// # Errors
-/// As [`reference`](reference()); no sample, or more than there are.
+/// As [`reference`](reference()); an empty list, or more texels than the field has.
 pub fn reference_at(
     scene: &Scene,
     bounces: u32,
@@ -76,11 +75,11 @@ pub fn reference_at(
     traced(scene, (bounces, seed), Some(samples as u32), rows, limits)
 }
 
-/// Texels of the list of a [`reference_at`]: samples by their place in the field, row-major, in rows as long as the
-/// field's, the last filled up with none.
+/// The input list of [`reference_at`]: positions of texels in the field, row-major, in rows as long as the field's. The
+/// last row is padded.
 ///
 /// # Errors
-/// A place beyond the field, by its position in the list.
+/// A position beyond the field, named by its index in the list.
 pub fn listed_places(scene: &Scene, samples: &[usize]) -> Result<Vec<f32>> {
     let cols = scene.field.cols();
     let count = cols * scene.field.rows();
@@ -107,16 +106,16 @@ fn traced(
     surface.check(field.rows() * field.cols())?;
     if bounces > MOST_BOUNCES {
         let expected = format!("a whole number from 0 to {MOST_BOUNCES}");
-        return Err(Error::setting("--bounces", bounces.to_string(), expected));
+        return Err(Error::setting("bounces", bounces.to_string(), expected));
     }
-    let count = lights.suns.len() + lights.keys.len() + lights.spheres.len();
+    let count = lights.suns.len() + lights.keys.len() + lights.sphere_lights.len();
     if count == 0 && lights.sky.is_none() && lights.environment.is_none() {
-        let expected = "at least one of sky, environment, sun, key light and local light";
+        let expected = "at least one of sky, environment, sun, key light and sphere light";
         return Err(Error::setting("lights", "none", expected));
     }
     if count > limits.image_side as usize {
         return Err(Error::Limit {
-            what: format!("{count} suns, key lights and local lights"),
+            what: format!("{count} suns, key lights and sphere lights"),
             needs: format!("an image {count} texels long"),
             limit: format!("{} on this device", limits.image_side),
         });
@@ -140,7 +139,7 @@ fn traced(
     if matches!(surface.albedo, Albedo::Map(_)) {
         bound.push(("albedo_map", image("albedo", Owner::Input, rgba, size)));
     }
-    if matches!(surface.phong, Some(Lobe::Map(_))) {
+    if matches!(surface.specular, Some(Specular::Map(_))) {
         bound.push(("phong_map", image("phong", Owner::Input, rgba, size)));
     }
     let summed = match listed {
@@ -189,45 +188,44 @@ fn traced(
     Plan::finish(builder, size, Vec::new(), Vec::new(), Vec::new(), used, limits)
 }
 
-/// Vertices of paths that one dispatch follows, about: tenths of a second on a slow device, so that none
-/// is taken for hung.
+/// Approximate number of path vertices per dispatch: tenths of a second on a slow device, below its watchdog.
 const BAND_VERTICES: u64 = 1 << 24;
 
-/// Rows of a band, in eights; few paths go on beyond a few bounces.
+/// Rows of a band, a multiple of 8. Few paths go beyond a few bounces.
 fn band_rows(cols: u32, bounces: u32) -> u32 {
     let row = u64::from(cols) * u64::from(BATCH_PATHS) * u64::from(bounces.min(3) + 1);
     (BAND_VERTICES / row / 8 * 8).clamp(8, 1 << 24) as u32
 }
 
-/// The standard error of light that none of `paths` paths a sample of a [`reference`](reference()) may have met,
-/// R, G, B: to be added to that of their spread as the root of the sum of squares.
+/// Standard error of unsampled light after `paths` paths per texel of a [`reference`](reference()), R, G, B. Add it to
+/// the standard error of the batches as the root of the sum of squares.
 ///
-/// An event that N paths have not met has, with 95 %, a share of at most 3/N of them (the rule of three).
-/// Its light, with the most W that one path can bring, then has the variance 3W²/N² at most.
-pub fn unmet_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
-    most_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
+/// An event that N paths have not sampled has a share of at most 3/N with 95 % confidence (the rule of three). With the
+/// upper bound W of one path's light, its variance is at most 3W²/N².
+pub fn unsampled_light_error(scene: &Scene, bounces: u32, paths: u32) -> [f64; 3] {
+    max_path_light(scene, bounces).map(|most| 3_f64.sqrt() * most / f64::from(paths))
 }
 
-/// The same of bounced light alone, of a [`reference_at`] so many samples all together: the root of the mean square over
-/// them, but for a `chance` in (0, 1). What no path of any of them has met has a share of at most
-/// -ln(chance) / (N · samples) of all (the rule of three: of 5 %, 3); its variance is W²/N times its mean share, with W
-/// the most that a path can bring when it has been reflected once.
-pub fn unmet_bounced_error(
+/// As [`unsampled_light_error`], for the indirect light of all texels of a [`reference_at`] together: the root mean square
+/// over them, except with a probability `chance` in (0, 1). An event that no path has sampled has a share of at most
+/// -ln(chance) / (N · samples) of all (the rule of three: 3 for 5 %). Its variance is W²/N times its mean share, with W
+/// the upper bound of a path's light after one reflection.
+pub fn unsampled_bounce_error(
     scene: &Scene,
     bounces: u32,
     (paths, samples): (u32, usize),
     chance: f64,
 ) -> [f64; 3] {
     let Some(later) = bounces.checked_sub(1) else { return [0.0; 3] };
-    let most = most_light(scene, later);
+    let most = max_path_light(scene, later);
     let share = -chance.ln() / samples as f64;
-    let scale = share.sqrt() * scene.surface.most_reflected() / f64::from(paths);
+    let scale = share.sqrt() * scene.surface.max_reflectance() / f64::from(paths);
     most.map(|most| scale * most)
 }
 
-/// Texels of the inputs of a [`reference`](reference()), in its plan's order: "heights"; "environment" (fourth
-/// channel: how densely directions of the texel are chosen, 1/sr) and its "environment_cdf" where there is
-/// one; "lights"; "albedo" and "phong" (exponent, scale) where they are maps.
+/// Texels of the inputs of a [`reference`](reference()), in the order of its plan: "heights"; "environment" (fourth
+/// channel: density of the chosen directions, 1/sr) and "environment_cdf" if there is one; "lights"; "albedo" and "phong"
+/// (exponent, scale) if they are maps.
 pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     let opaque = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
@@ -245,22 +243,22 @@ pub fn reference_inputs(scene: &Scene) -> Vec<Vec<f32>> {
     if let Albedo::Map(map) = &surface.albedo {
         all.push(opaque(map));
     }
-    if let Some(Lobe::Map(map)) = &surface.phong {
-        all.push(lobe_texels(map));
+    if let Some(Specular::Map(map)) = &surface.specular {
+        all.push(specular_texels(map));
     }
     all
 }
 
 /// Four channels a texel: exponent, scale.
-pub(super) fn lobe_texels(map: &[Phong]) -> Vec<f32> {
-    map.iter().flat_map(|phong| [phong.exponent, phong.scale, 0.0, 1.0]).collect()
+pub(super) fn specular_texels(map: &[PhongSpecular]) -> Vec<f32> {
+    map.iter().flat_map(|specular| [specular.exponent, specular.scale, 0.0, 1.0]).collect()
 }
 
-/// Two texels a light: suns, key lights, balls. See `path_trace.comp`.
+/// Two texels per light: suns, key lights, sphere lights. See `path_trace.comp`.
 fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
     let mut all = Vec::new();
     for sun in &lights.suns {
-        // The rounding of π is no direction: along a line of samples its sign would decide everything.
+        // The rounding error of π is not a direction: along a line of grid points its sign would decide the result.
         let level = |v: f64| if v.abs() < 1e-15 { 0.0 } else { v };
         let (sin, cos) = sun.azimuth_rad.sin_cos();
         let (up, along) = sun.elevation_rad.sin_cos();
@@ -274,17 +272,17 @@ fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
         all.push(1.0);
     }
     for key in &lights.keys {
-        let [top, bottom] = seen_part(key, border);
+        let [top, bottom] = visible_part(key, border);
         let first = (key.azimuth_rad - 0.5 * key.width_rad) / TAU;
         all.extend([first.rem_euclid(1.0), key.width_rad / TAU, top, bottom].map(|v| v as f32));
         let solid_angle = key.width_rad * 2.0 * (bottom - top);
         all.extend(key.radiance.map(|l| (solid_angle * f64::from(l)) as f32));
         all.push(1.0);
     }
-    for ball in &lights.spheres {
-        let [x, y, z] = ball.position_m;
-        all.extend([x, y, z - base_m, ball.radius_m].map(|v| v as f32));
-        all.extend(ball.radiance);
+    for sphere in &lights.sphere_lights {
+        let [x, y, z] = sphere.position_m;
+        all.extend([x, y, z - base_m, sphere.radius_m].map(|v| v as f32));
+        all.extend(sphere.radiance);
         all.push(1.0);
     }
     if all.is_empty() {
@@ -293,9 +291,9 @@ fn light_texels(lights: &Lights, border: Border, base_m: f64) -> Vec<f32> {
     all
 }
 
-/// sin² of half the zenith angle, (1 - sin elevation) / 2, of the highest and of the lowest elevation of a
-/// key light that paths may meet: above horizontal, where there is ground.
-pub(super) fn seen_part(key: &KeyLight, border: Border) -> [f64; 2] {
+/// sin² of half the zenith angle, (1 - sin elevation) / 2, of the highest and lowest elevation at which paths can reach a
+/// key light: above horizontal if there is ground.
+pub(super) fn visible_part(key: &KeyLight, border: Border) -> [f64; 2] {
     let least = if border == Border::Open { -FRAC_PI_2 } else { 0.0 };
     let [low, high] = key.elevations_rad.map(|e| e.max(least));
     [high, low].map(|e| (0.5 * (FRAC_PI_2 - e)).sin().powi(2))

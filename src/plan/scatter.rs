@@ -14,7 +14,7 @@ use crate::graph::{Builder, Format, Limits, Owner, ResourceId};
 use crate::passes::blocks::Blocks;
 use crate::passes::scatter_gather::{self as pass, Source, Steps};
 use crate::scene::{
-    Albedo, Curvature, Directions, HeightField, Lobe, Scatter, Scene, VisiblePoints, check_view,
+    Albedo, Curvature, Directions, HeightField, Scatter, Scene, Specular, VisiblePoints, check_view,
 };
 use crate::{Error, Result};
 use lights::sun_texels;
@@ -22,40 +22,40 @@ pub(crate) use lights::{sky_of, towards};
 use order::order;
 use wanted::Wanted;
 
-/// Bytes that pictures of paths between two steps may take, both together: more paths side by side keep a large device
-/// busy where the field is small.
+/// Largest memory, bytes, of the two images that carry paths from step to step. More paths in parallel keep a large device
+/// busy on a small field.
 const CARRIED_BYTES: u64 = 64 << 20;
-/// Bytes that light scattered towards views side by side may take.
+/// Largest memory, bytes, of the light scattered towards parallel views.
 const VIEWS_BYTES: u64 = 256 << 20;
-/// Paths side by side, at most.
+/// Largest number of parallel paths.
 const MOST_AT_ONCE: u64 = 64;
 
-/// Passes that scatter light by the method of dependent tests (Heidrich et al. 2000, §3.1-3.2): paths whose every step is
-/// one direction for the whole field and a look-up of what each sample sees along it, from their far ends to the samples.
+/// Passes that scatter light by the method of dependent tests (Heidrich et al. 2000, §3.1-3.2). Each step of a path is one
+/// direction for the whole field and a look-up of each texel's visible point along it, from the far end to the texels.
 ///
-/// Inputs: those of [`scatter_inputs`]. Output: "scattered", the light that has been reflected once to `bounces` times
-/// before it leaves each sample, mean of the paths so far, and their number; direct light is not in it. After each pass
-/// without a step in its name it is the result of fewer paths.
+/// Inputs: those of [`scatter_inputs`]. Output: "scattered", the light reflected 1 to `bounces` times before it leaves
+/// each texel: the mean of the paths so far, and their number. It excludes direct light. After each pass without a step in
+/// its name it is the result of fewer paths.
 ///
-/// What is diffuse starts from the direct light of all lights, that of sky and environment among it; paths that leave the
-/// field then bring nothing. Lobes reflect towards where their path comes from: what they mirror of suns, as points in
-/// their middles, and of the sky where a path leaves the field is added at each vertex.
+/// Diffuse paths start from the direct light of all lights, including sky and environment, so paths that leave the field
+/// add nothing. Phong lobes reflect towards the previous vertex: each vertex adds the specular of suns, as points at their
+/// centres, and of the sky where a path leaves the field.
 ///
-/// On a curved base ([`Scatter::curvature`]) samples see along directions of their own: 20 bytes a sample and direction more,
-/// in one image. The direct light that is handed in is then that on the curved base.
+/// On a curved base ([`Scatter::curvature`]) each texel has directions of its own: 20 more bytes per texel and direction,
+/// in one image. The direct light must then be that on the curved base.
 ///
-/// Of `directions` count those that paths choose: as often as each other until none is left, in an order that the seed
-/// decides, apart for every step.
+/// Paths choose each of `directions` once before any is repeated, in an order that depends on the seed, independently for
+/// every step.
 ///
-/// What the scene does not need is left out, and a note says so: bounces within [`Scatter::cutoff`], paths of one step that
-/// would look along all directions once more, lobes that reflect nothing, what they mirror of lights that give none. Where
-/// nothing is scattered, on black ground or where no place sees another, "scattered" is 0, and there are no inputs.
+/// The planner drops what the scene does not need, with a note: bounces within [`Scatter::cutoff`], paths of one step that
+/// would repeat all directions, specular of scale 0, specular of dark lights. If nothing scatters, on black ground or
+/// where no two points see each other, "scattered" is 0 and there are no inputs.
 ///
-/// More paths are added to those that "scattered" holds by a plan of [`Scatter::first_path`]
-/// ([`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan)), where both have as many.
+/// A plan with [`Scatter::first_path`] adds paths to those in "scattered"
+/// ([`Renderer::replace_plan`](crate::gpu::Renderer::replace_plan)) if both plans have the same number.
 ///
 /// # Errors
-/// As [`Scatter::check`]; a field of unknown heights; more memory than there is.
+/// As [`Scatter::check`]; a field of unknown heights; a plan beyond the memory limits.
 pub fn scatter(
     scene: &Scene,
     directions: &Directions,
@@ -65,12 +65,12 @@ pub fn scatter(
     scatter_views(scene, directions, scatter, &[scatter.view], limits)
 }
 
-/// The same towards several views, unit vectors: "scattered" has a layer for each, in their order; [`Scatter::view`] counts
-/// for nothing. Paths are walked once up to their last step, which is taken for each view: of d steps to v views
-/// d - 1 + v look-ups a path and sample instead of d v.
+/// As [`scatter`](scatter()), for several views, unit vectors: "scattered" has a layer for each, in order;
+/// [`Scatter::view`] is ignored. Only the last step of a path depends on the view: d steps to v views take d - 1 + v
+/// look-ups per path and texel instead of d v.
 ///
 /// # Errors
-/// As [`scatter`](scatter()); none, or more views than an image has layers; one that is not of length 1.
+/// As [`scatter`](scatter()); no views, or more than an image has layers; a view that is not a unit vector.
 pub fn scatter_views(
     scene: &Scene,
     directions: &Directions,
@@ -108,7 +108,7 @@ pub fn scatter_views(
         if matches!(surface.albedo, Albedo::Map(_)) {
             bound.push(("albedo_map", image("albedo", Owner::Input, rgba)));
         }
-        if matches!(wanted.lobe, Some(Lobe::Map(_))) {
+        if matches!(wanted.lobe, Some(Specular::Map(_))) {
             bound.push(("phong_map", image("phong", Owner::Input, rgba)));
         }
         let points = images(&mut builder, size, directions.count(), Owner::Input, limits)?;
@@ -152,7 +152,7 @@ pub fn scatter_views(
         let samples = u64::from(size[0]) * u64::from(size[1]);
         let is_chained = steps > 1;
         let fitting = CARRIED_BYTES / (2 * 16 * samples);
-        // Paths side by side look at one image of visible points.
+        // Parallel paths need one image of visible points.
         let most = match (points.len(), is_chained) {
             (1, true) => fitting.clamp(1, MOST_AT_ONCE).min(limits.image_layers.into()) as u32,
             (1, false) => MOST_AT_ONCE as u32,
@@ -175,7 +175,7 @@ pub fn scatter_views(
             first_path: scatter.first_path,
             weight_sr: directions.share_sr() * directions.count() as f64,
             views: layers,
-            own_lobe: wanted.own_lobe,
+            direct_specular: wanted.direct_specular,
             curvature: scatter.curvature,
         };
         let of_layer = if VisiblePoints::is_small(field.rows(), field.cols()) { 2 } else { 1 };
@@ -226,8 +226,8 @@ pub fn scatter_views(
     let settings = settings.map(|(name, value)| (name.to_owned(), value)).to_vec();
     if scatter.curvature != Curvature::FLAT && wanted.bounces > 0 {
         notes.push(format!(
-            "the base {changed}: by it scattered light is off by about {:.4} or less of the largest direct light, in the mean over samples",
-            changed.scattered(surface.most_reflected(), wanted.bounces)
+            "the base {changed}: error of scattered light about {:.4} or less of the largest direct light, mean over texels",
+            changed.scattered(surface.max_reflectance(), wanted.bounces)
         ));
     }
     if directions.lowest_z() > -1.0 && wanted.paths > 0 {
@@ -239,8 +239,8 @@ pub fn scatter_views(
     Plan::finish(builder, size, Vec::new(), Vec::new(), notes, settings, limits)
 }
 
-/// Of so many views those that go side by side: light scattered towards them takes 256 MiB at most, and an image has layers
-/// for them. Paths are walked again for the next.
+/// Number of `views` in one plan: the scattered light towards them takes at most 256 MiB and fits the layers of an image.
+/// The next views need the paths again.
 pub fn views_at_once(field: &HeightField, views: usize, limits: &Limits) -> usize {
     let fitting = VIEWS_BYTES / (16 * field.heights_m().len() as u64);
     fitting.clamp(1, limits.image_layers.into()).min(views.max(1) as u64) as usize
@@ -250,12 +250,12 @@ fn hash_text(directions: &Directions) -> String {
     format!("{:016x}", directions.hash())
 }
 
-/// Texels of the inputs of a [`scatter`](scatter()), in its plan's order: "heights"; "direct", the exit radiance of each
-/// sample under all lights without its lobe; "albedo" and "phong" (exponent, scale) where they are maps; the visible
+/// Texels of the inputs of a [`scatter`](scatter()), in the order of its plan: "heights"; "direct", the exit radiance of
+/// each texel under all lights without specular; "albedo" and "phong" (exponent, scale) if they are maps; the visible
 /// points, in as many images as `plan` has.
 ///
 /// # Errors
-/// Points of another field or other directions; direct light that is not one colour a sample.
+/// Points of another field or other directions; direct light without one colour per texel.
 pub fn scatter_inputs(
     plan: &Plan,
     scene: &Scene,
@@ -281,7 +281,7 @@ pub fn scatter_inputs(
     let four = |texels: &[[f32; 3]]| -> Vec<f32> {
         texels.iter().flat_map(|t| [t[0], t[1], t[2], 1.0]).collect()
     };
-    // Of a plan that scatters nothing: nothing.
+    // A plan that scatters nothing has no inputs.
     if plan.inputs().next().is_none() {
         return Ok(Vec::new());
     }
@@ -289,7 +289,7 @@ pub fn scatter_inputs(
     if let Albedo::Map(map) = &surface.albedo {
         all.push(four(map));
     }
-    if let Some(Lobe::Map(map)) = &surface.phong
+    if let Some(Specular::Map(map)) = &surface.specular
         && plan.inputs().any(|(_, r)| r.name == "phong")
     {
         all.push(map.iter().flat_map(|p| [p.exponent, p.scale, 0.0, 1.0]).collect());
@@ -305,7 +305,7 @@ pub fn scatter_inputs(
                 "those of the plan",
             ));
         };
-        // Words are handed over as the bits of floats.
+        // Words travel as the bits of floats.
         all.push(own.iter().map(|word| f32::from_bits(*word)).collect());
         words = rest;
     }
@@ -326,7 +326,7 @@ fn images_of_suns(
     let layers = VisiblePoints::layers(suns.count(), is_small) as u32;
     if layers > limits.image_layers {
         return Err(Error::Limit {
-            what: format!("{} suns in lobes", suns.count()),
+            what: format!("specular of {} suns", suns.count()),
             needs: format!("an image of {layers} layers"),
             limit: format!("{} on this device", limits.image_layers),
         });

@@ -1,4 +1,4 @@
-//! A lit field as a camera sees it: what its passes are told, as pure data.
+//! A camera view of a lit field, as pure data.
 
 mod passes;
 mod reduced;
@@ -16,20 +16,20 @@ use crate::scene::{Border, Camera, Lens, Scene, corners};
 use crate::{Error, Result};
 
 pub use passes::{ViewPass, ViewResource};
-pub use reduced::surface_error_m;
+pub use reduced::mesh_error_m;
 
-/// How a picture is drawn.
+/// Options of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Columns and rows of the picture, each 1 or more.
     pub size: [u32; 2],
-    /// Samples a pixel, 1, 2, 4 or 8: edges are means of so many. Every device has 1 and 4.
+    /// MSAA samples per pixel, 1, 2, 4 or 8. Every device has 1 and 4.
     pub samples: u32,
-    /// The mesh has a vertex at every `mesh_step`th sample of every such row, [1..1024], and along the last row and
-    /// column. The light is not reduced. Larger: faster, and off by [`surface_error_m`].
+    /// Stride of the mesh, in grid points along both axes, [1..1024]; the last row and column always have vertices. The light
+    /// keeps its resolution. Larger: faster; a height error of [`mesh_error_m`].
     pub mesh_step: u32,
-    /// Radiance, linear RGB, where neither ground nor sky is seen: below horizontal, unless the border is `open`.
-    /// An environment is seen there, too, and added. Also in place of a sky whose radiance the device alone knows
+    /// Radiance, linear RGB, of pixels without ground or sky: below horizontal, unless the border is `open`. A visible
+    /// environment is added to it. It also replaces a sky whose radiance only the device knows
     /// ([`Picture::colours_on_device`](super::Picture::colours_on_device)).
     pub background: [f32; 3],
 }
@@ -40,29 +40,29 @@ impl Default for ViewOptions {
     }
 }
 
-/// What is to be seen of a lit field, and from where: [`ViewRenderer`](crate::gpu::ViewRenderer) records it.
+/// A camera view of a lit field. [`ViewRenderer`](crate::gpu::ViewRenderer) records it.
 ///
-/// The surface is the mesh of two triangles a cell, split from (r, c) to (r+1, c+1), seen from both sides; a triangle
-/// with a void corner is a hole. A field that repeats is drawn once. Between samples the exit radiance is bilinear:
-/// a lobe is that of the view from straight above, as in the lit field. Behind it are the uniform sky and the
-/// environment by direction, radiance bilinear between the middles of its texels; suns, key lights and balls of light
-/// themselves are not drawn. Before an orthographic lens ground is seen as far above and below the scene's own heights as
-/// the picture spans, and as these reach along the view.
+/// The surface is the mesh of two triangles per cell, split from (r, c) to (r+1, c+1), visible from both sides. A triangle
+/// with a void corner is a hole. A periodic field appears once. Exit radiance is bilinear between texels; its specular is
+/// that of the view from straight above, as in the lit field. Behind the ground are the uniform sky and the environment by
+/// direction, bilinear between the centres of its texels; suns, key lights and sphere lights are not visible. With an
+/// orthographic lens, visible ground reaches above and below the scene's heights by the height of the picture and the
+/// heights' own extent along the view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Columns and rows of the picture.
     pub size: [u32; 2],
-    /// Samples a pixel.
+    /// MSAA samples per pixel.
     pub samples: u32,
     /// Columns and rows of the field.
     pub field: [u32; 2],
     /// Format of the lit field.
     pub radiance: Format,
-    /// Columns and rows of the environment, where one is seen.
+    /// Columns and rows of the environment, if visible.
     pub environment: Option<[u32; 2]>,
-    /// Whether the field has voids: may be set where its heights are [unknown](crate::scene::HeightField::unknown).
+    /// Whether the field has voids. You may set it for [unknown](crate::scene::HeightField::unknown) heights.
     pub has_voids: bool,
-    /// The settings really used, as (name, value).
+    /// The effective settings, as (name, value).
     pub settings: Vec<(String, String)>,
     pub(crate) terrain: TerrainDrawPush,
     pub(crate) tiles: u32,
@@ -70,20 +70,20 @@ pub struct View {
     depths: Depths,
 }
 
-/// What depths in the depth image stand for: 0 infinitely far away.
+/// Meaning of the depth image: 0 is infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Depths {
-    /// This length over the distance.
+    /// `near_m` over the distance.
     Inverse { near_m: f64 },
-    /// From the farthest, 0, to the nearest, 1.
+    /// Linear from the farthest point, 0, to the nearest, 1.
     Even { near_m: f64, far_m: f64 },
 }
 
 impl View {
-    /// What a camera sees of a scene whose light `lit` draws.
+    /// The view of a camera on a scene whose light `lit` computes.
     ///
     /// # Errors
-    /// A camera or options out of range; a field less than two samples wide; a picture beyond the limits.
+    /// A camera or options out of range; a field less than two grid points wide; a picture beyond the limits.
     pub fn new(
         scene: &Scene,
         lit: &Plan,
@@ -126,21 +126,20 @@ impl View {
             return Err(Error::Limit {
                 what: format!("a picture of {} × {}", view.size[0], view.size[1]),
                 needs: bytes_text(bytes),
-                limit: format!("{} of --memory-budget", bytes_text(limits.memory_budget)),
+                limit: format!("{} of `memory_budget`", bytes_text(limits.memory_budget)),
             });
         }
         Ok(view)
     }
 
-    /// Bytes of the images that a picture takes, its own and the caller's.
+    /// Bytes of a picture's images, its own and the caller's.
     pub fn bytes(&self) -> u64 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let of_samples = if self.samples > 1 { u64::from(self.samples) * 20 } else { 0 };
         pixels * (20 + of_samples)
     }
 
-    /// Distance along the direction of view, from the plane of the eye, of a value of the depth image; infinite where
-    /// no ground is seen.
+    /// Distance from the plane of the eye along the view direction for a value of the depth image; infinite without ground.
     pub fn distance_m(&self, depth: f32) -> f64 {
         let depth = f64::from(depth);
         match self.depths {
@@ -150,7 +149,7 @@ impl View {
         }
     }
 
-    /// Whether a renderer of another view can record this one: of what both know, only cameras and light differ.
+    /// Whether a renderer of `other` can record this view: they may differ only in camera and light.
     pub fn is_shaped_like(&self, other: &Self) -> bool {
         let shape = |v: &Self| {
             (v.size, v.samples, v.field, v.radiance, v.environment.is_some(), v.has_voids)
@@ -166,7 +165,7 @@ impl ViewOptions {
     }
 
     /// # Errors
-    /// What is out of range whatever the device, by name.
+    /// The first value out of range on any device, by name.
     pub fn check(&self) -> Result<()> {
         let Self { size, samples, mesh_step, background } = self;
         if size.contains(&0) {
@@ -200,7 +199,7 @@ impl ViewOptions {
     }
 }
 
-/// The mesh and what its depths stand for.
+/// The mesh and the meaning of its depths.
 fn terrain(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (TerrainDrawPush, Depths) {
     let field = &scene.field;
     let [cell_x, cell_y] = field.cell_m();
@@ -208,7 +207,7 @@ fn terrain(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (TerrainDra
     let [right, up, back] = camera.axes();
     let eye = camera.eye_m();
     let (projection, depths) = projection(scene, camera, options);
-    // Numbers of f32 are counted from here: where all rays begin, or about which they stand.
+    // Origin of f32 coordinates: the eye of a perspective lens, else the target.
     let near_m = match camera.lens {
         Lens::Perspective { .. } => eye,
         Lens::Orthographic { .. } => DVec3::from(camera.target_m),
@@ -241,16 +240,16 @@ fn terrain(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (TerrainDra
     (push, depths)
 }
 
-/// Whole numbers up to it are f32's, too.
+/// Whole numbers up to this are exact in f32.
 const WHOLE: i32 = 1 << 23;
 
-/// From the camera's axes to clip coordinates: depth falls from 1 near to 0 far away, y points down.
+/// From the camera's axes to clip coordinates: depth falls from 1 near to 0 far, y points down.
 fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, Depths) {
     let aspect = options.aspect();
     let down = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0));
     match camera.lens {
         Lens::Perspective { fov_rad } => {
-            // The f32 of a depth is as exact wherever the near plane is: nearer than any ground that fills a pixel.
+            // The precision of an f32 depth does not depend on the near plane, so it lies before any ground that fills a pixel.
             let cell = scene.field.cell_m().into_iter().fold(f64::INFINITY, f64::min);
             let near_m = 1e-3 * cell.min(camera.distance_m);
             let matrix = DMat4::perspective_infinite_reverse_rh(fov_rad, aspect, near_m);
@@ -263,18 +262,18 @@ fn projection(scene: &Scene, camera: &Camera, options: &ViewOptions) -> (DMat4, 
                 .iter()
                 .map(|c| (eye - *c).dot(back))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(d), f.max(d)));
-            // Level ground seen from above has depth; and heights that an engine changes have some room.
+            // Gives level ground a depth range, and room for heights that change on the device.
             let margin = far - near + height_m;
             let (near_m, far_m) = (near - margin, far + margin);
             let [x, y] = [height_m * aspect / 2.0, height_m / 2.0];
-            // Near and far exchanged.
+            // Near and far exchanged: reversed depth.
             let matrix = DMat4::orthographic_rh(-x, x, -y, y, far_m, near_m);
             (down * matrix, Depths::Even { near_m, far_m })
         }
     }
 }
 
-/// `is_on_device`: the device alone knows the sky's radiance.
+/// `is_on_device`: only the device knows the sky's radiance.
 fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, is_on_device: bool) -> SkyDrawPush {
     let [right, up, back] = camera.axes();
     let half_m = match camera.lens {
@@ -303,7 +302,7 @@ fn sky(scene: &Scene, camera: &Camera, options: &ViewOptions, is_on_device: bool
 
 fn settings(camera: &Camera, options: &ViewOptions) -> Vec<(String, String)> {
     let [x, y, z] = camera.target_m;
-    // As the flags take them, less the rounding of turning degrees to radians and back.
+    // In degrees, without the rounding to radians and back.
     let degrees = |rad: f64| (rad.to_degrees() * 1e9).round() / 1e9;
     let (compass, elevation) = (90.0 - degrees(camera.azimuth_rad), degrees(camera.elevation_rad));
     let lens = match camera.lens {
@@ -329,9 +328,9 @@ mod tests {
     use crate::scene::{HeightField, Lights, Quality, Surface};
     use std::f64::consts::FRAC_PI_2;
 
-    /// A sky that the device alone knows the colour of is not drawn in the scene's.
+    /// A sky with its colour on the device is not drawn in the scene's colour.
     #[test]
-    fn a_sky_of_the_device_is_background() {
+    fn a_sky_with_its_colour_on_the_device_is_drawn_as_background() {
         let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
         let lights = Lights { sky: Some([9.0; 3]), ..Lights::default() };
         let scene = Scene { field, surface: Surface::default(), lights };
@@ -352,11 +351,11 @@ mod tests {
         }
     }
 
-    /// Level ground of 3 by 3 samples at height 7, the eye 4 above its middle. The north-western sample is 1 west and 1
-    /// north of it. Under 90° the picture spans 8 there from below to above and, twice as wide as high, 16 across: the
-    /// sample is 1/8 to the left and 1/4 up. A parallel picture 5 high and 10 wide: 1/5 and 2/5.
+    /// Level ground of 3 by 3 grid points at height 7, the eye 4 above its centre. The north-western point is 1 west and 1
+    /// north of it. Under 90° the picture spans 8 there from bottom to top and, twice as wide as high, 16 across: the point is
+    /// 1/8 to the left and 1/4 up. An orthographic picture 5 high and 10 wide gives 1/5 and 2/5.
     #[test]
-    fn samples_are_where_they_are_derived() {
+    fn a_grid_point_projects_to_its_derived_position() {
         let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
         let lights = Lights { sky: Some([1.0; 3]), ..Lights::default() };
         let scene = Scene { field, surface: Surface::default(), lights };

@@ -7,21 +7,21 @@ use crate::scene::{Border, Directions, HeightField, VisiblePoints};
 use crate::{Error, Result};
 use std::ops::Range;
 
-/// Rays that one dispatch follows, about: tenths of a second on a slow device, so that none is taken for hung.
+/// Approximate number of rays per dispatch: tenths of a second on a slow device, below its watchdog.
 const BAND_RAYS: u64 = 1 << 24;
 
-/// Passes that find what every sample sees in each direction: [`VisiblePoints`].
+/// Passes that find the visible point of every texel in each direction: [`VisiblePoints`].
 ///
-/// Input: "heights". Outputs: "visible_points", one u32 a sample and layer, or as many images "visible_points.0",
-/// "visible_points.1", … as the device's limits on layers and allocations cut it into, each of whole layers in order;
-/// their words, one after the other, are those of [`VisiblePoints::new`].
+/// Input: "heights". Outputs: "visible_points", one u32 per texel and layer. The device's limits on layers and allocations
+/// may split it into "visible_points.0", "visible_points.1", …, each of whole layers in order. Their words in sequence are
+/// those of [`VisiblePoints::new`].
 ///
-/// A ray ends where it meets the surface, leaves the field, or has risen above all of it. Under `periodic` one that
-/// rises or falls by s a cell does so within relief / s cells; flatter ones than relief / 16384 a cell are followed that
-/// far and then see the sky, or, level or falling, black ground: a note says how many directions are.
+/// A ray ends where it hits the surface, leaves the field, or has risen above all of it. Under `periodic` a ray with a
+/// slope of s per cell ends within relief / s cells. Rays flatter than relief / 16384 per cell stop after that distance
+/// and then count as sky or, if level or falling, as black ground; a note states how many directions these are.
 ///
 /// # Errors
-/// A field of unknown heights, one too large for 16 bits a coordinate, or beyond the limits: memory is stated before anything is made.
+/// A field of unknown heights, or too large for 16 bits per coordinate; a scene beyond the limits.
 pub fn visible_points(
     field: &HeightField,
     border: Border,
@@ -71,7 +71,7 @@ pub fn visible_points(
 }
 
 /// # Errors
-/// Heights that nobody knows, above the highest of which rays end; a side whose numbers could be taken for marks.
+/// Unknown heights, as rays end above the highest; a side whose numbers could equal a mark.
 pub(super) fn check_field(field: &HeightField) -> Result<()> {
     if field.is_unknown() {
         let expected = "heights: rays end above the highest";
@@ -88,10 +88,10 @@ pub(super) fn check_field(field: &HeightField) -> Result<()> {
     })
 }
 
-/// Images of all layers, each with its own of them.
+/// Images for all layers, each with its range of layers.
 ///
 /// # Errors
-/// One layer that is more than the device allocates at once.
+/// One layer larger than an allocation of the device.
 pub(super) fn images(
     builder: &mut Builder,
     size: [u32; 2],
@@ -113,7 +113,7 @@ pub(super) fn images(
             ),
         });
     }
-    // Even numbers, so that pairs of directions begin with an even one in every image.
+    // Even numbers, so that in every image pairs of directions begin with an even one.
     let each = if most >= layers { layers } else { (most / 2 * 2).max(1) };
     let all = (0..layers).step_by(each as usize).enumerate().map(|(k, first)| {
         let band = first..layers.min(first + each);
@@ -127,10 +127,10 @@ pub(super) fn images(
     Ok(all.collect())
 }
 
-/// The image of all directions, for passes that look at all.
+/// The image of all directions, for passes that read them together.
 ///
 /// # Errors
-/// Several.
+/// Several images.
 pub(super) fn one_image(
     field: &HeightField,
     directions: &Directions,
@@ -144,7 +144,7 @@ pub(super) fn one_image(
     let (count, samples) = (directions.count(), (field.rows() * field.cols()) as u64);
     let layers = VisiblePoints::layers(count, is_small) as u64;
     Err(Error::Limit {
-        what: format!("what samples see in {count} directions, looked at together"),
+        what: format!("visible points in {count} directions together"),
         needs: format!("one image of {layers} layers, {}", bytes_text(4 * samples * layers)),
         limit: format!(
             "{} layers and {} in one allocation; fewer directions or a smaller field fit",
@@ -154,13 +154,13 @@ pub(super) fn one_image(
     })
 }
 
-/// One a direction: east, north, up.
+/// One texel per direction: east, north, up.
 pub(super) fn texels(directions: &Directions) -> Vec<f32> {
     let vectors = directions.vectors().iter();
     vectors.flat_map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0]).collect()
 }
 
-/// The dispatches that fill an image, its directions' texels `first` and on in the buffer.
+/// The dispatches that fill an image; the texels of its directions begin at `first` in the buffer.
 pub(super) fn record(
     builder: &mut Builder,
     (field, border): (&HeightField, Border),
@@ -192,8 +192,8 @@ pub(super) fn record(
     }
 }
 
-/// Directions whose rays over repetitions end before they are proved to have met nothing: those that rise or fall by
-/// less than the relief over the farthest that one is followed.
+/// Number of directions whose rays over repetitions end early: those that rise or fall by less than the relief over the
+/// largest traced distance.
 fn cut_short(field: &HeightField, border: Border, directions: &Directions) -> usize {
     if border != Border::Periodic {
         return 0;
@@ -202,7 +202,7 @@ fn cut_short(field: &HeightField, border: Border, directions: &Directions) -> us
     let (low, high) = heights.fold((f32::MAX, f32::MIN), |(l, h), z| (l.min(*z), h.max(*z)));
     let relief = f64::from(high) - f64::from(low);
     let [x, y] = field.cell_m();
-    // Rays count cells along the axis along which they run faster.
+    // Rays count cells along their faster axis.
     let of_cell = |v: &glam::DVec3| v.z.abs() / (v.x.abs() / x).max(v.y.abs() / y).max(1e-9);
     let flat = |v: &&glam::DVec3| of_cell(v) * f64::from(REACH_CELLS) < relief;
     directions.vectors().iter().filter(flat).count()

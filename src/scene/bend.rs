@@ -1,24 +1,24 @@
-//! Directions on a curved base (Heidrich et al. 2000, §5).
+//! Directions on a curved base surface (Heidrich et al. 2000, §5).
 
 use glam::{DVec2, DVec3};
 
 use super::Curvature;
 use crate::basis::triangles::Triangles;
 
-/// Steps of cells after which rays over periodic fields are given up.
+/// Cells after which rays over periodic fields stop.
 pub const REACH_CELLS: u32 = 16384;
 
-/// No way turns the frame by more than a right angle, radians.
-pub const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
+/// Largest rotation of the frame along a path, radians: a right angle.
+pub const MAX_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Towards what stands `away` m off along `e` on the flat field, from a sample at height `own_m`: of length 1, in the
-/// sample's own frame. A way that would turn further is taken as far as [`MOST_TURN`].
+/// Unit direction, in the texel's own frame, towards the point that lies `away_m` metres away along `e` on the flat
+/// field; the texel is at height `own_m`. A path that would turn further stops at [`MAX_TURN_RAD`].
 pub fn bent_direction(e: DVec3, away_m: f64, own_m: f64, curvature: Curvature) -> DVec3 {
-    bent_as_far(e, away_m, own_m, (curvature, MOST_TURN))
+    bent_direction_within(e, away_m, own_m, (curvature, MAX_TURN_RAD))
 }
 
-/// The same of ways that turn the frame by up to `most_turn`, radians.
-pub fn bent_as_far(
+/// Like [`bent_direction`], with a limit `most_turn` in radians.
+pub fn bent_direction_within(
     e: DVec3,
     away_m: f64,
     own_m: f64,
@@ -34,7 +34,7 @@ pub fn bent_as_far(
     let height_m = own_m + way_m * e.z;
     let turn = rate * way_m;
     let along = per_m / rate;
-    // Per metre of the way, so that what is near keeps a direction: sin(v)/v and (1 - cos v)/v of v = turn.
+    // Per metre of the path, so that near points keep a direction: sin(v)/v and (1 - cos v)/v of v = turn.
     let [arc, fall] = match turn {
         0.0 => [1.0, 0.0],
         _ => [turn.sin() / turn, 2.0 * (0.5 * turn).sin().powi(2) / turn],
@@ -45,16 +45,16 @@ pub fn bent_as_far(
     DVec3::new(plan.x, plan.y, up).normalize()
 }
 
-/// Directions on the flat field beside each other, and what they cover.
+/// For each direction on the flat field, the triangles around it and their solid angle.
 pub struct Fans {
-    /// Of each direction the two other corners of its triangles, counter-clockwise.
+    /// For each direction, the two other corners of its triangles, counter-clockwise.
     pub pairs: Vec<Vec<[u32; 2]>>,
     /// Solid angle of those triangles, sr.
     pub flat_sr: Vec<f64>,
 }
 
 impl Fans {
-    /// Of a net over directions.
+    /// From a triangulation of directions.
     pub fn of(triangles: &Triangles, vectors: &[DVec3]) -> Self {
         let mut pairs = vec![Vec::new(); vectors.len()];
         for [a, b, c] in triangles.corners() {

@@ -3,29 +3,28 @@ use super::quality::{Quality, within};
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 
-/// Light that comes from the surface itself: each sample sees what others throw at it.
+/// Indirect light: light that the surface reflects onto itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounces {
-    /// Times that light may be reflected on its way to a sample, [0..64], default 0: direct light alone.
-    /// Time grows in proportion.
+    /// Number of bounces, [0..64], default 0: direct light only. Time grows in proportion.
     pub count: u32,
-    /// How what a sample sees of the surface is found.
+    /// How the surface visible from each texel is found.
     pub engine: BounceEngine,
-    /// Azimuths that each sample looks along, [4..1024], default 32. Fewer: faster; narrow things that
-    /// shine are seen in some azimuths and missed in others.
+    /// Azimuths per texel, [4..1024], default 32. Fewer: faster; narrow bright features are hit in some azimuths and missed
+    /// in others.
     pub azimuths: u32,
-    /// Share of the direct light's energy that may be left out, [0..1], default 1/65536. Of a surface that
-    /// reflects at most the share a, all bounces from the k-th on carry at most aᵏ + aᵏ⁺¹ + …: the last
-    /// ones are dropped. More: faster, darker hollows. 0: none is dropped.
+    /// Share of the direct light's energy that may be dropped, [0..1], default 1/65536. With the largest reflectance a, all
+    /// bounces from the k-th on carry at most aᵏ + aᵏ⁺¹ + …; the last ones are dropped. Higher: faster, darker hollows. 0
+    /// drops none.
     pub cutoff: f64,
-    /// Levels an octave of the pyramid of exit radiance, k, [1..16], default 4. Fewer: less memory, colours of
-    /// what stands between two distances smeared. Only with [`BounceEngine::Pyramid`], as is the next.
+    /// Levels per octave of the pyramid of exit radiance, k, [1..16], default 4. Fewer: less memory, colours between two
+    /// distances blur. Used by [`BounceEngine::Pyramid`] only, like the next field.
     pub level_step: u32,
-    /// Octaves by which samples look at finer levels of it than their distance asks for, o, [0..4], default 2.
-    /// Fewer: soft colours of what is far; more: narrow bright things seen or missed by chance.
+    /// Octaves by which the level is finer than the distance requires, o, [0..4], default 2. Fewer: distant colours blur;
+    /// more: narrow bright features alias.
     pub level_offset: u32,
-    /// What is kept of the light that lobes throw on. Only where the surface has a lobe.
-    pub gloss: BounceGloss,
+    /// How specular exit radiance is stored for the next bounce. Only where the surface has a specular lobe.
+    pub specular: BounceSpecular,
 }
 
 impl Default for Bounces {
@@ -35,7 +34,7 @@ impl Default for Bounces {
 }
 
 impl Bounces {
-    /// The default: direct light alone.
+    /// The default: direct light only.
     pub const NONE: Self = Self {
         count: 0,
         engine: BounceEngine::Auto,
@@ -43,11 +42,11 @@ impl Bounces {
         cutoff: 1.0 / 65536.0,
         level_step: 4,
         level_offset: 2,
-        gloss: BounceGloss::Vector,
+        specular: BounceSpecular::Vector,
     };
-    /// What [`count`](Self::count) may be.
+    /// Range of [`count`](Self::count).
     pub const COUNT: RangeInclusive<u32> = 0..=64;
-    /// What [`azimuths`](Self::azimuths) may be.
+    /// Range of [`azimuths`](Self::azimuths).
     pub const AZIMUTHS: RangeInclusive<u32> = 4..=1024;
 
     /// Checks every range.
@@ -55,25 +54,24 @@ impl Bounces {
     /// # Errors
     /// The first setting out of range, by its name on the command line.
     pub fn check(&self) -> Result<()> {
-        within("--bounces", self.count, Self::COUNT)?;
-        within("--bounce-azimuths", self.azimuths, Self::AZIMUTHS)?;
+        within("bounces", self.count, Self::COUNT)?;
+        within("bounce_azimuths", self.azimuths, Self::AZIMUTHS)?;
         if !(0.0..=1.0).contains(&self.cutoff) {
             let found = self.cutoff.to_string();
-            return Err(Error::setting("--bounce-cutoff", found, "a share from 0 to 1"));
+            return Err(Error::setting("bounce_cutoff", found, "a share from 0 to 1"));
         }
-        within("--bounce-level-step", self.level_step, Quality::LEVEL_STEP)?;
-        within("--bounce-level-offset", self.level_offset, Quality::LEVEL_OFFSET)
+        within("bounce_level_step", self.level_step, Quality::LEVEL_STEP)?;
+        within("bounce_level_offset", self.level_offset, Quality::LEVEL_OFFSET)
     }
 
-    /// Whether what a sweep along lines has met is walked over for the light that such a surface throws.
+    /// Whether bounces on this surface walk over the occluders of a sweep along lines.
     pub(crate) fn walk_over(&self, surface: &Surface) -> bool {
-        let albedo = surface.most_reflected();
-        self.engine == BounceEngine::Sweep && self.worth_drawing(albedo) > 0
+        let albedo = surface.max_reflectance();
+        self.engine == BounceEngine::Sweep && self.needed_bounces(albedo) > 0
     }
 
-    /// How many of them are drawn on a surface that reflects at most the share `albedo`: the fewest that
-    /// leave out no more than [`cutoff`](Self::cutoff).
-    pub fn worth_drawing(&self, albedo: f64) -> u32 {
+    /// Bounces to compute at the largest reflectance `albedo`: the fewest that drop no more than [`cutoff`](Self::cutoff).
+    pub fn needed_bounces(&self, albedo: f64) -> u32 {
         let mut left = 0.0;
         let is_worth = |k: &u32| {
             left += albedo.powi(*k as i32);
@@ -83,23 +81,23 @@ impl Bounces {
     }
 }
 
-/// How what a sample sees of the surface is found.
+/// How the surface visible from each texel is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BounceEngine {
     /// The planner's choice: [`Sweep`](Self::Sweep) where horizons come from a sweep along lines, else
-    /// [`Brute`](Self::Brute). On four real fields under two environments the former took 0.1 to 0.4 of the latter's
-    /// time and was as near to light paths (`examples/bounce`).
+    /// [`BruteForce`](Self::BruteForce). On four real fields under two environments `Sweep` took 0.1 to 0.4 of the time of
+    /// `BruteForce` with the same error against the path-traced reference (`examples/bounce`).
     #[default]
     Auto,
-    /// Every stretch of the surface that a sample sees along each azimuth, in closed form: exact but for the
-    /// azimuths, and slower in proportion to the side.
-    Brute,
-    /// Those stretches of the surface that a sample sees on its own lines at every march step, found through what
-    /// a sweep along lines has met: a hull tree (Timonen 2012). Needs such a sweep.
+    /// Every visible interval along each azimuth, in closed form: exact but for the azimuths. Time per texel grows with the
+    /// side of the field.
+    BruteForce,
+    /// The visible intervals on the texel's own lines at every march step, found in the hull tree of a sweep along lines
+    /// (Timonen 2012). Needs such a sweep.
     Sweep,
-    /// One sample a level of a pyramid of heights, as [`Method::Pyramid`](super::Method::Pyramid) with its levels,
-    /// and of one of exit radiance (Nowrouzezahrai & Snyder 2009): time in proportion to the samples and the
-    /// logarithm of the side, error whatever the settings.
+    /// One sample per level of a height pyramid, as [`Method::Pyramid`](super::Method::Pyramid) with its levels, and of a
+    /// pyramid of exit radiance (Nowrouzezahrai & Snyder 2009). Time is proportional to the texels and to the logarithm of
+    /// the side. Approximate at any setting.
     Pyramid,
 }
 
@@ -108,33 +106,33 @@ impl BounceEngine {
     pub fn name(self) -> &'static str {
         match self {
             BounceEngine::Auto => "auto",
-            BounceEngine::Brute => "brute",
+            BounceEngine::BruteForce => "brute-force",
             BounceEngine::Sweep => "sweep",
             BounceEngine::Pyramid => "pyramid",
         }
     }
 }
 
-/// What is kept of the light that lobes throw on, at every texel of the pyramid of exit radiance.
+/// How specular exit radiance is stored at every texel of its pyramid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BounceGloss {
-    /// Exit radiance by direction, as spherical harmonics of the order that what is seen has: each sample is lit by what
-    /// shines towards it (Nowrouzezahrai & Snyder 2009, §5.3). Memory: n² colours a texel.
+pub enum BounceSpecular {
+    /// By direction, as spherical harmonics of the order of visibility: each texel receives what leaves towards it
+    /// (Nowrouzezahrai & Snyder 2009, §5.3). Memory: n² colours per texel.
     #[default]
     Vector,
-    /// The same as f16: half the memory, radiance rounded to 1/2048 of itself and held below 65504.
+    /// As `Vector` in f16: half the memory, rounded to 1/2048, below 65504.
     VectorF16,
-    /// Exit radiance as seen from above, as if it were diffuse: one colour a texel, wrong by direction.
+    /// As seen from above, treated as diffuse: one colour per texel, with an error that depends on direction.
     Scalar,
 }
 
-impl BounceGloss {
+impl BounceSpecular {
     /// As the command line spells it.
     pub fn name(self) -> &'static str {
         match self {
-            BounceGloss::Vector => "vector",
-            BounceGloss::VectorF16 => "vector-f16",
-            BounceGloss::Scalar => "scalar",
+            BounceSpecular::Vector => "vector",
+            BounceSpecular::VectorF16 => "vector-f16",
+            BounceSpecular::Scalar => "scalar",
         }
     }
 }
@@ -143,20 +141,20 @@ impl BounceGloss {
 mod tests {
     use super::*;
 
-    /// At ½ the 10th and later of 12 carry 2⁻¹⁰ + 2⁻¹¹ + 2⁻¹², those from the 9th on 2⁻⁹ more.
+    /// At ½, bounces 10 to 12 carry 2⁻¹⁰ + 2⁻¹¹ + 2⁻¹²; from the 9th on, 2⁻⁹ more.
     #[test]
-    fn what_is_dropped_is_what_may_be_left_out() {
+    fn needed_bounces_drops_what_the_cutoff_allows() {
         let of = |count, cutoff| Bounces { count, cutoff, ..Bounces::default() };
         let late = (0..3).map(|k| 2_f64.powi(-10 - k)).sum::<f64>();
-        assert_eq!(of(12, late).worth_drawing(0.5), 9);
-        assert_eq!(of(12, 0.999 * late).worth_drawing(0.5), 10);
-        assert_eq!(of(12, 0.0).worth_drawing(0.5), 12);
-        assert_eq!(of(12, 1.0 / 65536.0).worth_drawing(1.0), 12);
+        assert_eq!(of(12, late).needed_bounces(0.5), 9);
+        assert_eq!(of(12, 0.999 * late).needed_bounces(0.5), 10);
+        assert_eq!(of(12, 0.0).needed_bounces(0.5), 12);
+        assert_eq!(of(12, 1.0 / 65536.0).needed_bounces(1.0), 12);
         for cutoff in [0.0, 1.0] {
-            assert_eq!(of(12, cutoff).worth_drawing(0.0), 0);
+            assert_eq!(of(12, cutoff).needed_bounces(0.0), 0);
         }
-        assert_eq!(of(0, 0.0).worth_drawing(1.0), 0);
-        assert!(of(65, 0.0).check().unwrap_err().to_string().contains("--bounces"));
-        assert!(of(1, f64::NAN).check().unwrap_err().to_string().contains("--bounce-cutoff"));
+        assert_eq!(of(0, 0.0).needed_bounces(1.0), 0);
+        assert!(of(65, 0.0).check().unwrap_err().to_string().contains("bounces"));
+        assert!(of(1, f64::NAN).check().unwrap_err().to_string().contains("bounce_cutoff"));
     }
 }

@@ -5,46 +5,46 @@ use glam::DVec3;
 use super::HeightField;
 use crate::{Error, Result};
 
-/// Where a picture is seen from: on a sphere around the place that it looks at, north up on the map.
+/// A camera on a sphere around its target. Up in the image is up in the scene.
 ///
-/// Places are in the field's length unit: x east of the westernmost column, y north of the southernmost row, z up,
-/// absolute like the file's heights.
+/// Positions are in the field's length unit: x east of the westernmost column, y north of the southernmost row, z up and
+/// absolute, like the heights of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// What stands in the middle of the picture.
+    /// The target, at the centre of the image.
     pub target_m: [f64; 3],
-    /// Where the eye stands as seen from there: in the plane, radians counter-clockwise from east.
+    /// Azimuth of the eye seen from the target, radians counter-clockwise from east.
     pub azimuth_rad: f64,
-    /// And above horizontal, radians, [-π/2..π/2]. At π/2 the picture is a map whose upper edge lies towards the
-    /// azimuth's opposite: north for an eye in the south.
+    /// Elevation of the eye seen from the target, radians, [-π/2..π/2]. At π/2 the image is a map whose upper edge lies
+    /// opposite the azimuth: north for an eye in the south.
     pub elevation_rad: f64,
-    /// From there to the eye, [1e-9..1e15].
+    /// Distance from the target to the eye, [1e-9..1e15].
     pub distance_m: f64,
-    /// How much is seen.
+    /// The projection.
     pub lens: Lens,
 }
 
-/// How places become pixels.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
-    /// All rays meet in the eye.
+    /// Rays meet in the eye.
     Perspective {
-        /// Angle between the lower and the upper edge of the picture, radians, [0.001..3].
+        /// Vertical field of view, radians, [0.001..3].
         fov_rad: f64,
     },
-    /// All rays are parallel: what is farther away is not smaller.
+    /// Rays are parallel.
     Orthographic {
-        /// What the picture spans from its lower to its upper edge, [1e-9..1e15].
+        /// Height of the visible area, [1e-9..1e15].
         height_m: f64,
     },
 }
 
-/// Lengths and coordinates of cameras.
+/// Range of lengths and coordinates of cameras.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-9..=1e15;
 
 impl Camera {
-    /// A camera that looks at a place, or the middle of a field, from an azimuth and an elevation, so near that all
-    /// of the field is just in a picture `aspect` times as wide as high. An orthographic lens's height is set to fit.
+    /// A camera whose image, `aspect` times as wide as high, just holds the field. The target defaults to the centre of the
+    /// field. The height of an orthographic lens is set to fit.
     pub fn around(
         field: &HeightField,
         target_m: Option<[f64; 3]>,
@@ -76,7 +76,7 @@ impl Camera {
         camera
     }
 
-    /// Unit vectors to the right, up and back, out of the picture: right-handed.
+    /// Unit vectors right, up and back (out of the image): right-handed.
     pub fn axes(&self) -> [DVec3; 3] {
         let (sin_phi, cos_phi) = self.azimuth_rad.sin_cos();
         let (sin, cos) = self.elevation_rad.sin_cos();
@@ -85,13 +85,13 @@ impl Camera {
         [up.cross(back), up, back]
     }
 
-    /// Where the eye is.
+    /// Position of the eye.
     pub fn eye_m(&self) -> DVec3 {
         DVec3::from(self.target_m) + self.distance_m * self.axes()[2]
     }
 
     /// # Errors
-    /// What is out of range, by name.
+    /// The first value out of range, by name.
     pub fn check(&self) -> Result<()> {
         let bad = |what: &str, found: String, expected: &str| {
             Err(Error::setting(format!("camera: {what}"), found, expected))
@@ -121,7 +121,7 @@ impl Camera {
     }
 }
 
-/// Corners of the box around a field: first the lowest in the south-west, last the highest in the north-east.
+/// Corners of the field's bounding box: first the lowest in the south-west, last the highest in the north-east.
 pub(crate) fn corners(field: &HeightField) -> [DVec3; 8] {
     let [cell_x, cell_y] = field.cell_m();
     let far = [(field.cols() - 1) as f64 * cell_x, (field.rows() - 1) as f64 * cell_y];
@@ -140,9 +140,9 @@ pub(crate) fn corners(field: &HeightField) -> [DVec3; 8] {
 mod tests {
     use super::*;
 
-    /// From the south, 90° up: a map with north up, east to the right.
+    /// From the south, 90° up: north is up and east is right.
     #[test]
-    fn from_straight_above_east_is_right_and_north_up() {
+    fn seen_from_above_east_is_right_and_north_is_up() {
         let camera = Camera {
             target_m: [0.0; 3],
             azimuth_rad: -FRAC_PI_2,
@@ -156,10 +156,10 @@ mod tests {
         assert!((camera.eye_m() - DVec3::new(0.0, 0.0, 5.0)).length() < 1e-14);
     }
 
-    /// A level square of 2 by 2 seen from above under 90°: its edge is 45° off where the eye is 1 above it. As an
-    /// orthographic picture half as wide as high it needs 4.
+    /// A level square of 2 by 2 seen from above under 90°: its edge is at 45° for an eye 1 above it. An orthographic image
+    /// half as wide as high needs a height of 4.
     #[test]
-    fn a_field_just_fits() {
+    fn around_fits_the_field() {
         let field = HeightField::new(3, 3, &[7.0; 9], [1.0; 2], None).unwrap();
         let above = [-FRAC_PI_2, FRAC_PI_2];
         let lens = Lens::Perspective { fov_rad: FRAC_PI_2 };

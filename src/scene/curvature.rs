@@ -3,98 +3,97 @@ use std::fmt;
 
 use glam::{DVec2, DVec3};
 
-use super::bend::{MOST_TURN, REACH_CELLS, bent_as_far, bent_direction};
+use super::bend::{MAX_TURN_RAD, REACH_CELLS, bent_direction, bent_direction_within};
 use super::normal;
 use super::{Border, HeightField};
 use crate::{Error, Result};
 
-/// Curvature of the base that a field lies on, whose principal directions are east and north: that of a surface through
-/// the field's [`base_m`](HeightField::base_m), its median height.
+/// Curvature of the base surface under a field, with principal directions east and north, at the field's
+/// [`base_m`](HeightField::base_m), its median height.
 ///
-/// A field that does not repeat lies on it once, as a whole. Of one that repeats, each sample has around it as much of the base as
-/// rises or falls by no more than the relief, √(2 relief / curvature) far, whatever the tile that it is told by. What lies beyond
-/// is the object's own shape, whose rim hides what it hides beside the field; what a sample sees there is told, all the same,
-/// where a base that goes on takes it.
+/// A field that does not repeat lies on the base once, as a whole. For a periodic field, the base around each texel
+/// reaches as far as it rises or falls by the relief: √(2 relief / curvature), whatever the size of the tile. Beyond lies
+/// the object's own shape, whose occlusion the field does not know; visible points there are placed as if the base went
+/// on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (a ball from outside, on
-    /// which valleys widen), below 0 where it is hollow.
+    /// One over the radius towards east and towards north, 1/m; above 0 where the base bends down (a sphere seen from
+    /// outside, where valleys widen), below 0 where it is hollow.
     pub per_m: [f64; 2],
 }
 
-/// About what a base changes of what samples see, shares of a hemisphere in the mean over samples: what the flat field's visible
-/// points do not tell of.
+/// Estimated occlusion change caused by a curved base, as shares of a hemisphere, mean over texels. The visible points of
+/// the flat field do not model it.
 ///
-/// Places that are seen on the flat field are found where they stand on the base, however it is bent; what errs are places
-/// that it hides or lays open. A direction's light is off by at most the largest that there is, so that errors are
-/// about these shares of it or less, beside those that the number of directions leaves on any base. They are estimates, by some
-/// samples and azimuths, and no bounds: in hollows more lights are wrong (`examples/curved`). Means over samples stand for means
-/// over the surface, over which what is off spreads by bounces no farther than light does, as places see each other alike.
+/// Points visible on the flat field are placed correctly on any base. Errors come from points that the base newly
+/// occludes or reveals. A direction's light has at most the error of the largest light, so light errors are about these
+/// shares of it or less, in addition to the error of the number of directions. These are estimates from some texels and
+/// azimuths, not bounds: in hollows more lights have errors (`examples/curved`). Bounces spread the error no farther
+/// than light, as visibility is mutual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Changed {
-    /// Of the directions over a sample those from which light is taken to arrive and does not: the share of lights of
-    /// shadows that is wrong by it.
+pub struct OcclusionChange {
+    /// Share of directions whose light wrongly counts as unoccluded: the error of shadows.
     pub shadows: f64,
-    /// Of the light of a hemisphere, by the cosine to the sample's normal, that which comes from elsewhere.
+    /// Share of a hemisphere's cosine-weighted light that comes from other points.
     pub light: f64,
 }
 
-impl Changed {
-    /// By about how much light that is scattered up to so many times may be off in the mean over samples, over the largest direct
-    /// light: [`light`](Self::light) times the sum of j aʲ, at an albedo a of 0.8 and three times 3.6.
+impl OcclusionChange {
+    /// Estimated error of light scattered up to `bounces` times, mean over texels, relative to the largest direct light:
+    /// [`light`](Self::light) times the sum of j aʲ; 3.6 for an albedo a of 0.8 and three bounces.
     ///
-    /// Of light that arrives, at most L (1 + a + … + aⁿ⁻¹) of the albedo a after n - 1 times, the share c comes from
-    /// elsewhere; the rest is off by what n - 1 times are: Eₙ = a (c L (1 + … + aⁿ⁻¹) + Eₙ₋₁), the sum of c L j aʲ up to n.
+    /// At most L (1 + a + … + aⁿ⁻¹) arrives after n - 1 bounces, and the share c of it comes from elsewhere. The rest has the
+    /// error of n - 1 bounces: Eₙ = a (c L (1 + … + aⁿ⁻¹) + Eₙ₋₁), the sum of c L j aʲ up to n.
     pub fn scattered(self, albedo: f64, bounces: u32) -> f64 {
         self.light * (1..=bounces).map(|n| f64::from(n) * albedo.powf(n.into())).sum::<f64>()
     }
 }
 
-impl fmt::Display for Changed {
+impl fmt::Display for OcclusionChange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [shadows, light] = [self.shadows, self.light].map(|share| 100.0 * share);
         write!(
             f,
-            "hides or lays open about {light:.2} % of a hemisphere's light and {shadows:.2} % of its lights"
+            "changes the occlusion of about {light:.2} % of a hemisphere's light and {shadows:.2} % of its lights"
         )
     }
 }
 
-/// Samples whose views are compared.
+/// Grid points at which the change is estimated.
 const SAMPLES: usize = 512;
-/// Azimuths of each.
+/// Azimuths per grid point.
 const AZIMUTHS: usize = 16;
-/// From here on places are looked at as far apart as their distance over this, cells. What stands between two of them is passed
-/// over: of the sine of an elevation at most the relief over so many cells, where nothing nearer is as high.
+/// Distance, in cells, from which steps grow to the distance over this number. A step then misses, in the sine of an
+/// elevation, at most the relief over this many cells.
 const ALL_CELLS: u32 = 128;
-/// By how much, in the sine of an elevation, a place must stand over those before it to be seen on the flat field.
+/// Smallest rise above the horizon, in the sine of an elevation, at which a point counts as visible.
 const LEAST_RISE: f64 = 1e-9;
 
 impl Curvature {
     /// A flat base.
     pub const FLAT: Self = Self { per_m: [0.0; 2] };
-    /// The largest [`Changed::light`] that is not refused: a choice, as of any bound on an error. Up to here bending adds about
-    /// as much to what shadows of grooves are wrong by as 1024 directions leave of them on the flat base (`examples/curved`).
-    pub const MOST_CHANGED: f64 = 0.02;
-    /// The least that a height may be drawn apart or pushed together by, 1 + curvature times height over the base.
-    pub const LEAST_STRETCH: f64 = 0.25;
+    /// Largest [`OcclusionChange::light`] that is accepted. A choice: up to here bending adds about as much to the error of
+    /// shadows in grooves as the limit of 1024 directions does on the flat base (`examples/curved`).
+    pub const MAX_CHANGE: f64 = 0.02;
+    /// Smallest horizontal scale at any height: 1 + curvature times height over the base.
+    pub const MIN_SCALE: f64 = 0.25;
 
-    /// The most that the base may turn by across a field that does not repeat, radians.
-    pub const MOST_ACROSS: f64 = PI;
+    /// Largest rotation of the base across a field that does not repeat, radians.
+    const MAX_TURN_ACROSS_RAD: f64 = PI;
 
-    /// The same, so many times as strong.
+    /// The curvature times `factor`.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self { per_m: self.per_m.map(|k| factor * k) }
     }
 
-    /// Refuses a base that is bent more than what samples see on the flat field tells of; of others, what it changes.
+    /// Checks the curvature for a field and returns the estimated occlusion change.
     ///
     /// # Errors
-    /// No number; heights too near to the centre of a hollow's curvature; a base that turns by more than half a circle across
-    /// a field that does not repeat; [`changed`](Self::changed) beyond
-    /// [`MOST_CHANGED`](Self::MOST_CHANGED): the message names about the curvature at which it is reached.
-    pub fn check(&self, field: &HeightField, border: Border) -> Result<Changed> {
+    /// A value that is not finite; heights too near the centre of a hollow's curvature; a base that turns by more than half
+    /// a circle across a field that does not repeat; [`occlusion_change`](Self::occlusion_change) above
+    /// [`MAX_CHANGE`](Self::MAX_CHANGE): the message states the curvature that reaches it.
+    pub fn check(&self, field: &HeightField, border: Border) -> Result<OcclusionChange> {
         const NAME: &str = "curvature of the base";
         let shown = |of: &Self| {
             format!("{:.3e} towards east and {:.3e} towards north, 1/m", of.per_m[0], of.per_m[1])
@@ -103,20 +102,20 @@ impl Curvature {
             return Err(Error::setting(NAME, format!("{:?}", self.per_m), "two numbers, 1/m"));
         }
         if *self == Self::FLAT {
-            return Ok(Changed::default());
+            return Ok(OcclusionChange::default());
         }
         let heights = field.heights_m().iter().map(|h| f64::from(*h));
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(l, h), z| (l.min(z), h.max(z)));
         for k in self.per_m {
             let least = 1.0 + (k * low).min(k * high);
-            if least < Self::LEAST_STRETCH {
+            if least < Self::MIN_SCALE {
                 let found = format!(
                     "{}, which pushes the field together to {least:.2} of its width",
                     shown(self)
                 );
                 let expected = format!(
                     "{} of it or more: radii well beyond the heights, {low:.4} to {high:.4} m about the median",
-                    Self::LEAST_STRETCH
+                    Self::MIN_SCALE
                 );
                 return Err(Error::setting(NAME, found, expected));
             }
@@ -124,22 +123,22 @@ impl Curvature {
         let [cols, rows] = [field.cols(), field.rows()].map(|n| n as f64);
         let across_m = [cols * field.cell_m()[0], rows * field.cell_m()[1]];
         let turned = (self.per_m[0] * across_m[0]).abs().max((self.per_m[1] * across_m[1]).abs());
-        if border != Border::Periodic && turned > Self::MOST_ACROSS {
+        if border != Border::Periodic && turned > Self::MAX_TURN_ACROSS_RAD {
             let found =
                 format!("{}, which turns by {turned:.2} radians across the field", shown(self));
             let expected =
                 "at most half a circle: beyond it the two ends face each other around the base";
             return Err(Error::setting(NAME, found, expected));
         }
-        let changed = self.changed(field, border);
-        if changed.light <= Self::MOST_CHANGED {
+        let changed = self.occlusion_change(field, border);
+        if changed.light <= Self::MAX_CHANGE {
             return Ok(changed);
         }
-        // Between none, where nothing changes, and this.
+        // Bisect between flat, which changes nothing, and this curvature.
         let (mut fits, mut breaks) = (0.0, 1.0);
         for _ in 0..8 {
             let middle = 0.5 * (fits + breaks);
-            if self.times(middle).changed(field, border).light <= Self::MOST_CHANGED {
+            if self.times(middle).occlusion_change(field, border).light <= Self::MAX_CHANGE {
                 fits = middle;
             } else {
                 breaks = middle;
@@ -151,26 +150,28 @@ impl Curvature {
             format!(
                 "at most {}: there it is about {} % of the light",
                 shown(&self.times(fits)),
-                100.0 * Self::MOST_CHANGED
+                100.0 * Self::MAX_CHANGE
             ),
         ))
     }
 
-    /// About what the base changes of what samples see, in the mean over samples: of places that come to be hidden by nearer ones,
-    /// and of places that come out behind them.
+    /// Estimated occlusion change of the base, mean over texels: points that nearer ones newly occlude, and points newly
+    /// revealed behind them.
     ///
-    /// Along an azimuth a place is seen where it stands over all before it, as high as from their horizon to itself; sines of
-    /// elevations are shares of the hemisphere. Curvature lowers it by k d/2 or so, each by its own distance. What is seen on the flat
-    /// field is told to stand, each place from the last, where the base takes it. It stands there from the horizon of all before it,
-    /// which is as high or higher: what is told too much is the error, of shadows what comes out over the horizon of all that is
-    /// told; of both also by how much that horizon may be off, as places are kept to the nearest sample: half a cell nearer or
-    /// farther. At most 512 samples and 16 azimuths of each are picked evenly, and places a cell apart, beyond 128 cells a 128th of
-    /// their distance. The field is looked at to its edge; one that repeats as far as the base belongs to it: to where that
-    /// has risen or fallen by the relief, but a cell at least and half a circle at most.
-    pub fn changed(&self, field: &HeightField, border: Border) -> Changed {
+    /// Along an azimuth, a point is visible from the horizon of all points before it up to its own elevation; sines of
+    /// elevations are shares of the hemisphere. Curvature lowers a point at distance d by about k d/2. The stored visibility
+    /// places each point visible on the flat field at its elevation on the base, from the last such point on; the actual
+    /// visible part begins at the horizon of all points before it, which is as high or higher. The difference is the error;
+    /// for shadows it is what rises above the horizon of all stored points. Rounding to the nearest grid point moves that
+    /// horizon by up to half a cell, which is added to both.
+    ///
+    /// At most 512 grid points and 16 azimuths each are chosen evenly. Steps are one cell, beyond 128 cells a 128th of the
+    /// distance. They end at the field's edge; in a periodic field where the base has risen or fallen by the relief, at
+    /// least one cell and at most half a circle away.
+    pub fn occlusion_change(&self, field: &HeightField, border: Border) -> OcclusionChange {
         let samples = field.rows() * field.cols();
         let count = samples.min(SAMPLES);
-        // Multiples of the golden section lie evenly, in step with no pattern of the field.
+        // Multiples of the golden section are even and match no pattern of the field.
         let golden = 0.5 * (5_f64.sqrt() - 1.0);
         let heights = field.heights_m().iter();
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(l, h), z| (l.min(*z), h.max(*z)));
@@ -183,26 +184,26 @@ impl Curvature {
             let azimuths = (0..AZIMUTHS).map(|k| TAU * (k as f64 + 0.5) / AZIMUTHS as f64);
             azimuths.map(move |azimuth| {
                 let o = DVec2::from_angle(azimuth);
-                self.changed_along(field, border, at, (o, self.reach_m(field, relief_m, o)))
+                self.change_along(field, border, at, (o, self.reach_m(field, relief_m, o)))
             })
         };
         let all = (0..count).flat_map(of);
         let [shadows, light] =
             all.fold([0.0; 2], |[s, l], [shadow, light]| [s + shadow, l + light]);
-        let looks = (count * AZIMUTHS) as f64;
-        Changed { shadows: shadows / looks, light: light / looks }
+        let rays = (count * AZIMUTHS) as f64;
+        OcclusionChange { shadows: shadows / rays, light: light / rays }
     }
 
-    /// How far a field that repeats lies on this base, along o.
+    /// How far a periodic field extends over this base along o, m.
     fn reach_m(&self, field: &HeightField, relief_m: f64, o: DVec2) -> f64 {
         let per_m = DVec2::from_array(self.per_m);
         let level_m = (2.0 * relief_m / per_m.dot(o * o).abs()).sqrt();
         let [cell_x, cell_y] = field.cell_m();
-        level_m.min(Self::MOST_ACROSS / (per_m * o).length()).max(cell_x.min(cell_y))
+        level_m.min(Self::MAX_TURN_ACROSS_RAD / (per_m * o).length()).max(cell_x.min(cell_y))
     }
 
-    /// Of one sample and azimuth, of a field that repeats up to a reach, m: shadows and light.
-    fn changed_along(
+    /// Shadows and light of one grid point and azimuth, in a periodic field up to a reach, m.
+    fn change_along(
         &self,
         field: &HeightField,
         border: Border,
@@ -215,15 +216,15 @@ impl Curvature {
         let turn = (DVec2::from_array(self.per_m) * o).length();
         let n = normal(field, border, at / field.cols(), at % field.cols());
         let facing = o.dot(n.truncate());
-        // Twice the cosine to the normal, in the middle between two sines of elevation, times their difference: of the
-        // hemisphere's ∫ cos = π, an azimuth's share of 2π.
+        // Twice the cosine to the normal at the centre of two sines of elevation, times their difference: an azimuth's share
+        // of 2π of the hemisphere's ∫ cos = π.
         let light = |low: f64, high: f64| {
             let sine = 0.5 * (low + high);
             2.0 * (high - low)
                 * (n.z * sine + facing * (1.0 - sine * sine).max(0.0).sqrt()).max(0.0)
         };
-        // Horizons so far: on the flat field; on the base, of all and of what is told. And where the last of these stands.
-        let (mut flat, mut bent, mut told) = (-1.0, -1.0, -1.0_f64);
+        // Horizons so far: on the flat field; on the base, of all points and of stored ones. `last`: the last stored point.
+        let (mut flat, mut bent, mut stored) = (-1.0, -1.0, -1.0_f64);
         let mut last = -1.0;
         let mut changed = 0.0;
         let mut k = 1;
@@ -235,28 +236,28 @@ impl Curvature {
             let Some(height) = height_at(field, border, at, o * distance_m) else { break };
             let to = DVec3::new(o.x * distance_m, o.y * distance_m, height - own);
             let (away_m, e) = (to.length(), to.normalize());
-            let now = bent_as_far(e, away_m, own, (*self, PI)).z;
+            let now = bent_direction_within(e, away_m, own, (*self, PI)).z;
             if e.z > flat + LEAST_RISE {
-                // What lies beyond a right angle of the base is told as if it were there.
+                // Points beyond a right angle of the base are stored as if at the right angle.
                 let here = bent_direction(e, away_m, own, *self).z;
-                let as_told = light(last, here.max(last));
-                let is_right = turn * distance_m <= MOST_TURN;
-                let right = if is_right { light(bent, now.max(bent)).min(as_told) } else { 0.0 };
-                changed += as_told - right;
-                (flat, last, told) = (e.z, here, here.max(told));
+                let as_stored = light(last, here.max(last));
+                let is_right = turn * distance_m <= MAX_TURN_RAD;
+                let right = if is_right { light(bent, now.max(bent)).min(as_stored) } else { 0.0 };
+                changed += as_stored - right;
+                (flat, last, stored) = (e.z, here, here.max(stored));
             }
             bent = now.max(bent);
             k += (k / ALL_CELLS).max(1);
         }
-        // Half a cell along the way turns what stands there by half as much.
+        // Half a cell along the path turns the direction by half as much.
         let half_cell_m = 0.5 * (o.x.abs() * cell_x + o.y.abs() * cell_y);
-        let moved = told + 0.5 * turn * half_cell_m * (1.0 - told * told).sqrt();
-        let over = (bent - told).max(0.0) + (moved - told);
-        [(told + over).max(0.0) - told.max(0.0), changed + light(told, told + over)]
+        let moved = stored + 0.5 * turn * half_cell_m * (1.0 - stored * stored).sqrt();
+        let over = (bent - stored).max(0.0) + (moved - stored);
+        [(stored + over).max(0.0) - stored.max(0.0), changed + light(stored, stored + over)]
     }
 }
 
-/// The surface so far east and north of a sample, over the median; `None` off a field that does not repeat.
+/// Height of the surface above the median at an offset east and north of a grid point; `None` outside the field.
 fn height_at(field: &HeightField, border: Border, at: usize, away: DVec2) -> Option<f64> {
     let (rows, cols) = (field.rows(), field.cols());
     let [cell_x, cell_y] = field.cell_m();
@@ -276,7 +277,7 @@ fn height_at(field: &HeightField, border: Border, at: usize, away: DVec2) -> Opt
     let h = |down: f64, right: f64| {
         f64::from(field.heights_m()[wrapped(row + down, rows) * cols + wrapped(col + right, cols)])
     };
-    // Two triangles a cell, split from the north-west.
+    // Two triangles per cell, split from the north-west.
     let (north_west, south_east) = (h(0.0, 0.0), h(1.0, 1.0));
     Some(match u > v {
         true => north_west + u * (h(0.0, 1.0) - north_west) + v * (south_east - h(0.0, 1.0)),

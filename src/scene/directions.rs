@@ -6,10 +6,10 @@ use glam::DVec3;
 use crate::basis::triangles::Triangles;
 use crate::{Error, Result};
 
-/// Directions in which each sample of a field is asked what it sees, each standing for the same solid angle.
+/// Directions in which visibility is sampled at each grid point, each with the same solid angle.
 ///
-/// The light that falls on a sample comes from the hemisphere about its own normal, which on a slope reaches
-/// below the horizontal: directions cover the sphere down to the height `lowest_z`, -1 for all of it.
+/// Light arrives from the hemisphere about the normal, which on a slope reaches below the horizontal. The directions
+/// therefore cover the sphere down to the height `lowest_z`; -1 covers all of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
     vectors: Vec<DVec3>,
@@ -17,15 +17,16 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// How many there may be.
+    /// Range of the number of directions.
     pub const COUNT: RangeInclusive<usize> = 4..=4096;
-    /// What the height of the lowest ones may be: from the whole sphere to the upper hemisphere.
-    pub const LOWEST_Z: RangeInclusive<f64> = -1.0..=0.0;
+    /// Range of `lowest_z`: from the whole sphere to the upper hemisphere.
+    const LOWEST_Z: RangeInclusive<f64> = -1.0..=0.0;
 
-    /// A spherical Fibonacci set: heights in the middles of equal parts from `lowest_z` to 1, turned from one to the
-    /// next by the golden section of the circle (Hannay & Nye 2004); `seed` turns all about the vertical.
+    /// A spherical Fibonacci set: heights at the centres of equal parts from `lowest_z` to 1, each rotated from the previous
+    /// one by the golden section of the circle (Hannay & Nye 2004). `seed` rotates all about the vertical.
     ///
-    /// Of N over the sphere none is nearer to horizontal than 1/N where N is even; of an odd number one is horizontal.
+    /// An even number N of directions over the sphere leaves none within 1/N of horizontal; an odd number has one that is
+    /// horizontal.
     ///
     /// # Errors
     /// A count or a height out of range.
@@ -48,10 +49,10 @@ impl Directions {
         Ok(Self { vectors: vectors.collect(), lowest_z })
     }
 
-    /// Unit vectors of one's own, evenly over the sphere down to `lowest_z`: of a file, or to be looked along alone.
+    /// From unit vectors that are evenly distributed over the sphere down to `lowest_z`, or that are traced only.
     ///
     /// # Errors
-    /// None or too many, or a vector that is not of length 1 within 1e-6.
+    /// No vector or too many; a vector whose length differs from 1 by more than 1e-6.
     pub fn from_vectors(vectors: Vec<DVec3>, lowest_z: f64) -> Result<Self> {
         if vectors.is_empty() || vectors.len() > *Self::COUNT.end() {
             let expected = format!("1 to {}", Self::COUNT.end());
@@ -66,36 +67,36 @@ impl Directions {
         Ok(Self { vectors, lowest_z })
     }
 
-    /// East, north, up.
+    /// Unit vectors: east, north, up.
     pub fn vectors(&self) -> &[DVec3] {
         &self.vectors
     }
 
-    /// Height of the lowest that they cover, [-1..0].
+    /// Lowest height that they cover, [-1..0].
     pub fn lowest_z(&self) -> f64 {
         self.lowest_z
     }
 
-    /// How many.
+    /// Number of directions.
     pub fn count(&self) -> usize {
         self.vectors.len()
     }
 
-    /// The solid angle that each stands for: that of all that they cover over their number, sr. A direction chosen
-    /// among them has the density 1 / (count · share) of solid angle.
+    /// Solid angle per direction, sr: the covered solid angle over the count. A direction chosen among them has the density
+    /// 1 / (count · share) of solid angle.
     pub fn share_sr(&self) -> f64 {
         TAU * (1.0 - self.lowest_z) / self.vectors.len() as f64
     }
 
-    /// The net between them: down to the lowest, whose rim is ragged by about the distance between two; what lies below
-    /// [`lowest_z`](Self::lowest_z) has no triangle.
+    /// Their triangulation. Its lower rim is ragged by about the distance between two directions; below
+    /// [`lowest_z`](Self::lowest_z) there is no triangle.
     ///
     /// # Errors
-    /// Fewer than four, two alike, or all on one circle.
+    /// Fewer than four directions, two equal ones, or all on one circle.
     pub fn triangles(&self) -> Result<Triangles> {
         let net = Triangles::of(&self.vectors).ok_or_else(|| {
             let found = format!("{} that span no hull", self.vectors.len());
-            Error::setting("directions", found, "four or more, no two alike, not on one circle")
+            Error::setting("directions", found, "four or more, no two equal, not on one circle")
         })?;
         Ok(net.above(&self.vectors, self.lowest_z))
     }
@@ -109,7 +110,7 @@ fn check_lowest(lowest_z: f64) -> Result<()> {
     Err(Error::setting("height of the lowest direction", lowest_z.to_string(), expected))
 }
 
-/// The least radius of an ellipse among so many directions: that of the disc around the zenith that one of them stands for,
+/// Smallest radius of an ellipse for `count` directions: that of the disc around the zenith that one direction covers,
 /// π r² = 2π / count.
 pub fn least_radius(count: usize) -> f64 {
     (2.0 / count.max(1) as f64).sqrt()

@@ -1,14 +1,13 @@
 use super::Border;
-use super::lights::{ANGLE, RADIANCES, is_angle, shines};
+use super::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance};
 use crate::{Error, Result};
 
 /// Radiance from infinity as an equirectangular (latitude-longitude) image, linear RGB.
 ///
-/// Row 0 touches the zenith, the last row the nadir. Column 0 begins at azimuth π (west) and
-/// columns run *clockwise* seen from above, as the image is seen from inside: the middle of the
-/// image looks east (+x, azimuth 0), a quarter to its left looks north.
-/// Texel (row, col) of an image `width`×`height` covers azimuths π - 2π·[col, col+1]/width and
-/// zenith angles π·[row, row+1]/height.
+/// The first row touches the zenith, the last the nadir. Column 0 begins at azimuth π (west). Columns run *clockwise*
+/// seen from above, as the image is viewed from inside: its centre looks east (+x, azimuth 0), a quarter to the left
+/// looks north. Texel (row, col) of a `width`×`height` image covers azimuths π - 2π·[col, col+1]/width and zenith
+/// angles π·[row, row+1]/height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
@@ -18,11 +17,11 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// An environment of `width`×`height` texels, linear RGB, row after row from the zenith, turned counter-clockwise
-    /// by `rotation_rad`, within ±1e6. An image twice as wide as high has square texels at the horizon.
+    /// An environment of `width`×`height` texels, linear RGB, row after row from the zenith, rotated counter-clockwise by
+    /// `rotation_rad`, within ±1e6. An image twice as wide as high has square texels at the horizon.
     ///
     /// # Errors
-    /// Sizes that do not match, a texel that is negative or not finite (named by row and column).
+    /// Sizes that do not match; a texel that is negative or not finite, named by row and column.
     pub fn new(
         width: usize,
         height: usize,
@@ -49,7 +48,7 @@ impl Environment {
         Ok(Self { width, height, texels, rotation_rad })
     }
 
-    /// One whose texels only the device knows: planned as the same from everywhere, so that azimuths are even.
+    /// An environment whose texels only the device knows. The plan assumes a uniform one, so azimuths are evenly spaced.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -72,12 +71,12 @@ impl Environment {
         &self.texels
     }
 
-    /// Refuses radiances whose series would not be within f32.
+    /// Checks that SH series of the radiances stay within f32.
     ///
     /// # Errors
     /// The first texel above 1e36.
     pub(crate) fn check_series(&self) -> Result<()> {
-        let Some(i) = self.texels.iter().position(|t| !shines(t)) else { return Ok(()) };
+        let Some(i) = self.texels.iter().position(|t| !is_valid_radiance(t)) else { return Ok(()) };
         Err(Error::setting(
             format!("environment at row {}, column {}", i / self.width, i % self.width),
             format!("{:?}", self.texels[i]),
@@ -85,13 +84,13 @@ impl Environment {
         ))
     }
 
-    /// Counter-clockwise turn about the vertical, radians.
+    /// Counter-clockwise rotation about the vertical, radians.
     pub fn rotation_rad(&self) -> f64 {
         self.rotation_rad
     }
 
-    /// Rows that light arrives from, from the zenith down: those above horizontal, in part or whole,
-    /// unless the border is `open`.
+    /// Rows that give light, counted from the zenith: those wholly or partly above horizontal; all rows under an `open`
+    /// border.
     pub fn rows_above_ground(&self, border: Border) -> usize {
         match border {
             Border::Open => self.height(),
@@ -105,13 +104,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn radiances_beyond_series_are_named() {
+    fn an_error_names_a_radiance_too_large_for_series() {
         let of = |radiance: f32| {
             let texels = vec![[0.0; 3], [0.0, radiance, 0.0]];
             Environment::new(2, 1, texels, 0.0).unwrap().check_series()
         };
         assert!(of(1e36).is_ok());
-        let said = of(1.1e36).unwrap_err().to_string();
-        assert!(said.starts_with("environment at row 0, column 1: "), "{said}");
+        let message = of(1.1e36).unwrap_err().to_string();
+        assert!(message.starts_with("environment at row 0, column 1: "), "{message}");
     }
 }

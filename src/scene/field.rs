@@ -1,18 +1,17 @@
 use super::Border;
 use crate::{Error, Result};
 
-/// The largest magnitude of a height that is accepted, in the field's length unit.
-///
-/// Products of a height difference and a distance stay far from the largest f32 below it.
-pub const HEIGHT_LIMIT: f64 = 1e15;
-/// The largest height difference over a cell.
+/// Largest magnitude of a height, in the field's length unit: products of a height difference and a distance stay far
+/// below the largest f32.
+const HEIGHT_LIMIT: f64 = 1e15;
+/// Largest slope: height difference over cell size.
 const STEEPEST: f64 = 1e18;
 
 /// A grid of heights: row-major, row 0 in the north, column 0 in the west.
 ///
-/// Sample (r, c) stands at x = c·cell x, y = (rows-1-r)·cell y. Heights are kept as f32 offsets from
-/// a base subtracted in f64 (the median), so a centimetre survives on an 8 848 m summit. The
-/// surface between samples is two flat triangles a cell, split from (r, c) to (r+1, c+1).
+/// Grid point (r, c) lies at x = c·cell x, y = (rows-1-r)·cell y. Heights are f32 offsets from a base, the median, that
+/// is subtracted in f64, so a centimetre survives on an 8 848 m summit. The surface between grid points is two flat
+/// triangles per cell, split from (r, c) to (r+1, c+1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightField {
     rows: usize,
@@ -25,15 +24,15 @@ pub struct HeightField {
 }
 
 impl HeightField {
-    /// A field of `rows`×`cols` heights in metres (or whatever unit `cell_m` is in), each within ±1e15: row after
-    /// row, row 0 in the north, column 0 in the west.
+    /// A field of `rows`×`cols` heights, each within ±1e15, in metres or the unit of `cell_m`: row after row, row 0 in the
+    /// north, column 0 in the west.
     ///
-    /// `cell_m` is the spacing of columns and of rows, [1e-12..1e12]; they need not be equal. `voids`, one mark a
-    /// sample, marks those that hold no data; their value is ignored and filled from their neighbours.
+    /// `cell_m` is the spacing of columns and of rows, each [1e-12..1e12]. `voids`, one mark per grid point, marks heights
+    /// without data: their values are ignored and filled from their neighbours.
     ///
     /// # Errors
-    /// Sizes that do not match or are 0, cells that are not positive and finite, a height outside
-    /// voids that is not finite or beyond ±1e15 (the message names row and column), only voids.
+    /// Sizes that are 0 or do not match; cells that are not positive and finite; a height outside voids that is not finite
+    /// or beyond ±1e15, named by row and column; a field of voids only.
     pub fn new(
         rows: usize,
         cols: usize,
@@ -73,7 +72,7 @@ impl HeightField {
                 return Err(Error::setting(
                     format!("height at row {}, column {}", i / cols, i % cols),
                     format!("{h:?}"),
-                    "a finite number within ±1e15, or one marked as no-data (--nodata)",
+                    "a finite number within ±1e15, or one marked as no-data (`nodata`)",
                 ));
             }
             known.push(h);
@@ -100,12 +99,13 @@ impl HeightField {
         Ok(Self { rows, cols, cell_m, base_m, heights_m: offsets, voids, is_unknown: false })
     }
 
-    /// A field whose heights only the device knows: planned as level ground at height 0, so that what an
-    /// engine hands in are heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
+    /// A field whose heights only the device knows. The plan assumes level ground at height 0, so the image that the caller
+    /// hands in holds the heights themselves, in the unit of `cell_m` (for 16-bit UNORM: of the whole range).
     ///
-    /// Not for what looks at heights beforehand: precision `packed`, [`plan::reference`](crate::plan::reference),
-    /// [`plan::visible_points`](crate::plan::visible_points()) and [`plan::scatter`](crate::plan::scatter()), which refuse it.
-    /// Balls of light are looked for as far as level ground would see them: a `light_cutoff` of 0 looks at all.
+    /// The following need heights and return an error: precision `packed`, [`plan::reference`](crate::plan::reference),
+    /// [`plan::visible_points`](crate::plan::visible_points()) and [`plan::scatter`](crate::plan::scatter()).
+    /// [`light_cutoff`](super::Quality::light_cutoff) limits sphere lights to where they would light level ground; 0 removes
+    /// the limit.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -114,8 +114,8 @@ impl HeightField {
         Ok(Self { is_unknown: true, ..level })
     }
 
-    /// Whether only the device knows its heights: [`unknown`](Self::unknown).
-    pub fn is_unknown(&self) -> bool {
+    /// Whether only the device knows the heights: [`unknown`](Self::unknown).
+    pub(crate) fn is_unknown(&self) -> bool {
         self.is_unknown
     }
 
@@ -134,8 +134,7 @@ impl HeightField {
         self.cell_m
     }
 
-    /// The height that [`heights_m`](Self::heights_m) are offsets from, in metres: the median of those that the field
-    /// was made of.
+    /// The base height of [`heights_m`](Self::heights_m), in metres: the median of the heights at construction.
     pub fn base_m(&self) -> f64 {
         self.base_m
     }
@@ -145,11 +144,11 @@ impl HeightField {
         &self.heights_m
     }
 
-    /// Puts other heights, above the same base, in the place of some rows of a rectangle's, `cols` each: from a row and
-    /// a column on. The others keep their bits; voids stay voids.
+    /// Replaces the heights of a rectangle, given above the same base in rows of `cols`, from a row and a column on. All
+    /// other heights keep their bits; voids stay voids.
     ///
     /// # Errors
-    /// A rectangle beyond the field; the first height that is none, or so steep that slopes' squares would not be f32's.
+    /// A rectangle beyond the field; the first height that is NaN or so steep that squared slopes exceed f32.
     pub fn replace(
         &mut self,
         [row, col]: [usize; 2],
@@ -168,7 +167,7 @@ impl HeightField {
                 format!("whole rows within {} × {}", self.cols, self.rows),
             ));
         }
-        // Together with any other that passed, or that the field was made of, within twice the steepest.
+        // With any other accepted height, slopes stay within twice the steepest.
         let most = (STEEPEST * self.cell_m[0].min(self.cell_m[1])).min(HEIGHT_LIMIT);
         let is_one = |h: &f32| f64::from(h.abs()) <= most;
         if let Some(i) = heights_m.iter().position(|h| !is_one(h)) {
@@ -185,24 +184,24 @@ impl HeightField {
         Ok(())
     }
 
-    /// One mark a sample, true where the input held no data; `None` where it held data everywhere.
+    /// One mark per grid point, true where the input had no data; `None` without voids.
     pub fn voids(&self) -> Option<&[bool]> {
         self.voids.as_deref()
     }
 
-    /// Whether no edge between two of the surface's triangles is a valley: then nothing on the field
-    /// rises above the plane of any triangle, and a sample's horizon along an azimuth is the slope of
-    /// the triangle that it stands on. A `periodic` field is concave only where it is level.
+    /// Whether no edge between two triangles of the surface is a valley. Then no point of the field rises above the plane
+    /// of any triangle, and the horizon of a grid point along an azimuth is the slope of its triangle. A `periodic` field is
+    /// concave only where it is level.
     ///
-    /// An edge and the two vertices across it form a parallelogram on the map, so it is no valley
-    /// where its ends together are at least as high as those two, whatever the cell.
+    /// An edge and the two vertices across it form a parallelogram on the map. The edge is not a valley if the sum of its
+    /// ends is at least the sum of those two, whatever the cell size.
     pub fn is_concave(&self, border: Border) -> bool {
         let (rows, cols) = (self.rows, self.cols);
         let h = |r: usize, c: usize| f64::from(self.heights_m[r * cols + c]);
         if border == Border::Periodic {
             return self.heights_m.iter().all(|height| *height == self.heights_m[0]);
         }
-        // A field one sample wide is a line.
+        // A field one grid point wide is a line.
         if rows == 1 || cols == 1 {
             let heights = &self.heights_m;
             return heights
@@ -230,12 +229,12 @@ impl HeightField {
     }
 }
 
-/// Fills samples that hold no data, as [`HeightField::new`] does its own: for heights that an engine hands to the device
-/// by itself, of a field that is [unknown](HeightField::unknown). `heights_m` are row after row from the north-west,
-/// `voids` one mark a sample, whose heights may be anything; the others keep their bits.
+/// Fills voids as [`HeightField::new`] does, for a caller that writes heights to the device itself
+/// ([`HeightField::unknown`]). `heights_m` are row after row from the north-west, `voids` one mark per grid point. Heights
+/// of voids may have any value; all others keep their bits.
 ///
 /// # Errors
-/// Sizes that do not match, a height outside voids that is not finite or beyond ±1e15, only voids.
+/// Sizes that do not match; a height outside voids that is not finite or beyond ±1e15; voids only.
 pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool]) -> Result<()> {
     let count = rows.checked_mul(cols).filter(|count| *count == heights_m.len());
     if count != Some(voids.len()) {
@@ -259,8 +258,8 @@ pub fn fill_voids([rows, cols]: [usize; 2], heights_m: &mut [f32], voids: &[bool
     Ok(())
 }
 
-/// Fills voids layer by layer from their rim: a sample takes the mean of the neighbours (of eight)
-/// that are known, nearest layers first. Continuous at the rim and independent of scan order.
+/// Fills voids layer by layer from their rim: each takes the mean of its known neighbours (of eight). The result is
+/// continuous at the rim and independent of scan order.
 fn fill(rows: usize, cols: usize, heights: &mut [f32], voids: &[bool]) {
     let mut known: Vec<bool> = voids.iter().map(|v| !v).collect();
     let neighbours = |i: usize| {
@@ -298,7 +297,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_a_centimetre_on_a_summit() {
+    fn f32_offsets_keep_a_centimetre_on_a_summit() {
         let field = HeightField::new(1, 3, &[8848.00, 8848.01, 8848.02], [1.0, 1.0], None).unwrap();
         assert_eq!(field.base_m(), 8848.01);
         for (h, expected) in field.heights_m().iter().zip([-0.01, 0.0, 0.01]) {
@@ -308,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn names_the_place_of_a_bad_height() {
+    fn an_error_names_row_and_column_of_a_bad_height() {
         let error =
             HeightField::new(2, 2, &[0.0, 1.0, f64::NAN, 3.0], [1.0, 1.0], None).unwrap_err();
         assert!(error.to_string().contains("row 1, column 0"), "{error}");
@@ -317,22 +316,22 @@ mod tests {
     }
 
     #[test]
-    fn heights_are_replaced_in_place_or_refused_by_place() {
+    fn replace_writes_a_rectangle_or_names_the_bad_height() {
         let mut field = HeightField::new(3, 3, &[5.0; 9], [1.0, 1.0], None).unwrap();
         field.replace([1, 1], 2, &[1.0, 2.0, 3.0, 4.0]).unwrap();
         assert_eq!(field.base_m(), 5.0);
         assert_eq!(field.heights_m(), [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 3.0, 4.0]);
-        let said = field.replace([2, 1], 2, &[1.0, f32::NAN]).unwrap_err().to_string();
-        assert!(said.contains("row 2, column 2"), "{said}");
+        let message = field.replace([2, 1], 2, &[1.0, f32::NAN]).unwrap_err().to_string();
+        assert!(message.contains("row 2, column 2"), "{message}");
         for (at, cols, count) in [([2, 2], 2, 2), ([0, 0], 2, 3), ([0, 0], 0, 0), ([3, 0], 1, 1)] {
             assert!(field.replace(at, cols, &vec![0.0; count]).is_err(), "{at:?} {cols} {count}");
         }
         assert_eq!(field.heights_m()[8], 4.0);
     }
 
-    /// In place of a field's own: the same heights, as its base is 0; what cannot be is named.
+    /// The filled heights equal those of the field, whose base is 0. Each error names its cause.
     #[test]
-    fn an_engines_heights_are_filled_as_a_fields_are() {
+    fn fill_voids_equals_the_filling_of_a_field() {
         let heights: Vec<f32> = (0..30).map(|i| ((i * 7) % 5) as f32 - 2.0).collect();
         let voids: Vec<bool> = (0..30).map(|i| i % 4 == 1 || (10..15).contains(&i)).collect();
         let of_field: Vec<f64> = heights.iter().map(|h| f64::from(*h)).collect();
@@ -342,9 +341,9 @@ mod tests {
         voids.iter().zip(&mut filled).filter(|v| *v.0).for_each(|(_, h)| *h = f32::NAN);
         fill_voids([5, 6], &mut filled, &voids).unwrap();
         assert_eq!(filled, field.heights_m());
-        let refuse = |heights: &mut [f32], voids: &[bool], says: &str| {
-            let said = fill_voids([5, 6], heights, voids).unwrap_err().to_string();
-            assert!(said.contains(says), "{said}");
+        let refuse = |heights: &mut [f32], voids: &[bool], expected: &str| {
+            let message = fill_voids([5, 6], heights, voids).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
         };
         refuse(&mut filled[1..], &voids, "29 and 30 voids for 5 × 6 samples");
         refuse(&mut filled, &[true; 30], "nothing but voids");

@@ -1,7 +1,7 @@
-use super::{Albedo, Border, HeightField, Lobe, Phong, Scene};
+use super::{Albedo, Border, HeightField, PhongSpecular, Scene, Specular};
 use crate::Result;
 
-/// Samples of a grid so many times finer, and for each the corners of the triangle around it, with their shares.
+/// A grid `times` finer, and for each of its points the corners of the triangle around it with their weights.
 struct Finer {
     rows: usize,
     cols: usize,
@@ -19,7 +19,7 @@ impl Finer {
         Self { rows: finer(of[0]), cols: finer(of[1]), times, of }
     }
 
-    /// Three samples of the field and their shares, sum 1.
+    /// Three grid points of the field and their weights, which sum to 1.
     fn corners(&self, at: usize) -> [(usize, f64); 3] {
         let [row, col] = [at / self.cols, at % self.cols];
         let part = |n: usize| (n % self.times) as f64 / self.times as f64;
@@ -28,7 +28,7 @@ impl Finer {
         let sample = |down: usize, right: usize| {
             (first_row + down) % self.of[0] * self.of[1] + (first_col + right) % self.of[1]
         };
-        // Corners of share 0 may lie beyond the last: theirs is some other's value, 0 times.
+        // Corners of weight 0 may lie beyond the last grid point: any value serves.
         let (low, middle) =
             if down <= right { (right - down, sample(0, 1)) } else { (down - right, sample(1, 0)) };
         let both = down.min(right);
@@ -42,11 +42,11 @@ impl Finer {
 }
 
 impl HeightField {
-    /// The same surface with so many samples for each along both axes: its triangles cut into equal ones, heights in f32. No
-    /// field of voids: what is filled in is ground.
+    /// The same surface with `times` as many grid points along both axes. Its triangles are cut into equal ones; heights
+    /// are f32. The result has no voids: filled heights are ground.
     ///
     /// # Errors
-    /// Cells below their range.
+    /// A cell size below its range.
     ///
     /// # Panics
     /// 0 times.
@@ -59,10 +59,10 @@ impl HeightField {
 }
 
 impl Scene {
-    /// [`HeightField::finer`], with what the surface is of, linear between samples.
+    /// [`HeightField::finer`], with albedo and specular maps linear between grid points.
     ///
     /// # Errors
-    /// As there.
+    /// As [`HeightField::finer`].
     ///
     /// # Panics
     /// 0 times.
@@ -75,11 +75,13 @@ impl Scene {
             let [r, g, b] = [0, 1, 2].map(|c| f32s(finer.each(|i| f64::from(map[i][c]))));
             *map = r.zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect();
         }
-        if let Some(Lobe::Map(map)) = &mut surface.phong {
+        if let Some(Specular::Map(map)) = &mut surface.specular {
             let exponents = f32s(finer.each(|i| f64::from(map[i].exponent)));
             let scales = f32s(finer.each(|i| f64::from(map[i].scale)));
-            *map =
-                exponents.zip(scales).map(|(exponent, scale)| Phong { exponent, scale }).collect();
+            *map = exponents
+                .zip(scales)
+                .map(|(exponent, scale)| PhongSpecular { exponent, scale })
+                .collect();
         }
         Ok(Self { field: self.field.finer(border, times)?, surface, lights: self.lights.clone() })
     }
@@ -90,15 +92,15 @@ mod tests {
     use super::*;
     use crate::scene::{Lights, Surface};
 
-    /// Corners stay, the middle of a diagonal is the mean of its ends, and of a triangle that of its corners; across the
-    /// edge of a field that repeats, too. Whole numbers and their thirds of at most 9 come back within 2⁻²².
+    /// Corners stay; the middle of a diagonal is the mean of its ends, the centre of a triangle the mean of its corners,
+    /// also across the edge of a periodic field. Whole numbers up to 9 and their thirds are exact within 2⁻²².
     #[test]
     fn the_surface_stays_the_same() {
         let heights: Vec<f64> = vec![0.0, 9.0, 3.0, 6.0, 1.0, 8.0];
         let field = HeightField::new(2, 3, &heights, [3.0, 6.0], None).unwrap();
         let albedo = Albedo::Map(heights.iter().map(|h| [*h as f32 / 10.0; 3]).collect());
         for (border, rows, cols) in [(Border::Plane, 4, 7), (Border::Periodic, 6, 9)] {
-            let surface = Surface { albedo: albedo.clone(), border, phong: None };
+            let surface = Surface { albedo: albedo.clone(), border, specular: None };
             let scene = Scene { field: field.clone(), surface, lights: Lights::default() };
             let finer = scene.finer(3).unwrap();
             assert_eq!([finer.field.rows(), finer.field.cols()], [rows, cols]);

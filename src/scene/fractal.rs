@@ -1,13 +1,13 @@
 //! A fixed fractal height field for benchmarks: the same bits on every machine.
 //!
 //! Only integer hashing and IEEE addition, multiplication and division enter (no libm, no fused
-//! operations), so a time measured here and one measured elsewhere are of the same field.
+//! operations), so timings from different machines are of the same field.
 
 use crate::basis::random::{STEP, mixed, unit};
 use crate::scene::HeightField;
 use crate::{Error, Result};
 
-/// Spacing of the finest octave's lattice, in samples. Each octave above doubles it.
+/// Spacing of the finest octave's lattice, in cells. It doubles from octave to octave.
 const FINEST_SAMPLES: f64 = 2.0;
 /// 2^0.8: amplitude of an octave over that of the next finer. The spectrum is that of a self-affine
 /// surface of Hurst exponent 0.8, between eroded (0.9) and young (0.7) mountains.
@@ -17,15 +17,14 @@ const PER_OCTAVE: f64 = 1.741_101_126_592_248_2;
 /// the side.
 const FINEST_AMPLITUDE_M: f64 = 1.25;
 
-/// `size`×`size` samples of rough mountains, cells of 1 m, different for every `seed`.
+/// `size`×`size` grid points of rough mountains, cells of 1 m, different for every `seed`.
 ///
-/// A sum of octaves, each a uniform cubic B-spline over a lattice of hashed values: smooth to the
-/// second derivative, without value noise's terraces. Lattices are fixed in samples (2, 4, 8, … up to
-/// a quarter of the side), so slopes are alike at every size and relief grows like size^0.8. Cost is
-/// size² · log₂(size).
+/// A sum of octaves, each a uniform cubic B-spline over a lattice of hashed values: smooth to the second derivative,
+/// without the terraces of value noise. Lattice spacings are fixed in cells (2, 4, 8, … up to a quarter of the side), so
+/// slopes are equal at every size and relief grows like size^0.8. Cost is size² · log₂(size).
 ///
 /// # Errors
-/// Size 0, or one whose square is no number of samples here.
+/// Size 0, or one whose square exceeds the address space.
 pub fn fractal(size: usize, seed: u64) -> Result<HeightField> {
     let samples = size.checked_mul(size).filter(|&n| n > 0 && n <= isize::MAX as usize / 8);
     let Some(samples) = samples else {

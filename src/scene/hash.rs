@@ -1,16 +1,15 @@
 use super::{Border, Directions, HeightField};
 
-/// FNV-1a of 64 bits (Fowler, Noll & Vo): the start, and what each byte multiplies by.
+/// FNV-1a of 64 bits (Fowler, Noll & Vo): offset basis and prime.
 const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0100_0000_01b3;
 
 impl HeightField {
-    /// A number that tells fields apart, the same on every machine and in every version: what is baked from a field
-    /// keeps it, and what is loaded beside a field is held to it.
+    /// A hash that identifies a field, the same on every machine and in every version. Baked files store it; a load checks it.
     ///
-    /// FNV-1a of, little-endian, the text "ridgelight field 1", rows and columns (u64), cells (f64), the border
-    /// (0 plane, 1 open, 2 periodic; a byte), every height above the base (f32, row-major, voids filled, -0 as 0), and
-    /// a byte a sample, 1 where it is void, if any is. Where the base lies is no part of it: nothing depends on that.
+    /// FNV-1a of, little-endian: the text "ridgelight field 1", rows and columns (u64), cells (f64), the border (0 plane,
+    /// 1 open, 2 periodic; a byte), every height above the base (f32, row-major, voids filled, -0 as 0), and, where any
+    /// texel is void, a byte per texel, 1 for a void. The base height does not enter: no result depends on it.
     pub fn hash(&self, border: Border) -> u64 {
         let mut state = OFFSET;
         let mut take = |bytes: &[u8]| {
@@ -36,7 +35,7 @@ impl HeightField {
 }
 
 impl Directions {
-    /// A number that tells sets apart: FNV-1a of all vectors, in order, and the lowest height (f64, little-endian).
+    /// A hash that identifies the set: FNV-1a of all vectors, in order, and the lowest height (f64, little-endian).
     pub fn hash(&self) -> u64 {
         let numbers = self.vectors().iter().flat_map(|v| v.to_array()).chain([self.lowest_z()]);
         let bytes = numbers.flat_map(f64::to_le_bytes);
@@ -49,14 +48,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hash_is_of_what_results_depend_on() {
+    fn the_hash_depends_on_all_that_results_depend_on() {
         let field = |heights: &[f64], cell: f64, voids: Option<Vec<bool>>| {
             HeightField::new(2, 3, heights, [cell, 1.0], voids).unwrap()
         };
         let heights = [0.0, 1.0, 2.0, 3.0, 4.0, 5.5];
         let plain = field(&heights, 1.0, None);
         let hash = plain.hash(Border::Plane);
-        // Written down, so that another version would be seen to make another.
+        // Pinned: the hash must not change between versions.
         assert_eq!(hash, KNOWN, "{hash:#x}");
         assert_eq!(hash, plain.clone().hash(Border::Plane));
         // A base elsewhere changes nothing.

@@ -1,25 +1,25 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::lights::{ANGLE, RADIANCES, is_angle, shines};
+use super::lights::{ANGLE, RADIANCES, is_angle, is_valid_radiance};
 use crate::{Error, Result};
 
-/// A patch of uniform radiance at infinity, between two azimuths and two elevations: a window, a bright
-/// part of the sky (Nowrouzezahrai & Snyder 2009, §6).
+/// A patch of uniform radiance at infinity between two azimuths and two elevations: a window, or a bright part of the
+/// sky (Nowrouzezahrai & Snyder 2009, §6).
 ///
-/// Its part below horizontal gives light under an `open` border alone, as a sky's does.
+/// Its part below horizontal gives light under an `open` border only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyLight {
-    /// Direction of its middle in the plane, radians counter-clockwise from east.
+    /// Direction of its centre in the plane, radians counter-clockwise from east.
     pub azimuth_rad: f64,
     /// Extent in azimuth, radians, above 0 up to 2π.
     pub width_rad: f64,
     /// Its lowest and its highest elevation, radians, [-π/2..π/2].
     pub elevations_rad: [f64; 2],
-    /// Radiance that it gives off, linear RGB.
+    /// Radiance, linear RGB.
     pub radiance: [f32; 3],
 }
 
-/// The least height of a key light: both its edges err by 6e-8.
+/// Smallest height of a key light, radians: f32 rounds each of its edges by 6e-8.
 const LOWEST_RAD: f64 = 1e-5;
 
 impl KeyLight {
@@ -28,7 +28,7 @@ impl KeyLight {
         let bad = |what: &str, found: String, expected: &str| {
             Err(Error::setting(format!("key {number}: {what}"), found, expected))
         };
-        // Less the rounding of turning degrees to radians and back.
+        // Without the rounding of degrees to radians and back.
         let degrees = |rad: f64| format!("{}°", (rad.to_degrees() * 1e9).round() / 1e9);
         let Self { azimuth_rad, width_rad, elevations_rad: [low, high], radiance } = *self;
         if !is_angle(azimuth_rad) {
@@ -43,20 +43,16 @@ impl KeyLight {
         }
         if high - low < LOWEST_RAD {
             let found = format!("{} to {}", degrees(low), degrees(high));
-            return bad(
-                "elevations",
-                found,
-                "0.0006° between them at least: f32 tells no less apart",
-            );
+            return bad("elevations", found, "0.0006° between them at least: f32 resolves no less");
         }
-        if !shines(&radiance) {
+        if !is_valid_radiance(&radiance) {
             return bad("radiance", format!("{radiance:?}"), RADIANCES);
         }
         Ok(())
     }
 
-    /// What radiance 1 gives to level ground that nothing hides it from: ∫∫ sin ω cos ω dω dφ =
-    /// width (sin²high - sin²low) / 2, of its part above horizontal.
+    /// Irradiance of unoccluded level ground at radiance 1: ∫∫ sin ω cos ω dω dφ = width (sin²high - sin²low) / 2, of the
+    /// part above horizontal.
     pub fn level_irradiance(&self) -> f64 {
         let [low, high] = self.elevations_rad.map(|e| e.max(0.0).sin().powi(2));
         self.width_rad * (high - low) / 2.0
@@ -69,7 +65,7 @@ mod tests {
     use crate::scene::Lights;
 
     #[test]
-    fn a_key_light_out_of_range_is_named() {
+    fn an_error_names_the_key_light_that_is_out_of_range() {
         let elevations_rad = [-FRAC_PI_2, FRAC_PI_2];
         let good =
             KeyLight { azimuth_rad: -9.0, width_rad: TAU, elevations_rad, radiance: [0.0; 3] };
@@ -90,12 +86,12 @@ mod tests {
             (KeyLight { radiance: [1.0, -1.0, 0.0], ..good }, "radiance"),
             (KeyLight { radiance: [f32::INFINITY; 3], ..good }, "radiance"),
         ] {
-            let said = of(key).unwrap_err().to_string();
-            assert!(said.starts_with(&format!("key 2: {what}: ")), "{said}");
+            let message = of(key).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("key 2: {what}: ")), "{message}");
         }
     }
 
-    /// All around above horizontal: π, as of a uniform sky. What lies below gives nothing.
+    /// The upper hemisphere gives π, like a uniform sky. The part below horizontal gives nothing.
     #[test]
     fn the_whole_hemisphere_gives_pi() {
         let all = |low| KeyLight {

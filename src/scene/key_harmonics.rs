@@ -1,9 +1,8 @@
-//! Key lights as spherical harmonics: what is seen of one, between two azimuths and two elevations (NS09
-//! §6, supplement §1). Pictures do without: they sum the light itself.
+//! Visible part of key lights as spherical harmonics (NS09 §6, supplement §1). Pictures sum the light itself instead.
 //!
-//! Horizons are taken at a few azimuths across it. Of each, what counts is where [horizon, π/2] and the
-//! light's elevations meet. The light being uniform, light times visibility is that restricted visibility
-//! itself: a sum of slices times a radiance, no product of two series.
+//! Horizons are sampled at a few azimuths across the light. The visible elevations of each azimuth are the intersection
+//! of [horizon, π/2] with the light's. The light is uniform, so light times visibility is this visibility times a
+//! radiance: a sum of slices, without a product of two series.
 
 use super::KeyLight;
 use crate::basis::azimuth::{Blend, assemble, assemble_nlp, swath};
@@ -11,7 +10,7 @@ use crate::basis::legendre::occlusion;
 use crate::basis::slice::Slices;
 
 impl KeyLight {
-    /// Where horizons are taken: `count` azimuths from end to end (NS09: 3).
+    /// Azimuths of the horizons: `count` of them from end to end (NS09: 3).
     ///
     /// # Panics
     /// When `count` is below 2.
@@ -21,17 +20,17 @@ impl KeyLight {
         (0..count).map(|k| self.first_rad() + step * k as f64).collect()
     }
 
-    /// The elevations that are seen above a horizon; equal where there are none.
-    pub fn seen(&self, horizon_rad: f64) -> [f64; 2] {
+    /// The light's visible elevations above a horizon; two equal values where none is visible.
+    fn visible_elevations(&self, horizon_rad: f64) -> [f64; 2] {
         let [lowest, highest] = self.elevations_rad;
         let low = lowest.max(horizon_rad).min(highest);
         [low, highest]
     }
 
-    /// NLP coefficients of what is seen above a horizon: v̂(high) - v̂(low) (NS09 eq. 11, §6).
+    /// NLP coefficients of the visible part above a horizon: v̂(high) - v̂(low) (NS09 eq. 11, §6).
     pub fn nlp(&self, order: usize, horizon_rad: f64) -> Vec<f64> {
         let below = |elevation: f64| occlusion(order, elevation.sin(), elevation.cos());
-        let [low, high] = self.seen(horizon_rad).map(below);
+        let [low, high] = self.visible_elevations(horizon_rad).map(below);
         high.iter().zip(low).map(|(h, l)| h - l).collect()
     }
 
@@ -40,12 +39,12 @@ impl KeyLight {
     /// # Panics
     /// When there are fewer than 2 horizons.
     pub fn visible(&self, slices: &Slices, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
-        let seen = horizons_rad.iter().map(|&horizon| {
-            let [low, high] = self.seen(horizon);
+        let visible = horizons_rad.iter().map(|&horizon| {
+            let [low, high] = self.visible_elevations(horizon);
             slices.between(low, high)
         });
         let weights = self.weights(slices.order(), blend, horizons_rad.len());
-        assemble(slices.order(), &weights, &seen.collect::<Vec<_>>())
+        assemble(slices.order(), &weights, &visible.collect::<Vec<_>>())
     }
 
     /// [`visible`](Self::visible) by NLP, as in the paper.
@@ -53,8 +52,8 @@ impl KeyLight {
     /// # Panics
     /// When there are fewer than 2 horizons.
     pub fn visible_nlp(&self, order: usize, blend: Blend, horizons_rad: &[f64]) -> Vec<f64> {
-        let seen: Vec<_> = horizons_rad.iter().map(|h| self.nlp(order, *h)).collect();
-        assemble_nlp(order, &self.weights(order, blend, horizons_rad.len()), &seen)
+        let visible: Vec<_> = horizons_rad.iter().map(|h| self.nlp(order, *h)).collect();
+        assemble_nlp(order, &self.weights(order, blend, horizons_rad.len()), &visible)
     }
 
     fn first_rad(&self) -> f64 {

@@ -1,14 +1,14 @@
 use super::{Environment, KeyLight};
 use crate::{Error, Result};
 
-/// Everything that shines on the field. Nothing here is nothing lit.
+/// All light sources of a scene. All fields may be empty.
 ///
-/// Radiance and irradiance are linear RGB in one unit of the caller's, each [0..1e36]: exit radiance comes out in the
-/// same. Level ground of albedo 1 has exit radiance 1 under a sky of radiance 1, and under a sun in the zenith of
+/// Radiance and irradiance are linear RGB, each [0..1e36], in one unit that the caller chooses. Exit radiance has the
+/// same unit. Level ground of albedo 1 has exit radiance 1 under a sky of radiance 1, and under a zenith sun of
 /// irradiance π.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    /// A uniform sky's radiance, linear RGB.
+    /// Radiance of a uniform sky, linear RGB.
     pub sky: Option<[f32; 3]>,
     /// An environment at infinity.
     pub environment: Option<Environment>,
@@ -16,8 +16,8 @@ pub struct Lights {
     pub suns: Vec<Sun>,
     /// Key lights: patches at infinity.
     pub keys: Vec<KeyLight>,
-    /// Balls of light near the field.
-    pub spheres: Vec<SphereLight>,
+    /// Sphere lights near the field.
+    pub sphere_lights: Vec<SphereLight>,
 }
 
 /// A disc of uniform radiance at infinity.
@@ -33,28 +33,27 @@ pub struct Sun {
     pub irradiance: [f32; 3],
 }
 
-/// A ball of uniform radiance near the field, or with its middle inside the ground.
+/// A sphere of uniform radiance near the field. Its centre may lie inside the ground.
 ///
-/// Only what stands between a place and the ball hides it; the ball itself hides nothing, neither the
-/// sky behind it nor other lights. A place inside it receives its radiance from every direction
-/// that the surface leaves free up to where the ball ends.
+/// The surface between a texel and the sphere occludes it. The sphere occludes nothing, neither the sky behind it nor
+/// other lights. A texel inside the sphere receives its radiance from every unoccluded direction, up to where the
+/// sphere ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereLight {
-    /// Centre: x east from the westernmost column, y north from the southernmost row, z up, absolute
-    /// like the file's heights; the field's length unit.
+    /// Centre, in the field's length unit: x east from the westernmost column, y north from the southernmost row, z up
+    /// and absolute, like the heights of the file.
     pub position_m: [f64; 3],
-    /// Radius, above 0, in the same unit.
+    /// Radius, above 0, in the field's length unit.
     pub radius_m: f64,
     /// Radiance that it gives off, linear RGB.
     pub radiance: [f32; 3],
 }
 
 impl SphereLight {
-    /// How many vertical slices a ball is cut into where it is narrow as seen from a sample, and where it
-    /// is all around, for a setting.
+    /// Vertical slices for a setting: first where the sphere looks narrow from a texel, then where it surrounds the texel.
     ///
-    /// Narrow: the setting, but no more than eight a cell that the ball is wide, as the surface is flat within
-    /// a cell; at least 4. Around: eight times the setting, at the default as many as a sky has azimuths.
+    /// Narrow: the setting, but at most eight per cell of the sphere's width, as the surface is flat within a cell; at
+    /// least 4. Surrounding: eight times the setting. At the default this equals the azimuths of a sky.
     pub fn slices(&self, setting: u32, cell_m: [f64; 2]) -> [u32; 2] {
         let cells_wide = 2.0 * self.radius_m / cell_m[0].min(cell_m[1]);
         let most = (8.0 * cells_wide).ceil().clamp(4.0, 1e4) as u32;
@@ -62,40 +61,40 @@ impl SphereLight {
     }
 }
 
-/// The farthest that a local light may stand and the largest that it may be, as for heights.
+/// Largest coordinate and radius of a sphere light, as for heights.
 const PLACE_LIMIT: f64 = 1e15;
 
-/// Angular diameter below which a disc is lit as a point, radians: 0.01°. Its penumbra is 9 cm wide at
-/// half a kilometre, and the f32 slopes of its limbs would no longer tell its chords' widths.
+/// Angular diameter below which a sun is treated as a point, radians: 0.01°. Its penumbra is 9 cm wide at half a
+/// kilometre. The f32 slopes of its limbs would no longer resolve the widths of its chords.
 pub const POINT_DIAMETER_RAD: f64 = 1.75e-4;
 
-/// The largest radiance or irradiance of a light: what lobes and series make of it is within f32.
+/// Largest radiance or irradiance of a light: products with Phong specular and SH series stay within f32.
 const BRIGHTEST: f32 = 1e36;
 pub(super) const RADIANCES: &str = "numbers from 0 to 1e36";
 
-/// Whether a light may be so bright.
-pub(super) fn shines(colour: &[f32; 3]) -> bool {
+/// Whether a radiance or an irradiance is in range.
+pub(super) fn is_valid_radiance(colour: &[f32; 3]) -> bool {
     colour.iter().all(|v| (0.0..=BRIGHTEST).contains(v))
 }
 
 pub(super) const ANGLE: &str = "an angle within ±1e6 radians";
 
-/// Whether so many turns leave digits for the direction.
+/// Whether f64 keeps enough digits for the direction.
 pub(super) fn is_angle(rad: f64) -> bool {
     rad.abs() <= 1e6
 }
 
 impl Sun {
-    /// Whether it is lit as a point: lit or not, nothing between.
+    /// Whether it is treated as a point: visible or not, without a penumbra.
     pub fn is_point(&self) -> bool {
         self.diameter_rad < POINT_DIAMETER_RAD
     }
 }
 
 impl Lights {
-    /// Whether some are lit in slices: suns that are no points, key lights, balls of light.
+    /// Whether some lights are integrated in slices: suns that are not points, key lights, sphere lights.
     pub fn have_slices(&self) -> bool {
-        let have_others = !self.keys.is_empty() || !self.spheres.is_empty();
+        let have_others = !self.keys.is_empty() || !self.sphere_lights.is_empty();
         have_others || self.suns.iter().any(|s| !s.is_point())
     }
 
@@ -105,7 +104,7 @@ impl Lights {
     /// The first value out of range, by name.
     pub fn check(&self) -> Result<()> {
         if let Some(sky) = &self.sky
-            && !shines(sky)
+            && !is_valid_radiance(sky)
         {
             return Err(Error::setting("sky radiance", format!("{sky:?}"), RADIANCES));
         }
@@ -131,14 +130,14 @@ impl Lights {
                     "0° to 90°",
                 );
             }
-            if !shines(&sun.irradiance) {
+            if !is_valid_radiance(&sun.irradiance) {
                 return bad("irradiance", format!("{:?}", sun.irradiance), RADIANCES);
             }
         }
         for (i, key) in self.keys.iter().enumerate() {
             key.check(i + 1)?;
         }
-        for (i, sphere) in self.spheres.iter().enumerate() {
+        for (i, sphere) in self.sphere_lights.iter().enumerate() {
             let bad = |what: &str, found: String, expected: &str| {
                 Err(Error::setting(format!("light {}: {what}", i + 1), found, expected))
             };
@@ -149,7 +148,7 @@ impl Lights {
             if !(*radius_m > 0.0 && *radius_m <= PLACE_LIMIT) {
                 return bad("radius", radius_m.to_string(), "a length above 0, up to 1e15");
             }
-            if !shines(radiance) {
+            if !is_valid_radiance(radiance) {
                 return bad("radiance", format!("{radiance:?}"), RADIANCES);
             }
         }
@@ -162,9 +161,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_light_out_of_range_is_named() {
+    fn an_error_names_the_light_that_is_out_of_range() {
         let good = SphereLight { position_m: [1.0, -2.0, 9e3], radius_m: 1e-6, radiance: [0.0; 3] };
-        let of = |sphere| Lights { spheres: vec![good, sphere], ..Lights::default() }.check();
+        let of = |sphere| Lights { sphere_lights: vec![good, sphere], ..Lights::default() }.check();
         assert!(of(good).is_ok());
         let far = [f64::NAN, 0.0, 0.0];
         for (sphere, what) in [
@@ -175,8 +174,8 @@ mod tests {
             (SphereLight { radiance: [1.0, -1.0, 0.0], ..good }, "radiance"),
             (SphereLight { radiance: [f32::INFINITY; 3], ..good }, "radiance"),
         ] {
-            let said = of(sphere).unwrap_err().to_string();
-            assert!(said.starts_with(&format!("light 2: {what}: ")), "{said}");
+            let message = of(sphere).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("light 2: {what}: ")), "{message}");
         }
     }
 }

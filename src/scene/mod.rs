@@ -1,19 +1,18 @@
-//! What is lit and by what: plain data, range-checked.
+//! The scene: plain data with checked ranges.
 //!
-//! A [`Scene`] is a [`HeightField`], a [`Surface`] and [`Lights`]; a [`Quality`] says what speed is traded against
-//! accuracy with; a [`Camera`] where a picture is seen from. What a type can check alone it checks when it is made
-//! (heights that are no numbers, an environment of odd size); what depends on other parts (a map of as many samples
-//! as the field has, an elevation of a sun) where a plan is made of it ([`plan::picture`](crate::plan::picture())).
-//! Either way the error names the field, what was found and what was expected.
+//! A [`Scene`] is a [`HeightField`], a [`Surface`] and [`Lights`]. [`Quality`] trades speed for accuracy. A [`Camera`]
+//! defines a view. A constructor checks what its type can check alone, such as finite heights or the size of an
+//! environment. The planner ([`plan::picture`](crate::plan::picture())) checks what depends on other parts, such as the
+//! size of a map or the elevation of a sun. Each error names the field, the value found and the value expected.
 //!
 //! ```
 //! use ridgelight::scene::{Albedo, Border, HeightField, Lights, Scene, Surface};
 //!
-//! // Two rows of three samples, 10 m from column to column, 20 m from row to row, the north first.
+//! // Two rows of three grid points, 10 m between columns, 20 m between rows, north first.
 //! let heights_m = [5.0, 6.0, 7.0, 5.0, 5.5, 6.0];
 //! let field = HeightField::new(2, 3, &heights_m, [10.0, 20.0], None)?;
 //! let surface = Surface {
-//!     albedo: Albedo::Constant([0.4, 0.35, 0.3]), // share of light that is reflected, linear RGB
+//!     albedo: Albedo::Constant([0.4, 0.35, 0.3]), // diffuse reflectance, linear RGB
 //!     border: Border::Open,                       // nothing lies beyond the edge
 //!     ..Surface::default()
 //! };
@@ -21,14 +20,14 @@
 //! let scene = Scene { field, surface, lights };
 //! assert_eq!(scene.field.rows(), 2);
 //!
-//! // What cannot be is refused by name.
+//! // Errors name the field and the value.
 //! let error = HeightField::new(2, 3, &heights_m, [10.0, 0.0], None).unwrap_err();
 //! assert!(error.to_string().starts_with("cell size: found 10 × 0"));
 //! # Ok::<(), ridgelight::Error>(())
 //! ```
 //!
-//! What only the device knows is planned as [`HeightField::unknown`], [`Environment::unknown`],
-//! [`Albedo::unknown`].
+//! Inputs that only the device knows are planned as [`HeightField::unknown`], [`Environment::unknown`],
+//! [`Albedo::unknown`] and [`Specular::unknown`].
 
 mod bend;
 mod bounces;
@@ -50,11 +49,11 @@ mod surface;
 mod tone;
 mod visible;
 
-pub use bend::{Fans, MOST_TURN, REACH_CELLS, bent_as_far, bent_direction};
-pub use bounces::{BounceEngine, BounceGloss, Bounces};
+pub use bend::{Fans, MAX_TURN_RAD, REACH_CELLS, bent_direction, bent_direction_within};
+pub use bounces::{BounceEngine, BounceSpecular, Bounces};
 pub(crate) use camera::corners;
 pub use camera::{Camera, Lens};
-pub use curvature::{Changed, Curvature};
+pub use curvature::{Curvature, OcclusionChange};
 pub use directions::{Directions, least_radius};
 pub use environment::Environment;
 pub use field::{HeightField, fill_voids};
@@ -68,17 +67,17 @@ pub use quality::{
 };
 pub use scatter::Scatter;
 pub(crate) use scatter::check_view;
-pub use surface::{Albedo, Border, Lobe, Phong, Surface};
+pub use surface::{Albedo, Border, PhongSpecular, Specular, Surface};
 pub use tone::{Tone, picture_tone};
 pub use visible::{LOST_RAY, VisiblePoint, VisiblePoints};
 
-/// A field, what it is made of, and the light that falls on it.
+/// A height field, its surface and the lights.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The heights.
     pub field: HeightField,
-    /// Reflectance and what lies beyond the field's edge.
+    /// Reflectance, and the border of the field.
     pub surface: Surface,
-    /// Everything that shines.
+    /// All light sources.
     pub lights: Lights,
 }

@@ -4,23 +4,21 @@ use glam::DVec3;
 
 use super::{Border, HeightField};
 
-/// The unit normal at a sample: the sum of the unnormalised normals of the adjoining quads.
+/// The unit normal at a grid point: the sum of the unnormalised normals of the adjoining quads.
 ///
-/// A quad's normal is the cross product of its diagonals,
-/// (dx, dy, NE - SW) × (-dx, dy, NW - SE) = 2 dx dy (-g_x, -g_y, 1), where g is the mean of the
-/// gradients along its two opposite edges. All quads weigh the same, so the sum is the mean of
-/// their gradients. At the edge only the quads that exist count; under `periodic` all four do.
-/// A field one sample wide has no quads: the difference along the other axis (central inside,
-/// one-sided at the ends), 0 across.
+/// A quad's normal is the cross product of its diagonals, (dx, dy, NE - SW) × (-dx, dy, NW - SE) = 2 dx dy (-g_x, -g_y, 1),
+/// where g is the mean of the gradients along its two opposite edges. All quads weigh the same, so the sum is the mean
+/// of their gradients. At an edge only existing quads count; under `periodic` all four do. A field one grid point wide
+/// has no quads: the gradient is the difference along the other axis (central inside, one-sided at the ends).
 ///
 /// # Panics
 /// When `row` or `col` lies outside the field.
 pub fn normal(field: &HeightField, border: Border, row: usize, col: usize) -> DVec3 {
     let (rows, cols) = (field.rows(), field.cols());
-    assert!(row < rows && col < cols, "sample (row {row}, column {col}) of {rows} × {cols}");
+    assert!(row < rows && col < cols, "grid point (row {row}, column {col}) of {rows} × {cols}");
     let [cell_x, cell_y] = field.cell_m();
     let wrap = border == Border::Periodic;
-    // The samples before, at and after `i`: neighbours that do not exist are the sample itself.
+    // Indices before, at and after `i`; a missing neighbour is replaced by `i`.
     let around = |i: usize, count: usize| {
         if wrap {
             [(i + count - 1) % count, i, (i + 1) % count]

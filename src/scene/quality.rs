@@ -2,71 +2,66 @@ use super::Bounces;
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 
-/// What speed is traded against accuracy with.
+/// Settings that trade speed for accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// How horizons are found.
     pub method: Method,
-    /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster, banding at sharp
-    /// silhouettes. Time and memory grow in proportion. Under an environment they are closest where it is
-    /// brightest when the plan is made (even with exact lines and with harmonics): one that is changed
-    /// later is lit by the same.
+    /// Azimuths of sky and environment, [4..1024], default 64. Fewer: faster; banding at sharp silhouettes. Time and memory
+    /// grow in proportion. Under an environment they are densest where it is brightest when the plan is made (even with
+    /// exact lines and with harmonics); an environment that changes later keeps them.
     pub azimuths: u32,
-    /// Slices across a sun's disc, a key light or a ball of light, [1..256], default 8; of a ball that seems
-    /// wide up to eight times as many, of one that is narrower than cells fewer. Fewer: faster, steps in
-    /// soft shadows; the wider the light, the more it needs.
+    /// Slices across a sun's disc, a key light or a sphere light, [1..256], default 8. A sphere light that looks wide gets
+    /// up to eight times as many, one that is narrower than cells fewer. Fewer: faster; steps in soft shadows. Wider lights
+    /// need more.
     pub sun_azimuths: u32,
-    /// What a sample may lose, all balls of light together, of the brightest that one of them gives to the
-    /// sample nearest to its foot, [0..1], default 1/65536: one step of a picture of 16 bits. More: faster, as each
-    /// ball is looked for at fewer samples. 0: at all.
+    /// Ignore sphere lights where together they add less than this fraction of the brightest value that one of them gives to
+    /// the texel nearest its foot, [0..1], default 1/65536: one step of a 16-bit image. Higher: faster, as each light
+    /// reaches fewer texels. 0 ignores none.
     pub light_cutoff: f64,
-    /// What balls of light are lit by. [`LightBasis::Sh`] takes `sh_order`, `wedges`, `receiver`, `window` and
-    /// `wedge_side` as an environment does, `sun_azimuths` whatever a ball's width, and horizons from a pyramid
-    /// where that is the method.
+    /// Integration of sphere lights. [`LightBasis::Sh`] uses `sh_order`, `wedges`, `receiver`, `window` and `wedge_side` as
+    /// an environment does, `sun_azimuths` for any width, and a pyramid's horizons if that is the method.
     pub light_basis: LightBasis,
-    /// Distance between the lines of a sweep. Wider: faster, small occluders missed between lines.
+    /// Distance between the lines of a sweep. Wider: faster; small occluders between lines are missed.
     pub lines: Lines,
-    /// How the lines' results come back to the samples between them.
+    /// How lines' results are combined at the texels between them.
     pub fuse: Fuse,
-    /// Bits of what the sweep keeps.
+    /// Precision of the sweep's data.
     pub precision: Precision,
-    /// Where the sweep's hull lives: never changes the result.
+    /// Hull storage of the sweep. Does not change the result.
     pub hull: Hull,
-    /// Levels a doubling of distance in a height pyramid, k, [1..16], default 4. Fewer: faster and
-    /// less memory, horizons of what stands between two samples smeared.
+    /// Levels per octave of distance in a height pyramid, k, [1..16], default 4. Fewer: faster, less memory; horizons of
+    /// occluders between two distances blur.
     pub level_step: u32,
-    /// Doublings of resolution by which a march over a pyramid looks at finer levels than its
-    /// distance asks for, o, [0..4], default 2. Fewer: soft distant horizons; more: narrow distant
-    /// ridges seen or missed by chance.
+    /// Octaves by which a pyramid march uses finer levels than its distance requires, o, [0..4], default 2. Fewer: distant
+    /// horizons blur; more: narrow distant ridges alias.
     pub level_offset: u32,
-    /// What is stored of a pyramid's levels.
+    /// Storage of a pyramid's levels.
     pub levels: Levels,
-    /// Elevations of an environment table, [8..4096], default 256. Fewer: faster, the light of
-    /// small bright places smeared over elevation.
+    /// Elevations of an environment table, [8..4096], default 256. Fewer: faster; light of small bright areas blurs over
+    /// elevation.
     pub table_elevations: u32,
-    /// What an environment is looked up in.
+    /// Basis of an environment.
     pub basis: Basis,
-    /// Order n of what samples see as spherical harmonics, [2..6], default 4: n² numbers a sample. Lower:
-    /// faster, less memory, the environment blurred. Only with [`Basis::Sh`] or [`LightBasis::Sh`], as are those
-    /// below.
+    /// Order n of visibility as spherical harmonics, [2..6], default 4: n² coefficients per texel. Lower: faster, less
+    /// memory; the environment blurs. Used with [`Basis::Sh`] or [`LightBasis::Sh`] only, like the fields below.
     pub sh_order: u32,
-    /// How what is seen along an azimuth becomes harmonics.
+    /// How visibility along an azimuth is projected to harmonics.
     pub wedges: Wedges,
-    /// How a surface turns what it sees into light.
+    /// How a surface integrates the light.
     pub receiver: Receiver,
-    /// What tames the ringing of the environment's series.
+    /// SH window of the environment.
     pub window: Window,
-    /// What is seen is found at every so many samples along either axis, and light at all of them, each by
-    /// its own normal, from the nodes around it: 1, 2 or 4, default 1. More: faster, a quarter of the memory
-    /// of what is seen or a sixteenth, shadows blurred within so many samples: 0.2 % RMSE at 2 and 0.4 % at
-    /// 4 on the bundled mountain under the bundled sky (`examples/soft converge`). Of [`bounces`](Self::bounces) what
-    /// is thrown is found there, too, whatever the [`basis`](Self::basis), by later ones at every second of those nodes: 0.1 %
-    /// RMSE of all light at 2 and 0.3 % at 4, of an albedo of 0.8 (`examples/bounce table`).
+    /// Stride of the grid nodes where visibility is computed, along either axis: 1, 2 or 4, default 1. Light is computed at
+    /// every texel with its own normal from the nodes around it. Higher: faster, a quarter or a sixteenth of the memory of
+    /// visibility; shadows blur over the stride: 0.2 % RMSE at 2, 0.4 % at 4 on the bundled mountain under the bundled sky
+    /// (`examples/soft converge`). [`bounces`](Self::bounces) use the same nodes with any [`basis`](Self::basis), later
+    /// bounces every second node: 0.1 % RMSE of all light at 2, 0.3 % at 4, at an albedo of 0.8 (`examples/bounce table`).
     pub subsample: u32,
-    /// Horizons of either side of a table of wedges, [4..256], default 64. Fewer: less memory, horizons
-    /// rounded off between them. Only with [`Wedges::Table`].
+    /// Horizons along either side of a wedge table, [4..256], default 64. Fewer: less memory; less exact interpolation. Used
+    /// with [`Wedges::Table`] only.
     pub wedge_side: u32,
-    /// Light that the surface throws at itself.
+    /// Indirect light.
     pub bounces: Bounces,
 }
 
@@ -99,27 +94,27 @@ impl Default for Quality {
 }
 
 impl Quality {
-    /// What [`azimuths`](Self::azimuths) may be.
+    /// Range of [`azimuths`](Self::azimuths).
     pub const AZIMUTHS: RangeInclusive<u32> = 4..=1024;
-    /// What [`sun_azimuths`](Self::sun_azimuths) may be.
+    /// Range of [`sun_azimuths`](Self::sun_azimuths).
     pub const SUN_AZIMUTHS: RangeInclusive<u32> = 1..=256;
-    /// What [`level_step`](Self::level_step) may be.
+    /// Range of [`level_step`](Self::level_step).
     pub const LEVEL_STEP: RangeInclusive<u32> = 1..=16;
-    /// What [`level_offset`](Self::level_offset) may be.
+    /// Range of [`level_offset`](Self::level_offset).
     pub const LEVEL_OFFSET: RangeInclusive<u32> = 0..=4;
-    /// What [`table_elevations`](Self::table_elevations) may be.
+    /// Range of [`table_elevations`](Self::table_elevations).
     pub const TABLE_ELEVATIONS: RangeInclusive<u32> = 8..=4096;
-    /// What [`sh_order`](Self::sh_order) may be.
+    /// Range of [`sh_order`](Self::sh_order).
     pub const SH_ORDER: RangeInclusive<u32> = 2..=6;
 
-    /// What [`wedge_side`](Self::wedge_side) may be.
+    /// Range of [`wedge_side`](Self::wedge_side).
     pub const WEDGE_SIDE: RangeInclusive<u32> = 4..=256;
 
-    /// Order of the lights' own series: with an exact cosine one less than what is seen has.
+    /// Order of the lights' series: with an exact cosine one less than that of visibility.
     pub fn light_order(&self) -> usize {
         match self.receiver {
             Receiver::Plane => self.sh_order as usize - 1,
-            Receiver::Lobe => self.sh_order as usize,
+            Receiver::CosineLobe => self.sh_order as usize,
         }
     }
 
@@ -128,19 +123,19 @@ impl Quality {
     /// # Errors
     /// The first setting out of range, by its name on the command line.
     pub fn check(&self) -> Result<()> {
-        within("--azimuths", self.azimuths, Self::AZIMUTHS)?;
-        within("--sun-azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
+        within("azimuths", self.azimuths, Self::AZIMUTHS)?;
+        within("sun_azimuths", self.sun_azimuths, Self::SUN_AZIMUTHS)?;
         if !(0.0..=1.0).contains(&self.light_cutoff) {
             let found = self.light_cutoff.to_string();
-            return Err(Error::setting("--light-cutoff", found, "a share from 0 to 1"));
+            return Err(Error::setting("light_cutoff", found, "a share from 0 to 1"));
         }
-        within("--level-step", self.level_step, Self::LEVEL_STEP)?;
-        within("--level-offset", self.level_offset, Self::LEVEL_OFFSET)?;
-        within("--table-elevations", self.table_elevations, Self::TABLE_ELEVATIONS)?;
-        within("--sh-order", self.sh_order, Self::SH_ORDER)?;
-        within("--wedge-side", self.wedge_side, Self::WEDGE_SIDE)?;
+        within("level_step", self.level_step, Self::LEVEL_STEP)?;
+        within("level_offset", self.level_offset, Self::LEVEL_OFFSET)?;
+        within("table_elevations", self.table_elevations, Self::TABLE_ELEVATIONS)?;
+        within("sh_order", self.sh_order, Self::SH_ORDER)?;
+        within("wedge_side", self.wedge_side, Self::WEDGE_SIDE)?;
         if !matches!(self.subsample, 1 | 2 | 4) {
-            return Err(Error::setting("--subsample", self.subsample.to_string(), "1, 2 or 4"));
+            return Err(Error::setting("subsample", self.subsample.to_string(), "1, 2 or 4"));
         }
         self.bounces.check()
     }
@@ -160,26 +155,26 @@ pub enum Method {
     /// The planner's choice: sweeps.
     #[default]
     Auto,
-    /// Hull sweeps along lines (Timonen & Westerholm 2010): time in proportion to the samples.
+    /// Hull sweeps along lines (Timonen & Westerholm 2010): time proportional to the texels.
     Sweep,
-    /// One sample a level of a height pyramid (Nowrouzezahrai & Snyder 2009): time in proportion to
-    /// the samples and the logarithm of the side, error whatever the settings.
+    /// One sample per level of a height pyramid (Nowrouzezahrai & Snyder 2009): time proportional to the texels and to the
+    /// logarithm of the side. Approximate at any setting.
     Pyramid,
-    /// Every crossing of every sample's own line: exact, and slower in proportion to the side.
-    Brute,
+    /// Every crossing of every texel's own line: exact. Time per texel grows with the side of the field.
+    BruteForce,
 }
 
 /// Distance between the lines of a sweep, across the march.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lines {
-    /// Every sample on a line and every crossing on its hull: the triangulated surface's own
-    /// horizons, in azimuths along grid vectors near the even ones.
+    /// A line through every grid point, every crossing on its hull: the exact horizons of the triangulated surface, in
+    /// azimuths along grid vectors near the even ones.
     Exact,
-    /// Four lines a cell.
+    /// Four lines per cell.
     QuarterCell,
-    /// Two lines a cell.
+    /// Two lines per cell.
     HalfCell,
-    /// One line a cell.
+    /// One line per cell.
     #[default]
     Cell,
     /// A line every two cells.
@@ -189,7 +184,7 @@ pub enum Lines {
 }
 
 impl Lines {
-    /// log2 of the spacing in 1/32768 of a cell; none where lines go through every sample.
+    /// log2 of the spacing in 1/32768 of a cell; `None` where lines pass through every grid point.
     pub fn shift(self) -> Option<u32> {
         match self {
             Lines::Exact => None,
@@ -202,63 +197,61 @@ impl Lines {
     }
 }
 
-/// How the lines' results come back to the samples between them.
+/// How lines' results are combined at the texels between them (TW10's fuse).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fuse {
-    /// The slope that the nearer line found.
+    /// The slope found on the nearer line.
     Nearest,
     /// Both neighbouring lines' slopes, interpolated.
     Slopes,
-    /// Both lines' occluders seen from the sample's own height, interpolated.
+    /// Slopes to both lines' occluders from the texel's own height, interpolated.
     Own,
-    /// Where the nearer line's occluder stands, the surface on the sample's *own* line; and the
-    /// first crossings of that line. Never above the true horizon.
+    /// The surface on the texel's *own* line at the distance of the nearer line's occluder, and the first crossings of that
+    /// line. Never above the true horizon.
     #[default]
     AimedNearest,
-    /// The same with both lines' proposals: the higher one.
+    /// As `AimedNearest` with both lines' occluders: the higher slope.
     Aimed,
-    /// The same, and every crossing of the sample's own line with grid lines and diagonals within two steps of
-    /// either proposal: ridges between steps, which decide what low suns light. Several times the time of
-    /// [`Aimed`](Self::Aimed) after the sweep; takes no edits.
+    /// As `Aimed`, with every crossing of the texel's own line with grid lines and diagonals within two steps of either
+    /// occluder: finds ridges between steps, which decide the shadows of low suns. After the sweep it takes several times
+    /// the time of [`Aimed`](Self::Aimed). No edits.
     AimedAround,
 }
 
-/// Bits of what a sweep keeps.
+/// Precision of a sweep's data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
     /// f32 throughout.
     #[default]
     F32,
-    /// Stored slopes as f16: 0.014° at most. Only where slopes are stored (fuse nearest, slopes).
+    /// Stored slopes as f16: error of at most 0.014°. Only where slopes are stored (fuse nearest, slopes).
     F16,
-    /// Hull entries as f16 height and u16 step in one word (the paper's): heights rounded to 1/2048
-    /// of the largest.
+    /// Hull entries as f16 height and u16 step in one word (TW10): heights rounded to 1/2048 of the largest.
     Packed,
 }
 
-/// Where a sweep's hull lives. Every place gives the same bits.
+/// Hull storage of a sweep. All give the same bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hull {
     /// The planner's choice for the device.
     #[default]
     Auto,
-    /// Private memory of the invocation: fastest on processors.
+    /// Private memory of the invocation: fastest on CPU devices.
     Private,
-    /// Shared memory of the workgroup (the paper's), going on in the stored occluders where a hull
-    /// is deeper.
+    /// Shared memory of the workgroup (TW10); a deeper hull continues in the stored occluders.
     Shared,
-    /// Nowhere: the stored occluders are a linked list of hull vertices.
-    List,
+    /// No hull: the stored occluders are a linked list of hull vertices.
+    OccluderList,
 }
 
-/// What is stored of a height pyramid's levels. Both hold the same B-spline.
+/// Storage of a height pyramid's levels. Both hold the same B-spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Levels {
-    /// Each at every sample of the field, read bilinearly: fast, and the field's memory for each.
+    /// Every level at the field's resolution, read bilinearly: fast; each level takes the memory of the field.
     #[default]
     Stack,
-    /// Each at the texels it needs, its B-spline found at every look: slow, and a few times the
-    /// field's memory in all.
+    /// Every level at its own resolution, its B-spline evaluated at every read: slow; a few times the memory of the field in
+    /// all.
     Pyramid,
 }
 
@@ -272,7 +265,7 @@ impl Levels {
     }
 }
 
-/// What an environment's light is looked up in. A uniform sky stays in closed form whatever it is.
+/// Basis of an environment. A uniform sky is always in closed form.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Basis {
     /// The planner's choice: tables.
@@ -280,59 +273,58 @@ pub enum Basis {
     Auto,
     /// Tables of each azimuth's light above each elevation (Timonen & Westerholm 2010).
     Table,
-    /// Spherical harmonics of what is seen, times those of the environment (Nowrouzezahrai & Snyder
-    /// 2009). Small bright places are blurred: suns belong in suns. 1.7 % RMSE at order 4 under a real sky.
+    /// Spherical harmonics of visibility times those of the environment (Nowrouzezahrai & Snyder 2009). Small bright areas
+    /// blur: use suns for suns. 1.7 % RMSE at order 4 under a real sky.
     Sh,
 }
 
-/// What balls of light are lit by.
+/// Integration of sphere lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightBasis {
-    /// Slices of the ball, each exact up to where the surface hides it.
+    /// Slices of the sphere, each exact up to where the surface occludes it.
     #[default]
     Exact,
-    /// Spherical harmonics of what is seen up to the ball, times those of the ball (after Snyder & Nowrouzezahrai
-    /// 2008): soft, in error whatever the settings.
+    /// Spherical harmonics of visibility up to the sphere, times those of the sphere (after Snyder & Nowrouzezahrai 2008):
+    /// approximate at any setting.
     Sh,
 }
 
-/// How what is seen along an azimuth becomes spherical harmonics.
+/// How visibility along an azimuth is projected to spherical harmonics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wedges {
     /// Exact integrals over elevation.
     #[default]
     Slices,
-    /// n normalised Legendre coefficients (NS09 §6): odd turns lose part of what is seen.
+    /// n normalised Legendre coefficients (NS09 §6): odd azimuthal orders lose part of the visibility.
     Nlp,
-    /// A table of wedges whose horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008).
-    /// A little farther from the truth than slices from 8 azimuths on, and slower; at 4 nearer. Memory: 4
-    /// bytes a sample and azimuth.
+    /// A table of wedges whose horizons rise linearly from azimuth to azimuth (Snyder & Nowrouzezahrai 2008). Slower than
+    /// slices, with a slightly larger error from 8 azimuths on; smaller at 4. Memory: 4 bytes per texel and azimuth.
     Table,
 }
 
-/// How a surface turns what it sees into light, in spherical harmonics.
+/// How a surface integrates light in spherical harmonics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Receiver {
-    /// Its own plane hides what lies below it, and the cosine is exact. The environment has order n - 1:
-    /// no product is cut off. Of the environment only what is above ground counts.
+    /// The texel's own plane limits visibility and the cosine is exact. The environment has order n - 1, so no product is
+    /// truncated. Only its part above ground counts.
     #[default]
     Plane,
-    /// A clamped cosine of three bands (NS09 §7), the environment of order n. What is seen does not
-    /// depend on the normal; the product of three series that are cut off rings.
-    Lobe,
+    /// A clamped cosine of three bands (NS09 §7), the environment of order n. Visibility does not depend on the normal. The
+    /// product of three truncated series rings.
+    CosineLobe,
 }
 
-/// One factor a band of the environment's series.
+/// SH window: one factor per band of the environment's series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Window {
-    /// All 1: sharpest; light may ring below 0, where it is set to 0.
+    /// All 1: sharpest. Light may ring below 0 and is then set to 0.
     #[default]
     None,
     /// Lanczos'.
     Lanczos,
     /// Hann's.
     Hann,
-    /// The sharpest after which no light is negative.
+    /// The sharpest window after which no light is negative.
     Nonnegative,
 }
 
@@ -362,7 +354,7 @@ impl Receiver {
     pub fn name(self) -> &'static str {
         match self {
             Receiver::Plane => "plane",
-            Receiver::Lobe => "lobe",
+            Receiver::CosineLobe => "lobe",
         }
     }
 }

@@ -1,106 +1,108 @@
 use crate::{Error, Result};
 
-/// What the field is made of and what lies beyond its edge.
+/// Reflectance of the field, and its border.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Share of light that is reflected, diffusely, [0..1] in each channel.
+    /// Diffuse reflectance, [0..1] in each channel.
     pub albedo: Albedo,
-    /// What lies outside the field: ground at horizontal, nothing, or the field again.
+    /// What lies beyond the edge of the field.
     pub border: Border,
-    /// A mirror-like lobe besides.
-    pub phong: Option<Lobe>,
+    /// Phong specular reflection in addition to the diffuse one.
+    pub specular: Option<Specular>,
 }
 
 impl Default for Surface {
-    /// White paper on a plane: albedo 1, `plane` border.
+    /// Albedo 1, `plane` border, no specular.
     fn default() -> Self {
-        Self { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane, phong: None }
+        Self { albedo: Albedo::Constant([1.0; 3]), border: Border::Plane, specular: None }
     }
 }
 
 impl Surface {
-    /// Checks ranges and sizes against a field of `samples` samples.
+    /// Checks ranges and sizes for a field of `samples` grid points.
     ///
     /// # Errors
-    /// As [`Albedo::check`]; an exponent or a scale out of range; albedo and scale that together
-    /// reflect more than arrives, in any channel anywhere.
+    /// As [`Albedo::check`]; an exponent or a scale out of range; albedo plus scale above 1 in any channel at any texel.
     pub fn check(&self, samples: usize) -> Result<()> {
         self.albedo.check(samples)?;
-        match &self.phong {
+        match &self.specular {
             None => Ok(()),
-            Some(Lobe::Constant(phong)) => phong.check("", self.albedo.largest()),
-            Some(Lobe::Map(map)) if map.len() != samples => Err(Error::setting(
-                "phong map",
+            Some(Specular::Constant(specular)) => specular.check("", self.albedo.largest()),
+            Some(Specular::Map(map)) if map.len() != samples => Err(Error::setting(
+                "specular map",
                 format!("{} texels", map.len()),
                 format!("{samples} texels, one a sample"),
             )),
-            Some(Lobe::Map(map)) => map.iter().enumerate().try_for_each(|(i, phong)| {
-                phong.check(&format!(", texel {i}"), self.albedo.largest_at(i))
+            Some(Specular::Map(map)) => map.iter().enumerate().try_for_each(|(i, specular)| {
+                specular.check(&format!(", texel {i}"), self.albedo.largest_at(i))
             }),
         }
     }
 }
 
 impl Surface {
-    /// The largest share of light that it reflects, diffusely and by its lobe, in any channel anywhere, [0..1].
-    pub fn most_reflected(&self) -> f64 {
-        let lobe = self.phong.as_ref().map_or(0.0, |lobe| f64::from(lobe.largest().scale));
-        (f64::from(self.albedo.largest()) + lobe).min(1.0)
+    /// Largest reflectance, diffuse plus specular, in any channel at any texel, [0..1].
+    pub fn max_reflectance(&self) -> f64 {
+        let specular =
+            self.specular.as_ref().map_or(0.0, |specular| f64::from(specular.largest().scale));
+        (f64::from(self.albedo.largest()) + specular).min(1.0)
     }
 }
 
-/// Lobes of all samples.
+/// Phong specular of the whole field.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lobe {
-    /// One everywhere.
-    Constant(Phong),
-    /// One a sample, row-major like the heights; between samples exponent and scale are linear.
-    Map(Vec<Phong>),
+pub enum Specular {
+    /// The same everywhere.
+    Constant(PhongSpecular),
+    /// One per grid point, row-major like the heights; exponent and scale are linear in between.
+    Map(Vec<PhongSpecular>),
 }
 
-impl Lobe {
-    /// A map of `samples` texels that only the device knows, none of whose scales is above `scale`: planned as that.
-    /// Beside [`Albedo::unknown`], which is planned as reflecting all, `f32::EPSILON` will do.
+impl Specular {
+    /// A map of `samples` texels that only the device knows. The plan assumes `scale` everywhere; no texel may exceed it.
+    /// With [`Albedo::unknown`], which the plan takes as fully reflecting, use `f32::EPSILON`.
     pub fn unknown(samples: usize, scale: f32) -> Self {
-        Lobe::Map(vec![Phong { exponent: 0.0, scale }; samples])
+        Specular::Map(vec![PhongSpecular { exponent: 0.0, scale }; samples])
     }
 
-    /// That of a sample.
-    pub fn at(&self, sample: usize) -> Phong {
+    /// The value at a grid point.
+    pub fn at(&self, sample: usize) -> PhongSpecular {
         match self {
-            Lobe::Constant(phong) => *phong,
-            Lobe::Map(map) => map[sample],
+            Specular::Constant(specular) => *specular,
+            Specular::Map(map) => map[sample],
         }
     }
 
-    /// The largest exponent and the largest scale anywhere.
-    pub fn largest(&self) -> Phong {
+    /// The largest exponent and the largest scale of all texels.
+    pub fn largest(&self) -> PhongSpecular {
         match self {
-            Lobe::Constant(phong) => *phong,
-            Lobe::Map(map) => map.iter().fold(Phong { exponent: 0.0, scale: 0.0 }, |a, b| Phong {
-                exponent: a.exponent.max(b.exponent),
-                scale: a.scale.max(b.scale),
-            }),
+            Specular::Constant(specular) => *specular,
+            Specular::Map(map) => {
+                map.iter().fold(PhongSpecular { exponent: 0.0, scale: 0.0 }, |a, b| PhongSpecular {
+                    exponent: a.exponent.max(b.exponent),
+                    scale: a.scale.max(b.scale),
+                })
+            }
         }
     }
 }
 
-/// A lobe about the mirror direction of where light leaves to, beside the diffuse reflection.
+/// A Phong lobe about the mirror direction of the outgoing light, in addition to the diffuse reflection.
 ///
-/// Exit radiance scale·(n+1)/(2π) ∫ L V max(e·r, 0)ⁿ [e·N > 0] de, r the mirror direction about the normal N of
-/// the direction towards the view, or towards what the light falls on next. The whole lobe integrates to
-/// `scale`, so its clipped part never reflects more.
+/// Exit radiance scale·(n+1)/(2π) ∫ L V max(e·r, 0)ⁿ [e·N > 0] de. r is the mirror direction, about the normal N, of the
+/// direction to the view or to the next point that the light reaches. The whole lobe integrates to `scale`, so the part
+/// above the surface never reflects more.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Phong {
-    /// n, [0..1e4]: 0 spreads over the hemisphere about r, 1e4 is half as bright 0.7° beside r.
+pub struct PhongSpecular {
+    /// n, [0..1e4]: 0 spreads over the hemisphere about r; 1e4 halves within 0.7° of r.
     pub exponent: f32,
-    /// Share of light that the lobe reflects, [0..1], in every channel alike.
+    /// Reflectance of the lobe, [0..1], equal in all channels.
     pub scale: f32,
 }
 
-impl Phong {
-    /// What is out of range: its name, its value, what was expected.
-    pub fn complaint(&self) -> Option<(&'static str, f32, &'static str)> {
+impl PhongSpecular {
+    /// The first field out of range: its name, its value, the expected range.
+    pub fn out_of_range(&self) -> Option<(&'static str, f32, &'static str)> {
         if !(0.0..=1e4).contains(&self.exponent) {
             return Some(("exponent", self.exponent, "a number from 0 to 10000"));
         }
@@ -108,12 +110,12 @@ impl Phong {
         (!is_share).then_some(("scale", self.scale, "a share from 0 to 1"))
     }
 
-    /// Checks ranges `of` a texel, beside an albedo.
+    /// Checks the ranges `of` a texel with its albedo.
     fn check(&self, of: &str, albedo: f32) -> Result<()> {
         let refuse = |what: &str, found: String, expected: &str| {
-            Err(Error::setting(format!("phong {what}{of}"), found, expected))
+            Err(Error::setting(format!("specular {what}{of}"), found, expected))
         };
-        if let Some((what, found, expected)) = self.complaint() {
+        if let Some((what, found, expected)) = self.out_of_range() {
             return refuse(what, found.to_string(), expected);
         }
         // 0.7 + 0.3 of f32 is 1 and half an ulp of it.
@@ -133,20 +135,20 @@ impl Phong {
 pub enum Albedo {
     /// One colour everywhere.
     Constant([f32; 3]),
-    /// One colour a sample, row-major like the heights.
+    /// One colour per grid point, row-major like the heights.
     Map(Vec<[f32; 3]>),
 }
 
 impl Albedo {
-    /// A map of `samples` texels that only the device knows: planned as white, so that no bounce is left out.
+    /// A map of `samples` texels that only the device knows. The plan assumes albedo 1, so it drops no bounce.
     pub fn unknown(samples: usize) -> Self {
         Albedo::Map(vec![[1.0; 3]; samples])
     }
 
-    /// Checks range and size against a field of `samples` samples.
+    /// Checks range and size for a field of `samples` grid points.
     ///
     /// # Errors
-    /// A channel outside [0..1] or not finite; a map that is not one colour a sample.
+    /// A channel outside [0..1] or not finite; a map that does not have one colour per grid point.
     pub fn check(&self, samples: usize) -> Result<()> {
         let good = |c: &[f32; 3]| c.iter().all(|v| (0.0..=1.0).contains(v));
         match self {
@@ -170,7 +172,7 @@ impl Albedo {
         }
     }
 
-    /// The largest channel at a sample.
+    /// The largest channel at a grid point.
     fn largest_at(&self, sample: usize) -> f32 {
         let colour = match self {
             Albedo::Constant(c) => c,
@@ -191,10 +193,10 @@ impl Albedo {
 /// What lies beyond the field's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Border {
-    /// The ground goes on forever at horizontal: no horizon is below 0.
+    /// Ground at horizontal without end: no horizon is below 0.
     #[default]
     Plane,
-    /// Nothing: light may come from below horizontal.
+    /// Nothing: light may arrive from below horizontal.
     Open,
     /// The field repeats.
     Periodic,
@@ -205,10 +207,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_surface_reflects_no_more_than_it_receives() {
+    fn check_rejects_a_surface_that_reflects_more_than_arrives() {
         let of = |albedo, exponent, scale| {
-            let phong = Some(Lobe::Constant(Phong { exponent, scale }));
-            Surface { albedo, phong, border: Border::Plane }.check(2)
+            let specular = Some(Specular::Constant(PhongSpecular { exponent, scale }));
+            Surface { albedo, specular, border: Border::Plane }.check(2)
         };
         let grey = Albedo::Constant([0.7; 3]);
         assert!(of(grey.clone(), 0.0, 0.3).is_ok());
@@ -217,28 +219,28 @@ mod tests {
             [(-1.0, 0.1), (1.1e4, 0.1), (f32::NAN, 0.1), (1.0, -0.1), (1.0, f32::NAN), (1.0, 0.301)]
         {
             let error = of(grey.clone(), exponent, scale).unwrap_err();
-            assert!(error.to_string().starts_with("phong"), "{error}");
+            assert!(error.to_string().starts_with("specular"), "{error}");
         }
         let map = Albedo::Map(vec![[0.1; 3], [0.2, 0.2, 0.9]]);
         assert!(of(map.clone(), 1.0, 0.1).is_ok());
         assert!(of(map.clone(), 1.0, 0.11).unwrap_err().to_string().contains("0.9"));
-        // Of maps each texel is held to its own albedo.
-        let lobes = |scales: &[f32]| {
-            let all = scales.iter().map(|scale| Phong { exponent: 3.0, scale: *scale });
-            let phong = Some(Lobe::Map(all.collect()));
-            Surface { albedo: map.clone(), phong, border: Border::Plane }.check(2)
+        // With maps, each texel is checked with its own albedo.
+        let of_map = |scales: &[f32]| {
+            let all = scales.iter().map(|scale| PhongSpecular { exponent: 3.0, scale: *scale });
+            let specular = Some(Specular::Map(all.collect()));
+            Surface { albedo: map.clone(), specular, border: Border::Plane }.check(2)
         };
-        assert!(lobes(&[0.9, 0.1]).is_ok());
-        let said = lobes(&[0.9, 0.11]).unwrap_err().to_string();
-        assert!(said.starts_with("phong scale, texel 1: found 0.11 beside"), "{said}");
-        assert!(lobes(&[0.9]).unwrap_err().to_string().starts_with("phong map"));
-        // What only the device knows reflects something, and no more than all.
+        assert!(of_map(&[0.9, 0.1]).is_ok());
+        let message = of_map(&[0.9, 0.11]).unwrap_err().to_string();
+        assert!(message.starts_with("specular scale, texel 1: found 0.11 beside"), "{message}");
+        assert!(of_map(&[0.9]).unwrap_err().to_string().starts_with("specular map"));
+        // An unknown surface reflects something, at most everything.
         let unknown = Surface {
             albedo: Albedo::unknown(2),
-            phong: Some(Lobe::unknown(2, f32::EPSILON)),
+            specular: Some(Specular::unknown(2, f32::EPSILON)),
             border: Border::Plane,
         };
-        assert!(unknown.check(2).is_ok() && unknown.most_reflected() == 1.0);
-        assert!(unknown.phong.is_some_and(|lobe| lobe.largest().scale > 0.0));
+        assert!(unknown.check(2).is_ok() && unknown.max_reflectance() == 1.0);
+        assert!(unknown.specular.is_some_and(|specular| specular.largest().scale > 0.0));
     }
 }

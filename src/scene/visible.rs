@@ -4,11 +4,11 @@ use super::{Border, Directions, HeightField};
 use crate::basis::triangles::Triangles;
 use crate::{Error, Result};
 
-/// What every sample of a field sees of it in each of a set of directions (Heidrich et al. 2000, §3).
+/// The visible point of each grid point in each of a set of directions (Heidrich et al. 2000, §3).
 ///
-/// Kept as the device has it, one word a sample and layer. Of most fields a layer is a direction and a word
-/// `row << 16 | column` of the sample nearest to what is met. Of fields of at most 255 by 255 samples a layer is two
-/// directions, the even one in the word's lower half, as `row << 8 | column`.
+/// The layout is that of the device: one word per texel and layer. A layer is one direction, and a word is
+/// `row << 16 | column` of the grid point nearest to the hit. In fields of at most 255 by 255, a layer is two directions,
+/// each `row << 8 | column`, the even one in the lower half of the word.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisiblePoints {
     directions: Directions,
@@ -17,30 +17,29 @@ pub struct VisiblePoints {
     words: Vec<u32>,
 }
 
-/// What is seen in one direction.
+/// The visible point in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisiblePoint {
-    /// The surface, nearest to this sample: row · columns + column.
+    /// The surface, nearest to the grid point row · columns + column.
     Sample(usize),
-    /// Nothing.
+    /// No surface.
     Sky,
-    /// The level, black ground beyond the field under `plane`; under `periodic` what lies beyond all repetitions that
-    /// were looked at.
+    /// The level, black ground beyond the field under `plane`; under `periodic` everything beyond the traced repetitions.
     Ground,
 }
 
-/// A half or a whole word whose upper bits are all 1, as in `points.glsl`.
+/// Marks: words, or halves of words, whose upper bits are all 1, as in `points.glsl`.
 const SKY: u32 = 0xffff_ffff;
 const GROUND: u32 = 0xffff_fffe;
 const LOST: u32 = 0xffff_fffd;
 
-/// Why the device gave a ray up.
-pub const LOST_RAY: &str = "a ray took more steps than are followed: the relief is too many cells high; lower heights or larger cells fit";
+/// Why a ray was lost on the device.
+pub const LOST_RAY: &str = "a ray exceeded the step limit: the relief is too many cells high; use lower heights or larger cells";
 
 impl VisiblePoints {
-    /// The largest side of a field whose points take a byte an axis; 255 itself marks what is no sample.
-    pub const SMALL_SIDE: usize = 255;
-    /// The largest side of all: beyond it a row in 16 bits could be taken for a mark.
+    /// Largest side of a field with one byte per axis; 255 itself is a mark.
+    const SMALL_SIDE: usize = 255;
+    /// Largest side of any field: a larger row in 16 bits would equal a mark.
     pub const LARGEST_SIDE: usize = 65_533;
 
     /// Whether two directions share a word.
@@ -48,16 +47,16 @@ impl VisiblePoints {
         rows.max(cols) <= Self::SMALL_SIDE
     }
 
-    /// Layers of so many directions.
+    /// Number of layers.
     pub fn layers(directions: usize, is_small: bool) -> usize {
         if is_small { directions.div_ceil(2) } else { directions }
     }
 
-    /// Of a field, from the words that [`plan::visible_points`](crate::plan::visible_points) leaves, layer after layer.
+    /// From the words that [`plan::visible_points`](crate::plan::visible_points) writes, layer after layer.
     ///
     /// # Errors
-    /// A side beyond [`LARGEST_SIDE`](Self::LARGEST_SIDE), too few or too many words, a point outside the field, a ray that
-    /// the device has lost.
+    /// A side beyond [`LARGEST_SIDE`](Self::LARGEST_SIDE), a wrong number of words, a point outside the field, a ray lost on
+    /// the device.
     pub fn new(
         field: &HeightField,
         border: Border,
@@ -74,7 +73,7 @@ impl VisiblePoints {
             return Err(Error::setting("visible points", found, format!("{wanted} words")));
         }
         if is_small && directions.count() % 2 == 1 {
-            // The half of no direction says nothing: points that are alike compare so.
+            // Clear the unused half, so that equal points compare equal.
             let last = (layers - 1) * size[0] * size[1];
             words[last..].iter_mut().for_each(|word| *word &= 0xffff);
         }
@@ -97,7 +96,7 @@ impl VisiblePoints {
         Ok(points)
     }
 
-    /// From what is seen, direction after direction.
+    /// From points, direction after direction.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -137,10 +136,10 @@ impl VisiblePoints {
         Self::new(field, border, directions, words)
     }
 
-    /// Refuses a field that these are not of.
+    /// Checks that the points belong to a field.
     ///
     /// # Errors
-    /// Other heights, cells or border than those they were made of.
+    /// Other heights, cells or border than those of the points.
     pub fn check(&self, field: &HeightField, border: Border) -> Result<()> {
         let hash = field.hash(border);
         if self.size == [field.rows(), field.cols()] && self.field_hash == hash {
@@ -149,7 +148,7 @@ impl VisiblePoints {
         let [rows, cols] = self.size;
         Err(Error::setting(
             "visible points",
-            format!("those of a field of {cols} × {rows} with the hash {:016x}", self.field_hash),
+            format!("points of a field of {cols} × {rows} with hash {:016x}", self.field_hash),
             format!(
                 "those of this one, {} × {} with {hash:016x}: heights, cells and border must be the same",
                 field.cols(),
@@ -168,17 +167,17 @@ impl VisiblePoints {
         self.size
     }
 
-    /// [`HeightField::hash`] of the field that they were made of.
+    /// [`HeightField::hash`] of the field of the points.
     pub fn field_hash(&self) -> u64 {
         self.field_hash
     }
 
-    /// Layer after layer, row after row.
+    /// The words, layer after layer, row after row.
     pub fn words(&self) -> &[u32] {
         &self.words
     }
 
-    /// What sample `sample`, row · columns + column, sees in direction `direction`.
+    /// The visible point of grid point `sample` = row · columns + column in direction `direction`.
     ///
     /// # Panics
     /// Outside the field or the directions.
@@ -193,9 +192,9 @@ impl VisiblePoints {
         }
     }
 
-    /// The points' directions that a light lies between, and their shares, which sum to 1: its triangle's corners, less
-    /// those at or below horizontal, which see the ground whatever the field (Heidrich et al. 2000, §4). The same for all
-    /// samples. `None` for a light that no triangle covers or that has only such corners.
+    /// The three directions around a light with their weights, which sum to 1: the corners of its triangle, without those at
+    /// or below horizontal, where the ground occludes whatever the field (Heidrich et al. 2000, §4). The same for all texels.
+    /// `None` where no triangle covers the light, or where none of its corners is above horizontal.
     pub fn around(&self, triangles: &Triangles, light: DVec3) -> Option<[(usize, f64); 3]> {
         let vectors = self.directions.vectors();
         let mut corners = triangles.around(vectors, light)?.map(|(i, share)| (i as usize, share));
@@ -208,17 +207,17 @@ impl VisiblePoints {
         Some(corners)
     }
 
-    /// How much of a light [`around`](Self::around) which these lie arrives, 0 to 1: the share of those in which the sample
-    /// sees the sky.
+    /// Visibility, 0 to 1, of a light [`around`](Self::around) which these directions lie: the weight of those in which the
+    /// sky is visible.
     ///
     /// # Panics
     /// Outside the field.
     pub fn lit_share(&self, around: &[(usize, f64); 3], sample: usize) -> f64 {
-        let sees_sky = |i: usize| self.seen(i, sample) == VisiblePoint::Sky;
-        around.iter().filter(|c| sees_sky(c.0)).map(|c| c.1).sum()
+        let is_sky = |i: usize| self.seen(i, sample) == VisiblePoint::Sky;
+        around.iter().filter(|c| is_sky(c.0)).map(|c| c.1).sum()
     }
 
-    /// As of a large field.
+    /// In the layout of a large field.
     fn word(&self, direction: usize, sample: usize) -> u32 {
         let [rows, cols] = self.size;
         if !Self::is_small(rows, cols) {
@@ -231,7 +230,7 @@ impl VisiblePoints {
 }
 
 /// # Errors
-/// A side that 16 bits a coordinate do not hold beside the marks.
+/// A side too large for 16 bits per coordinate.
 fn check_sides([rows, cols]: [usize; 2]) -> Result<()> {
     if rows.max(cols) <= VisiblePoints::LARGEST_SIDE {
         return Ok(());

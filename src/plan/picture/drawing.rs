@@ -1,4 +1,4 @@
-//! The passes of a picture, light by light.
+//! Records the passes of a picture, light by light.
 
 use super::super::active_lights::{ActiveLights, Aimed, Colour};
 use super::images::{Harmonics, Images, Tables};
@@ -17,23 +17,23 @@ use crate::{Error, Result};
 pub(super) struct Drawing<'a> {
     pub builder: Builder,
     pub scene: &'a Scene,
-    pub shining: ActiveLights<'a>,
+    pub active: ActiveLights<'a>,
     pub images: Images,
     pub tables: Option<Tables>,
     pub harmonics: Option<Harmonics>,
-    /// None where balls of light are alone: each looks itself for what hides it.
+    /// None if there are only sphere lights, which trace their own occlusion.
     pub sweeping: Option<Sweeping>,
-    /// What rays look at, towards balls of light and of bounces.
+    /// Acceleration structure of rays, to sphere lights and of bounces.
     pub blocks: Option<Blocks>,
     pub bouncing: Option<Bouncing>,
-    /// Where balls of light are lit by spherical harmonics.
+    /// For sphere lights in spherical harmonics.
     pub soft: Option<SphereSh>,
-    /// Marks of the samples to be lit and their list, while passes of an edit are added.
+    /// While the passes of an edit are added: marks of the texels to light, and their list.
     pub edited: Option<[ResourceId; 2]>,
-    /// Whether a light has been resolved into the picture: the first clears it.
+    /// Whether the picture has its first light, which clears it.
     pub is_begun: bool,
-    /// The same of what the lobe reflects.
-    pub gloss_is_begun: bool,
+    /// Whether the specular sum has its first light.
+    pub specular_is_begun: bool,
 }
 
 impl Drawing<'_> {
@@ -43,7 +43,7 @@ impl Drawing<'_> {
 
     pub fn fill_tables(&mut self, quality: &Quality) {
         self.fill_matrices();
-        let (Some(e), Some(image)) = (self.shining.environment, self.images.environment) else {
+        let (Some(e), Some(image)) = (self.active.environment, self.images.environment) else {
             return;
         };
         let Some(azimuths) = self.sweeping.as_ref().map(|s| s.azimuths) else { return };
@@ -58,21 +58,20 @@ impl Drawing<'_> {
         }
     }
 
-    /// Passes from the field to the lit picture; of an edit, from its lattices.
+    /// Passes from the field to the lit picture; for an edit, from its lattices.
     pub fn light(&mut self, lists: &Lists, quality: &Quality) -> Result<()> {
         self.is_begun = false;
-        self.gloss_is_begun = false;
+        self.specular_is_begun = false;
         self.sky_and_environment(lists);
         self.aimed(lists);
-        self.spheres(quality);
+        self.sphere_lights(quality);
         self.bounces(lists);
-        self.gloss();
+        self.specular();
         self.sky_view();
         self.dark()
     }
 
-    /// From here on passes are those of an edit: first all horizons, as every batch lights the same
-    /// samples.
+    /// From here on passes are those of an edit. All horizons come first, as every batch lights the same texels.
     pub fn edit(&mut self, size: [u32; 2], lists: &Lists, Edits { dirty, list }: Edits) {
         self.builder.begin_edits();
         let (border, ids) = (self.border(), [dirty, list]);
@@ -148,17 +147,17 @@ impl Drawing<'_> {
             }
             let field = (batch.axis, border, cell_m);
             let lobes = self.lobes();
-            let lit = [(&h.diffuse, env_sum, None), (&h.gloss, self.images.gloss_sum, lobes)];
+            let lit = [(&h.diffuse, env_sum, None), (&h.specular, self.images.specular_sum, lobes)];
             for (seen, sum, lobes) in lit {
                 if let (Some(seen), Some(sum)) = (seen, sum) {
                     let ids = [lane_heights, h.visibility, seen.light_matrix, sum];
                     passes::sh_shade::plan(&mut self.builder, field, &seen.sh, ids, h.nodes, lobes);
                 }
             }
-            self.gloss_is_begun = h.gloss.is_some();
-            self.seen_around();
+            self.specular_is_begun = h.specular.is_some();
+            self.specular_around();
         }
-        if let (Some(sum), Some(colour)) = (sky_sum, self.shining.sky_colour()) {
+        if let (Some(sum), Some(colour)) = (sky_sum, self.active.sky_colour()) {
             self.resolve("sky", sum, Some(colour), sky_layer);
         }
         if let Some(sum) = env_sum {
@@ -170,7 +169,7 @@ impl Drawing<'_> {
         let Some(sum) = self.images.sun_sum else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let batches_of_each = &lists.batches[usize::from(self.images.need_circle())..];
-        let lights: Vec<Aimed> = self.shining.aimed().collect();
+        let lights: Vec<Aimed> = self.active.aimed().collect();
         for (i, (batches, Aimed { name, shape, colour })) in
             batches_of_each.iter().zip(lights).enumerate()
         {
@@ -199,14 +198,14 @@ impl Drawing<'_> {
                 );
             }
             self.resolve(&name, sum, Some(colour), self.images.aimed_layers[i]);
-            if let (Some((_, sun)), Some(batch)) = (self.shining.suns.get(i), batches.last()) {
+            if let (Some((_, sun)), Some(batch)) = (self.active.suns.get(i), batches.last()) {
                 self.sun_specular(&name, sun, batch, sum);
             }
         }
     }
 
-    /// Balls add up in one sum; where layers are wanted each begins its own.
-    fn spheres(&mut self, quality: &Quality) {
+    /// Sphere lights share one sum; with layers, each starts its own.
+    fn sphere_lights(&mut self, quality: &Quality) {
         let (Some(sum), Some(blocks)) = (self.images.sphere_sum, &self.blocks) else { return };
         let (field, heights) = (&self.scene.field, self.images.heights);
         if self.soft.as_ref().is_some_and(|s| s.pyramid.is_some()) {
@@ -215,12 +214,12 @@ impl Drawing<'_> {
             blocks.record(&mut self.builder, field, heights, None);
         }
         let names: Vec<String> =
-            self.shining.spheres.shining.iter().map(|(i, _)| light_name(*i)).collect();
+            self.active.sphere_lights.shining.iter().map(|(i, _)| light_name(*i)).collect();
         for (index, name) in names.iter().enumerate() {
             let layer = self.images.sphere_layers[index];
             let Some(blocks) = &self.blocks else { return };
             let begins = index == 0 || layer.is_some();
-            let (spheres, builder) = (&self.shining.spheres, &mut self.builder);
+            let (spheres, builder) = (&self.active.sphere_lights, &mut self.builder);
             if let Some(soft) = &self.soft {
                 let lit = (self.scene, blocks, soft);
                 spheres.record_soft(builder, lit, heights, (index, begins), sum);
@@ -237,27 +236,27 @@ impl Drawing<'_> {
         }
     }
 
-    /// Each bounce from the light of the one before.
+    /// Records the bounces, each from the exit radiance of the previous one.
     fn bounces(&mut self, lists: &Lists) {
         let Some(bouncing) = self.bouncing.take() else { return };
         let batches = lists.batches.last().map(Vec::as_slice);
         let Images { heights, radiance, sphere_sum, .. } = self.images;
-        // Balls by harmonics over pyramids leave no maxima.
+        // Sphere lights in harmonics over pyramids do not compute the maxima.
         let ground_alone = self.soft.as_ref().is_some_and(|s| s.pyramid.is_some());
         let begun = (heights, sphere_sum.is_some() && !ground_alone);
         bouncing.prepare(&mut self.builder, self.scene, self.blocks.as_ref(), begun);
-        self.throw(&bouncing, 0);
+        self.record_specular_exit(&bouncing, 0);
         for k in 1..=bouncing.count() {
             let ids = [heights, radiance];
-            let looked_at = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
-            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, looked_at, k, ids);
+            let traced = (self.blocks.as_ref(), self.sweeping.as_ref().zip(batches));
+            let (sum, exit) = bouncing.record(&mut self.builder, self.scene, traced, k, ids);
             self.resolve(&bounce_name(k), sum, None, exit);
-            self.throw(&bouncing, k);
+            self.record_specular_exit(&bouncing, k);
         }
-        self.glossy(&bouncing);
+        self.bounced_specular(&bouncing);
     }
 
-    /// Adds the light of a sum to the picture: of one channel times its colour, or of colours of its own.
+    /// Adds a sum to the picture: of one channel times its colour, or of three colour channels.
     fn resolve(
         &mut self,
         name: &str,
@@ -283,7 +282,7 @@ impl Drawing<'_> {
             albedo_map: self.images.albedo_map,
             radiance: Some((self.images.radiance, is_first)),
             layer,
-            grey: self.shining.is_grey,
+            grey: self.active.is_grey,
             edited: self.edited,
         };
         self.light_resolve(name, &light);
@@ -311,7 +310,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Where nothing shines the picture is black all the same.
+    /// Writes a black picture if no light is active.
     fn dark(&mut self) -> Result<()> {
         if self.is_begun {
             return Ok(());

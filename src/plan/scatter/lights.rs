@@ -1,4 +1,4 @@
-//! What lobes mirror: suns, and the sky of each direction.
+//! Lights of the specular reflection: suns, and the sky of each direction.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,13 +6,13 @@ use glam::DVec3;
 
 use crate::scene::{Border, Directions, Environment, Scene, Sun};
 
-/// Of a sun's middle.
+/// Unit vector towards the centre of a sun.
 pub(crate) fn towards(sun: &Sun) -> DVec3 {
     let (sin, cos) = sun.elevation_rad.sin_cos();
     DVec3::new(cos * sun.azimuth_rad.cos(), cos * sun.azimuth_rad.sin(), sin)
 }
 
-/// Two a sun: towards its middle; irradiance.
+/// Two texels per sun: direction of its centre; irradiance.
 pub(super) fn sun_texels(suns: &[Sun]) -> Vec<f32> {
     let texels = suns.iter().flat_map(|sun| {
         let (e, [r, g, b]) = (towards(sun), sun.irradiance);
@@ -21,9 +21,9 @@ pub(super) fn sun_texels(suns: &[Sun]) -> Vec<f32> {
     texels.collect()
 }
 
-/// Radiance of sky and environment in each direction: of an image the mean of the texels that are nearest to it, so that
-/// none of its light is lost between them: above horizontal among the directions above it, which alone may see it. Below
-/// horizontal under `open` alone, down to where there are directions.
+/// Radiance of sky and environment in each direction. For an environment, each texel adds to its nearest direction, so no
+/// light is lost; texels above horizontal add to directions above it only. Texels below horizontal count under `open`
+/// only, down to the lowest direction.
 pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
     let vectors = directions.vectors();
     let uniform = scene.lights.sky.unwrap_or_default().map(f64::from);
@@ -31,7 +31,7 @@ pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
     let mut all: Vec<[f64; 3]> =
         vectors.iter().map(|v| if is_open || v.z > 0.0 { uniform } else { [0.0; 3] }).collect();
     let Some(environment) = &scene.lights.environment else { return all };
-    let looking: Vec<usize> =
+    let candidates: Vec<usize> =
         (0..vectors.len()).filter(|i| is_open || vectors[*i].z > 0.0).collect();
     let rows = environment.rows_above_ground(scene.surface.border);
     let [width, height] = [environment.width(), environment.height()];
@@ -45,7 +45,7 @@ pub(crate) fn sky_of(scene: &Scene, directions: &Directions) -> Vec<[f64; 3]> {
             let azimuth = PI - TAU * (col as f64 + 0.5) / width as f64 + environment.rotation_rad();
             let e = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos);
             let along = |i: &&usize| vectors[**i].dot(e);
-            let nearest = looking.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+            let nearest = candidates.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
             let Some(nearest) = nearest else { return all };
             let light = environment.texels()[row * width + col].map(f64::from);
             for (sum, light) in all[*nearest].iter_mut().zip(light) {
@@ -66,10 +66,10 @@ mod tests {
     use super::*;
     use crate::scene::{HeightField, Lights, Surface};
 
-    /// An image of 1 everywhere sends 2π above horizontal as the uniform sky does, and 4π under `open`, however few
-    /// directions: a texel's light and its sums are off by a rounding each.
+    /// An environment of 1 gives 2π above horizontal like the uniform sky, and 4π under `open`, for any number of directions,
+    /// within one rounding of each texel and sum.
     #[test]
-    fn no_light_of_an_image_is_lost() {
+    fn no_light_of_an_environment_is_lost() {
         let field = HeightField::new(2, 2, &[0.0; 4], [1.0; 2], None).expect("a field");
         let total = |border: Border, count: usize, is_image: bool| -> f64 {
             let image = Environment::new(32, 16, vec![[1.0; 3]; 32 * 16], 0.3).expect("an image");
@@ -91,9 +91,9 @@ mod tests {
                 [(Border::Plane, TAU), (Border::Periodic, TAU), (Border::Open, 2.0 * TAU)]
             {
                 for is_image in [false, true] {
-                    let off = (total(border, count, is_image) - whole).abs();
+                    let error = (total(border, count, is_image) - whole).abs();
                     let bound = f64::EPSILON * whole * (1024.0 + 512.0);
-                    assert!(off <= bound, "{count} {border:?} {is_image}: {off:e} {bound:e}");
+                    assert!(error <= bound, "{count} {border:?} {is_image}: {error:e} {bound:e}");
                 }
             }
         }

@@ -1,30 +1,30 @@
-//! Which directions paths take, in which order.
+//! The order of directions along paths.
 
 use glam::DVec3;
 
 use crate::basis::random::{STEP, mixed, unit};
 use crate::scene::Scatter;
 
-/// Which direction each path looks along at each of its steps, path after path.
+/// The direction of each path at each of its steps, path after path.
 ///
-/// At every step each direction is taken once before any is taken again, and is as likely everywhere, apart for every step:
-/// that is what makes the mean of paths unbiased. The first step's come in an order whose every part lies evenly over the
-/// sphere; those of later ones are as even, but dealt out to the paths at random, as they must not know the first's order.
-/// Paths are those from the settings' first on: the same whichever others are asked for beside them.
+/// At every step each direction occurs once before any is repeated, and is equally likely at every place, independently for
+/// every step: that makes the mean of paths unbiased. The order of the first step is even over the sphere in every part.
+/// Those of later steps are even too but shuffled, as they must be independent of the first. A path's directions depend
+/// on its number only, not on which other paths are computed.
 pub(super) fn order(directions: &[DVec3], scatter: &Scatter, paths: u32, steps: u32) -> Vec<u32> {
     let (count, first_path) = (directions.len(), scatter.first_path as usize);
     let paths = first_path..first_path + paths as usize;
     let mut all = vec![0; paths.len() * steps as usize];
     for step in 0..steps as usize {
         for cycle in paths.start / count..paths.end.div_ceil(count) {
-            let mut chance = Chance::new(scatter.seed, step as u64, cycle as u64);
+            let mut random = Random::new(scatter.seed, step as u64, cycle as u64);
             let list: Vec<u32> = (0..count as u32).collect();
-            let mut part = spread(directions, list, &mut chance);
+            let mut part = spread(directions, list, &mut random);
             if step > 0 {
                 // Fisher & Yates.
                 for at in 0..part.len() {
                     let left = (part.len() - at) as f64;
-                    part.swap(at, at + (chance.next() * left) as usize);
+                    part.swap(at, at + (random.next() * left) as usize);
                 }
             }
             for (path, i) in (cycle * count..).zip(part).filter(|(path, _)| paths.contains(path)) {
@@ -35,12 +35,12 @@ pub(super) fn order(directions: &[DVec3], scatter: &Scatter, paths: u32, steps: 
     all
 }
 
-/// Directions in an order that takes evenly of all parts of the sphere from the begin on.
+/// Directions in an order whose every beginning is even over the sphere.
 ///
-/// They are halved across their widest extent, and each half is put in such an order itself; of halves of l and r the j-th is
-/// of the first where ⌊(j + 1) l/n + u⌋ is more than ⌊j l/n + u⌋, u evenly in [0..1): l of n in all, and l/n of all u at every
-/// j, so that each direction is as likely at every place.
-fn spread(directions: &[DVec3], mut list: Vec<u32>, chance: &mut Chance) -> Vec<u32> {
+/// The list is halved across its widest extent, and each half is ordered in the same way. Of halves of l and r, with
+/// n = l + r, the j-th is of the first where ⌊(j + 1) l/n + u⌋ exceeds ⌊j l/n + u⌋, u uniform in [0..1): l of n in all,
+/// and l/n of all u at every j, so each direction is equally likely at every place.
+fn spread(directions: &[DVec3], mut list: Vec<u32>, random: &mut Random) -> Vec<u32> {
     let count = list.len();
     if count < 2 {
         return list;
@@ -55,28 +55,28 @@ fn spread(directions: &[DVec3], mut list: Vec<u32>, chance: &mut Chance) -> Vec<
     list.sort_by(|a, b| of(a, widest).total_cmp(&of(b, widest)));
     let right = list.split_off(count / 2);
     let share = list.len() as f64 / count as f64;
-    let offset = chance.next();
-    let [left, right] = [list, right].map(|half| spread(directions, half, chance));
+    let offset = random.next();
+    let [left, right] = [list, right].map(|half| spread(directions, half, random));
     let (mut left, mut right) = (left.into_iter(), right.into_iter());
     let upto = |j: usize| (j as f64 * share + offset).floor();
     let next = |j: usize| {
         let halves =
             if upto(j + 1) > upto(j) { [&mut left, &mut right] } else { [&mut right, &mut left] };
-        // Where a rounding takes one half too often, the other has the rest.
+        // If rounding takes one half too often, the other supplies the rest.
         halves.into_iter().find_map(Iterator::next).expect("as many as both halves")
     };
     (0..count).map(next).collect()
 }
 
-/// Numbers evenly in [0..1), the same for the same seed, step and cycle: splitmix64 (Steele, Lea & Flood 2014).
-struct Chance(u64);
+/// Uniform random numbers in [0..1), determined by seed, step and cycle: splitmix64 (Steele, Lea & Flood 2014).
+struct Random(u64);
 
-impl Chance {
+impl Random {
     fn new(seed: u32, step: u64, cycle: u64) -> Self {
-        let mut chance = Self(u64::from(seed) << 32 ^ step << 16 ^ cycle);
-        // Seeds that follow each other are states far apart.
-        chance.0 = chance.word();
-        chance
+        let mut random = Self(u64::from(seed) << 32 ^ step << 16 ^ cycle);
+        // Consecutive seeds become states far apart.
+        random.0 = random.word();
+        random
     }
 
     fn word(&mut self) -> u64 {
@@ -94,10 +94,10 @@ mod tests {
     use super::*;
     use crate::scene::Directions;
 
-    /// Each direction once a cycle, at every step; and as often as any other in any place, over seeds: 13 of them in 5,200
-    /// orders 400 times each, off by five deviations of √400 at most.
+    /// Each direction occurs once per cycle, at every step, and equally often in any place, over seeds: 13 directions in 5,200
+    /// orders 400 times each, within five standard deviations of √400.
     #[test]
-    fn directions_are_as_likely_everywhere() {
+    fn directions_are_equally_likely_everywhere() {
         let directions = Directions::fibonacci(13, -1.0, 0).expect("directions");
         let mut found = vec![[0_u32; 13]; 2 * 20];
         for seed in 0..5200 {
@@ -117,9 +117,9 @@ mod tests {
         }
     }
 
-    /// Paths 5 to 40 of 13 directions are those of all 45, in parts or at once.
+    /// Paths 5 to 40 of 13 directions equal those of all 45, computed in parts or at once.
     #[test]
-    fn later_paths_are_those_of_all() {
+    fn a_path_does_not_depend_on_the_others_computed() {
         let directions = Directions::fibonacci(13, -1.0, 0).expect("directions");
         let of = |first_path, paths| {
             let scatter = Scatter { first_path, ..Scatter::default() };
@@ -130,10 +130,10 @@ mod tests {
         assert_eq!(all, parts);
     }
 
-    /// Of 1,024 directions the first 32 see each of the 32 parts that halving leaves once: their mean is nearer to the
-    /// sphere's middle than that of 32 at random, 1/√32 or so.
+    /// The first 32 of 1,024 directions lie one in each of the 32 parts of the halving: their mean is nearer to the sphere's
+    /// centre than that of 32 random directions, about 1/√32.
     #[test]
-    fn the_first_directions_lie_evenly() {
+    fn the_first_directions_are_even() {
         let directions = Directions::fibonacci(1024, -1.0, 0).expect("directions");
         for seed in 0..8 {
             let scatter = Scatter { paths: 32, seed, ..Scatter::default() };

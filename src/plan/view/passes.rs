@@ -1,4 +1,4 @@
-//! What drawing a view runs and takes, told before there is a device.
+//! Passes and memory of a view, known without a device.
 
 use std::fmt;
 
@@ -10,34 +10,34 @@ use crate::passes::terrain_draw::{TILE, tile_indices};
 /// A graphics pass of a [`View`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewPass {
-    /// Its name: its shaders', its debug label, its timing row.
+    /// Name of its shaders, its debug label and its timing row.
     pub pass: &'static str,
-    /// Why it is drawn.
+    /// Why the view contains it.
     pub why: String,
-    /// Vertices that it runs for.
+    /// Vertex shader invocations.
     pub vertices: u64,
-    /// Bytes that it reads and writes where it fills the picture, each once.
+    /// Bytes read and written if it fills the picture, each once.
     pub bytes: u64,
-    /// Images that it reads, by name.
+    /// Images read, by name.
     pub reads: Vec<&'static str>,
-    /// Images that it writes.
+    /// Images written, by name.
     pub writes: Vec<&'static str>,
 }
 
-/// An image or a buffer that drawing a [`View`] takes.
+/// An image or a buffer of a [`View`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewResource {
-    /// By content.
+    /// Named by content.
     pub name: &'static str,
-    /// Whose it is: the caller's, or made by [`ViewRenderer`](crate::gpu::ViewRenderer).
+    /// Its owner: the caller, or [`ViewRenderer`](crate::gpu::ViewRenderer).
     pub owner: Owner,
-    /// Bytes that it takes on the device.
+    /// Bytes on the device.
     pub bytes: u64,
 }
 
-/// Of an RGBA32F pixel.
+/// Bytes of an RGBA32F pixel.
 const COLOUR_BYTES: u64 = 16;
-/// Of a D32 depth.
+/// Bytes of a D32 depth.
 const DEPTH_BYTES: u64 = 4;
 
 impl View {
@@ -45,7 +45,7 @@ impl View {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
-    /// Passes in their order; `for_screen` where the picture is one of codes, which the tone curve makes.
+    /// Passes in order; `for_screen` adds the tone curve that makes 8-bit codes.
     pub fn passes(&self, for_screen: bool) -> Vec<ViewPass> {
         let (pixels, samples) = (self.pixels(), u64::from(self.samples));
         let field = u64::from(self.field[0]) * u64::from(self.field[1]);
@@ -105,8 +105,7 @@ impl View {
         [terrain, sky].into_iter().chain(tone).collect()
     }
 
-    /// Images and buffers beside those of the plan that lights the field, whose "heights", "radiance" and
-    /// "environment" are read.
+    /// Images and buffers besides "heights", "radiance" and "environment", which the plan of the lit field provides.
     pub fn memory(&self, for_screen: bool) -> Vec<ViewResource> {
         let (pixels, samples) = (self.pixels(), u64::from(self.samples));
         let own = |name, bytes| ViewResource { name, owner: Owner::Internal, bytes };
@@ -130,8 +129,7 @@ impl View {
         all
     }
 
-    /// Why `picture_tone` is not among the passes of a file's picture, and what it
-    /// would take.
+    /// Note on why a picture for a file has no pass `picture_tone`, and its memory.
     pub fn tone_note(&self) -> String {
         let bytes = COLOUR_BYTES * self.pixels();
         let text = bytes_text(bytes);
@@ -141,7 +139,7 @@ impl View {
     }
 }
 
-/// A table of passes, and of what they take: of a file's picture.
+/// A table of passes and of memory, for a picture in a file.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;

@@ -1,11 +1,11 @@
 use crate::scene::HeightField;
 
-/// How far a mesh of every `step`th sample is off the surface: the largest difference of heights anywhere, metres.
+/// Largest height error of a mesh with a vertex at every `step`th grid point, metres.
 ///
-/// Both surfaces are straight between crossings of their edges, so the largest difference is at one. Edges of the
-/// reduced mesh lie on the field's own, but for the diagonals of cells that the last row or column cuts short: these
-/// are looked at where they cross the field's edges.
-pub fn surface_error_m(field: &HeightField, step: u32) -> f64 {
+/// Both surfaces are linear between crossings of their edges, so the largest error is at a crossing. Edges of the reduced
+/// mesh lie on the field's own, except for the diagonals of cells that the last row or column cuts short: these are
+/// tested where they cross the field's edges.
+pub fn mesh_error_m(field: &HeightField, step: u32) -> f64 {
     let step = step.max(1) as usize;
     let (rows, cols) = (field.rows(), field.cols());
     let mut worst = 0.0_f64;
@@ -39,7 +39,7 @@ impl Cell<'_> {
         if down == right {
             return at_samples;
         }
-        // Rows, columns and diagonals that cross this cell's own diagonal, as shares of it.
+        // Crossings of rows, columns and diagonals with this cell's own diagonal, as shares of it.
         let share = |k: usize, n: usize| k as f64 / n as f64;
         let of_rows = (1..down).map(|k| share(k, down));
         let of_cols = (1..right).map(|k| share(k, right));
@@ -49,7 +49,7 @@ impl Cell<'_> {
         along.fold(at_samples, f64::max)
     }
 
-    /// Between the two surfaces at rows and columns from the cell's north-western corner.
+    /// Height difference of the two surfaces at rows and columns from the cell's north-western corner.
     fn difference_m(&self, [r, c]: [f64; 2]) -> f64 {
         let own = self.height_m([0, 0], self.size, [r, c]);
         let floor = |v: f64, n: usize| (v.floor() as usize).min(n - 1);
@@ -58,7 +58,7 @@ impl Cell<'_> {
         (own - finest).abs()
     }
 
-    /// On the two triangles over `size` samples from a corner.
+    /// Height on the two triangles over `size` grid points from a corner.
     fn height_m(&self, [r, c]: [usize; 2], [down, right]: [usize; 2], place: [f64; 2]) -> f64 {
         let h = |r: usize, c: usize| {
             let at = (self.north + r) * self.field.cols() + self.west + c;
@@ -86,39 +86,39 @@ mod tests {
     }
 
     #[test]
-    fn planes_and_the_full_mesh_are_not_off() {
+    fn planes_and_the_full_mesh_have_no_error() {
         let plane = field(6, 8, |r, c| 2.0 * r as f64 - c as f64);
         let rough = field(6, 8, |r, c| ((r * 5 + c * 3) % 7) as f64);
-        assert_eq!(surface_error_m(&rough, 1), 0.0);
+        assert_eq!(mesh_error_m(&rough, 1), 0.0);
         for step in [2, 3, 4, 16] {
-            // Heights are whole, shares of them are not.
-            assert!(surface_error_m(&plane, step) < 1e-14, "{step}");
-            assert!(surface_error_m(&rough, step) > 0.5, "{step}");
+            // Heights are whole numbers, interpolated ones are not.
+            assert!(mesh_error_m(&plane, step) < 1e-14, "{step}");
+            assert!(mesh_error_m(&rough, step) > 0.5, "{step}");
         }
     }
 
-    /// A single sample of 1 that no vertex of the reduced mesh stands on is missed by all of it.
+    /// The reduced mesh misses a single grid point of height 1 without a vertex.
     #[test]
-    fn a_spike_between_vertices_is_lost() {
+    fn a_spike_between_vertices_is_an_error() {
         let spike = field(5, 5, |r, c| if (r, c) == (1, 2) { 1.0 } else { 0.0 });
-        assert_eq!(surface_error_m(&spike, 2), 1.0);
+        assert_eq!(mesh_error_m(&spike, 2), 1.0);
         let on_a_vertex = field(5, 5, |r, c| if (r, c) == (2, 2) { 1.0 } else { 0.0 });
-        // Halfway along an edge from the vertex the surface is down at 0, the reduced one at 1/2.
-        assert_eq!(surface_error_m(&on_a_vertex, 2), 0.5);
+        // Halfway along an edge from the vertex the surface is at 0, the reduced one at 1/2.
+        assert_eq!(mesh_error_m(&on_a_vertex, 2), 0.5);
     }
 
-    /// A cell of 1 × 2: its own diagonal crosses the field's column and no sample. Heights 0 in the north, 1 in the
-    /// south but 0 in the middle of it. At the crossing, (1/2, 1), the own diagonal is at 1/2, the field's column
-    /// from 0 to 0; at the sample in the south, own is 1 and the field's 0.
+    /// A cell of 1 × 2: its diagonal crosses the field's column and no grid point. Heights are 0 in the north and 1 in the
+    /// south except for its middle. At the crossing, (1/2, 1), the diagonal is at 1/2, the field's column at 0; at the
+    /// southern grid point the diagonal mesh is at 1 and the field at 0.
     #[test]
-    fn cells_cut_short_are_looked_at_along_their_diagonal() {
+    fn cells_cut_short_are_tested_along_their_diagonal() {
         let cell = field(2, 3, |r, c| if r == 1 && c != 1 { 1.0 } else { 0.0 });
-        assert_eq!(surface_error_m(&cell, 2), 1.0);
-        // Now the samples all agree with their own triangles, and the diagonal alone is off: a saddle. In the lower
-        // triangle (0,0), (1,0), (1,2) stands (1,1), in the upper (0,0), (0,2), (1,2) stands (0,1).
+        assert_eq!(mesh_error_m(&cell, 2), 1.0);
+        // Here all grid points agree with their triangles, and only the diagonal differs: a saddle. In the lower triangle
+        // (0,0), (1,0), (1,2) lies (1,1), in the upper (0,0), (0,2), (1,2) lies (0,1).
         let heights = [0.0, 1.0, 2.0, 0.0, 2.0, 4.0];
         let saddle = HeightField::new(2, 3, &heights, [1.0; 2], None).unwrap();
         // At (1/2, 1): 2 on the own diagonal, (1 + 2) / 2 on the field's column.
-        assert_eq!(surface_error_m(&saddle, 2), 0.5);
+        assert_eq!(mesh_error_m(&saddle, 2), 0.5);
     }
 }

@@ -1,4 +1,4 @@
-//! What a lobe beside the diffuse reflection adds to a picture.
+//! Phong specular of a picture.
 
 use super::super::active_lights::ActiveLights;
 use super::drawing::Drawing;
@@ -7,81 +7,81 @@ use crate::passes::batch::Batch;
 use crate::passes::bounces::{Bouncing, bounce_name};
 use crate::passes::glossy::{BouncedLight, Glossy};
 use crate::passes::{self, Lobes, light_resolve, specular_exit};
-use crate::scene::{Basis, BounceEngine, Lobe, Phong, Quality, Receiver, Sun};
+use crate::scene::{Basis, BounceEngine, PhongSpecular, Quality, Receiver, Specular, Sun};
 use crate::{Error, Result};
 
-/// The quality that a scene with a lobe is lit by.
+/// Adapts the quality to a scene with specular.
 ///
 /// # Errors
-/// A light or a basis that gives a lobe nothing.
+/// A light or a basis that specular does not support.
 pub(super) fn quality(
     quality: &Quality,
-    shining: &ActiveLights<'_>,
+    active: &ActiveLights<'_>,
     notes: &mut Vec<String>,
 ) -> Result<Quality> {
-    if shining.gloss.is_none() {
+    if active.specular.is_none() {
         return Ok(*quality);
     }
-    let refuse = |found: &str, expected: &str| Err(Error::setting("phong", found, expected));
-    let alone = "sky, environment and suns alone: it is for the reference to mirror others";
-    if !shining.keys.is_empty() {
-        return refuse("a lobe under a key light", alone);
+    let refuse = |found: &str, expected: &str| Err(Error::setting("specular", found, expected));
+    let alone = "sky, environment and suns only; the path-traced reference supports others";
+    if !active.keys.is_empty() {
+        return refuse("specular under a key light", alone);
     }
-    if !shining.spheres.shining.is_empty() {
-        return refuse("a lobe under a ball of light", alone);
+    if !active.sphere_lights.shining.is_empty() {
+        return refuse("specular under a sphere light", alone);
     }
     let quality = bounced(*quality, notes)?;
     match quality.basis {
-        _ if !shining.has_gloss_around() => Ok(quality),
+        _ if !active.has_specular_around() => Ok(quality),
         Basis::Sh => Ok(quality),
         Basis::Auto => {
-            notes.push("basis sh: a lobe is lit by harmonics alone".into());
+            notes.push("basis sh: specular needs harmonics".into());
             Ok(Quality { basis: Basis::Sh, ..quality })
         }
         Basis::Table => {
-            refuse("a lobe by --basis table, whose tables are of diffuse ground", "--basis sh")
+            refuse("specular with `basis table`, whose tables are of diffuse ground", "`basis sh`")
         }
     }
 }
 
-/// The same with the engine that throws light on by lobes.
+/// Chooses the engine that supports specular bounces.
 ///
 /// # Errors
-/// Settings by which none does.
+/// Settings that support no specular bounces.
 fn bounced(mut quality: Quality, notes: &mut Vec<String>) -> Result<Quality> {
     if quality.bounces.count == 0 {
         return Ok(quality);
     }
     let refuse = |name: &str, found: &str, expected: &str| {
-        Err(Error::setting(format!("{name} with --bounces and a lobe"), found, expected))
+        Err(Error::setting(format!("`{name}` with `bounces` and specular"), found, expected))
     };
     if quality.bounces.engine == BounceEngine::Auto {
-        notes.push("bounce engine pyramid: it knows where light leaves to, as lobes need".into());
+        notes.push("bounce engine pyramid: specular needs exit radiance by direction".into());
         quality.bounces.engine = BounceEngine::Pyramid;
     }
     if quality.bounces.engine != BounceEngine::Pyramid {
         let found = quality.bounces.engine.name();
-        return refuse("--bounce-engine", found, "pyramid, which knows where light leaves to");
+        return refuse("bounce_engine", found, "pyramid, which keeps exit radiance by direction");
     }
     if quality.receiver != Receiver::Plane {
-        return refuse("--receiver", quality.receiver.name(), "plane");
+        return refuse("receiver", quality.receiver.name(), "plane");
     }
     if quality.subsample != 1 {
         let found = quality.subsample.to_string();
-        return refuse("--subsample", &found, "1: what arrives is a series of every sample's");
+        return refuse("subsample", &found, "1: arriving light is a series at every texel");
     }
     Ok(quality)
 }
 
 impl Drawing<'_> {
-    /// What each light makes of what is seen as harmonics.
+    /// The light matrices of visibility in harmonics.
     pub(super) fn fill_matrices(&mut self) {
         let Some(h) = &self.harmonics else { return };
         let builder = &mut self.builder;
-        let lit = [(&h.diffuse, None), (&h.gloss, self.shining.sky)];
+        let lit = [(&h.diffuse, None), (&h.specular, self.active.sky)];
         for (seen, sky) in lit {
             let Some(seen) = seen else { continue };
-            let environment = self.shining.environment.zip(self.images.environment);
+            let environment = self.active.environment.zip(self.images.environment);
             if let (Some((e, image)), Some(turns)) = (environment, seen.env_rotation) {
                 passes::env_rotation::plan(builder, e, &seen.sh, [image, h.constants, turns]);
             }
@@ -90,83 +90,83 @@ impl Drawing<'_> {
         }
     }
 
-    /// A sun in the lobe, from what it gives to diffuse ground.
+    /// Specular of a sun, from its diffuse irradiance.
     pub(super) fn sun_specular(&mut self, name: &str, sun: &Sun, batch: &Batch, sum: ResourceId) {
-        let Some((gloss, lobes)) = self.images.gloss_sum.zip(self.lobes()) else { return };
+        let Some((specular, lobes)) = self.images.specular_sum.zip(self.lobes()) else { return };
         let (border, cell_m) = (self.border(), self.scene.field.cell_m());
         let Some(sweeping) = &self.sweeping else { return };
-        let ids = [sweeping.lane_heights(batch), sum, gloss];
-        let begins = !std::mem::replace(&mut self.gloss_is_begun, true);
+        let ids = [sweeping.lane_heights(batch), sum, specular];
+        let begins = !std::mem::replace(&mut self.specular_is_begun, true);
         let field = (batch.axis, border, cell_m);
-        let thrown = self.thrown_by_direction();
+        let bounced = self.bounced_by_direction();
         passes::sun_specular::plan(
             &mut self.builder,
             field,
             name,
             (sun, lobes),
             ids,
-            (begins, thrown),
+            (begins, bounced),
         );
     }
 
-    /// What arrives of sky and environment, where lobes throw it on by direction.
-    pub(super) fn seen_around(&mut self) {
-        let Some((glossy, h)) = self.thrown_by_direction().zip(self.harmonics.as_ref()) else {
+    /// Light that arrives from sky and environment, if specular bounces keep directions.
+    pub(super) fn specular_around(&mut self) {
+        let Some((glossy, h)) = self.bounced_by_direction().zip(self.harmonics.as_ref()) else {
             return;
         };
-        let Some(seen) = &h.gloss else { return };
+        let Some(seen) = &h.specular else { return };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
         let ids = [h.visibility, seen.light_matrix];
         passes::specular_visibility::plan(&mut self.builder, size, &glossy, ids);
     }
 
-    /// What lobes throw on as series.
-    fn thrown_by_direction(&self) -> Option<Glossy> {
+    /// The specular bounces, if stored as series.
+    fn bounced_by_direction(&self) -> Option<Glossy> {
         let glossy = self.bouncing.as_ref().and_then(|bouncing| bouncing.glossy);
         glossy.filter(|glossy| matches!(glossy.thrown, BouncedLight::Vectors(_)))
     }
 
-    /// What lobes make of bounce `k`, 0 of direct light, and throw on.
-    pub(super) fn throw(&mut self, bouncing: &Bouncing, k: usize) {
+    /// Specular exit radiance of bounce `k`; 0 is direct light.
+    pub(super) fn record_specular_exit(&mut self, bouncing: &Bouncing, k: usize) {
         let (Some(glossy), Some(lobes)) = (bouncing.glossy, self.lobes()) else { return };
-        let (Some(blocks), Some(gloss_direct)) = (&self.blocks, self.images.gloss_sum) else {
+        let (Some(blocks), Some(gloss_direct)) = (&self.blocks, self.images.specular_sum) else {
             return;
         };
         let size = [self.scene.field.cols() as u32, self.scene.field.rows() as u32];
-        let leaving = specular_exit::ExitRadiance {
+        let exit = specular_exit::ExitRadiance {
             name: if k == 0 { "direct".to_owned() } else { bounce_name(k) },
             bounce: k,
             diffuse: bouncing.diffuse(k, self.images.radiance),
             gloss_direct,
         };
         let ground = blocks.images.ground;
-        specular_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &leaving);
+        specular_exit::plan(&mut self.builder, size, (&glossy, lobes), ground, &exit);
     }
 
-    /// What lobes have made of all bounces.
-    pub(super) fn glossy(&mut self, bouncing: &Bouncing) {
+    /// Adds the specular of all bounces.
+    pub(super) fn bounced_specular(&mut self, bouncing: &Bouncing) {
         let Some(glossy) = bouncing.glossy else { return };
-        self.gloss_resolve("bounces glossy", glossy.bounced, glossy.layer);
+        self.resolve_specular("bounces glossy", glossy.bounced, glossy.layer);
     }
 
-    /// The lobe, as passes are told of it.
+    /// The specular as passes take it.
     pub(super) fn lobes(&self) -> Option<Lobes> {
-        let constant = match self.shining.gloss? {
-            Lobe::Constant(phong) => *phong,
-            Lobe::Map(_) => Phong { exponent: 0.0, scale: 0.0 },
+        let constant = match self.active.specular? {
+            Specular::Constant(specular) => *specular,
+            Specular::Map(_) => PhongSpecular { exponent: 0.0, scale: 0.0 },
         };
-        Some(Lobes { constant, map: self.images.phong_map })
+        Some(Lobes { constant, map: self.images.specular_map })
     }
 
-    /// The lobe's share of the picture.
-    pub(super) fn gloss(&mut self) {
-        let Some(sum) = self.images.gloss_sum else { return };
-        if self.gloss_is_begun {
-            self.gloss_resolve("glossy", sum, self.images.gloss_layer);
+    /// Adds the direct specular.
+    pub(super) fn specular(&mut self) {
+        let Some(sum) = self.images.specular_sum else { return };
+        if self.specular_is_begun {
+            self.resolve_specular("glossy", sum, self.images.specular_layer);
         }
     }
 
-    fn gloss_resolve(&mut self, name: &str, sum: ResourceId, layer: Option<ResourceId>) {
+    fn resolve_specular(&mut self, name: &str, sum: ResourceId, layer: Option<ResourceId>) {
         let is_first = !std::mem::replace(&mut self.is_begun, true);
         let light = light_resolve::Light {
             sum,
@@ -176,7 +176,7 @@ impl Drawing<'_> {
             albedo_map: None,
             radiance: Some((self.images.radiance, is_first)),
             layer,
-            grey: self.shining.is_grey,
+            grey: self.active.is_grey,
             edited: self.edited,
         };
         self.light_resolve(name, &light);
@@ -191,15 +191,15 @@ mod tests {
     use crate::plan::{Picture, Plan};
     use crate::scene::fractal;
     use crate::scene::{
-        Albedo, Basis, Border, Environment, KeyLight, Lights, Lobe, Phong, Quality, Scene,
-        SphereLight, Sun, Surface,
+        Albedo, Basis, Border, Environment, KeyLight, Lights, PhongSpecular, Quality, Scene,
+        Specular, SphereLight, Sun, Surface,
     };
 
     fn plan(lights: Lights, basis: Basis, scale: f32) -> Result<Plan> {
         let surface = Surface {
             albedo: Albedo::Constant([0.5; 3]),
             border: Border::Plane,
-            phong: Some(Lobe::Constant(Phong { exponent: 9.0, scale })),
+            specular: Some(Specular::Constant(PhongSpecular { exponent: 9.0, scale })),
         };
         let scene = Scene { field: fractal(32, 1).unwrap(), surface, lights };
         let quality = Quality { azimuths: 8, basis, ..Quality::default() };
@@ -222,32 +222,32 @@ mod tests {
     }
 
     #[test]
-    fn what_a_lobe_is_not_lit_by_is_said() {
-        let said = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
+    fn specular_names_the_lights_and_bases_it_rejects() {
+        let message = |lights, basis| plan(lights, basis, 0.5).unwrap_err().to_string();
         let key = KeyLight {
             azimuth_rad: 0.0,
             width_rad: 1.0,
             elevations_rad: [0.1, 0.5],
             radiance: [1.0; 3],
         };
-        let under_key = said(Lights { keys: vec![key], ..sky() }, Basis::Sh);
-        assert!(under_key.contains("a lobe under a key light"), "{under_key}");
-        let ball = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
-        let under_ball = said(Lights { spheres: vec![ball], ..sky() }, Basis::Sh);
-        assert!(under_ball.contains("the reference"), "{under_ball}");
-        let by_table = said(sky(), Basis::Table);
-        assert!(by_table.ends_with("--basis sh"), "{by_table}");
-        // Dark ones, and no lobe, are no reason.
+        let under_key = message(Lights { keys: vec![key], ..sky() }, Basis::Sh);
+        assert!(under_key.contains("specular under a key light"), "{under_key}");
+        let sphere = SphereLight { position_m: [1.0; 3], radius_m: 1.0, radiance: [1.0; 3] };
+        let under_sphere = message(Lights { sphere_lights: vec![sphere], ..sky() }, Basis::Sh);
+        assert!(under_sphere.contains("path-traced reference"), "{under_sphere}");
+        let by_table = message(sky(), Basis::Table);
+        assert!(by_table.ends_with("`basis sh`"), "{by_table}");
+        // Dark lights, or no specular, raise no error.
         let dark = KeyLight { radiance: [0.0; 3], ..key };
         assert!(plan(Lights { keys: vec![dark], ..sky() }, Basis::Sh, 0.5).is_ok());
         assert!(plan(Lights { keys: vec![key], ..sky() }, Basis::Table, 0.0).is_ok());
         assert!(plan(sun(), Basis::Table, 0.5).is_ok());
     }
 
-    /// The planner takes harmonics where there is something all around; suns need none, and a lobe of nothing
-    /// nothing. No edits: what is seen of a sky is not kept by sample.
+    /// The planner uses harmonics if light arrives from all directions. Suns need none, and neither does specular of scale 0.
+    /// No edits: visibility of a sky is not kept per texel.
     #[test]
-    fn harmonics_are_for_what_is_all_around() {
+    fn specular_uses_harmonics_for_light_from_all_directions() {
         let of_sky = plan(sky(), Basis::Auto, 0.5).unwrap();
         assert!(of_sky.notes.iter().any(|n| n.starts_with("basis sh")), "{:?}", of_sky.notes);
         assert!(of_sky.settings.contains(&("basis".into(), "sh".into())));
@@ -264,7 +264,7 @@ mod tests {
         let of_sun = plan(sun(), Basis::Auto, 0.5).unwrap();
         assert!(of_sun.find("visibility").is_none() && of_sun.find("gloss_sum").is_some());
         let none = plan(sky(), Basis::Auto, 0.0).unwrap();
-        assert!(none.notes.iter().any(|n| n.starts_with("lobe dropped")), "{:?}", none.notes);
+        assert!(none.notes.iter().any(|n| n.starts_with("specular dropped")), "{:?}", none.notes);
         assert!(none.find("gloss_sum").is_none() && none.find("visibility").is_none());
     }
 }
